@@ -18,7 +18,7 @@
 #include "support/compiler.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::cache_test {
 namespace {
 
 #ifdef ANHOLON_COMPILER_BUILT
@@ -316,4 +316,4 @@ TEST(CacheFolder, ComesFromTheEnvironment) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::cache_test

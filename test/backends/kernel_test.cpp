@@ -14,7 +14,7 @@
 #include "support/compiler.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::kernel_test {
 namespace {
 
 constexpr int kStages = 12;
@@ -557,4 +557,4 @@ TEST(Kernels, AreNotCompiledForTheseReasonsOnly) {
 TEST(Kernels, HaveACompilerWhereOneWasBuilt) { EXPECT_TRUE(compiler() || !test::compiler_expected()); }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::kernel_test

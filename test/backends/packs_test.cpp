@@ -14,7 +14,7 @@
 #include "support/models.h"
 #include "support/random_system.h"
 
-namespace anholon {
+namespace anholon::packs_test {
 namespace {
 
 constexpr unsigned kWidth = 4;
@@ -164,4 +164,4 @@ TEST(Packs, ChangeNoBitOfRandomSystems) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::packs_test

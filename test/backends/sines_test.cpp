@@ -8,7 +8,7 @@
 
 #include "kernel/arithmetic.h"
 
-namespace anholon {
+namespace anholon::sines_test {
 namespace {
 
 bool fused(const Tier& tier) { return std::string(tier.name) != "plain"; }
@@ -93,4 +93,4 @@ TEST(Sines, HaveTheSameBitsInAllLanesAndTiers) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::sines_test

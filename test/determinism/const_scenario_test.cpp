@@ -13,7 +13,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::const_scenario_test {
 namespace {
 
 struct Prepared {
@@ -121,4 +121,4 @@ INSTANTIATE_TEST_SUITE_P(Model, SharedScenario,
                          [](const auto& p) { return test::test_name(std::string(p.param.model)); });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::const_scenario_test

@@ -5,7 +5,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::determinism_test {
 namespace {
 
 std::vector<std::vector<std::string>> rows(const std::shared_ptr<const Model>& model, const Rational& to,
@@ -53,4 +53,4 @@ TEST(DeterminismOf, ADifferentParameterIsSeen) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::determinism_test

@@ -7,7 +7,7 @@
 #include "support/model_point.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::arranged_test {
 namespace {
 
 // 40 digits, terms up to 1e3 and some hundred operations.
@@ -63,4 +63,4 @@ INSTANTIATE_TEST_SUITE_P(Model, Arranged, testing::ValuesIn(test::shipped_models
                          [](const auto& p) { return test::test_name(p.param); });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::arranged_test

@@ -9,7 +9,7 @@
 #include "published/subject.h"
 #include "support/models.h"
 
-namespace anholon::test {
+namespace anholon::test::compare_test {
 namespace {
 
 // A shipped model, ready to be compared with.
@@ -284,4 +284,4 @@ INSTANTIATE_TEST_SUITE_P(Models, Derived,
                          [](const auto& p) { return test_name(p.param); });
 
 }  // namespace
-}  // namespace anholon::test
+}  // namespace anholon::test::compare_test

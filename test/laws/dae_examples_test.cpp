@@ -9,7 +9,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::dae_examples_test {
 namespace {
 
 using Integers = std::vector<int>;
@@ -216,4 +216,4 @@ TEST(BetweenTwoSteps, AFoldedLinkageIsNoticed) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::dae_examples_test

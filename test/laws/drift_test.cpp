@@ -9,7 +9,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon::test {
+namespace anholon::test::drift_test {
 namespace {
 
 // What one step loses, relative to the state; what is left after projection, relative to the terms of the constraint:
@@ -85,4 +85,4 @@ TEST(Drift, TheRollingCoinStaysOnItsConstraintsAndKeepsItsEnergy) {
 }
 
 }  // namespace
-}  // namespace anholon::test
+}  // namespace anholon::test::drift_test

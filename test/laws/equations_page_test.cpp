@@ -4,7 +4,7 @@
 #include "published/subject.h"
 #include "support/models.h"
 
-namespace anholon::test {
+namespace anholon::test::equations_page_test {
 namespace {
 
 struct Example {
@@ -56,4 +56,4 @@ TEST(EquationsPage, ExamplesAreWhatItSays) {
 }
 
 }  // namespace
-}  // namespace anholon::test
+}  // namespace anholon::test::equations_page_test

@@ -11,7 +11,7 @@
 #include "support/manifold.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::form_mutants_test {
 namespace {
 
 constexpr double kZero = 1e-30;       // 60 digits, in units of the terms
@@ -273,4 +273,4 @@ INSTANTIATE_TEST_SUITE_P(Model, Certificates,
                          });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::form_mutants_test

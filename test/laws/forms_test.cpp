@@ -6,7 +6,7 @@
 #include "support/model_point.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::forms_test {
 namespace {
 
 // 40 digits, terms up to 1e3 and some hundred operations.
@@ -168,4 +168,4 @@ TEST(Mutants, AnEnergyRateWithoutTheMassTermIsRefuted) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::forms_test

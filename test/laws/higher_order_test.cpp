@@ -8,7 +8,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::higher_order_test {
 namespace {
 
 constexpr double kSame = 1e-13;     // two runs with tolerance 1e-15
@@ -123,4 +123,4 @@ TEST(FreeMultiplier, GivesAnotherMotion) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::higher_order_test

@@ -9,7 +9,7 @@
 #include "setup/eliminate.h"
 #include "support/identity.h"
 
-namespace anholon {
+namespace anholon::identities_test {
 namespace {
 
 constexpr double kExact = 1e-28;   // 40 digits, terms up to 1e4 in units of their largest
@@ -464,4 +464,4 @@ TEST(OperatorsMutant, ADerivativeWithDependentOnesHeldIsRefuted) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::identities_test

@@ -10,7 +10,7 @@
 #include "support/models.h"
 #include "support/value.h"
 
-namespace anholon {
+namespace anholon::integrability_test {
 namespace {
 
 std::shared_ptr<const Model> particle(const std::vector<std::string>& equations, const std::string& more = {}) {
@@ -199,4 +199,4 @@ TEST_P(Mixed, FlagSeesThroughTheMixture) {
 INSTANTIATE_TEST_SUITE_P(Seed, Mixed, testing::Range<std::uint64_t>(1, 7));
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::integrability_test

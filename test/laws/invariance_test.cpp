@@ -10,7 +10,7 @@
 #include "support/manifold.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::invariance_test {
 namespace {
 
 constexpr double kExact = 1e-24;   // 40 digits, less what inverses and high derivatives take
@@ -480,4 +480,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& p) { return p.param.name; });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::invariance_test

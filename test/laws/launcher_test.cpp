@@ -10,7 +10,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::launcher_test {
 namespace {
 
 struct Flight {
@@ -182,4 +182,4 @@ TEST(Launcher, FliesAsByNewtonsLawAtRest) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::launcher_test

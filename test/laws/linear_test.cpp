@@ -4,7 +4,7 @@
 #include "linear/linearize.h"
 #include "support/models.h"
 
-namespace anholon::test {
+namespace anholon::test::linear_test {
 namespace {
 
 constexpr int kDigits = 40;
@@ -353,4 +353,4 @@ TEST(LinearModels, AnotherBicycleHasOtherEigenvalues) {
 }
 
 }  // namespace
-}  // namespace anholon::test
+}  // namespace anholon::test::linear_test

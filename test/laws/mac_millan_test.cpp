@@ -5,7 +5,7 @@
 #include "mechanics/integrability.h"
 #include "support/identity.h"
 
-namespace anholon {
+namespace anholon::mac_millan_test {
 namespace {
 
 constexpr double kExact = 1e-28;
@@ -79,4 +79,4 @@ TEST(MacMillan, TheBracketOfAHolonomicConstraintVanishes) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::mac_millan_test

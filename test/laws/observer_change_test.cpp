@@ -5,7 +5,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::observer_change_test {
 namespace {
 
 // Both are integrated at 1e-15; two hundred round-offs of coordinates of size one remain.
@@ -63,4 +63,4 @@ TEST_F(ObserverChange, RefutesAnotherTurn) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::observer_change_test

@@ -8,7 +8,7 @@
 #include "support/identity.h"
 #include "support/particle_system.h"
 
-namespace anholon {
+namespace anholon::order_by_choice_test {
 namespace {
 
 constexpr double kExact = 1e-26;
@@ -131,4 +131,4 @@ TEST(OrderOfQuasiVelocities, TheirDerivativesStayFree) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::order_by_choice_test

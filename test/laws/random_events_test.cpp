@@ -10,7 +10,7 @@
 #include "support/random_events.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::random_events_test {
 namespace {
 
 constexpr std::size_t kFew = 300, kAll = 10'000;
@@ -102,4 +102,4 @@ TEST_P(RandomEvents, AreThoseOfTheClosedForm) {
 INSTANTIATE_TEST_SUITE_P(Shards, RandomEvents, testing::Range(0, kShards));
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::random_events_test

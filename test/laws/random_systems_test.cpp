@@ -10,7 +10,7 @@
 #include "support/random_system.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::random_systems_test {
 namespace {
 
 constexpr double kNewton = 1e-11;     // C1, C2, C3 in relation to the terms
@@ -128,4 +128,4 @@ TEST(RandomSystemsMutant, AnotherForceIsAnotherMotion) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::random_systems_test

@@ -9,7 +9,7 @@
 #include "support/motion_point.h"
 #include "support/particle_system.h"
 
-namespace anholon {
+namespace anholon::reaction_formulas_test {
 namespace {
 
 constexpr double kExact = 1e-26;
@@ -105,4 +105,4 @@ TEST(ReactionFormulasOf, RedundantAndServoConstraints) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::reaction_formulas_test

@@ -9,7 +9,7 @@
 #include "support/contraction.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::reduced_forms_test {
 namespace {
 
 constexpr double kExact = 1e-26;  // 40 digits, less what a nearly singular point of the manifold takes
@@ -56,4 +56,4 @@ TEST(FullyConstrained, LeavesNoEquations) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::reduced_forms_test

@@ -14,7 +14,7 @@
 #include "support/motion_point.h"
 #include "support/particle_system.h"
 
-namespace anholon {
+namespace anholon::sufficiency_test {
 namespace {
 
 constexpr double kExact = 1e-26;   // 40 digits, a few systems of equations after each other
@@ -215,4 +215,4 @@ INSTANTIATE_TEST_SUITE_P(System, Sufficiency,
                          });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::sufficiency_test

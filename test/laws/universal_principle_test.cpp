@@ -12,7 +12,7 @@
 #include "support/motion_point.h"
 #include "support/particle_system.h"
 
-namespace anholon {
+namespace anholon::universal_principle_test {
 namespace {
 
 constexpr double kDifferences = 1e-24;  // step 1e-15, its square is the error
@@ -206,4 +206,4 @@ INSTANTIATE_TEST_SUITE_P(Order, PutIntoTheReducedEquations, testing::Values(1U, 
                          [](const auto& p) { return "m" + std::to_string(p.param); });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::universal_principle_test

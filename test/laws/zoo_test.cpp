@@ -11,7 +11,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::zoo_test {
 namespace {
 
 constexpr double kAgreement = 1e-9;  // of motions at tolerance 1e-13 and of 20 000 steps of Runge and Kutta
@@ -235,4 +235,4 @@ TEST(Zoo, TheTetherKeptAtAnAngleGrowsAsItsServoWants) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::zoo_test

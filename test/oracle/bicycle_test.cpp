@@ -7,7 +7,7 @@
 #include "observe/evaluate.h"
 #include "support/models.h"
 
-namespace anholon::test {
+namespace anholon::test::bicycle_test {
 namespace {
 
 constexpr double kPrinted = 1e-12;  // 13 digits are printed, of the state as well
@@ -90,4 +90,4 @@ TEST(Bicycle, AnotherMassIsSeen) {
 }
 
 }  // namespace
-}  // namespace anholon::test
+}  // namespace anholon::test::bicycle_test

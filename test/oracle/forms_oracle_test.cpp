@@ -12,7 +12,7 @@
 #include "support/manifold.h"
 #include "support/oracle.h"
 
-namespace anholon {
+namespace anholon::forms_oracle_test {
 namespace {
 
 using nlohmann::json;
@@ -319,4 +319,4 @@ INSTANTIATE_TEST_SUITE_P(Model, FormsOracleMutant,
                          [](const auto& p) { return test::test_name(p.param.model); });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::forms_oracle_test

@@ -9,7 +9,7 @@
 #include "support/oracle.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::oracle_test {
 namespace {
 
 using nlohmann::json;
@@ -274,4 +274,4 @@ INSTANTIATE_TEST_SUITE_P(Model, OracleMutant,
                          [](const auto& p) { return test::test_name(p.param.model); });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::oracle_test

@@ -9,7 +9,7 @@
 #include "support/models.h"
 #include "support/oracle.h"
 
-namespace anholon {
+namespace anholon::terms_test {
 namespace {
 
 using nlohmann::json;
@@ -168,4 +168,4 @@ TEST(OracleData, EverySystemHasAModel) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::terms_test

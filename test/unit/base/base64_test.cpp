@@ -3,7 +3,7 @@
 
 #include "base/base64.h"
 
-namespace anholon {
+namespace anholon::base64_test {
 namespace {
 
 // RFC 4648, section 10, and bytes that are no text.
@@ -35,4 +35,4 @@ TEST(Base64, ThereAndBack) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::base64_test

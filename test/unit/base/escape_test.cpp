@@ -7,7 +7,7 @@
 #include "base/escape.h"
 #include "base/utf8.h"
 
-namespace anholon {
+namespace anholon::escape_test {
 namespace {
 
 const std::string kTexts[] = {"",
@@ -106,4 +106,4 @@ TEST(Escape, MessagesAreLinesOfOurs) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::escape_test

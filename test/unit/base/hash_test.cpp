@@ -2,7 +2,7 @@
 
 #include "base/hash.h"
 
-namespace anholon {
+namespace anholon::hash_test {
 namespace {
 
 TEST(Hash, Sha256OfTheStandard) {
@@ -22,4 +22,4 @@ TEST(Hash, SipHashOfItsPaper) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::hash_test

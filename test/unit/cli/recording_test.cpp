@@ -4,7 +4,7 @@
 #include "cli/pictures/child.h"
 #include "cli/pictures/recording.h"
 
-namespace anholon::cli {
+namespace anholon::cli::recording_test {
 namespace {
 
 // One pixel, 1x1; as a browser's toDataURL gives it.
@@ -182,4 +182,4 @@ TEST(TemporaryFolder, IsGoneAfterwards) {
 }
 
 }  // namespace
-}  // namespace anholon::cli
+}  // namespace anholon::cli::recording_test

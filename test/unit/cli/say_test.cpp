@@ -2,7 +2,7 @@
 
 #include "cli/say.h"
 
-namespace anholon::cli {
+namespace anholon::cli::say_test {
 namespace {
 
 TEST(Say, IsPrintfForWhatIsOurs) {
@@ -20,4 +20,4 @@ TEST(Say, ShowsWhatOthersWrote) {
 }
 
 }  // namespace
-}  // namespace anholon::cli
+}  // namespace anholon::cli::say_test

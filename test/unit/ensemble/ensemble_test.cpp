@@ -10,7 +10,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::ensemble_test {
 namespace {
 
 const char* const kPendulum = R"toml(
@@ -527,4 +527,4 @@ TEST(Ensemble, HasNothingToSayWhereNoCaseFinishes) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::ensemble_test

@@ -4,7 +4,7 @@
 #include "expr/normal.h"
 #include "support/plain_names.h"
 
-namespace anholon {
+namespace anholon::antiderivative_test {
 namespace {
 
 using test::PlainNames;
@@ -74,4 +74,4 @@ TEST(Exponential, MakesLogarithmsPowers) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::antiderivative_test

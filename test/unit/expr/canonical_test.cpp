@@ -9,7 +9,7 @@
 #include "support/random_expr.h"
 #include "support/value.h"
 
-namespace anholon {
+namespace anholon::canonical_test {
 namespace {
 
 using test::RandomExpr;
@@ -241,4 +241,4 @@ TEST(Rates, OfSharedPartsAreMadeOnce) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::canonical_test

@@ -4,7 +4,7 @@
 #include "expr/diff.h"
 #include "expr/expr.h"
 
-namespace anholon {
+namespace anholon::clone_test {
 namespace {
 
 StepFunction step_function() { return {"s", {Rational(0)}, {Rational(1), Rational(2)}}; }
@@ -93,4 +93,4 @@ TEST(GraphClone, OwnsNothingOfStrangers) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::clone_test

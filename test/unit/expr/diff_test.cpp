@@ -7,7 +7,7 @@
 #include "support/random_expr.h"
 #include "support/value.h"
 
-namespace anholon {
+namespace anholon::diff_test {
 namespace {
 
 using test::distance, test::Point, test::RandomExpr, test::value;
@@ -221,4 +221,4 @@ TEST(Depth, TheGradientOfADeepFormulaTakesMemoryInProportion) {
 #endif
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::diff_test

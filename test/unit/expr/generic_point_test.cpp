@@ -4,7 +4,7 @@
 
 #include "expr/generic_point.h"
 
-namespace anholon {
+namespace anholon::generic_point_test {
 namespace {
 
 Node symbol(Kind kind, std::uint32_t index, unsigned order) {
@@ -33,4 +33,4 @@ TEST(GenericValue, FollowsFromSymbolAndSeed) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::generic_point_test

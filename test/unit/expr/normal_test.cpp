@@ -6,7 +6,7 @@
 #include "support/random_expr.h"
 #include "support/value.h"
 
-namespace anholon {
+namespace anholon::normal_test {
 namespace {
 
 using test::PlainNames;
@@ -101,4 +101,4 @@ TEST(Expanded, IsASumOfMonomials) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::normal_test

@@ -3,7 +3,7 @@
 
 #include "expr/polynomial.h"
 
-namespace anholon {
+namespace anholon::polynomial_test {
 namespace {
 
 class Remainder : public testing::Test {
@@ -51,4 +51,4 @@ TEST_F(Remainder, IsPaidFor) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::polynomial_test

@@ -8,7 +8,7 @@
 #include "support/plain_names.h"
 #include "support/random_expr.h"
 
-namespace anholon {
+namespace anholon::refute_test {
 namespace {
 
 using test::PlainNames;
@@ -79,4 +79,4 @@ TEST(Degree, EulersTheoremHolds) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::refute_test

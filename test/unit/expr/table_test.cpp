@@ -6,7 +6,7 @@
 #include "expr/table.h"
 #include "support/value.h"
 
-namespace anholon {
+namespace anholon::table_test {
 namespace {
 
 const Table kTable{"F", {0, 1, Rational(5, 2), 3, 5}, {0, 2, 2, -1, 4}, Fit::linear, Outside::hold};
@@ -103,4 +103,4 @@ TEST(Tables, SayWhenTheyAreTooRough) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::table_test

@@ -3,7 +3,7 @@
 #include "support/plain_names.h"
 #include "support/value.h"
 
-namespace anholon {
+namespace anholon::parse_test {
 namespace {
 
 using test::PlainNames;
@@ -209,4 +209,4 @@ TEST(Equation, HasOneSideOrTwo) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::parse_test

@@ -2,7 +2,7 @@
 
 #include "formula/formula.h"
 
-namespace anholon {
+namespace anholon::syntax_test {
 namespace {
 
 std::string again(const std::string& text) { return print(parse_formula(FormulaText(text, Span{1, 1, 1}))); }
@@ -27,4 +27,4 @@ TEST(SyntaxPrint, MeansTheSame) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::syntax_test

@@ -5,7 +5,7 @@
 #include "formula/units.h"
 #include "support/plain_names.h"
 
-namespace anholon {
+namespace anholon::units_test {
 namespace {
 
 Rational factor(const std::string& unit) {
@@ -85,4 +85,4 @@ TEST(Units, FollowANumberAndABlank) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::units_test

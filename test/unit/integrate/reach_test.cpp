@@ -5,7 +5,7 @@
 
 #include "integrate/series/sign_change.h"
 
-namespace anholon {
+namespace anholon::reach_test {
 namespace {
 
 // exp(-5 x) by its series.
@@ -43,4 +43,4 @@ TEST(Reach, RoundOffBoundsNothing) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::reach_test

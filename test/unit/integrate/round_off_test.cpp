@@ -9,7 +9,7 @@
 #include "structure/consistent.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::round_off_test {
 namespace {
 
 using State = std::vector<long double>;  // x, x', y, y'
@@ -98,4 +98,4 @@ INSTANTIATE_TEST_SUITE_P(Functions, RoundOff, testing::Range(0, static_cast<int>
                          [](const auto& of) { return test::test_name(kSystems[of.param].name); });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::round_off_test

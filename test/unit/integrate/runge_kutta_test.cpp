@@ -9,7 +9,7 @@
 
 #include "integrate/states/dormand_prince.h"
 
-namespace anholon {
+namespace anholon::runge_kutta_test {
 namespace {
 
 namespace method = dormand_prince;
@@ -112,4 +112,4 @@ TEST(DormandPrince, EveryCoefficientCounts) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::runge_kutta_test

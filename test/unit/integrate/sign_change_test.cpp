@@ -7,7 +7,7 @@
 #include "integrate/series/sign_change.h"
 #include "numeric/multi.h"
 
-namespace anholon {
+namespace anholon::sign_change_test {
 namespace {
 
 template <Number N>
@@ -111,4 +111,4 @@ TEST(FirstBelow, IsNoLookAtTheEnds) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::sign_change_test

@@ -4,7 +4,7 @@
 
 #include "integrate/step_control.h"
 
-namespace anholon {
+namespace anholon::step_control_test {
 namespace {
 
 // The series of 1/(1 - x/radius)^power, of radius `radius`.
@@ -108,4 +108,4 @@ TEST(StepControl, IntegralsShortenAStep) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::step_control_test

@@ -7,7 +7,7 @@
 #include "structure/consistent.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::stepper_test {
 namespace {
 
 // One model from text to stepper; the parts stay together, for each refers to the one before.
@@ -425,4 +425,4 @@ TEST(Outcome, EveryKindHasANameOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::stepper_test

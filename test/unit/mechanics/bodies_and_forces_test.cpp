@@ -7,7 +7,7 @@
 #include "support/model_point.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::bodies_and_forces_test {
 namespace {
 
 constexpr double kRounding = 1e-33;  // 40 digits, hundreds of operations
@@ -263,4 +263,4 @@ rigid = "dot(angvel(b), b.x)^2 + 3/2*dot(angvel(b), b.y)^2 + 2*dot(angvel(b), b.
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::bodies_and_forces_test

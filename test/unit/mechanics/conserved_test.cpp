@@ -5,7 +5,7 @@
 #include "mechanics/conserved.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::conserved_test {
 namespace {
 
 std::vector<std::string> names_of(const std::shared_ptr<const Model>& model) {
@@ -171,4 +171,4 @@ INSTANTIATE_TEST_SUITE_P(Models, OfShipped, testing::ValuesIn(test::shipped_mode
                          [](const auto& p) { return test::test_name(p.param); });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::conserved_test

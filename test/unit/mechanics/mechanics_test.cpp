@@ -7,7 +7,7 @@
 #include "support/model_point.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::mechanics_test {
 namespace {
 
 constexpr double kRounding = 1e-33;  // 40 digits, hundreds of operations
@@ -308,4 +308,4 @@ TEST(Power, IsTheRateOfTheEnergy) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::mechanics_test

@@ -4,7 +4,7 @@
 #include "mechanics/work.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::work_test {
 namespace {
 
 std::string factor(const std::string& equation) {
@@ -37,4 +37,4 @@ TEST(PowerFactor, OfHigherOrders) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::work_test

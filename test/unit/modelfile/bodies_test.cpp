@@ -5,7 +5,7 @@
 #include "modelfile/names/notation.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::bodies_test {
 namespace {
 
 std::vector<std::string> names(const Model& m) { return m.names.multipliers; }
@@ -126,4 +126,4 @@ TEST(GreekLetters, AreTheirNamesEverywhere) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::bodies_test

@@ -3,7 +3,7 @@
 
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::dimensions_test {
 namespace {
 
 const std::string kCar = R"toml(coordinates = ["x", "y", "th"]
@@ -148,4 +148,4 @@ TEST(DimensionsOfAModel, AreNotLookedAtWithoutUnits) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::dimensions_test

@@ -3,7 +3,7 @@
 
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::families_test {
 namespace {
 
 std::size_t nodes(int links) {
@@ -45,4 +45,4 @@ TEST(Families, ALongCircleIsNamed) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::families_test

@@ -3,7 +3,7 @@
 
 #include "modelfile/text/format.h"
 
-namespace anholon {
+namespace anholon::format_test {
 namespace {
 
 std::string format(const std::string& text) { return formatted(SourceText{"test.toml", text}); }
@@ -79,4 +79,4 @@ TEST(Format, ContentIsComparedToTheLastCharacterAndInOrder) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::format_test

@@ -8,7 +8,7 @@
 #include "modelfile/language/reference.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::language_test {
 namespace {
 
 const std::string kPlate = R"toml(coordinates = ["x", "y", "theta"]
@@ -132,4 +132,4 @@ TEST(Language, UnitsOfThePageAreRead) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::language_test

@@ -3,7 +3,7 @@
 
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::messages_test {
 namespace {
 
 const std::string kGood = R"toml(coordinates = ["x", "theta"]
@@ -162,4 +162,4 @@ TEST(Robust, AFractionalPowerOfANegativeNumberIsTheUsersErrorOrNotANumber) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::messages_test

@@ -4,7 +4,7 @@
 #include "support/model_point.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::names_test {
 namespace {
 
 // left - right, read as part of a constraint of third order.
@@ -124,4 +124,4 @@ TEST(Meaning, TheOrderOfAConstraintIsItsTrueOne) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::names_test

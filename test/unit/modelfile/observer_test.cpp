@@ -5,7 +5,7 @@
 #include "support/model_point.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::observer_test {
 namespace {
 
 std::shared_ptr<const Model> with_observer(const std::string& observer) {
@@ -114,4 +114,4 @@ TEST(Antiderivative, HasTheIntegrandAsDerivative) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::observer_test

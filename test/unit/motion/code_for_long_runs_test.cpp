@@ -7,7 +7,7 @@
 #include "setup/scenario.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::code_for_long_runs_test {
 namespace {
 
 std::shared_ptr<const KernelPlan> plan_of(const std::string& name, int stages) {
@@ -45,4 +45,4 @@ TEST(CodeForLongRuns, ExitWaitsForWhatIsLeftBehind) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::code_for_long_runs_test

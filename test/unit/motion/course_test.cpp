@@ -7,7 +7,7 @@
 #include "support/models.h"
 #include "support/motion.h"
 
-namespace anholon {
+namespace anholon::course_test {
 namespace {
 
 using Result = test::Motion;
@@ -287,4 +287,4 @@ TEST(Course, ShippedModelsStayTaylors) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::course_test

@@ -15,7 +15,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::quasi_velocities_test {
 namespace {
 
 struct Found {
@@ -243,4 +243,4 @@ TEST(QuasiVelocities, WithoutAValueNothingIsLost) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::quasi_velocities_test

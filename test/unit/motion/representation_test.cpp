@@ -4,7 +4,7 @@
 #include "motion/representation.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::representation_test {
 namespace {
 
 struct Written {
@@ -193,4 +193,4 @@ TEST(FormChoice, CountsBothForms) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::representation_test

@@ -7,7 +7,7 @@
 #include "numeric/ball.h"
 #include "numeric/number.h"
 
-namespace anholon {
+namespace anholon::ball_test {
 namespace {
 
 using Function = Ball (*)(const Ball&);
@@ -169,4 +169,4 @@ TEST(Ball, HasAHullAndALowerEnd) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::ball_test

@@ -2,7 +2,7 @@
 
 #include "numeric/eigen.h"
 
-namespace anholon {
+namespace anholon::eigen_test {
 namespace {
 
 constexpr int kDigits = 40;
@@ -109,4 +109,4 @@ TEST(Eigenvalues, NothingAndNoNumbers) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::eigen_test

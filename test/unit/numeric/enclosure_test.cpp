@@ -2,7 +2,7 @@
 
 #include "numeric/enclosure.h"
 
-namespace anholon {
+namespace anholon::enclosure_test {
 namespace {
 
 SquareSystem polynomial(std::vector<int> c) {
@@ -107,4 +107,4 @@ TEST(Enclosure, ARootNeedsItsOwnEquation) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::enclosure_test

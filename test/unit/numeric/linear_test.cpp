@@ -4,7 +4,7 @@
 
 #include "numeric/linear.h"
 
-namespace anholon {
+namespace anholon::linear_test {
 namespace {
 
 template <class N>
@@ -227,4 +227,4 @@ TEST(LeastChange, IsTheSmallestInTheMetric) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::linear_test

@@ -5,7 +5,7 @@
 #include "numeric/multi.h"
 #include "numeric/number.h"
 
-namespace anholon {
+namespace anholon::multi_test {
 namespace {
 
 TEST(Multi, KnowsDigitsOfPiAndRoots) {
@@ -91,4 +91,4 @@ TEST(AddMul, RoundsAfterTheProductInEveryType) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::multi_test

@@ -2,7 +2,7 @@
 
 #include "numeric/philox.h"
 
-namespace anholon {
+namespace anholon::philox_test {
 namespace {
 
 // The known answers of Random123 for philox4x32-10.
@@ -42,4 +42,4 @@ TEST(Philox, DrawsDependOnSeedNumberAndStreamOnly) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::philox_test

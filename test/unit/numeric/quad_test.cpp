@@ -8,7 +8,7 @@
 #include "numeric/number.h"
 #include "numeric/quad.h"
 
-namespace anholon {
+namespace anholon::quad_test {
 namespace {
 
 Multi multi(Quad x) {
@@ -87,4 +87,4 @@ TEST_F(Quads, RoundAtOneHalfOfTheLastOfTheirBits) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::quad_test

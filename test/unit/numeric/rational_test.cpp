@@ -6,7 +6,7 @@
 #include "numeric/number.h"
 #include "numeric/rational.h"
 
-namespace anholon {
+namespace anholon::rational_test {
 namespace {
 
 TEST(ParseRational, DecimalsAreExact) {
@@ -97,4 +97,4 @@ TEST(FromRational, TruncationWouldBeNoticed) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::rational_test

@@ -3,7 +3,7 @@
 #include "numeric/balance.h"
 #include "numeric/relative.h"
 
-namespace anholon {
+namespace anholon::relative_test {
 namespace {
 
 constexpr double kEps = 0x1p-53;
@@ -50,4 +50,4 @@ TEST(Balance, AnEmptyRowIsLeftAlone) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::relative_test

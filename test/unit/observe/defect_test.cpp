@@ -5,7 +5,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::defect_test {
 namespace {
 
 // A bound as a number.
@@ -224,4 +224,4 @@ TEST(Defect, OfADisturbedTrajectoryOrAWrongLawIsSeen) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::defect_test

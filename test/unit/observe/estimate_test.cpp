@@ -9,7 +9,7 @@
 #include "support/oracle.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::estimate_test {
 namespace {
 
 struct Result : test::Motion {
@@ -352,4 +352,4 @@ TEST(SampledRows, KeepTheFastPhaseOfALongRun) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::estimate_test

@@ -4,7 +4,7 @@
 #include "observe/supports.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::supports_test {
 namespace {
 
 // A plate that stands on two feet, 2 apart, with its mass centre 1 above them.
@@ -89,4 +89,4 @@ TEST(Supports, TheSignIsThatOfTheForce) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::supports_test

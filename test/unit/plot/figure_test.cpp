@@ -14,7 +14,7 @@
 #include "plot/drawing.h"
 #include "plot/terminal.h"
 
-namespace anholon::plot {
+namespace anholon::plot::figure_test {
 namespace {
 
 RunFile run(const std::vector<std::string>& columns, const std::vector<std::vector<double>>& values) {
@@ -372,4 +372,4 @@ TEST(Cairo, DrawsTheSameBytes) {
 }
 
 }  // namespace
-}  // namespace anholon::plot
+}  // namespace anholon::plot::figure_test

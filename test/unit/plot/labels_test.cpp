@@ -2,7 +2,7 @@
 
 #include "plot/labels.h"
 
-namespace anholon::plot {
+namespace anholon::plot::labels_test {
 namespace {
 
 std::string unicode(const std::string& column, const std::string& unit = "") {
@@ -55,4 +55,4 @@ TEST(Labels, MarksHaveNoWidth) {
 }
 
 }  // namespace
-}  // namespace anholon::plot
+}  // namespace anholon::plot::labels_test

@@ -6,7 +6,7 @@
 #include "support/random_expr.h"
 #include "support/value.h"
 
-namespace anholon {
+namespace anholon::arrange_test {
 namespace {
 
 using test::PlainNames;
@@ -102,4 +102,4 @@ TEST(Arranged, IsEqualAndNoLonger) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::arrange_test

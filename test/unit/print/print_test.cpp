@@ -4,7 +4,7 @@
 #include "support/plain_names.h"
 #include "support/random_expr.h"
 
-namespace anholon {
+namespace anholon::print_test {
 namespace {
 
 using test::PlainNames;
@@ -158,4 +158,4 @@ TEST(Latex, IsBalancedOnRandomExpressions) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::print_test

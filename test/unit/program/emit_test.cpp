@@ -8,7 +8,7 @@
 #include "support/models.h"
 #include "tape/tape.h"
 
-namespace anholon {
+namespace anholon::emit_test {
 namespace {
 
 struct Made {
@@ -142,4 +142,4 @@ TEST(Emit, OfAChainIsLinearInItsLinks) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::emit_test

@@ -6,7 +6,7 @@
 #include "support/chain.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::size_test {
 namespace {
 
 ProgramSize size_of_chain(int n) {
@@ -59,4 +59,4 @@ TEST(EquationSize, OfAChainIsLinearInItsLinks) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::size_test

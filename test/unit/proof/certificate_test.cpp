@@ -6,7 +6,7 @@
 #include "base/diagnostic.h"
 #include "proof/checker/certificate.h"
 
-namespace anholon {
+namespace anholon::certificate_test {
 namespace {
 
 using Operation = Certificate::Operation;
@@ -171,4 +171,4 @@ TEST(CertificateFormat, SurvivesMutatedBytes) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::certificate_test

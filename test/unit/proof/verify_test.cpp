@@ -11,7 +11,7 @@
 #include "proof/checker/real.h"
 #include "proof/checker/verify.h"
 
-namespace anholon {
+namespace anholon::verify_test {
 namespace {
 
 using Index = Certificate::Index;
@@ -477,4 +477,4 @@ TEST(VerifyModular, MultiplicationIsThatOfIntegers) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::verify_test

@@ -3,7 +3,7 @@
 #include "proof/witness.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::witness_test {
 namespace {
 
 // exp x - cosh x - sinh x is zero, which nothing but algebra can say: 1e-400 beside it takes that many digits to be
@@ -26,4 +26,4 @@ TEST(Witness, TellsFromZeroWhatTheDigitsResolve) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::witness_test

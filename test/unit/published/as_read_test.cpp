@@ -5,7 +5,7 @@
 #include "support/models.h"
 #include "support/published.h"
 
-namespace anholon {
+namespace anholon::as_read_test {
 namespace {
 
 std::vector<PublishedEquation> shipped_equations(test::Published& p, const std::string& name) {
@@ -39,4 +39,4 @@ INSTANTIATE_TEST_SUITE_P(Of, AsRead, testing::Values("luo-zhao-example-1", "luo-
                          [](const auto& p) { return test::test_name(p.param); });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::as_read_test

@@ -4,7 +4,7 @@
 #include "published/decide.h"
 #include "support/published.h"
 
-namespace anholon {
+namespace anholon::claims_test {
 namespace {
 
 const char* const kTable = R"toml(key = "L"
@@ -161,4 +161,4 @@ TEST(Claims, AMotionThatIsNotUnique) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::claims_test

@@ -1,6 +1,6 @@
 #include "support/published.h"
 
-namespace anholon {
+namespace anholon::compare_test {
 namespace {
 
 const char* const kPendulum = R"toml(coordinates = ["x", "y"]
@@ -122,4 +122,4 @@ equation = "D(z,3) = D(x,3)^2 + D(w,3)^2"
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::compare_test

@@ -1,6 +1,6 @@
 #include "support/published.h"
 
-namespace anholon {
+namespace anholon::read_test {
 namespace {
 
 const char* const kModel = R"toml(coordinates = ["x", "y", "theta"]
@@ -80,4 +80,4 @@ TEST(Equations, EveryErrorWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::read_test

@@ -6,7 +6,7 @@
 #include "published/trial.h"
 #include "support/published.h"
 
-namespace anholon {
+namespace anholon::repair_test {
 namespace {
 
 // Everything that varies is unknown: the mass, the spin of the observer, a force p' e_x.
@@ -299,4 +299,4 @@ TEST(Trial, AgreesWithTheChangedFormula) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::repair_test

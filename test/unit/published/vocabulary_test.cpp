@@ -2,7 +2,7 @@
 // wrong ones.
 #include "support/published.h"
 
-namespace anholon {
+namespace anholon::vocabulary_test {
 namespace {
 
 // A rocket on a plane that turns with an unknown angle; a blade; the names C and Q are the model's own.
@@ -193,4 +193,4 @@ TEST(Vocabulary, WrongWordsAreErrors) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::vocabulary_test

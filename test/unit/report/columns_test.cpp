@@ -8,7 +8,7 @@
 #include "report/observer_path.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::columns_test {
 namespace {
 
 TEST(Extremes, EveryPeakStaysHoweverNarrow) {
@@ -101,4 +101,4 @@ TEST(Bibliography, NamesWhatRefsBibHolds) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::columns_test

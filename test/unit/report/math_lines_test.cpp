@@ -6,7 +6,7 @@
 #include "report/math_lines.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::math_lines_test {
 namespace {
 
 // What is left to read when tags are taken away.
@@ -85,4 +85,4 @@ TEST(Page, TextIsNeverMarkup) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::math_lines_test

@@ -7,7 +7,7 @@
 #include "report/scene.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::scene_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -125,4 +125,4 @@ TEST(Scene, TheReactionIsThatOfTheConstraint) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::scene_test

@@ -12,7 +12,7 @@
 #include "result/file.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -145,4 +145,4 @@ TEST_F(File, SaysWhatIsInTheWay) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::file_test

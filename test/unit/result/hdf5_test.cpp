@@ -17,7 +17,7 @@
 #include "result/hdf5_sink.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::hdf5_test {
 namespace {
 
 #ifndef ANHOLON_HDF5
@@ -291,4 +291,4 @@ TEST_F(Hdf5, FlippedBytesAreNoCrash) {
 #endif
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::hdf5_test

@@ -9,7 +9,7 @@
 #include "result/json_run.h"
 #include "result/table.h"
 
-namespace anholon {
+namespace anholon::table_test {
 namespace {
 
 std::string trouble(const std::string& text, bool json = false) {
@@ -127,4 +127,4 @@ TEST(Json, NumbersAreThoseOfJson) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::table_test

@@ -6,7 +6,7 @@
 #include "setup/scenario.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::workspace_test {
 namespace {
 
 // The handles of a scenario that are of this graph, and of any other.
@@ -105,4 +105,4 @@ TEST(Workspace, TakesAnotherNumberForAParameter) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::workspace_test

@@ -5,7 +5,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::chain_test {
 namespace {
 
 TEST(Chain, OfThirtyTwoLinksKeepsItsEnergyAndNewtonsLaw) {
@@ -25,4 +25,4 @@ TEST(Chain, OfThirtyTwoLinksKeepsItsEnergyAndNewtonsLaw) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::chain_test

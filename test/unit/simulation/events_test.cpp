@@ -7,7 +7,7 @@
 #include "support/models.h"
 #include "support/motion.h"
 
-namespace anholon {
+namespace anholon::events_test {
 namespace {
 
 using Result = test::Motion;
@@ -241,4 +241,4 @@ conditions = ["x' = 0.2"]
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::events_test

@@ -5,7 +5,7 @@
 #include "support/chain.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::families_test {
 namespace {
 
 constexpr double kRounded = 1e-12;  // long double, printed as double
@@ -151,4 +151,4 @@ th3 = "0.3*sin(6)"
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::families_test

@@ -6,7 +6,7 @@
 #include "support/models.h"
 #include "support/motion.h"
 
-namespace anholon {
+namespace anholon::monitor_test {
 namespace {
 
 using Result = test::Motion;
@@ -134,4 +134,4 @@ TEST(ConstraintsEach, HaveTheirDerivatives) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::monitor_test

@@ -9,7 +9,7 @@
 #include "support/motion.h"
 #include "support/oracle.h"
 
-namespace anholon {
+namespace anholon::nearly_singular_test {
 namespace {
 
 using Result = test::Motion;
@@ -180,4 +180,4 @@ TEST(NearlySingular, ABranchThatEndsIsNoRoundOff) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::nearly_singular_test

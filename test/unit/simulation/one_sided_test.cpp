@@ -8,7 +8,7 @@
 #include "support/models.h"
 #include "support/motion.h"
 
-namespace anholon {
+namespace anholon::one_sided_test {
 namespace {
 
 using Result = test::Motion;
@@ -148,4 +148,4 @@ TEST(OneSided, InManyDigitsAndByOtherMethods) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::one_sided_test

@@ -3,7 +3,7 @@
 
 #include "simulation/report_json.h"
 
-namespace anholon {
+namespace anholon::report_json_test {
 namespace {
 
 SimulationReport full_report() {
@@ -91,4 +91,4 @@ TEST(ReportJson, TakesWhatIsThere) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::report_json_test

@@ -6,7 +6,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::residual_scale_test {
 namespace {
 
 Scenario scenario(const std::string& text) {
@@ -150,4 +150,4 @@ TEST(ResidualScale, AWrongSignIsReportedLarge) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::residual_scale_test

@@ -7,7 +7,7 @@
 #include "support/motion.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::restart_test {
 namespace {
 
 struct Case {
@@ -167,4 +167,4 @@ TEST(Restart, NumbersAsTextKeepTheirBits) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::restart_test

@@ -10,7 +10,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::saturation_test {
 namespace {
 
 struct Case {
@@ -181,4 +181,4 @@ TEST(Saturation, InClosedForm) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::saturation_test

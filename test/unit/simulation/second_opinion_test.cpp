@@ -4,7 +4,7 @@
 #include "support/models.h"
 #include "support/rows.h"
 
-namespace anholon {
+namespace anholon::second_opinion_test {
 namespace {
 
 SimulationOptions options_for(Method integrator, const Model& model) {
@@ -172,4 +172,4 @@ TEST(SecondOpinion, SaysWhyItStops) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::second_opinion_test

@@ -6,7 +6,7 @@
 #include "support/models.h"
 #include "tape/tape.h"
 
-namespace anholon {
+namespace anholon::blocks_test {
 namespace {
 
 struct Analysed {
@@ -133,4 +133,4 @@ TEST(HiddenConstraints, AreTheEquationsThatAreDifferentiated) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::blocks_test

@@ -5,7 +5,7 @@
 #include "structure/consistent.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::completion_test {
 namespace {
 
 constexpr double kRoundoff = 1e-14;  // numbers of size one
@@ -194,4 +194,4 @@ TEST(Conditions, ThatCannotHoldAreNamed) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::completion_test

@@ -5,7 +5,7 @@
 #include "structure/consistent.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::consistent_test {
 namespace {
 
 // A particle of mass m in the plane and one of mass M on a line.
@@ -132,4 +132,4 @@ TEST(ConsistentState, HoldsInAnyPrecision) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::consistent_test

@@ -7,7 +7,7 @@
 #include "structure/contradiction.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::contradiction_test {
 namespace {
 
 // Particles of mass 1 on lines, one for each coordinate, with these constraints c1, c2, ….
@@ -161,4 +161,4 @@ TEST(Contradiction, OfLinearEquationsIsMinimal) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::contradiction_test

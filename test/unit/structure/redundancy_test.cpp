@@ -3,7 +3,7 @@
 #include "structure/redundancy.h"
 #include "support/models.h"
 
-namespace anholon {
+namespace anholon::redundancy_test {
 namespace {
 
 // A particle with the constraints listed, separated by semicolons.
@@ -90,4 +90,4 @@ TEST(LeastMultipliers, AreTheLeastWithTheSameForces) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::redundancy_test

@@ -5,7 +5,7 @@
 #include "support/models.h"
 #include "tape/tape.h"
 
-namespace anholon {
+namespace anholon::structure_test {
 namespace {
 
 struct Analysed {
@@ -122,4 +122,4 @@ TEST(Structure, AnUnknownThatNoEquationDeterminesIsSingular) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::structure_test

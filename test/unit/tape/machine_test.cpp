@@ -6,7 +6,7 @@
 #include "support/value.h"
 #include "tape/tape.h"
 
-namespace anholon {
+namespace anholon::machine_test {
 namespace {
 
 using test::RandomExpr;
@@ -342,4 +342,4 @@ TEST(EvaluateParameters, MayReferToEachOtherInAnyOrder) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::machine_test
