@@ -20,7 +20,7 @@ LEVEL = {
     "formulation": 6, "formulation/forms/multipliers": 6.1, "formulation/forms/coordinates": 6.1,
     "formulation/forms/quasi_velocities": 6.1, "system": 7, "lowering": 7.5, "structure": 8, "proof/checker": 7.8, "proof": 8,
     "program": 9, "setup": 9.2, "kernel/plan": 9.4, "kernel": 9.5, "kernel/tiers": 9.6, "jit": 10,
-    "integrate/series": 9.8, "integrate": 10, "integrate/states": 10.1, "result": 11, "motion": 11.5, "observe": 12, "linear": 12, "simulation": 12.2,
+    "integrate/series": 9.8, "integrate": 10, "integrate/states": 10.1, "result": 11, "result/hdf5": 11.1, "motion": 11.5, "observe/rows": 11.9, "observe": 12, "linear": 12, "simulation": 12.2,
     "ensemble": 12.3, "published": 12.5, "plot": 13, "report": 13.5, "report/page": 13.6, "api": 13.8, "cli": 14, "cli/models": 14.1, "cli/equations": 14.2, "cli/motions": 14.2, "cli/pictures": 14.3, "python": 14,
 }  # fmt: skip
 
@@ -30,6 +30,7 @@ FORMS = {name for name in LEVEL if name.startswith("formulation/forms/")}
 # Layers that may see less than everything below them.
 ONLY = {
     "result": {"base", "numeric"},
+    "result/hdf5": {"base", "numeric", "result"},
     "proof/checker": {"base", "numeric"},  # it must not trust the simplifier
     "jit": {"kernel", "kernel/plan"},  # a module of its own
     "plot": {"base", "numeric", "expr", "print", "formula", "result"},
@@ -63,7 +64,7 @@ OUTSIDE = [
     (r"(llvm|llvm-c)/", "LLVM", {"jit"}, None),
     (r"sleef", "SLEEF", {"jit"}, None),
     (r"mpi\.h$", "MPI", {"ensemble"}, 1),
-    (r"(hdf5|H5\w*)(_hl)?\.h$", "HDF5", {"result"}, 1),
+    (r"(hdf5|H5\w*)(_hl)?\.h$", "HDF5", {"result/hdf5"}, 1),
     (r"cairo(-\w+)?\.h$", "cairo", {"plot"}, 1),
     (r"sqlite3\.h$", "SQLite", {"result"}, 1),
     (r"(sundials|cvode|cvodes|ida|idas|arkode|nvector|sunmatrix|sunlinsol|sunnonlinsol)/", "SUNDIALS", {"integrate/states"}, 1),
@@ -198,7 +199,7 @@ GOOD = {
     "src/expr/graph.cpp": '#include <flint/flint.h>\n#include "base/text.h"\n#include "expr/graph.h"\n',
     "src/expr/graph.h": '// #include "cli/main.h"\n',
     "src/modelfile/text/toml.cpp": '#include <toml++/toml.h>\n#include "modelfile/language/language.h"\n',
-    "src/result/hdf5.cpp": "#include <hdf5.h>\n",
+    "src/result/hdf5/hdf5.cpp": "#include <hdf5.h>\n",
     "src/plot/cairo.cpp": '#include <cairo.h>\n#include "print/print.h"\n',
     "src/report/html.cpp": '#include "result/columns.h"\n#include "program/program.h"\n',
     "src/proof/checker/verify.cpp": '#include "numeric/ball.h"\n#include "proof/checker/certificate.h"\n',
@@ -216,6 +217,7 @@ MUTANTS = {
     "upward": ("src/expr/bad.cpp", '#include "model/model.h"\n'),
     "across": ("src/mechanics/bad.cpp", '#include "modelfile/read.h"\n'),
     "across, below": ("src/formulation/forms/multipliers/bad.cpp", '  #  include "modelfile/read.h"\n'),
+    "HDF5 outside its room": ("src/result/bad.cpp", "#include <hdf5.h>\n"),
     "result sees numbers only": ("src/result/bad.cpp", '#include "model/model.h"\n'),
     "report does not integrate": ("src/report/bad.cpp", '#include "integrate/stepper.h"\n'),
     "the compiler sees kernels only": ("src/jit/bad.cpp", '#include "program/program.h"\n'),
@@ -240,7 +242,7 @@ MUTANTS = {
     "CLI11 twice": ("src/cli/again.cpp", "#include <CLI/App.hpp>\n"),
     "SUNDIALS elsewhere": ("src/simulation/bad.cpp", "#include <cvode/cvode.h>\n"),
     "LLVM outside jit": ("src/simulation/bad.cpp", "#include <llvm/IR/Module.h>\n"),
-    "HDF5 twice": ("src/result/bad.cpp", "#include <hdf5.h>\n"),
+    "HDF5 twice": ("src/result/hdf5/bad.cpp", "#include <hdf5.h>\n"),
     "HDF5 elsewhere": ("src/cli/bad.cpp", "#include <hdf5.h>\n"),
     "cairo elsewhere": ("src/cli/bad.cpp", "#include <cairo-pdf.h>\n"),
     "plot does not simulate": ("src/plot/bad.cpp", '#include "simulation/simulate.h"\n'),

@@ -146,11 +146,6 @@ double KernelExpansion::coefficient(std::size_t j, int k) const {
   return own && k <= plan.stages + plan.d[*own] ? kernel_->coefficient(*own, k, lane_) : 0;
 }
 
-double KernelExpansion::quadrature(std::size_t i, int k) const {
-  kernel_->show_last();
-  return kernel_->quadrature(i, k, lane_);
-}
-
 std::vector<double> KernelExpansion::hidden_points(double h) const {
   std::vector<double> points;
   const Plan& plan = kernel_->plan().plan();

@@ -53,7 +53,10 @@ class KernelExpansion {
 
   // Series of the present expansion. A kernel with unknowns of its own has no multipliers: 0.
   double coefficient(std::size_t j, int k) const;
-  double quadrature(std::size_t i, int k) const;
+  double quadrature(std::size_t i, int k) const {
+    kernel_->show_last();
+    return kernel_->quadrature(i, k, lane_);
+  }
   std::vector<W> leading() const;
   std::vector<W> base(const W& begun) const;  // the state where it was made
   void state_at(const W& begun, const W& h, std::vector<W>& state, std::vector<W>& leading) const;

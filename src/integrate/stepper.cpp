@@ -24,6 +24,7 @@ Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, co
       expander_(program, parameters, wide_parameters, settings, order_), look_(program, parameters), guard_(program),
       end_(program, settings.log_tolerance, order_) {
   end_.set_slots(program.tape.main_end);
+  for (int k = 1; k <= order_; ++k) reciprocal_.push_back(W(1) / W(k));
 }
 
 // ---- one step -------------------------------------------------------------------------------------------------------
@@ -97,7 +98,8 @@ bool Stepper<N>::finish_step() {
                  "look at the last good state: a velocity or position diverges"});
   for (std::size_t i = 0; i < m.integrals.size(); ++i) {
     W s(0);
-    for (int k = order_ - 1; k >= 0; --k) s = (s + convert<W>(expander_.quadrature(i, k)) / W(k + 1)) * h;
+    for (int k = order_ - 1; k >= 0; --k)
+      s = (s + convert<W>(expander_.quadrature(i, k)) * reciprocal_[static_cast<std::size_t>(k)]) * h;
     add_compensated(m.integrals[i], m.integral_carry[i], s);
   }
   before_ = m.t;

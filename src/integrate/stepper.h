@@ -157,6 +157,7 @@ class Stepper {
   const Program* program_;
   StepSettings settings_;
   int order_;
+  std::vector<W> reciprocal_;  // of 1, 2, …, order
   Phase phase_ = Phase::placed;
   MotionTrack<N> track_;
   W started_{0}, before_{0};

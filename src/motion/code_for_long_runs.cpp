@@ -48,7 +48,8 @@ void CodeForLongRuns::leave() {
   left_behind().push_back({compilation_.done, std::move(compilation_.thread)});
 }
 
-void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes) {
+void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes,
+                           std::optional<double> spent) {
   // Seconds: what is observed before, what the compiler takes to be loaded, and for each step of a stage; it works on
   // another core if there is one.
   constexpr double kObserved = 0.02, kLoaded = 0.1, kEachStep = 0.002;
@@ -57,7 +58,8 @@ void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double
   if (!plan || compilation_.plan == plan || plan->code(lanes) || (lanes == 1 && ++asked_ % kSometimes != 0) ||
       (compilation_.done && !*compilation_.done))
     return;
-  const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - first_->when).count();
+  const double elapsed =
+      spent ? *spent : std::chrono::duration<double>(std::chrono::steady_clock::now() - first_->when).count();
   const double compilation = kLoaded + kEachStep * static_cast<double>(plan->plan().stage.size());
   if (elapsed < kObserved || !(elapsed * std::abs(end - at) > compilation * std::abs(at - first_->at))) return;
   leave();

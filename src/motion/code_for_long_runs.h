@@ -19,8 +19,10 @@ class CodeForLongRuns {
   CodeForLongRuns& operator=(const CodeForLongRuns&) = delete;
 
   // Asked at every step, by one thread at a time: begins a compilation for this plan if what is left to do takes longer
-  // than that. `at`: how far the work has come on its way to `end`.
-  void step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes = 1);
+  // than that. `at`: how far the work has come on its way to `end`; `spent`: the seconds that it took since the first
+  // request, if these are not all that have passed.
+  void step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes = 1,
+            std::optional<double> spent = {});
 
  private:
   struct Compilation {

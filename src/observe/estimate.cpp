@@ -42,11 +42,11 @@ class SharperRun {
     forward_ = end_ > t0_;
     if constexpr (std::same_as<M, double>)
       if (motion_.stepper().accelerated()) {
-        waiting_ = run_.waiting;
-        if (!waiting_)
-          own_waiting_ = WaitingRows::make(s_, {}, orders_of_rows(s_), motion_.parameters(), motion_.start_state(),
+        waiting_.rows = run_.waiting;
+        if (!waiting_.rows)
+          waiting_.own = WaitingRows::make(s_, {}, orders_of_rows(s_), motion_.parameters(), motion_.start_state(),
                                            to_double(end_));
-        if (!waiting_) waiting_ = own_waiting_.get();
+        if (!waiting_.rows) waiting_.rows = waiting_.own.get();
       }
     const Outcome o = follow();
     const Outcome last = compare_waiting();
@@ -62,8 +62,8 @@ class SharperRun {
       if (!goes_on || done()) return {};
       const std::size_t kinks = motion_.stepper().kinks();
       if (Outcome o = motion_.step(end_); !o.ok()) return o;
-      was_kink_ = at_kink_;
-      at_kink_ = motion_.stepper().kinks() != kinks;
+      kink_.before = kink_.here;
+      kink_.here = motion_.stepper().kinks() != kinks;
       if (o_.progress) o_.progress(to_double(motion_.stepper().time()), motion_.stepper().steps());
     }
   }
@@ -129,9 +129,9 @@ class SharperRun {
     for (; next_ < rows_.size() && resets_before(next_) <= resets_ && passed(times_[next_]); ++next_)
       if (Outcome o = compare(next_); !o.ok()) return o;
     const W about = W(kAboutAKink) * last_step();
-    if (was_kink_)
+    if (kink_.before)
       for (std::size_t i = first; i-- > 0 && abs(W(times_[i] - motion_.stepper().before())) < about;) compare(i);
-    if (at_kink_)
+    if (kink_.here)
       for (std::size_t i = next_; i < rows_.size() && resets_before(i) == resets_ && from_now(i) < about; ++i)
         compare(i);
     return {};
@@ -159,7 +159,7 @@ class SharperRun {
       ++resets_;
       if (!counted) ++uncounted_;
       outputs_.set_parameters(motion_.parameters());
-      at_kink_ = was_kink_ = false;
+      kink_ = {};
       for (; next_ < rows_.size() && resets_before(next_) < resets_; ++next_) lose(next_);
     }
     for (; next_ < rows_.size() && resets_before(next_) == resets_ && (set || !goes_on) &&
@@ -207,10 +207,10 @@ class SharperRun {
   Outcome compare(std::size_t i) {
     const W t = times_[i];
     if constexpr (std::same_as<M, double>)
-      if (waiting_ && motion_.stepper().steps() > 0 && !motion_.stepper().one_sided()) {
-        waiting_->add(motion_.stepper(), t, {});
-        foretold_.push_back({i, leading_of_polynomials(t), inside_step(t) ? to_double(last_step()) : 0});
-        return waiting_->full() ? compare_waiting() : Outcome{};
+      if (waiting_.rows && motion_.stepper().steps() > 0 && !motion_.stepper().one_sided()) {
+        waiting_.rows->add(motion_.stepper(), t, {});
+        waiting_.foretold.push_back({i, leading_of_polynomials(t), inside_step(t) ? to_double(last_step()) : 0});
+        return waiting_.rows->full() ? compare_waiting() : Outcome{};
       }
     const Outcome at = motion_.at(t);
     if (at.ok()) compare_with_point({i, leading_of_polynomials(t), inside_step(t) ? to_double(last_step()) : 0});
@@ -228,17 +228,17 @@ class SharperRun {
   Outcome compare_waiting() {
     Outcome o;
     if constexpr (std::same_as<M, double>)
-      if (waiting_) {
+      if (waiting_.rows) {
         std::size_t next = 0;
-        waiting_->compute([&](const WaitingRows::Computed& row) {
-          const Foretold& foretold = foretold_[next++];
+        waiting_.rows->compute([&](const WaitingRows::Computed& row) {
+          const Foretold& foretold = waiting_.foretold[next++];
           if (row.good())
             compare(foretold, row, row);
           else if (o = motion_.settle_at(row.place()); o.ok())
             compare_with_point(foretold);
           return o.ok();
         });
-        foretold_.clear();
+        waiting_.foretold.clear();
       }
     return o;
   }
@@ -285,7 +285,7 @@ class SharperRun {
 
   bool inside_step(const W& t) const {
     const Stepper<M>& stepper = motion_.stepper();
-    if (at_kink_ || was_kink_ || motion_.fired()) return false;
+    if (kink_.here || kink_.before || motion_.fired()) return false;
     return forward_ ? t > stepper.before() && !(t > stepper.time()) : t < stepper.before() && !(t < stepper.time());
   }
 
@@ -325,12 +325,17 @@ class SharperRun {
   std::vector<SampledRow<V>> rows_;
   std::vector<W> times_;
   std::vector<std::optional<RowComparison::Row>> compared_;
-  WaitingRows* waiting_ = nullptr;  // null if rows are made by the reference
-  std::unique_ptr<WaitingRows> own_waiting_;
-  std::vector<Foretold> foretold_;        // of the rows that wait
+  struct {
+    WaitingRows* rows = nullptr;  // null if rows are made by the reference
+    std::unique_ptr<WaitingRows> own;
+    std::vector<Foretold> foretold;
+  } waiting_;
   std::vector<EventMoment<W>> met_;
   W t0_{0}, end_{0};
-  bool forward_ = true, extended_ = false, at_kink_ = false, was_kink_ = false;
+  bool forward_ = true, extended_ = false;
+  struct {
+    bool here = false, before = false;
+  } kink_;  // whether one has ended the last step, or the one before
   std::size_t next_ = 0, resets_ = 0, uncounted_ = 0;
   std::optional<V> lost_;
 };

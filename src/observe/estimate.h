@@ -6,8 +6,8 @@
 #include "motion/motion.h"
 #include "observe/options.h"
 #include "observe/report.h"
-#include "observe/row_comparison.h"
-#include "observe/waiting_rows.h"
+#include "observe/rows/row_comparison.h"
+#include "observe/rows/waiting_rows.h"
 
 namespace anholon {
 

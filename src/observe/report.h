@@ -2,7 +2,7 @@
 #pragma once
 #include "motion/course.h"
 #include "observe/defect.h"
-#include "observe/row_comparison.h"
+#include "observe/rows/row_comparison.h"
 #include "observe/second_opinion.h"
 #include "result/table.h"
 

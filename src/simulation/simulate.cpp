@@ -5,8 +5,8 @@
 #include <chrono>
 
 #include "observe/judge.h"
+#include "observe/rows/waiting_rows.h"
 #include "observe/supports.h"
-#include "observe/waiting_rows.h"
 #include "simulation/event_paces.h"
 #include "simulation/row_writer.h"
 #include "simulation/schedule.h"
@@ -323,7 +323,7 @@ class Run {
   void computed(const WaitingRows::Computed& row) {
     const RowPlace& place = row.place();
     const bool good = row.good();
-    if (!good || looked_at(report_.rows)) {
+    if (!good || looked_at(rows_.rows())) {
       report_.outcome = motion().settle_at(place);
       if (report_.outcome.ok()) report_.outcome = see(motion().point());
       if (!report_.outcome.ok()) return;

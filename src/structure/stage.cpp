@@ -175,7 +175,7 @@ class Iteration {
       std::vector<N> step;
       if (!least_step(a, rows.independent, nearest, step)) return true;
       if (!search(step)) return false;
-      if (in_vain_ > kMostInVain || (s_.linear() && solved())) return true;
+      if (in_vain_ > kMostInVain) return true;
       N moved(0), size(0);
       for (std::size_t j = 0; j < free_.size(); ++j) {
         if (N v = abs(step[j]); v > moved) moved = v;

@@ -35,8 +35,9 @@ def endings(own):
 def check(root):
     sources = [p for p in sorted((root / "src").rglob("*")) if p.suffix in (".h", ".cpp", ".def")]
     for name in formats(root):
-        own = [p for p in sources if p.parent == root / "src/result" and re.match(name + r"(_\w+)?\.", p.name)]
-        headers = [f'#include "result/{p.name}"' for p in own if p.suffix == ".h"]
+        rooms = (root / "src/result", root / "src/result" / name)
+        own = [p for p in sources if p.parent in rooms and re.match(name + r"(_\w+)?\.", p.name)]
+        headers = [f'#include "{p.relative_to(root / "src").as_posix()}"' for p in own if p.suffix in (".h", ".def")]
         if not endings(own):
             yield f"{name}_format: no file of src/result defines its endings"
         for path in sources:
@@ -53,8 +54,8 @@ GOOD = {
     TABLE: "extern const ResultFormat csv_format, hdf5_format;\n{&hdf5_format, &csv_format};\n",
     "src/result/csv.h": "class CsvRunWriter;\n",
     "src/result/csv.cpp": '#include "result/csv.h"\nconst ResultFormat csv_format = {.endings = {".csv"}};\n',
-    "src/result/hdf5_sink.h": "class Hdf5Sink;\n",
-    "src/result/hdf5_format.cpp": '#include "result/hdf5_sink.h"\nconst ResultFormat hdf5_format = {.endings = {".h5", ".hdf5"}};\n',
+    "src/result/hdf5/hdf5_sink.h": "class Hdf5Sink;\n",
+    "src/result/hdf5/hdf5_format.cpp": '#include "result/hdf5/hdf5_sink.h"\nconst ResultFormat hdf5_format = {.endings = {".h5", ".hdf5"}};\n',
     "src/cli/convert.cpp": '#include "result/format.h"\n// ".csv"\nconst char* kExample = "-o run.csv";\n',
 }
 MUTANTS = {

@@ -12,7 +12,7 @@
 #include "cli/motions/run_formulas.h"
 #include "cli/motions/run_info.h"
 #include "cli/say.h"
-#include "observe/row_values.h"
+#include "observe/rows/row_values.h"
 #include "proof/checker/verify.h"
 #include "report/page/page.h"
 #include "result/file.h"

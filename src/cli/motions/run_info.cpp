@@ -2,7 +2,7 @@
 
 #include "base/hash.h"
 #include "cli/model_options.h"
-#include "observe/row_values.h"
+#include "observe/rows/row_values.h"
 
 namespace anholon::cli {
 

@@ -29,9 +29,10 @@ void leave_some_behind(int milliseconds) {
       plan_of("zoo/disc", 14), plan_of("zoo/chain", 15), plan_of("zoo/snakeboard", 16), plan_of("zoo/fourbar", 17)};
   std::vector<std::unique_ptr<CodeForLongRuns>> runs;
   for (std::size_t k = 0; k < plans.size(); ++k) runs.push_back(std::make_unique<CodeForLongRuns>());
-  std::this_thread::sleep_for(std::chrono::milliseconds(450));  // a long run
+  for (std::size_t k = 0; k < plans.size(); ++k) runs[k]->step(plans[k], 0, 1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(450));  // a long run, of which little is done
   for (std::size_t k = 0; k < plans.size(); ++k)
-    for (int asked = 0; asked < 64; ++asked) runs[k]->step(plans[k]);
+    for (int asked = 0; asked < 64; ++asked) runs[k]->step(plans[k], 1e-6, 1);
   runs.clear();
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));  // the next motion
   std::exit(0);                                                          // on a fast machine some are done by now

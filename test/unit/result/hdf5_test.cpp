@@ -14,7 +14,7 @@
 #include "base/diagnostic.h"
 #include "numeric/number.h"
 #include "result/format.h"
-#include "result/hdf5_sink.h"
+#include "result/hdf5/hdf5_sink.h"
 #include "support/rows.h"
 
 namespace anholon::hdf5_test {

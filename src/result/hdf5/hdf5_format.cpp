@@ -1,6 +1,6 @@
 // The row of HDF5 in the table of formats.
 #include "result/format.h"
-#include "result/hdf5_sink.h"
+#include "result/hdf5/hdf5_sink.h"
 
 namespace anholon {
 

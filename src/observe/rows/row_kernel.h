@@ -40,7 +40,7 @@ class RowKernel {
 
   std::shared_ptr<const KernelPlan> plan_;
   Kernel kernel_;
-  double end_;
+  double end_, spent_ = 0;  // the end of the motion; seconds
   CodeForLongRuns code_;
 };
 

@@ -1,4 +1,4 @@
-#include "observe/waiting_rows.h"
+#include "observe/rows/waiting_rows.h"
 
 namespace anholon {
 

@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "result/file.h"
-#include "result/hdf5.h"
+#include "result/hdf5/hdf5.h"
 #include "result/writer.h"
 
 namespace anholon {

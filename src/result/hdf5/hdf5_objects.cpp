@@ -1,6 +1,6 @@
 #ifdef ANHOLON_HDF5
 
-#include "result/hdf5_objects.h"
+#include "result/hdf5/hdf5_objects.h"
 
 #include <algorithm>
 
@@ -20,11 +20,12 @@ std::string& lost() {
 // bytes.
 Handle new_dataset(hid_t file, const std::string& name, hid_t type, hid_t space,
                    const std::vector<hsize_t>& chunk = {}) {
-  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  checked(H5Pset_create_intermediate_group(links, 1));
-  checked(H5Pset_obj_track_times(creation, false));
-  if (!chunk.empty()) checked(H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()));
-  return {H5Dcreate2(file, name.c_str(), type, space, links, creation, H5P_DEFAULT), H5Dclose};
+  const Handle links(library().H5Pcreate(library().link_creation), library().H5Pclose),
+      creation(library().H5Pcreate(library().dataset_creation), library().H5Pclose);
+  checked(library().H5Pset_create_intermediate_group(links, 1));
+  checked(library().H5Pset_obj_track_times(creation, false));
+  if (!chunk.empty()) checked(library().H5Pset_chunk(creation, static_cast<int>(chunk.size()), chunk.data()));
+  return {library().H5Dcreate2(file, name.c_str(), type, space, links, creation, H5P_DEFAULT), library().H5Dclose};
 }
 
 }  // namespace
@@ -33,17 +34,15 @@ Handle::~Handle() {
   if (id_ >= 0 && close_(id_) < 0 && lost().empty()) lost() = cause();
 }
 
-// Disables HDF5's own clean-up at exit, which crashes after a failed write; all our files are closed by then.
 void quietly() {
-  static const herr_t without_exit = H5dont_atexit();
-  static_cast<void>(without_exit);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  if (const std::string& why = load_hdf5(); !why.empty()) throw Trouble{why};
+  library().H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
 std::string done_by(void (*f)(void*), void* with) {
-  quietly();
   lost().clear();
   try {
+    quietly();
     f(with);
     return lost();
   } catch (const Trouble& t) {
@@ -53,7 +52,7 @@ std::string done_by(void (*f)(void*), void* with) {
 
 std::string cause() {
   std::string text;
-  H5Ewalk2(
+  library().H5Ewalk2(
       H5E_DEFAULT, H5E_WALK_UPWARD,
       [](unsigned, const H5E_error2_t* e, void* to) -> herr_t {
         std::string& first = *static_cast<std::string*>(to);
@@ -70,15 +69,15 @@ std::string cause() {
 }
 
 Handle text_type() {
-  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  checked(H5Tset_size(type, H5T_VARIABLE));
-  checked(H5Tset_cset(type, H5T_CSET_UTF8));
+  Handle type(library().H5Tcopy(library().c_string), library().H5Tclose);
+  checked(library().H5Tset_size(type, H5T_VARIABLE));
+  checked(library().H5Tset_cset(type, H5T_CSET_UTF8));
   return type;
 }
 
 Handle space_of(std::size_t n) {
   const hsize_t size = n;
-  return {H5Screate_simple(1, &size, nullptr), H5Sclose};
+  return {library().H5Screate_simple(1, &size, nullptr), library().H5Sclose};
 }
 
 void put_texts(hid_t file, const std::string& name, const std::vector<std::string>& texts) {
@@ -88,79 +87,82 @@ void put_texts(hid_t file, const std::string& name, const std::vector<std::strin
   std::vector<const char*> pointers;
   for (const std::string& t : texts) held.push_back(hdf5_text(t));
   for (const std::string& t : held) pointers.push_back(t.c_str());
-  if (!texts.empty()) checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()));
+  if (!texts.empty()) checked(library().H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()));
 }
 
 void put_text(hid_t file, const std::string& name, const std::string& text) {
-  const Handle type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle type = text_type(), space(library().H5Screate(H5S_SCALAR), library().H5Sclose);
   const Handle set = new_dataset(file, name, type, space);
   const std::string held = hdf5_text(text);
   const char* pointer = held.c_str();
-  checked(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &pointer));
+  checked(library().H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &pointer));
 }
 
 void put_attribute(hid_t object, const char* name, const std::string& text) {
-  const Handle type = text_type(), space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle attribute(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  const Handle type = text_type(), space(library().H5Screate(H5S_SCALAR), library().H5Sclose);
+  const Handle attribute(library().H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT), library().H5Aclose);
   const std::string held = hdf5_text(text);
   const char* pointer = held.c_str();
-  checked(H5Awrite(attribute, type, &pointer));
+  checked(library().H5Awrite(attribute, type, &pointer));
 }
 
 void put_attribute(hid_t object, const char* name, int number) {
-  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const Handle attribute(H5Acreate2(object, name, H5T_STD_I32LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-  checked(H5Awrite(attribute, H5T_NATIVE_INT, &number));
+  const Handle space(library().H5Screate(H5S_SCALAR), library().H5Sclose);
+  const Handle attribute(
+      library().H5Acreate2(object, name, library().little_endian_int, space, H5P_DEFAULT, H5P_DEFAULT),
+      library().H5Aclose);
+  checked(library().H5Awrite(attribute, library().native_int, &number));
 }
 
 Handle new_extendible(hid_t file, const char* name, hid_t type, std::vector<hsize_t> size,
                       const std::vector<hsize_t>& chunk) {
   const std::vector<hsize_t> most(size.size(), H5S_UNLIMITED);
-  const Handle space(H5Screate_simple(static_cast<int>(size.size()), size.data(), most.data()), H5Sclose);
+  const Handle space(library().H5Screate_simple(static_cast<int>(size.size()), size.data(), most.data()),
+                     library().H5Sclose);
   return new_dataset(file, name, type, space, chunk);
 }
 
 std::vector<hsize_t> size_of(hid_t set) {
-  const Handle space(H5Dget_space(set), H5Sclose);
-  const int rank = checked(H5Sget_simple_extent_ndims(space));
+  const Handle space(library().H5Dget_space(set), library().H5Sclose);
+  const int rank = checked(library().H5Sget_simple_extent_ndims(space));
   std::vector<hsize_t> size(static_cast<std::size_t>(rank));
-  if (rank > 0) checked(H5Sget_simple_extent_dims(space, size.data(), nullptr));
+  if (rank > 0) checked(library().H5Sget_simple_extent_dims(space, size.data(), nullptr));
   return size;
 }
 
 void transfer(Way way, hid_t set, hid_t type, const std::vector<hsize_t>& from, const std::vector<hsize_t>& size,
               const void* data) {
   if (std::find(size.begin(), size.end(), 0) != size.end()) return;
-  const Handle in_file(H5Dget_space(set), H5Sclose),
-      in_memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
-  checked(H5Sselect_hyperslab(in_file, H5S_SELECT_SET, from.data(), nullptr, size.data(), nullptr));
+  const Handle in_file(library().H5Dget_space(set), library().H5Sclose),
+      in_memory(library().H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), library().H5Sclose);
+  checked(library().H5Sselect_hyperslab(in_file, H5S_SELECT_SET, from.data(), nullptr, size.data(), nullptr));
   if (way == Way::write)
-    checked(H5Dwrite(set, type, in_memory, in_file, H5P_DEFAULT, data));
+    checked(library().H5Dwrite(set, type, in_memory, in_file, H5P_DEFAULT, data));
   else
-    checked(H5Dread(set, type, in_memory, in_file, H5P_DEFAULT, const_cast<void*>(data)));
+    checked(library().H5Dread(set, type, in_memory, in_file, H5P_DEFAULT, const_cast<void*>(data)));
 }
 
 bool exists(hid_t file, const std::string& name) {
   for (std::size_t slash = name.find('/'); slash != std::string::npos; slash = name.find('/', slash + 1))
-    if (slash > 0 && H5Lexists(file, name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) return false;
-  return H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0;
+    if (slash > 0 && library().H5Lexists(file, name.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) return false;
+  return library().H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0;
 }
 
 Handle open_dataset(hid_t file, const std::string& name) {
-  return {H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose};
+  return {library().H5Dopen2(file, name.c_str(), H5P_DEFAULT), library().H5Dclose};
 }
 
 std::vector<std::string> texts_of(hid_t set, hid_t memory, hid_t file_space, std::size_t count) {
-  const Handle own(H5Dget_type(set), H5Tclose);
-  if (H5Tis_variable_str(own) <= 0) throw Trouble{"texts of variable length are missing"};
+  const Handle own(library().H5Dget_type(set), library().H5Tclose);
+  if (library().H5Tis_variable_str(own) <= 0) throw Trouble{"texts of variable length are missing"};
   const Handle type = text_type();
   std::vector<char*> pointers(count, nullptr);
   std::vector<std::string> texts;
   if (count == 0) return texts;
-  checked(H5Dread(set, type, memory, file_space, H5P_DEFAULT, pointers.data()));
+  checked(library().H5Dread(set, type, memory, file_space, H5P_DEFAULT, pointers.data()));
   for (char* p : pointers) {
     texts.emplace_back(p ? p : "");
-    H5free_memory(p);
+    library().H5free_memory(p);
   }
   return texts;
 }

@@ -1,4 +1,4 @@
-#include "result/hdf5_sink.h"
+#include "result/hdf5/hdf5_sink.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -11,7 +11,7 @@
 #include <limits>
 #include <span>
 
-#include "observe/row_values.h"
+#include "observe/rows/row_values.h"
 
 namespace anholon {
 

@@ -1,4 +1,4 @@
-#include "observe/row_values.h"
+#include "observe/rows/row_values.h"
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
-#include "result/hdf5.h"
+#include "result/hdf5/hdf5.h"
 
 #include "base/diagnostic.h"
 #include "base/escape.h"
 
 #ifdef ANHOLON_HDF5
-#include "result/hdf5_objects.h"
+#include "result/hdf5/hdf5_objects.h"
 #endif
 
 #include <algorithm>
@@ -89,8 +89,8 @@ void extend_texts(hid_t file, hsize_t before, const RowBlock& block) {
   if (exists(file, "text")) {
     const Handle set = open_dataset(file, "text");
     held.resize(size_of(set).at(1));
-    const Handle attribute(H5Aopen(set, "columns", H5P_DEFAULT), H5Aclose);
-    checked(H5Aread(attribute, H5T_NATIVE_UINT32, held.data()));
+    const Handle attribute(library().H5Aopen(set, "columns", H5P_DEFAULT), library().H5Aclose);
+    checked(library().H5Aread(attribute, library().native_uint32, held.data()));
   }
   const std::size_t known = held.size();
   for (const auto& [column, texts] : block.texts)
@@ -102,12 +102,14 @@ void extend_texts(hid_t file, hsize_t before, const RowBlock& block) {
   const Handle set =
       known == 0 ? new_extendible(file, "text", type, {before, held.size()}, {kChunk, 1}) : open_dataset(file, "text");
   const std::vector<hsize_t> size = {before + rows, held.size()};
-  checked(H5Dset_extent(set, size.data()));
+  checked(library().H5Dset_extent(set, size.data()));
   if (held.size() > known) {
-    if (known > 0) checked(H5Adelete(set, "columns"));
+    if (known > 0) checked(library().H5Adelete(set, "columns"));
     const Handle space = space_of(held.size());
-    const Handle attribute(H5Acreate2(set, "columns", H5T_STD_U32LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
-    checked(H5Awrite(attribute, H5T_NATIVE_UINT32, held.data()));
+    const Handle attribute(
+        library().H5Acreate2(set, "columns", library().little_endian_uint, space, H5P_DEFAULT, H5P_DEFAULT),
+        library().H5Aclose);
+    checked(library().H5Awrite(attribute, library().native_uint32, held.data()));
   }
   for (std::size_t k = 0; k < held.size(); ++k) {
     const auto it = block.texts.find(held[k]);
@@ -122,8 +124,8 @@ void extend_steps(hid_t file, const std::vector<double>& steps) {
   if (steps.empty()) return;
   const Handle set = open_dataset(file, "steps");
   const hsize_t before = size_of(set).at(0), after = before + steps.size();
-  checked(H5Dset_extent(set, &after));
-  transfer(Way::write, set, H5T_NATIVE_DOUBLE, {before}, {steps.size()}, steps.data());
+  checked(library().H5Dset_extent(set, &after));
+  transfer(Way::write, set, library().native_double, {before}, {steps.size()}, steps.data());
 }
 
 class Hdf5Reader {
@@ -149,7 +151,7 @@ class Hdf5Reader {
     if (exists(file_, "steps")) {
       const Handle set = open_dataset(file_, "steps");
       run_.steps.resize(limited(size_of(set), 1).at(0));
-      transfer(Way::read, set, H5T_NATIVE_DOUBLE, {0}, {run_.steps.size()}, run_.steps.data());
+      transfer(Way::read, set, library().native_double, {0}, {run_.steps.size()}, run_.steps.data());
     }
     return std::move(run_);
   }
@@ -157,9 +159,9 @@ class Hdf5Reader {
  private:
   static hid_t open_file(const std::string& path) {
     quietly();
-    return H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    return library().H5Fopen(path.c_str(), Library::kRead, H5P_DEFAULT);
   }
-  static Handle open(const std::string& path) { return {open_file(path), H5Fclose}; }
+  static Handle open(const std::string& path) { return {open_file(path), library().H5Fclose}; }
 
   // A file with more numbers is forged, not a run.
   static std::vector<hsize_t> limited(std::vector<hsize_t> size, std::size_t rank) {
@@ -171,20 +173,21 @@ class Hdf5Reader {
   }
 
   std::string attribute(const char* name) {
-    if (H5Aexists(file_, name) <= 0) return {};
-    const Handle a(H5Aopen(file_, name, H5P_DEFAULT), H5Aclose), own(H5Aget_type(a), H5Tclose), type = text_type();
-    if (H5Tis_variable_str(own) <= 0) return {};
+    if (library().H5Aexists(file_, name) <= 0) return {};
+    const Handle a(library().H5Aopen(file_, name, H5P_DEFAULT), library().H5Aclose),
+        own(library().H5Aget_type(a), library().H5Tclose), type = text_type();
+    if (library().H5Tis_variable_str(own) <= 0) return {};
     char* text = nullptr;
-    checked(H5Aread(a, type, &text));
+    checked(library().H5Aread(a, type, &text));
     const std::string copy = text ? text : "";
-    H5free_memory(text);
+    library().H5free_memory(text);
     return copy;
   }
 
   int number(const char* name) {
     int value = 0;
-    const Handle a(H5Aopen(file_, name, H5P_DEFAULT), H5Aclose);
-    checked(H5Aread(a, H5T_NATIVE_INT, &value));
+    const Handle a(library().H5Aopen(file_, name, H5P_DEFAULT), library().H5Aclose);
+    checked(library().H5Aread(a, library().native_int, &value));
     return value;
   }
 
@@ -198,14 +201,15 @@ class Hdf5Reader {
 
   void settings() {
     if (!exists(file_, "settings")) return;
-    const Handle group(H5Gopen2(file_, "settings", H5P_DEFAULT), H5Gclose);
+    const Handle group(library().H5Gopen2(file_, "settings", H5P_DEFAULT), library().H5Gclose);
     H5G_info_t info{};
-    checked(H5Gget_info(group, &info));
+    checked(library().H5Gget_info(group, &info));
     for (hsize_t i = 0; i < info.nlinks; ++i) {
       const auto length =
-          checked(H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, nullptr, 0, H5P_DEFAULT));
+          checked(library().H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, nullptr, 0, H5P_DEFAULT));
       std::string name(static_cast<std::size_t>(length), '\0');
-      checked(H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name.data(), name.size() + 1, H5P_DEFAULT));
+      checked(library().H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, i, name.data(), name.size() + 1,
+                                           H5P_DEFAULT));
       run_.settings[name] = texts("settings/" + name);
     }
   }
@@ -226,7 +230,7 @@ class Hdf5Reader {
     for (hsize_t i = 0; i < size[0]; i += block) {
       const hsize_t n = std::min(block, size[0] - i);
       numbers.resize(n * columns);
-      transfer(Way::read, set, H5T_NATIVE_DOUBLE, {i, 0}, {n, columns}, numbers.data());
+      transfer(Way::read, set, library().native_double, {i, 0}, {n, columns}, numbers.data());
       for (hsize_t k = 0; k < n; ++k)
         for (std::size_t j = 0; j < columns; ++j) table.values[j][i + k] = numbers[k * columns + j];
     }
@@ -238,15 +242,16 @@ class Hdf5Reader {
     const Handle set = open_dataset(file_, "text");
     const std::vector<hsize_t> size = limited(size_of(set), 2);
     std::vector<std::uint32_t> held(size[1]);
-    const Handle a(H5Aopen(set, "columns", H5P_DEFAULT), H5Aclose), length(H5Aget_space(a), H5Sclose);
-    if (static_cast<hsize_t>(H5Sget_simple_extent_npoints(length)) != size[1] || size[0] > rows)
+    const Handle a(library().H5Aopen(set, "columns", H5P_DEFAULT), library().H5Aclose),
+        length(library().H5Aget_space(a), library().H5Sclose);
+    if (static_cast<hsize_t>(library().H5Sget_simple_extent_npoints(length)) != size[1] || size[0] > rows)
       throw Trouble{"/text does not fit to /rows"};
-    checked(H5Aread(a, H5T_NATIVE_UINT32, held.data()));
+    checked(library().H5Aread(a, library().native_uint32, held.data()));
     for (std::size_t k = 0; k < held.size(); ++k) {
       if (held[k] >= run_.table.columns.size()) throw Trouble{"/text does not fit to /columns"};
       const hsize_t from[2] = {0, k}, count[2] = {size[0], 1};
-      const Handle in_file(H5Dget_space(set), H5Sclose), in_memory = space_of(size[0]);
-      checked(H5Sselect_hyperslab(in_file, H5S_SELECT_SET, from, nullptr, count, nullptr));
+      const Handle in_file(library().H5Dget_space(set), library().H5Sclose), in_memory = space_of(size[0]);
+      checked(library().H5Sselect_hyperslab(in_file, H5S_SELECT_SET, from, nullptr, count, nullptr));
       run_.table.texts[held[k]] = texts_of(set, in_memory, in_file, size[0]);
       run_.table.texts[held[k]].resize(rows);
     }
@@ -260,7 +265,7 @@ class Hdf5Reader {
 
 std::string create_hdf5(const std::string& path, const RunInfo& info, const std::vector<std::string>& columns) {
   return done([&] {
-    Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    Handle file(library().H5Fcreate(path.c_str(), Library::kReplace, H5P_DEFAULT, H5P_DEFAULT), library().H5Fclose);
     put_attribute(file, "format", kFormat);
     put_attribute(file, "format_version", kVersion);
     put_attribute(file, "title", info.title);
@@ -274,9 +279,9 @@ std::string create_hdf5(const std::string& path, const RunInfo& info, const std:
     }
     put_texts(file, "units", units);
     const hsize_t n = columns.size();
-    new_extendible(file, "rows", H5T_IEEE_F64LE, {0, n},
+    new_extendible(file, "rows", library().little_endian_double, {0, n},
                    {std::max<hsize_t>(1, kChunkNumbers / std::max<hsize_t>(1, n)), std::max<hsize_t>(1, n)});
-    new_extendible(file, "steps", H5T_IEEE_F64LE, {0}, {kChunkNumbers});
+    new_extendible(file, "steps", library().little_endian_double, {0}, {kChunkNumbers});
     std::vector<std::string> names, texts;
     for (const RunInfo::File& f : info.model) names.push_back(f.name), texts.push_back(f.text);
     if (!names.empty()) put_texts(file, "model/files", names), put_texts(file, "model/texts", texts);
@@ -287,21 +292,22 @@ std::string create_hdf5(const std::string& path, const RunInfo& info, const std:
 
 std::string extend_hdf5(const std::string& path, const RowBlock& block) {
   return done([&] {
-    Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    Handle file(library().H5Fopen(path.c_str(), Library::kChange, H5P_DEFAULT), library().H5Fclose);
     if (block.rows() > 0) {
       const Handle set = open_dataset(file, "rows");
       const hsize_t before = size_of(set).at(0);
       const std::vector<hsize_t> size = {before + block.rows(), block.columns};
-      checked(H5Dset_extent(set, size.data()));
-      transfer(Way::write, set, H5T_NATIVE_DOUBLE, {before, 0}, {block.rows(), block.columns}, block.numbers.data());
+      checked(library().H5Dset_extent(set, size.data()));
+      transfer(Way::write, set, library().native_double, {before, 0}, {block.rows(), block.columns},
+               block.numbers.data());
       extend_texts(file, before, block);
     }
     extend_steps(file, block.steps);
     if (block.report) {
-      if (exists(file, "report")) checked(H5Ldelete(file, "report", H5P_DEFAULT));
+      if (exists(file, "report")) checked(library().H5Ldelete(file, "report", H5P_DEFAULT));
       put_text(file, "report", *block.report);
     }
-    checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
+    checked(library().H5Fflush(file, H5F_SCOPE_GLOBAL));
     file.close();
   });
 }

@@ -1,6 +1,6 @@
-#include "observe/row_kernel.h"
+#include "observe/rows/row_kernel.h"
 
-#include <cmath>
+#include <chrono>
 
 #include "base/assert.h"
 
@@ -28,13 +28,15 @@ RowKernel::RowKernel(std::shared_ptr<const KernelPlan> plan, const std::vector<l
 
 void RowKernel::compute(std::span<const RowPlace> places) {
   ANHOLON_ASSERT(!places.empty() && places.size() <= lanes());
-  code_.step(plan_, static_cast<double>(places.front().t), end_, kernel_.lanes());
+  code_.step(plan_, static_cast<double>(places.front().t), end_, kernel_.lanes(), spent_);
+  const auto begun = std::chrono::steady_clock::now();
   for (std::size_t lane = 0; lane < lanes(); ++lane) {
     const RowPlace& p = places[std::min(lane, places.size() - 1)];
     kernel_.place(static_cast<int>(lane), p.state, p.leading);
     kernel_.set_time(static_cast<int>(lane), static_cast<double>(p.t));
   }
   kernel_.begin();
+  spent_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
 }
 
 bool RowKernel::good(std::size_t lane) const {

@@ -2,8 +2,8 @@
 #pragma once
 #include "integrate/stepper.h"
 #include "mechanics/conserved.h"
-#include "observe/row_kernel.h"
-#include "observe/row_values.h"
+#include "observe/rows/row_kernel.h"
+#include "observe/rows/row_values.h"
 
 namespace anholon {
 

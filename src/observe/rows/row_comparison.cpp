@@ -1,4 +1,4 @@
-#include "observe/row_comparison.h"
+#include "observe/rows/row_comparison.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <hdf5.h>
+#include "result/hdf5/hdf5_library.h"
 
 namespace anholon::hdf5 {
 
@@ -43,7 +43,8 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-// Call it before any other function of HDF5; `done` does so: errors are for `cause`, not for the terminal.
+// Call it before any other function of HDF5; `done` does so: errors are for `cause`, not for the terminal. Throws Trouble
+// if the library cannot be loaded.
 void quietly();
 
 // Calls f, which may throw Trouble. Returns the reason why f failed, or why an object could not be closed (its last

@@ -1,0 +1,71 @@
+#ifdef ANHOLON_HDF5
+
+#include "result/hdf5/hdf5_library.h"
+
+#include <dlfcn.h>
+
+#include "base/assert.h"
+
+namespace anholon::hdf5 {
+
+namespace {
+
+struct Loaded {
+  Library found;
+  std::string trouble;
+
+  Loaded() {
+    void* const file = dlopen(ANHOLON_HDF5_FILE, RTLD_LAZY | RTLD_LOCAL);
+    if (!file) {
+      trouble = std::string("HDF5 cannot be loaded: ") + dlerror();
+      return;
+    }
+    const auto find = [&](const char* name) {
+      void* const address = dlsym(file, name);
+      if (!address && trouble.empty()) trouble = std::string("this HDF5 has no ") + name;
+      return address;
+    };
+#define FUNCTION(name) found.name = reinterpret_cast<decltype(&::name)>(find(#name));
+#include "result/hdf5/hdf5_functions.def"
+#undef FUNCTION
+    const auto open = reinterpret_cast<herr_t (*)()>(find("H5open"));
+    if (!trouble.empty()) return;
+    // HDF5's own clean-up at exit crashes after a failed write; all our files are closed by then.
+    found.H5dont_atexit();
+    if (open() < 0) {
+      trouble = "HDF5 does not start";
+      return;
+    }
+    const auto type = [&](const char* name) {
+      const void* const address = find(name);
+      return address ? *static_cast<const hid_t*>(address) : hid_t{-1};
+    };
+    found.c_string = type("H5T_C_S1_g");
+    found.native_double = type("H5T_NATIVE_DOUBLE_g");
+    found.native_int = type("H5T_NATIVE_INT_g");
+    found.native_uint32 = type("H5T_NATIVE_UINT32_g");
+    found.little_endian_double = type("H5T_IEEE_F64LE_g");
+    found.little_endian_int = type("H5T_STD_I32LE_g");
+    found.little_endian_uint = type("H5T_STD_U32LE_g");
+    found.link_creation = type("H5P_CLS_LINK_CREATE_ID_g");
+    found.dataset_creation = type("H5P_CLS_DATASET_CREATE_ID_g");
+  }
+};
+
+const Loaded& loaded() {
+  static const Loaded once;
+  return once;
+}
+
+}  // namespace
+
+const std::string& load_hdf5() { return loaded().trouble; }
+
+const Library& library() {
+  ANHOLON_ASSERT(loaded().trouble.empty());
+  return loaded().found;
+}
+
+}  // namespace anholon::hdf5
+
+#endif

@@ -1,0 +1,27 @@
+// The library HDF5, which is loaded when a file of it is first read or written: with all that it needs in turn it takes
+// longer to load than most commands take. Included only if HDF5 is available.
+#pragma once
+#include <string>
+
+#include <hdf5.h>
+
+namespace anholon::hdf5 {
+
+// Every function that is used, by its own name; the types that are variables of the library.
+struct Library {
+#define FUNCTION(name) decltype(&::name) name = nullptr;
+#include "result/hdf5/hdf5_functions.def"
+#undef FUNCTION
+  hid_t c_string = 0, native_double = 0, native_int = 0, native_uint32 = 0;
+  hid_t little_endian_double = 0, little_endian_int = 0, little_endian_uint = 0;
+  hid_t link_creation = 0, dataset_creation = 0;
+  // Ways to open a file; the macros of HDF5 call functions.
+  static constexpr unsigned kRead = 0, kChange = 1, kReplace = 2;
+};
+
+// Loads it at the first call. Returns an empty string, or the reason why it cannot be loaded.
+const std::string& load_hdf5();
+// REQUIRES: load_hdf5() succeeds.
+const Library& library();
+
+}  // namespace anholon::hdf5

@@ -1,0 +1,145 @@
+// Rows by a kernel, side by side: the numbers of the reference to round-off, and the same bits in any company.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "observe/rows/row_kernel.h"
+#include "observe/rows/row_values.h"
+#include "support/models.h"
+
+namespace anholon::row_kernel_test {
+namespace {
+
+struct Rows {
+  explicit Rows(const std::string& name) {
+    if (!make_scenario(test::model_of(test::shipped_text(name)), *find_formulation("routh"), {}, prepared).ok())
+      throw std::runtime_error("no start");
+    s.emplace(prepared);
+    parameters = parameter_values<long double>(*s->model);
+    if (!initial_state(*s, {}, start).ok()) throw std::runtime_error("no start");
+    outputs.emplace(*s, Column{});
+    kernel = RowKernel::make(*s, outputs->all, 0, parameters, start, 1);
+  }
+  // A place near the start that misses the constraints by little.
+  RowPlace near(int k) const {
+    RowPlace p = start;
+    p.leading.clear();
+    for (std::size_t i = 0; i < p.state.size(); ++i)
+      p.state[i] += 1e-7L * static_cast<long double>((static_cast<int>(i) * 7 + k * 5) % 11 - 5);
+    return p;
+  }
+  // Every number of a lane.
+  std::vector<double> numbers(std::size_t lane) const {
+    std::vector<double> list;
+    for (std::size_t j = 0; j < s->system.size(); ++j)
+      for (int k = 0; k <= s->structure.d[j]; ++k) list.push_back(kernel->derivative(j, k, lane));
+    for (std::size_t i = 0; i < outputs->all.size(); ++i) list.push_back(kernel->output(i, lane));
+    return list;
+  }
+  // The same by the reference, in long double.
+  std::vector<double> reference(const RowPlace& p) {
+    const Program program = anholon::program(s->system, s->structure);
+    Expansion<long double> point(program, parameters, 1);
+    point.load(p.t, p.state, p.leading);
+    EXPECT_TRUE(point.prepare().ok());
+    EXPECT_TRUE(point.project().ok());
+    EXPECT_TRUE(point.solve().ok());
+    OutputTape<long double> tape(*s, outputs->all, parameters);
+    tape.evaluate(point);
+    std::vector<double> list;
+    for (std::size_t j = 0; j < s->system.size(); ++j)
+      for (int k = 0; k <= s->structure.d[j]; ++k) list.push_back(static_cast<double>(point.derivative(j, k)));
+    for (std::size_t i = 0; i < outputs->all.size(); ++i) list.push_back(static_cast<double>(tape[i]));
+    return list;
+  }
+
+  Scenario prepared;
+  std::optional<Workspace> s;
+  std::vector<long double> parameters;
+  RowPlace start;
+  std::optional<RowExpressions> outputs;
+  std::unique_ptr<RowKernel> kernel;
+};
+
+class RowsOf : public testing::TestWithParam<const char*> {};
+
+TEST_P(RowsOf, AreThoseOfTheReference) {
+  Rows rows(GetParam());
+  ASSERT_TRUE(rows.kernel);
+  std::vector<RowPlace> places;
+  for (std::size_t k = 0; k < rows.kernel->lanes(); ++k) places.push_back(rows.near(static_cast<int>(k)));
+  rows.kernel->compute(places);
+  for (std::size_t lane = 0; lane < places.size(); ++lane) {
+    EXPECT_TRUE(rows.kernel->good(lane));
+    const std::vector<double> here = rows.numbers(lane), exact = rows.reference(places[lane]);
+    ASSERT_EQ(here.size(), exact.size());
+    double largest = 1;
+    for (const double x : exact) largest = std::max(largest, std::abs(x));
+    for (std::size_t i = 0; i < here.size(); ++i) EXPECT_NEAR(here[i], exact[i], 1e-12 * largest) << i;
+  }
+}
+
+TEST_P(RowsOf, HaveTheSameBitsInAnyCompany) {
+  Rows rows(GetParam());
+  ASSERT_TRUE(rows.kernel);
+  std::vector<RowPlace> places;
+  for (std::size_t k = 0; k < rows.kernel->lanes(); ++k) places.push_back(rows.near(static_cast<int>(k)));
+  rows.kernel->compute(places);
+  std::vector<std::vector<double>> together;
+  for (std::size_t lane = 0; lane < places.size(); ++lane) together.push_back(rows.numbers(lane));
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    rows.kernel->compute({&places[k], 1});
+    EXPECT_EQ(rows.numbers(0), together[k]);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Zoo, RowsOf,
+                         testing::Values("zoo/disc", "zoo/chain", "zoo/snakeboard", "zoo/rattleback", "zoo/fourbar"));
+
+// Where the pivots were chosen they are good; where J is singular no row is trusted: a disc that lies flat.
+TEST(RowKernel, SaysWhereItIsNotToBeTrusted) {
+  Rows rows("zoo/disc");
+  ASSERT_TRUE(rows.kernel);
+  RowPlace flat = rows.start;
+  std::size_t theta = 0;
+  for (std::size_t a = 0; a < rows.s->model->coordinates.size(); ++a)
+    if (rows.s->model->coordinates[a].name == "theta") theta = a;
+  flat.state[2 * theta] = 1e-9L;
+  flat.leading.clear();
+  rows.kernel->compute({&flat, 1});
+  EXPECT_FALSE(rows.kernel->good(0));
+}
+
+// Rows whose parameters events change, or whose coordinates are eliminated, are the reference's.
+TEST(RowKernel, LeavesTheRestToTheReference) {
+  Scenario prepared;
+  ASSERT_TRUE(
+      make_scenario(test::model_of(test::shipped_text("zoo/disc")), *find_formulation("chaplygin"), {}, prepared).ok());
+  Workspace s(prepared);
+  Start<long double> start;
+  ASSERT_TRUE(initial_state(s, {}, start).ok());
+  EXPECT_FALSE(RowKernel::make(s, RowExpressions(s, {}).all, 0, parameter_values<long double>(*s.model), start, 1));
+}
+
+// A coefficient that a double holds stays; any other lies between the two roundings, which are neighbours.
+TEST(Rounding, TheOtherOneIsOnTheOtherSide) {
+  Rows rows("zoo/disc");
+  const auto program = std::make_shared<const Program>(anholon::program(rows.s->system, rows.s->structure));
+  const auto plan =
+      KernelPlan::make(program, 8, rows.parameters, 0, {rows.start.state.begin(), rows.start.state.end()});
+  ASSERT_TRUE(plan);
+  const std::vector<double> nearest = coefficient_values(plan->plan(), *program, rows.parameters),
+                            other = coefficient_values(plan->plan(), *program, rows.parameters, Rounding::other);
+  ASSERT_EQ(nearest.size(), other.size());
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < nearest.size(); ++i) {
+    if (nearest[i] == other[i]) continue;
+    ++differ;
+    EXPECT_EQ(std::nextafter(nearest[i], other[i]), other[i]);
+  }
+  EXPECT_GT(differ, 0U);              // g = 9.81
+  EXPECT_LT(differ, nearest.size());  // 1, 2, 1/2
+}
+
+}  // namespace
+}  // namespace anholon::row_kernel_test
