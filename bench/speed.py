@@ -2,6 +2,7 @@
 """The speed table: motions from plain model files against heyoka, odeint and CVODE on equations reduced by hand.
 
     speed.py [--only NAME...] [--rounds N] [--seconds S] [--jit-limit S] [--form NAME] [--no-batch] [--no-growth] [--no-startup]
+             [--no-commands]
              [--json FILE] [--markdown FILE] [--write RESULTS.md]
 
 One process per side and system answers to requests (bench/speed_bench.cpp, bench/peers);
@@ -25,6 +26,7 @@ import sys
 import time
 from decimal import Decimal
 
+import speed_commands
 import speed_report
 from speed_processes import ROOT, measure_growth, measure_peak, measure_startup, measure_threads, say
 
@@ -294,6 +296,7 @@ def main():
     parser.add_argument("--no-batch", action="store_true", help="leave out ensembles: neighbours in lanes, one thread and two")
     parser.add_argument("--no-growth", action="store_true")
     parser.add_argument("--no-startup", action="store_true")
+    parser.add_argument("--no-commands", action="store_true", help="leave out whole commands beside whole processes of heyoka")
     parser.add_argument("--json", default=os.path.join(ROOT, "build", "bench-speed.json"))
     parser.add_argument("--markdown", default=os.path.join(ROOT, "build", "bench-speed.md"))
     parser.add_argument("--write", default="", metavar="RESULTS.md", help="put the tables between its marks there, too")
@@ -311,11 +314,15 @@ def main():
         result["growth"] = measure_growth(300, options.form)
     if not options.no_startup:
         result["startup"] = measure_startup(os.path.join(ROOT, "build", "anholon"))
+    if not options.no_commands:
+        result["commands"] = speed_commands.measure_commands(list(speed_commands.SYSTEMS), options.rounds, bool(python))
     result["peak"] = {k: max(x, again) for (k, x), again in zip(result["peak"].items(), measure_peak().values())}  # disturbed less
     result["seconds"] = time.perf_counter() - begin
     with open(options.json, "w", encoding="utf-8") as file:
         json.dump(result, file, indent=1)
     text = speed_report.markdown(result)
+    if "commands" in result:
+        text += "\n### Whole commands\n\n" + speed_commands.markdown(result["commands"])
     with open(options.markdown, "w", encoding="utf-8") as file:
         file.write(text)
     if options.write:

@@ -34,7 +34,7 @@ Method method(const SimulationOptions& o) {
 // Rows at which the residual report looks: the first ones, then ever fewer, so that they are not what takes the time of
 // a run.
 bool looked_at(std::size_t row) {
-  constexpr std::size_t kFirst = 64;
+  constexpr std::size_t kFirst = 128;
   return row % std::bit_ceil(row / kFirst + 1) == 0;
 }
 
@@ -203,6 +203,7 @@ class Run {
     if (defect_) defect_->step(dense_step(motion().stepper(), masses.t));
     if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
     rows_until(masses.t);
+    if (waiting_ && waiting_->late()) settle_rows();
     rows_.step(masses.t);
     if (report_.outcome.ok() && !(masses.t == course_.time())) {
       report_.outcome = negative_mass(*s_.model, masses.mass, to_double(masses.t));

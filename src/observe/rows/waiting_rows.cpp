@@ -20,6 +20,7 @@ WaitingRows::WaitingRows(const Scenario& s, RowExpressions expressions, std::uni
 }
 
 void WaitingRows::add(const Stepper<double>& stepper, long double t, const std::string& label) {
+  if (count_ == 0) since_ = std::chrono::steady_clock::now();
   RowPlace& place = places_[count_];
   place.t = t;
   stepper.foretell(t, place.state, place.leading);

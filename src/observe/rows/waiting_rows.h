@@ -1,5 +1,7 @@
 // Rows of a motion that wait until there are enough of them to be computed side by side (observe/row_kernel.h).
 #pragma once
+#include <chrono>
+
 #include "integrate/stepper.h"
 #include "mechanics/conserved.h"
 #include "observe/rows/row_kernel.h"
@@ -17,7 +19,11 @@ class WaitingRows {
   // Adds a time of the last step. `label`: the time as it is to be written.
   void add(const Stepper<double>& stepper, long double t, const std::string& label);
   bool full() const { return count_ == places_.size(); }
-  std::size_t count() const { return count_; }
+  // Whether a row waits for so long that somebody who looks at the output would miss it.
+  bool late() const {
+    constexpr std::chrono::milliseconds kLate(100);
+    return count_ > 0 && std::chrono::steady_clock::now() - since_ > kLate;
+  }
 
   // A row that has been computed, in the numbers of doubles; for row_values() a point and its outputs.
   class Computed {
@@ -70,7 +76,8 @@ class WaitingRows {
   std::vector<std::optional<std::size_t>> multipliers_;  // of each constraint: its unknown
   std::vector<RowPlace> places_;                         // one for each lane
   std::vector<std::string> labels_;
-  std::size_t count_ = 0;  // of rows that wait
+  std::size_t count_ = 0;                        // of rows that wait
+  std::chrono::steady_clock::time_point since_;  // when the first of them came
 };
 
 }  // namespace anholon

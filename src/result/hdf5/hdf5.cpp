@@ -334,7 +334,8 @@ static bool is_passable(const std::string& path) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0)
     if (errno != EINTR) return true;
-  return WIFEXITED(status);
+  // A sanitizer that stops the child ends it with a status, and not by a signal.
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 RunFile read_hdf5(const std::string& path) {
