@@ -114,6 +114,8 @@ class Arithmetic {
   virtual void complete(int stage) = 0;
   // Computes stages 1.. and the quadratures.
   virtual void extend() = 0;
+  // Computes the values of the quadratures at the point.
+  virtual void quadratures() = 0;
   // Computes the changes of x_j^(k), k = 0..d_j, one after the other, over `step`, into `increments`.
   virtual void advance() = 0;
 

@@ -144,6 +144,8 @@ class Kernel {
     number(plan_->plan().time + 1, lane) = 1;
   }
   void begin();
+  // As `begin`, but only up to the leading derivatives, and the quadratures at the point itself. It has no reach.
+  void begin_point();
   // After `advance`, at the set times: the part of `begin` that solves for the leading derivatives; `defect` then tells
   // how well the series predicted them. Until `begin` continues, or another `advance` replaces it, the last expansion's
   // series remain available; for reading them see show_last().
@@ -215,6 +217,8 @@ class Kernel {
     started_ = false;
   }
   void extend(const Code* code);
+  void start_expansion();
+  void keep_projected();
   void start(const Code* code);
   void swap_low_orders() const;
   bool project(const Code* code);

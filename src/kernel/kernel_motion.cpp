@@ -40,22 +40,35 @@ void Kernel::round_state(int lane) {
   if (!same) drop_next();
 }
 
-void Kernel::begin() {
-  const Code* code = this->code();
+void Kernel::start_expansion() {
   if (started_) {
     if (shows_last_) swap_low_orders();
   } else {
-    start(code);
+    start(code());
   }
   shows_last_ = true;
   started_ = gone_on_ = false;
   next_ = std::exchange(before_, std::exchange(begun_, next_));
   base_ = begun_;
+}
+
+void Kernel::keep_projected() {
+  if (!moved_) return;
+  arithmetic_->adopt(slot(begun_));
+  base_ = plan_->tables().projected;
+}
+
+void Kernel::begin_point() {
+  start_expansion();
+  arithmetic_->quadratures();
+  keep_projected();
+}
+
+void Kernel::begin() {
+  start_expansion();
+  const Code* code = this->code();
   extend(code);
-  if (moved_) {
-    arithmetic_->adopt(slot(begun_));
-    base_ = plan_->tables().projected;
-  }
+  keep_projected();
   if (code)
     code->measure(arena_);
   else

@@ -58,18 +58,25 @@ std::vector<AngleTriple> angle_triples(const Model& model) {
   return list;
 }
 
-Column AngleWatch::expressions(const std::vector<AngleTriple>& triples) {
+Column AngleWatch::expressions(const Model& model, const std::vector<AngleTriple>& triples) {
   Column es;
   for (const AngleTriple& t : triples) {
     es.push_back(dot(t.rates[0], cross(t.rates[1], t.rates[2])));
     for (const Vector& v : t.rates) es.push_back(dot(v, v));
   }
+  // Turning the body's own axes changes none of these, so they do not depend on the angles that do so.
+  const auto without = [](const Expr& e, const Expr& q) {
+    return substitute({&e, 1}, [&](NodeId id) { return id == q.id ? q.graph->zero() : Expr{}; })[0];
+  };
+  for (Expr& e : es)
+    for (const Expr& q : jets(model, 0))
+      if (proved_zero(partial(e, q))) e = without(e, q);
   return es;
 }
 
 AngleWatch::AngleWatch(Workspace& s, const std::vector<double>& parameters)
     : triples(angle_triples(*s.model)), least(triples.size()) {
-  if (!triples.empty()) outputs_.emplace(s, expressions(triples), parameters);
+  if (!triples.empty()) outputs_.emplace(s, expressions(*s.model, triples), parameters);
 }
 
 void AngleWatch::note(double t) {

@@ -38,7 +38,7 @@ class AngleWatch {
   std::vector<Least> least;
 
  private:
-  static Column expressions(const std::vector<AngleTriple>& triples);
+  static Column expressions(const Model& model, const std::vector<AngleTriple>& triples);
   void note(double t);
   std::optional<OutputTape<double>> outputs_;  // if there are any
 };

@@ -145,6 +145,8 @@ class Sweep final : public SweepSteps<L> {
       for (int stage = 0; stage <= p_.stages; ++stage) run(p_.after, stage);
   }
 
+  void quadratures() override { run(p_.after, 0); }
+
  private:
   V* at(const Place& place, std::uint32_t order) { return w_ + place.at + (place.series ? order : 0); }
 

@@ -1,6 +1,7 @@
 #include "observe/rows/row_kernel.h"
 
 #include <chrono>
+#include <cmath>
 
 #include "base/assert.h"
 
@@ -18,11 +19,12 @@ std::unique_ptr<RowKernel> RowKernel::make(Workspace& s, const Column& outputs, 
   const std::vector<double> state(here.state.begin(), here.state.end());
   auto plan = KernelPlan::make(std::move(program), std::max(1, stages), parameters, static_cast<double>(here.t), state,
                                Company::in_lanes);
-  return plan ? std::unique_ptr<RowKernel>(new RowKernel(std::move(plan), parameters, end)) : nullptr;
+  return plan ? std::unique_ptr<RowKernel>(new RowKernel(std::move(plan), stages > 0, parameters, end)) : nullptr;
 }
 
-RowKernel::RowKernel(std::shared_ptr<const KernelPlan> plan, const std::vector<long double>& parameters, double end)
-    : plan_(std::move(plan)), kernel_(plan_, tiers().back().lanes), end_(end) {
+RowKernel::RowKernel(std::shared_ptr<const KernelPlan> plan, bool with_series,
+                     const std::vector<long double>& parameters, double end)
+    : with_series_(with_series), plan_(std::move(plan)), kernel_(plan_, tiers().back().lanes), end_(end) {
   for (int lane = 0; lane < kernel_.lanes(); ++lane) kernel_.set_parameters(lane, parameters);
 }
 
@@ -35,12 +37,19 @@ void RowKernel::compute(std::span<const RowPlace> places) {
     kernel_.place(static_cast<int>(lane), p.state, p.leading);
     kernel_.set_time(static_cast<int>(lane), static_cast<double>(p.t));
   }
-  kernel_.begin();
+  if (with_series_)
+    kernel_.begin();
+  else
+    kernel_.begin_point();
   spent_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
 }
 
 bool RowKernel::good(std::size_t lane) const {
-  return kernel_.pivots(static_cast<int>(lane)).health > kHealthy && kernel_.reaches(static_cast<int>(lane));
+  if (!(kernel_.pivots(static_cast<int>(lane)).health > kHealthy)) return false;
+  const Plan& plan = plan_->plan();
+  for (std::size_t j = 0; j < plan.x.size(); ++j)
+    if (!std::isfinite(derivative(j, plan.d[j] + (with_series_ ? plan.stages : 0), lane))) return false;
+  return true;
 }
 
 }  // namespace anholon

@@ -36,8 +36,10 @@ class RowKernel {
   double output(std::size_t i, std::size_t lane) const { return kernel_.quadrature(i, 0, static_cast<int>(lane)); }
 
  private:
-  RowKernel(std::shared_ptr<const KernelPlan> plan, const std::vector<long double>& parameters, double end);
+  RowKernel(std::shared_ptr<const KernelPlan> plan, bool with_series, const std::vector<long double>& parameters,
+            double end);
 
+  bool with_series_;  // beyond the leading derivatives
   std::shared_ptr<const KernelPlan> plan_;
   Kernel kernel_;
   double end_, spent_ = 0;  // the end of the motion; seconds
