@@ -2,11 +2,19 @@
 
 #include "ensemble/case_scenario.h"
 #include "ensemble/columns.h"
+#include "integrate/series/kinks.h"
 #include "observe/estimate.h"
 
 namespace anholon {
 
 namespace {
+
+// Whether a kernel makes the motions of a model, so that one with other roundings tells of their errors.
+bool made_by_kernel(const Scenario& s) {
+  const Program p = program(s.system, s.structure);
+  return s.model->events.empty() && s.model->bounds.empty() && no_plan(p).empty() &&
+         !may_have_kinks(p.tape, p.tape.main_end);
+}
 
 SimulationReport compared(const Scenario& of_all, const EnsembleOptions& o, const CaseResult& r) {
   SimulationReport report;
@@ -19,7 +27,7 @@ SimulationReport compared(const Scenario& of_all, const EnsembleOptions& o, cons
   RunToJudge<long double> run;
   run.columns = ensemble_places(columns_after_time(s, largest_order(s, s.structure.d)));
   run.knows_resets = false;
-  run.by_kernel = o.kernel;
+  run.by_kernel = o.kernel && made_by_kernel(s);
   report.steps = r.steps;
   const auto end = from_rational<long double>(numbers.to ? *numbers.to : o.to);
   const auto add = [&](long double t, auto begin, auto last) {

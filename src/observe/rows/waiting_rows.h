@@ -1,4 +1,4 @@
-// Rows of a motion that wait until there are enough of them to be computed side by side (observe/row_kernel.h).
+// Rows of a motion that wait until there are enough of them to be computed side by side (row_kernel.h).
 #pragma once
 #include <chrono>
 

@@ -6,6 +6,7 @@
 #include "observe/rows/row_kernel.h"
 #include "observe/rows/row_values.h"
 #include "support/models.h"
+#include "support/motion.h"
 
 namespace anholon::row_kernel_test {
 namespace {
@@ -139,6 +140,20 @@ particle = [{name = "p", mass = 1, position = "x*ex"}]
         RowKernel::make(s, RowExpressions(s, {}).all, 0, parameter_values<long double>(*s.model), start, 1);
     EXPECT_EQ(kernel == nullptr, event);
   }
+}
+
+// 128 of the first 128 rows, 64 of the next 128 and of the next 256, then every eighth: 512, 520, …, 1000.
+TEST(RowKernel, TheReportLooksAtEverFewerRows) {
+  Scenario s;
+  SimulationOptions o;
+  o.to = 10;
+  o.every = Rational(1, 100);
+  ASSERT_TRUE(
+      make_scenario(test::model_of(test::shipped_text("zoo/disc")), *find_formulation("routh"), o.state, s).ok());
+  test::Motion motion;
+  const SimulationReport r = simulate(s, o, motion.rows);
+  EXPECT_EQ(r.rows, 1001U);
+  EXPECT_EQ(r.rows_looked_at, 128U + 64U + 64U + 62U);
 }
 
 // A coefficient that a double holds stays; any other lies between the two roundings, which are neighbours.
