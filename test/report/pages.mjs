@@ -70,7 +70,9 @@ async function test(name, body) {
   }
 }
 
-const figures = ['luo-zhao-example-1', 'luo-zhao-example-2', 'rolling-coin', 'snakeboard', 'rattleback', 'car-three-trailers', 'ball-on-turntable-rotating'];
+// Without ANHOLON_LONG=1 only the first few of a list of models: a browser that draws by software takes seconds for each.
+const some = (list, count) => (process.env.ANHOLON_LONG ? list : list.slice(0, count));
+const figures = some(['luo-zhao-example-2', 'rolling-coin', 'car-three-trailers', 'luo-zhao-example-1', 'snakeboard', 'rattleback', 'ball-on-turntable-rotating'], 3);
 for (const model of figures) {
   await test(`${model}: opens at both widths without a fault, and fits`, async () => {
     const path = page_of(model, model, '--no-proof');
@@ -86,7 +88,8 @@ for (const model of figures) {
   });
 }
 
-for (const [model, body, contact, radius] of [['disc', 'disc', 'contact', 0.5], ['rolling-coin', 'coin', 'contact', 0.5], ['ball-on-turntable-rotating', 'ball', 'contact', 0.25]]) {
+const rolling = [['rolling-coin', 'coin', 'contact', 0.5], ['ball-on-turntable-rotating', 'ball', 'contact', 0.25], ['disc', 'disc', 'contact', 0.5]];
+for (const [model, body, contact, radius] of some(rolling, 2)) {
   await test(`${model}: rolls in the picture without slipping`, async () => {
     // Points that the view hides are asked for: the contact is one of them.
     const text = run('models', model).replace(/^hide .*$/m, '');
