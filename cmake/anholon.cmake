@@ -143,7 +143,11 @@ function(anholon_compiler_module)
   target_compile_definitions(anholon_jit PRIVATE "${layout}")
   target_include_directories(anholon_jit PRIVATE "${PROJECT_SOURCE_DIR}/src")
   target_include_directories(anholon_jit SYSTEM PRIVATE ${LLVM_INCLUDE_DIRS})
-  target_link_libraries(anholon_jit PRIVATE LLVM anholon_options anholon_warnings)
+  # From archives, and of them what is used: the shared library of all of LLVM takes several times longer to load, and
+  # would meet others of its kind in processes that load this one.
+  llvm_map_components_to_libnames(llvm orcjit x86codegen x86desc x86info)
+  target_link_libraries(anholon_jit PRIVATE ${llvm} anholon_options anholon_warnings)
+  target_link_options(anholon_jit PRIVATE -Wl,--exclude-libs,ALL -Wl,--gc-sections)
   anholon_use_precompiled(anholon_jit compiler)
   anholon_in_batches(anholon_jit)
   # The name of the build is part of the key of what is kept on disk.

@@ -4,10 +4,10 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <thread>
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -46,6 +46,17 @@ struct Group {
     return cases;
   }
 };
+
+// Calls f(i) for all i < count, on so many threads.
+void for_each_number(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& f) {
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i; (i = next++) < count;) f(i);
+  };
+  std::vector<std::jthread> others;
+  while (others.size() + 1 < std::min(threads, count)) others.emplace_back(work);
+  work();
+}
 
 }  // namespace
 
@@ -116,9 +127,8 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
   if (report.done < o.cases)
     report.outcome = {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
   else if (o.estimate != ErrorEstimate::never)
-    report.error = cases_error(s, o, compared, [&](std::size_t count, const auto& f) {
-      arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, f); });
-    });
+    report.error = cases_error(
+        s, o, compared, [&](std::size_t count, const auto& f) { for_each_number(count, report.threads, f); });
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }

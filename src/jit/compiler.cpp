@@ -8,7 +8,6 @@
 #include <llvm/IR/LegacyPassManager.h>
 #include <llvm/Support/CommandLine.h>
 #include <llvm/Support/TargetSelect.h>
-#include <llvm/Support/xxhash.h>
 #include <llvm/Target/TargetMachine.h>
 
 #include "jit/emitter.h"
@@ -60,14 +59,13 @@ std::string build_of(const void* address) {
   return question.answer;
 }
 
-// Names all inputs of the code: this compiler, LLVM, the machine, the plan. Returns false if the builds have no IDs;
-// stored code is then not used.
+// Names all inputs of the code: this module, of which LLVM is a part, the machine, the plan. Returns false if the build
+// has no ID; stored code is then not used.
 bool name(const KernelTables& tables, int lanes, int several_sines, const Builder& builder, Key& key) {
-  static const std::string ours = build_of(&anholon_compiler),
-                           llvms = build_of(reinterpret_cast<const void*>(&llvm::xxh3_128bits));
-  if (ours.empty() || llvms.empty()) return false;
+  static const std::string ours = build_of(&anholon_compiler);
+  if (ours.empty()) return false;
   Writer w;
-  w.add(ours), w.add(llvms);
+  w.add(ours);
   w.add(builder.getTargetTriple().str()), w.add(builder.getCPU()), w.add(builder.getFeatures().getString());
   w.add(std::to_string(lanes)), w.add(std::to_string(several_sines));
   w.add(tables);
