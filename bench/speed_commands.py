@@ -3,8 +3,10 @@
 
     speed_commands.py [--rounds N] [--only SYSTEM...] [--json FILE]
 
-Each row is one task, done by commands of anholon and by heyoka's Python on equations reduced by hand, in turn, round
-after round; the best wall time of each counts. Tolerance 1e-12. Digits to trust are not estimated where heyoka gives none.
+Each row is one task, done by commands of anholon and by those of others, in turn, round after round; the best wall time
+of each counts. Tolerance 1e-12. The others are heyoka's Python and SUNDIALS CVODE (Adams, compiled C++) on equations
+reduced by hand, and SciPy's DOP853 with the Python that anholon generates. The bicycle, which nobody has reduced by
+hand, meets DOP853 alone. Digits to trust are estimated in the first task, where no other gives any.
 """
 
 import argparse
@@ -19,8 +21,10 @@ import time
 from speed_processes import ROOT, say
 
 PROGRAM = os.path.join(ROOT, "build", "anholon")
-# title -> model of bench/models, links, what is spread in sweeps, times of one long motion
+# title -> model of bench/models, links, what is spread in sweeps, times of one long motion; without equations reduced by
+# hand there is none
 SYSTEMS = {
+    "Whipple's bicycle": ("whipple", 1, None, None),
     "disc": ("disc", 1, "phi'=6:6.25", 10_000),
     "sleigh": ("sleigh", 1, "th'=0.5:0.75", 10_000),
     "trailers 3": ("trailers", 3, "ph'=0:0.25", 2_000),
@@ -52,11 +56,20 @@ def tasks_of(title, folder):
     simulate = [PROGRAM, "simulate", *model, "--tolerance", "1e-12", "--quiet"]
     sweep = [PROGRAM, "sweep", *model, "--tolerance", "1e-12", "--to", "10", "--quiet", "--vary", f"{vary}:{CASES}"]
     file = lambda ending: os.path.join(folder, "rows" + ending)  # noqa: E731
-    yield "one motion to t = 10, all rows, digits to trust", [*simulate, "--to", "10", "-o", file(".csv")], {
-        "heyoka": ([*peer, "rows", "10", "0.1", file(".txt")], {})
-    }
+    generated = file(".py")
+    with open(generated, "w", encoding="utf-8") as module:
+        subprocess.run([PROGRAM, "derive", *model, "--format", "python"], stdout=module, check=True)
+    scipy = os.path.join(ROOT, "bench", "peers", "scipy_process.py")
+    peers = {"SciPy DOP853": ([peer[0], scipy, generated, "10", "0.1", file(".txt")], {})}
+    if long:
+        peers["heyoka"] = ([*peer, "rows", "10", "0.1", file(".txt")], {})
+    yield "one motion to t = 10, all rows, digits to trust", [*simulate, "--to", "10", "-o", file(".csv")], peers
+    if not long:
+        return
+    cvode = [os.path.join(ROOT, "build", "release", "cvode_adams"), name, str(n), str(long)]
     yield f"to t = {long}, last row", [*simulate, "--to", str(long), "--at", str(long), "-o", file(".csv")], {
-        "heyoka": ([*peer, "last", str(long)], {})
+        "heyoka": ([*peer, "last", str(long)], {}),
+        "CVODE": (cvode, {}),
     }
     rows = [*simulate, "--to", str(long), "--every", str(long / 100_000)]
     yield f"to t = {long}, 100 000 rows as text", [*rows, "-o", file(".csv")], {
@@ -70,6 +83,11 @@ def tasks_of(title, folder):
             "ensemble_propagate_until": ([*peer, "ensemble", "10", str(CASES)], {"TBB_NUM_THREADS": str(threads)}),
             "batch loop": ([*peer, "batch", "10", str(CASES)], {"HEYOKA_PROCESSES": str(threads)}),
         }
+
+
+def said_to(peer, start):
+    """What a peer reads on standard input: the start, and of CVODE's worker one request for a single run."""
+    return "".join(f"{x!r}\n" for x in start) + f"run {1e-12} 0\n" if peer == "CVODE" else json.dumps(start)
 
 
 def seconds(command, start="", environment=None):
@@ -87,7 +105,7 @@ def measure_commands(systems, rounds, peers):
     """system -> rows: task, seconds of ours, seconds of each peer."""
     result = {}
     for title in systems:
-        start = json.dumps(start_of(*SYSTEMS[title][:2]))
+        start = start_of(*SYSTEMS[title][:2])
         with tempfile.TemporaryDirectory() as folder:
             rows = []
             for task, ours, others in tasks_of(title, folder):
@@ -95,7 +113,7 @@ def measure_commands(systems, rounds, peers):
                 for _ in range(rounds):
                     row["ours"] = min(row["ours"], seconds(ours))
                     for name, (command, environment) in others.items() if peers else ():
-                        row["peers"][name] = min(row["peers"][name], seconds(command, start, environment))
+                        row["peers"][name] = min(row["peers"][name], seconds(command, said_to(name, start), environment))
                 rows.append(row)
                 say(f"  {title}, {task}: {row['ours']:.3f} s; " + ", ".join(f"{k} {v:.3f} s, {v / row['ours']:.2f}" for k, v in row["peers"].items()))
         result[title] = rows

@@ -22,6 +22,7 @@ class ReferenceExpander {
   // The kernel that has made the present expansion; null if the reference has.
   static constexpr KernelExpansion* kernel() { return nullptr; }
   static constexpr bool accelerated() { return false; }
+  static constexpr bool foretells_consistent_states() { return false; }
   static constexpr bool alone() { return true; }
   static constexpr bool suspected() { return false; }
   static constexpr std::size_t expansions_by_kernel() { return 0; }
@@ -54,6 +55,9 @@ class ReferenceExpander {
   const Expansion<N>& series() const { return reference_.series(); }
   N coefficient(std::size_t j, int k) const { return series().coefficient(j, k); }
   N quadrature(std::size_t i, int k) const { return series().quadrature(i)[k]; }
+  static constexpr bool constant_quadrature(std::size_t) { return false; }  // as far as is known
+  // Quadrature i over the step.
+  W integral(std::size_t i, const W& h) const { return reference_.integral(i, h); }
   const Expansion<W>& point(const MotionTrack<N>&, bool) const { return point_; }
   // State and leading derivatives h beyond where the present expansion was made.
   void state_at(const MotionTrack<N>&, const W& h, std::vector<W>& state, std::vector<W>& leading) const;
@@ -79,6 +83,9 @@ class GuardedExpander {
   KernelExpansion* kernel() { return maker_ == Maker::kernel ? &*kernel_ : nullptr; }
   const KernelExpansion* kernel() const { return maker_ == Maker::kernel ? &*kernel_ : nullptr; }
   bool accelerated() const { return kernel_.has_value(); }
+  // Whether `state_at` gives states that satisfy the constraints as well as projected ones: velocities that come from
+  // quasi-velocities do, where no constraint is one of positions.
+  bool foretells_consistent_states() const { return kernel() && kernel()->mapped() && kernel()->without_positions(); }
   bool alone() const { return !kernel_ || kernel_->alone(); }
   bool suspected() const { return kernel_ && kernel_->suspected(); }
   std::size_t expansions_by_kernel() const { return by_kernel_; }
@@ -123,6 +130,10 @@ class GuardedExpander {
   }
   double quadrature(std::size_t i, int k) const {
     return kernel() ? kernel()->quadrature(i, k) : series().quadrature(i)[k];
+  }
+  bool constant_quadrature(std::size_t i) const { return kernel() && kernel()->constant_quadrature(i); }
+  W integral(std::size_t i, const W& h) const {
+    return kernel() ? W(kernel()->integral(i)) : reference_.integral(i, h);
   }
   const Expansion<W>& point(const MotionTrack<double>& track, bool values) const;
   void state_at(const MotionTrack<double>& track, const W& h, std::vector<W>& state, std::vector<W>& leading) const;

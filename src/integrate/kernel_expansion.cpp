@@ -28,6 +28,10 @@ KernelExpansion::KernelExpansion(std::shared_ptr<Kernel> kernel, int lane, const
   for (const auto& [slot, place] : kernel_->plan().plan().roots_of_even_powers) roots_.push_back({slot, place.at});
 }
 
+bool KernelExpansion::without_positions() const {
+  return std::all_of(program_->c.begin(), program_->c.end(), [](int c) { return c < 2; });
+}
+
 void KernelExpansion::load(MotionTrack<double>& track, const std::vector<W>& guess) {
   MotionState<double>& m = track.now;
   if (!holds_) {
@@ -140,7 +144,6 @@ std::optional<std::size_t> KernelExpansion::own_unknown(std::size_t j) const {
 }
 
 double KernelExpansion::coefficient(std::size_t j, int k) const {
-  kernel_->show_last();
   const auto own = own_unknown(j);
   const Plan& plan = kernel_->plan().plan();
   return own && k <= plan.stages + plan.d[*own] ? kernel_->coefficient(*own, k, lane_) : 0;
@@ -151,8 +154,12 @@ std::vector<double> KernelExpansion::hidden_points(double h) const {
   const Plan& plan = kernel_->plan().plan();
   if (plan.hiding.empty()) return points;
   kernel_->show_last();
-  std::vector<double> argument(static_cast<std::size_t>(order_)), value = argument;
+  std::vector<double> argument, value;
   for (const Plan::HidingSlot& slot : plan.hiding) {
+    if (hides_nothing(slot.function, kernel_->whole_series(slot.argument, lane_),
+                      static_cast<std::size_t>(kernel_->lanes()), order_ - 1, h))
+      continue;
+    argument.resize(static_cast<std::size_t>(order_)), value.resize(argument.size());
     for (int k = 0; k < order_; ++k) {
       argument[static_cast<std::size_t>(k)] = kernel_->series(slot.argument, k, lane_);
       value[static_cast<std::size_t>(k)] = kernel_->series(slot.value, k, lane_);

@@ -22,6 +22,9 @@ class KernelExpansion {
   // Whether the kernel has unknowns of its own.
   bool mapped() const { return kernel_->plan().map() != nullptr; }
 
+  // Whether no constraint of the motion is one of positions: none is differentiated twice.
+  bool without_positions() const;
+
   // Puts the motion into the lane, if it is not there, where the next expansion is to be made.
   void load(MotionTrack<double>& track, const std::vector<W>& guess);
   void expand() { kernel_->begin(); }
@@ -53,10 +56,10 @@ class KernelExpansion {
 
   // Series of the present expansion. A kernel with unknowns of its own has no multipliers: 0.
   double coefficient(std::size_t j, int k) const;
-  double quadrature(std::size_t i, int k) const {
-    kernel_->show_last();
-    return kernel_->quadrature(i, k, lane_);
-  }
+  double quadrature(std::size_t i, int k) const { return kernel_->quadrature(i, k, lane_); }
+  bool constant_quadrature(std::size_t i) const { return kernel_->constant_quadrature(i); }
+  // Over the step to where the kernel was sent last.
+  double integral(std::size_t i) const { return kernel_->integral(i, lane_); }
   std::vector<W> leading() const;
   std::vector<W> base(const W& begun) const;  // the state where it was made
   void state_at(const W& begun, const W& h, std::vector<W>& state, std::vector<W>& leading) const;

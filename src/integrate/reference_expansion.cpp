@@ -9,6 +9,15 @@ ReferenceExpansion<N>::ReferenceExpansion(const Program& program, const std::vec
     : program_(&program), order_(order), expansion_(program, parameters, order - 1) {
   for (std::size_t j = 0; j < program.unknowns(); ++j)
     unknowns_.push_back({&expansion_.coefficient(j, 0), program.d[j]});
+  for (int k = 1; k <= order; ++k) reciprocal_.push_back(W(1) / W(k));
+}
+
+template <Number N>
+typename ReferenceExpansion<N>::W ReferenceExpansion<N>::integral(std::size_t i, const W& h) const {
+  W s(0);
+  for (int k = order_ - 1; k >= 0; --k)
+    s = (s + convert<W>(expansion_.quadrature(i)[k]) * reciprocal_[static_cast<std::size_t>(k)]) * h;
+  return s;
 }
 
 template <Number N>

@@ -32,6 +32,8 @@ class ReferenceExpansion {
   const Expansion<N>& series() const { return expansion_; }
   // The changes of the state over h, and the leading derivatives there. `point`: where the expansion was made.
   void polynomial(const W& h, const Expansion<W>& point, std::vector<W>& increments, std::vector<W>& leading) const;
+  // The integral of quadrature i over h.
+  W integral(std::size_t i, const W& h) const;
   // Goes on by h. False if the motion grows beyond kBlowUp: then the state is as before.
   bool advance(MotionState<N>& m, const W& h, const Expansion<W>& point);
 
@@ -42,6 +44,7 @@ class ReferenceExpansion {
   int order_;
   Expansion<N> expansion_;
   std::vector<UnknownSeries<N>> unknowns_;
+  std::vector<W> reciprocal_;  // of 1, 2, …, order
   std::vector<N> narrow_state_, narrow_leading_, narrow_r_, narrow_y_;
   std::vector<W> change_, next_;
 };

@@ -24,7 +24,6 @@ Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, co
       expander_(program, parameters, wide_parameters, settings, order_), look_(program, parameters), guard_(program),
       end_(program, settings.log_tolerance, order_) {
   end_.set_slots(program.tape.main_end);
-  for (int k = 1; k <= order_; ++k) reciprocal_.push_back(W(1) / W(k));
 }
 
 // ---- one step -------------------------------------------------------------------------------------------------------
@@ -96,12 +95,8 @@ bool Stepper<N>::finish_step() {
   if (!expander_.advance(track_, h))
     return fail({OutcomeKind::blow_up, "the motion grows without bound",
                  "look at the last good state: a velocity or position diverges"});
-  for (std::size_t i = 0; i < m.integrals.size(); ++i) {
-    W s(0);
-    for (int k = order_ - 1; k >= 0; --k)
-      s = (s + convert<W>(expander_.quadrature(i, k)) * reciprocal_[static_cast<std::size_t>(k)]) * h;
-    add_compensated(m.integrals[i], m.integral_carry[i], s);
-  }
+  for (std::size_t i = 0; i < m.integrals.size(); ++i)
+    add_compensated(m.integrals[i], m.integral_carry[i], expander_.integral(i, h));
   before_ = m.t;
   m.t = end_.time();
   phase_ = Phase::advanced;
@@ -185,8 +180,9 @@ template <Number N>
 void Stepper<N>::limit_by_quadratures() {
   const std::vector<W>& integrals = track_.now.integrals;
   for (std::size_t i = 0; i < std::min(settings_.integrals, integrals.size()); ++i)
-    horizon_ = limited_by_quadrature(horizon_, order_, settings_.log_tolerance, to_double(integrals[i]),
-                                     [&](int k) -> N { return expander_.quadrature(i, k); });
+    if (!expander_.constant_quadrature(i))
+      horizon_ = limited_by_quadrature(horizon_, order_, settings_.log_tolerance, to_double(integrals[i]),
+                                       [&](int k) -> N { return expander_.quadrature(i, k); });
 }
 
 // Where there is no such step in either direction of time, the fault stands.
@@ -482,6 +478,7 @@ Outcome Stepper<N>::at(const W& t, Expansion<W>& point, bool leading) const {
   std::vector<W> state, guess;
   foretell(t, state, guess);
   point.load(t, state, guess);
+  if (!leading && expander_.foretells_consistent_states()) return {};
   Outcome o = point.prepare();
   if (o.ok()) o = point.project();
   if (o.ok() && leading) o = point.solve();

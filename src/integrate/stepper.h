@@ -105,6 +105,8 @@ class Stepper {
   }
   // Quadrature i as a polynomial in t - before() over the last step: its value there.
   W quadrature(std::size_t i, const W& dt) const;
+  // Whether it is known to be the same at all times.
+  bool constant_quadrature(std::size_t i) const { return expander_.constant_quadrature(i); }
 
   int order() const { return order_; }
   std::size_t steps() const { return record().steps; }
@@ -157,7 +159,6 @@ class Stepper {
   const Program* program_;
   StepSettings settings_;
   int order_;
-  std::vector<W> reciprocal_;  // of 1, 2, …, order
   Phase phase_ = Phase::placed;
   MotionTrack<N> track_;
   W started_{0}, before_{0};

@@ -307,6 +307,18 @@ Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* ti
     end = to;
   }
   aside_.resize(numbers * static_cast<std::size_t>(lanes_));
+  for (const std::uint32_t x : p.x) unknowns_.push_back(last_series(x));
+  for (const Place& q : p.quadratures) quadratures_.push_back(last_series(q.at));
+}
+
+// REQUIRES: `low_orders_` holds the series' first number.
+Kernel::LastSeries Kernel::last_series(std::uint32_t at) const {
+  std::uint32_t before = 0;
+  for (const LowOrders& low : low_orders_) {
+    if (at >= low.at && at < low.at + low.count) return {at, low.at + low.count - at, before + at - low.at};
+    before += low.count;
+  }
+  return {at, 0, 0};
 }
 
 void Kernel::set_all(std::uint32_t slot, double x) {

@@ -157,7 +157,8 @@ class Kernel {
     show_last();
     gone_on_ = advanced;
   }
-  // Call this before reading series of the last expansion after `start_next`.
+  // Call this before reading series of the last expansion after `start_next`; coefficients of unknowns and quadratures
+  // can be read without.
   void show_last() const {
     if (!shows_last_) swap_low_orders();
   }
@@ -181,15 +182,21 @@ class Kernel {
     return arena_ + plan_->plan().x[j] * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane);
   }
   double coefficient(std::size_t j, int k, int lane = 0) const {
-    return number(plan_->plan().x[j] + static_cast<std::uint32_t>(k), lane);
+    return last(unknowns_[j], static_cast<std::uint32_t>(k), lane);
   }
   double derivative(std::size_t j, int k, int lane = 0) const {
     return coefficient(j, k, lane) * plan_->tables().factorial[static_cast<std::size_t>(k)];
   }
   // Taylor coefficient of quadrature i.
   double quadrature(std::size_t i, int order, int lane = 0) const {
-    const Place q = plan_->plan().quadratures[i];
-    return q.series ? number(q.at + static_cast<std::uint32_t>(order), lane) : order == 0 ? number(q.at, lane) : 0;
+    return order == 0 || !constant_quadrature(i) ? last(quadratures_[i], static_cast<std::uint32_t>(order), lane) : 0;
+  }
+  bool constant_quadrature(std::size_t i) const { return !plan_->plan().quadratures[i].series; }
+  // The integral of quadrature i over the set step.
+  double integral(std::size_t i, int lane = 0) const;
+  // A series in a lane; element k is at offset k * lanes().
+  const double* whole_series(const Place& place, int lane) const {
+    return arena_ + place.at * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane);
   }
   double series(const Place& place, int order, int lane = 0) const {
     return number(place.at + static_cast<std::uint32_t>(order), lane);
@@ -244,6 +251,17 @@ class Kernel {
     std::uint32_t at, count;
   };
   std::vector<LowOrders> low_orders_;
+  // A series of the last expansion: its place, and how many of its first numbers are at which place of `aside_` after
+  // `start_next`.
+  struct LastSeries {
+    std::uint32_t at, count, aside;
+  };
+  LastSeries last_series(std::uint32_t at) const;
+  double last(const LastSeries& series, std::uint32_t k, int lane) const {
+    if (shows_last_ || k >= series.count) return number(series.at + k, lane);
+    return aside_[(series.aside + k) * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)];
+  }
+  std::vector<LastSeries> unknowns_, quadratures_;
   mutable std::vector<double> aside_;     // the saved numbers of the last expansion, or of the next one
   bool started_ = false, moved_ = false;  // `started_`: the next expansion; `moved_`: its projection moved a state
   mutable bool shows_last_ = true;

@@ -135,6 +135,31 @@ void Kernel::fetch(int lane, Moment moment, std::vector<long double>& state, std
 
 void Kernel::fetch_base(int lane, std::vector<long double>& state) const { sum_up(base_, lane, state); }
 
+// The even and the odd terms side by side, as a sum waits for its last term.
+double Kernel::integral(std::size_t i, int lane) const {
+  const LastSeries& q = quadratures_[i];
+  const KernelTables& t = plan_->tables();
+  const double h = number(t.step, lane);
+  if (constant_quadrature(i)) return last(q, 0, lane) * h;
+  const std::size_t lanes = static_cast<std::size_t>(lanes_);
+  const std::uint32_t count = static_cast<std::uint32_t>(plan_->plan().stages) + 1;
+  const double *numbers = arena_ + q.at * lanes + static_cast<std::size_t>(lane), *reciprocal = t.order.reciprocal.data() + 1;
+  const double square = h * h;
+  const std::uint32_t aside = shows_last_ ? 0 : std::min(q.count, count);
+  double even = 0, odd = 0;
+  std::uint32_t k = count;
+  const auto term = [&] {
+    --k;
+    return (k < aside ? last(q, k, lane) : numbers[k * lanes]) * reciprocal[k];
+  };
+  if (count % 2 != 0) even = term();
+  while (k > 0) {
+    odd = odd * square + term();
+    even = even * square + term();
+  }
+  return (even + odd * h) * h;
+}
+
 void Kernel::change_over_step() {
   show_last();
   if (const Code* code = this->code())

@@ -76,17 +76,43 @@ Column AngleWatch::expressions(const Model& model, const std::vector<AngleTriple
 
 AngleWatch::AngleWatch(Workspace& s, const std::vector<double>& parameters)
     : triples(angle_triples(*s.model)), least(triples.size()) {
-  if (!triples.empty()) outputs_.emplace(s, expressions(*s.model, triples), parameters);
+  if (triples.empty()) return;
+  const Column es = expressions(*s.model, triples);
+  outputs_.emplace(s, es, parameters);
+  const Graph& g = *s.model->graph;
+  for (const NodeId id : symbols(es)) {
+    const Node& n = g.node(id);
+    if (n.kind == Kind::jet && n.order == 0)
+      coordinates_.push_back(n.index);
+    else
+      by_coordinates_ = by_coordinates_ && (n.kind == Kind::parameter || n.kind == Kind::mass);
+  }
+}
+
+void AngleWatch::save(std::vector<double>& to) const {
+  for (const Least& l : least) to.insert(to.end(), {l.value, l.t});
+  to.push_back(margin_);
+  to.insert(to.end(), looked_.begin(), looked_.end());
+  to.resize(to.size() + coordinates_.size() - looked_.size(), 0);  // not looked yet: the margin is 0
+}
+
+void AngleWatch::resume(const std::vector<double>& from) {
+  for (std::size_t i = 0; i < least.size(); ++i) least[i] = {from[2 * i], from[2 * i + 1]};
+  margin_ = from[2 * least.size()];
+  looked_.assign(from.begin() + static_cast<std::ptrdiff_t>(2 * least.size() + 1), from.end());
 }
 
 void AngleWatch::note(double t) {
   const OutputTape<double>& out = *outputs_;
+  double smallest = 1;
   for (std::size_t i = 0; i < triples.size(); ++i) {
     const std::size_t at = 4 * i;
     const double lengths = std::sqrt(out[at + 1] * out[at + 2] * out[at + 3]);
     const double value = lengths > 0 ? std::abs(out[at]) / lengths : 0;
     if (value < least[i].value) least[i] = {value, t};
+    smallest = std::min(smallest, value);
   }
+  margin_ = by_coordinates_ ? smallest / 8 : 0;
 }
 
 }  // namespace anholon

@@ -16,7 +16,8 @@ struct AngleTriple {
 // Of the bodies with three angles, each set of angles once.
 std::vector<AngleTriple> angle_triples(const Model& model);
 
-// In doubles, whatever the numbers of the motion are: a measure of nearness needs no more.
+// In doubles, whatever the numbers of the motion are: a measure of nearness needs no more. It is evaluated again when a
+// coordinate has changed by an eighth of the smallest measure: for angles, that changes by no more than they do.
 class AngleWatch {
  public:
   AngleWatch(Workspace& scenario, const std::vector<double>& parameters);
@@ -24,12 +25,23 @@ class AngleWatch {
   template <class F>
   void see(double t, F coordinate) {
     if (!outputs_) return;
+    bool near = !looked_.empty();
+    for (std::size_t i = 0; near && i < coordinates_.size(); ++i)
+      near = std::abs(coordinate(coordinates_[i]) - looked_[i]) < margin_;
+    if (near) return;
+    looked_.clear();
+    for (const std::size_t a : coordinates_) looked_.push_back(coordinate(a));
     outputs_->evaluate_at([&](const Node& n, NodeId) { return n.kind == Kind::time ? t : coordinate(n.index); });
     note(t);
   }
   void set_parameters(const std::vector<double>& parameters) {
     if (outputs_) outputs_->set_parameters(parameters);
+    margin_ = 0;
   }
+  // All that has been seen, as `saved` numbers, from which it goes on.
+  std::size_t saved() const { return 2 * least.size() + coordinates_.size() + 1; }
+  void save(std::vector<double>& to) const;
+  void resume(const std::vector<double>& from);
   // The smallest value so far and when, for every triple.
   struct Least {
     double value = 1, t = 0;
@@ -41,6 +53,10 @@ class AngleWatch {
   static Column expressions(const Model& model, const std::vector<AngleTriple>& triples);
   void note(double t);
   std::optional<OutputTape<double>> outputs_;  // if there are any
+  std::vector<std::size_t> coordinates_;       // on which the measures depend
+  bool by_coordinates_ = true;                 // on nothing else
+  std::vector<double> looked_;                 // their values when the measures were evaluated last
+  double margin_ = 0;
 };
 
 }  // namespace anholon

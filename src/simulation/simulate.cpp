@@ -135,7 +135,7 @@ class Run {
     to.set_numbers<double>("given", {static_cast<double>(rows_.rows()), static_cast<double>(steps)});
     std::vector<double> worst, angles;
     for (const double* x : carried()) worst.push_back(*x);
-    for (const auto& least : angles_.least) angles.insert(angles.end(), {least.value, least.t});
+    angles_.save(angles);
     to.set_numbers("residuals", worst);
     to.set_numbers("angles", angles);
     o_.save(to);
@@ -153,8 +153,7 @@ class Run {
     const std::vector<double*> residuals = carried();
     const std::vector<double> worst = from.numbers<double>("residuals", residuals.size());
     for (std::size_t i = 0; i < worst.size(); ++i) *residuals[i] = worst[i];
-    const std::vector<double> angles = from.numbers<double>("angles", 2 * angles_.least.size());
-    for (std::size_t i = 0; i < angles_.least.size(); ++i) angles_.least[i] = {angles[2 * i], angles[2 * i + 1]};
+    angles_.resume(from.numbers<double>("angles", angles_.saved()));
     schedule_ = RowSchedule<W>(o_, start, given_until);
     prepare_rows();
     return {};
@@ -195,7 +194,10 @@ class Run {
   // One step, with its rows and events; returns false if it ends the motion before its end.
   bool step() {
     watch_.turn_over(course_.integrals()[0]);
-    if (report_.outcome = course_.step(schedule_.end()); !report_.outcome.ok()) return false;
+    if (Outcome o = course_.step(schedule_.end()); !o.ok()) {
+      report_.outcome = std::move(o);
+      return false;
+    }
     angles_.see(to_double(course_.before()), [&](std::size_t a) { return to_double(course_.begun_coordinate(a)); });
     if (watch_.any_redundant())
       if (report_.outcome = watch_.still_redundant(course_.begun(), report_); !report_.outcome.ok()) return false;

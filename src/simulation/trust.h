@@ -23,7 +23,8 @@ MassLimit<Wider<N>> masses_positive_until(const Model& model, const Course<N>& c
   W good = whole;
   std::size_t negative = 0;
   for (std::size_t i = 0; i < model.masses.size(); ++i) {
-    if (model.masses[i].weight || !(stepper.quadrature(1 + i, good) < W(0))) continue;
+    if (model.masses[i].weight || stepper.constant_quadrature(1 + i) || !(stepper.quadrature(1 + i, good) < W(0)))
+      continue;
     W low(0), high = good;
     for (int k = 0; k < 200 && !(low == high); ++k) {
       const W middle = low + (high - low) * W(0.5);

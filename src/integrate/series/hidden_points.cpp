@@ -32,14 +32,34 @@ N value_of(const Hiding& f, const N& u) {
 
 }  // namespace
 
+// The bound on the change is a sum of absolute terms; four partial sums do not wait for one another.
+template <Number N>
+bool hides_nothing(const Hiding& function, const N* argument, std::size_t stride, int degree, const N& h) {
+  const N length = abs(h), square = length * length, fourth = square * square;
+  const auto size = [&](int k) { return k > degree ? N(0) : N(abs(argument[static_cast<std::size_t>(k) * stride])); };
+  int k = degree / 4 * 4;
+  N a = k > 0 ? size(k) : N(0), b = size(k + 1), c = size(k + 2), d = size(k + 3);
+  const N* at = argument + static_cast<std::size_t>(k) * stride;
+  for (; k > 0; k -= 4) {
+    at -= 4 * stride;
+    a = a * fourth + (k > 4 ? N(abs(at[0])) : N(0));
+    b = b * fourth + abs(at[stride]);
+    c = c * fourth + abs(at[2 * stride]);
+    d = d * fourth + abs(at[3 * stride]);
+  }
+  const N moves = a + b * length + (c + d * length) * square;
+  const bool quotient = !function.function && function.exponent == -1;
+  return moves < (function.function ? N(kMoves) : N(N(quotient ? 1 - kNearZero : kMoves) * abs(argument[0])));
+}
+
 template <Number N>
 void add_hidden_points(const Hiding& function, const N* argument, const N* value, int degree, const N& h,
                        std::vector<N>& points) {
+  if (hides_nothing(function, argument, 1, degree, h)) return;
   const N length = abs(h);
   N moves(0);
   for (int k = degree; k >= 1; --k) moves = (moves + abs(argument[k])) * length;
   const bool quotient = !function.function && function.exponent == -1;
-  if (moves < (function.function ? N(kMoves) : N((quotient ? N(1 - kNearZero) : N(kMoves)) * abs(argument[0])))) return;
   const auto u = [&](const N& x) { return value_at(argument, degree, x); };
   const auto ask = [&](const N& x) {
     if (quotient) {
@@ -106,6 +126,7 @@ void add_hidden_points(const Hiding& function, const N* argument, const N* value
   }
 }
 
+template bool hides_nothing(const Hiding&, const double*, std::size_t, int, const double&);
 template void add_hidden_points(const Hiding&, const double*, const double*, int, const double&, std::vector<double>&);
 template void add_hidden_points(const Hiding&, const long double*, const long double*, int, const long double&,
                                 std::vector<long double>&);

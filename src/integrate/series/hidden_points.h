@@ -14,6 +14,11 @@ template <Number N>
 void add_hidden_points(const Hiding& function, const N* argument, const N* value, int degree, const N& h,
                        std::vector<N>& points);
 
+// Whether the argument changes by too little over the step for any such point. Element k of the series is at offset
+// k * stride.
+template <Number N>
+bool hides_nothing(const Hiding& function, const N* argument, std::size_t stride, int degree, const N& h);
+
 extern template void add_hidden_points(const Hiding&, const double*, const double*, int, const double&,
                                        std::vector<double>&);
 extern template void add_hidden_points(const Hiding&, const long double*, const long double*, int, const long double&,
@@ -21,5 +26,6 @@ extern template void add_hidden_points(const Hiding&, const long double*, const 
 extern template void add_hidden_points(const Hiding&, const Quad*, const Quad*, int, const Quad&, std::vector<Quad>&);
 extern template void add_hidden_points(const Hiding&, const Multi*, const Multi*, int, const Multi&,
                                        std::vector<Multi>&);
+extern template bool hides_nothing(const Hiding&, const double*, std::size_t, int, const double&);
 
 }  // namespace anholon
