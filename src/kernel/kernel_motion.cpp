@@ -143,7 +143,8 @@ double Kernel::integral(std::size_t i, int lane) const {
   if (constant_quadrature(i)) return last(q, 0, lane) * h;
   const std::size_t lanes = static_cast<std::size_t>(lanes_);
   const std::uint32_t count = static_cast<std::uint32_t>(plan_->plan().stages) + 1;
-  const double *numbers = arena_ + q.at * lanes + static_cast<std::size_t>(lane), *reciprocal = t.order.reciprocal.data() + 1;
+  const double *numbers = arena_ + q.at * lanes + static_cast<std::size_t>(lane),
+               *reciprocal = t.order.reciprocal.data() + 1;
   const double square = h * h;
   const std::uint32_t aside = shows_last_ ? 0 : std::min(q.count, count);
   double even = 0, odd = 0;
