@@ -148,6 +148,21 @@ foreach(attack fields mutants certificates faults)
   anholon_script_test(${attack}_selftest test/attacks/${attack}.py --self-test)
 endforeach()
 
+# The Python module: its tests, the examples of its docstrings, its types.
+if(TARGET anholon_python AND TARGET anholon)
+  set(python_module "${CMAKE_BINARY_DIR}/python")
+  function(anholon_python_test name)
+    add_test(NAME "python.${name}" COMMAND "${ANHOLON_PYTHON}" ${ARGN} WORKING_DIRECTORY "${python_module}")
+    set_tests_properties("python.${name}" PROPERTIES LABELS python
+      ENVIRONMENT "PYTHONPATH=${python_module};PYTHONDONTWRITEBYTECODE=1;ANHOLON_PROGRAM=$<TARGET_FILE:anholon>;${no_cache}")
+  endfunction()
+  set(settings "${PROJECT_SOURCE_DIR}/python/pyproject.toml")
+  anholon_python_test(tests -m pytest -q -c "${settings}" -p no:cacheprovider "${PROJECT_SOURCE_DIR}/python/tests")
+  anholon_python_test(examples -m pytest -q -c "${settings}" -p no:cacheprovider --doctest-modules "${python_module}/anholon")
+  anholon_python_test(types -m mypy --config-file "${settings}" --cache-dir "${CMAKE_BINARY_DIR}/mypy" anholon "${PROJECT_SOURCE_DIR}/python/tests")
+  anholon_python_test(types_pyright -m pyright --pythonpath "${ANHOLON_PYTHON}" anholon)
+endif()
+
 if(TARGET anholon)
   # The installed library, used by a project of its own
   anholon_script_test(outside tools/check_outside.py ${CMAKE_BINARY_DIR} --compiler ${CMAKE_CXX_COMPILER})

@@ -1,0 +1,35 @@
+# The Python module, in ${CMAKE_BINARY_DIR}/python: ANHOLON_PYTHON names an interpreter that has nanobind.
+set(ANHOLON_PYTHON "" CACHE FILEPATH "An interpreter that has nanobind; empty: the Python module is not built")
+
+function(anholon_python_module)
+  if(NOT ANHOLON_PYTHON OR NOT TARGET anholon_api)
+    return()
+  endif()
+  set(Python_EXECUTABLE "${ANHOLON_PYTHON}")
+  find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development.Module)
+  execute_process(COMMAND "${Python_EXECUTABLE}" -m nanobind --cmake_dir
+    OUTPUT_STRIP_TRAILING_WHITESPACE OUTPUT_VARIABLE nanobind_ROOT COMMAND_ERROR_IS_FATAL ANY)
+  find_package(nanobind CONFIG REQUIRED)
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/python/core/*.cpp")
+  file(GLOB modules CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/python/anholon/*")
+  nanobind_add_module(anholon_python NB_STATIC STABLE_ABI LTO ${sources})
+  set(place "${CMAKE_BINARY_DIR}/python/anholon")
+  set_target_properties(anholon_python PROPERTIES OUTPUT_NAME "_core" LIBRARY_OUTPUT_DIRECTORY "${place}")
+  target_include_directories(anholon_python PRIVATE "${PROJECT_SOURCE_DIR}/include")
+  # The layers themselves, of which nothing is seen from outside: other modules in the process may have the same libraries.
+  target_link_libraries(anholon_python PRIVATE anholon_api anholon_options)
+  target_link_options(anholon_python PRIVATE -Wl,--exclude-libs,ALL)
+  if(TARGET anholon_jit)
+    add_dependencies(anholon_python anholon_jit)
+    add_custom_command(TARGET anholon_python POST_BUILD
+      COMMAND "${CMAKE_COMMAND}" -E create_symlink "$<TARGET_FILE:anholon_jit>" "${place}/anholon-compiler.so")
+  endif()
+  nanobind_add_stub(anholon_python_stub MODULE anholon._core OUTPUT "${place}/_core.pyi"
+    PYTHON_PATH "${CMAKE_BINARY_DIR}/python" DEPENDS anholon_python)
+  # What is written in Python is used where it lies.
+  file(MAKE_DIRECTORY "${place}")
+  foreach(module IN LISTS modules)
+    get_filename_component(name "${module}" NAME)
+    file(CREATE_LINK "${module}" "${place}/${name}" SYMBOLIC)
+  endforeach()
+endfunction()

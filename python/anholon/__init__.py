@@ -1,0 +1,37 @@
+"""Anholon: equations of nonholonomic systems, their proof and their motion.
+
+    >>> import anholon as an
+    >>> disc = an.load("disc")
+    >>> run = disc.simulate(to=10, every=0.01, initial={"theta": 1.3, "phi'": 6})
+    >>> run["theta"].shape
+    (1001,)
+"""
+
+from ._core import version
+from ._errors import Interrupted, ModelError, MotionError
+from ._numbers import Number
+from .equations import Equations, Proof, verify
+from .model import Model, load, loads, zoo
+from .run import Run
+from .sweep import Sweep, normal, uniform
+
+__version__: str = version()
+
+__all__ = [
+    "Equations",
+    "Interrupted",
+    "Model",
+    "ModelError",
+    "MotionError",
+    "Number",
+    "Proof",
+    "Run",
+    "Sweep",
+    "load",
+    "loads",
+    "normal",
+    "uniform",
+    "verify",
+    "version",
+    "zoo",
+]

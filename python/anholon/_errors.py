@@ -1,0 +1,73 @@
+"""Exceptions: for what a user wrote. What happens to a motion is told by an outcome."""
+
+from __future__ import annotations
+
+import html
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ._core import Diagnostic, Outcome
+    from .run import Run
+    from .sweep import Sweep
+
+
+class ModelError(ValueError):
+    """Mistakes in a model or in an argument, each with its place and a hint.
+
+    Attributes:
+        diagnostics: all of them, in the order of the text; ``line`` and ``column`` count from 1.
+
+    Example:
+        >>> import anholon as an
+        >>> try:
+        ...     an.load("disk")
+        ... except an.ModelError as error:
+        ...     print(error.diagnostics[0].hint)
+        did you mean the shipped model 'disc'?
+    """
+
+    def __init__(self, text: str, diagnostics: list[Diagnostic] | None = None) -> None:
+        super().__init__(text)
+        self.text = text
+        self.diagnostics: list[Diagnostic] = diagnostics or []
+
+    def __str__(self) -> str:
+        return self.text
+
+    def _render_traceback_(self) -> list[str]:
+        """IPython and Jupyter show this instead of a traceback: the line, a caret and the hint."""
+        return [f"\x1b[31mModelError\x1b[0m: {self.text}"]
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(self.text)}</pre>"
+
+
+class MotionError(RuntimeError):
+    """What :meth:`Run.expect` and functions without a run raise where a motion or a computation cannot go on.
+
+    Attributes:
+        outcome: its kind, message and remedy.
+    """
+
+    def __init__(self, text: str, outcome: Outcome) -> None:
+        super().__init__(text)
+        self.outcome = outcome
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during a computation. What was computed until then is kept.
+
+    Attributes:
+        result: the :class:`Run` or :class:`Sweep` as far as it came.
+    """
+
+    def __init__(self, result: Run | Sweep) -> None:
+        super().__init__("interrupted; what was computed is in .result")
+        self.result = result
+
+
+def error_of(text: str, diagnostics: list[Diagnostic], outcome: Outcome | None) -> Exception:
+    """The exception for an error of the library; called by the binding."""
+    if outcome is not None:
+        return MotionError(text.rstrip("\n"), outcome)
+    return ModelError(text.rstrip("\n"), diagnostics)

@@ -1,0 +1,47 @@
+"""Numbers as the library takes them: texts of exact decimals, fractions or formulas with units."""
+
+from __future__ import annotations
+
+import math
+import numbers
+from collections.abc import Iterable, Mapping
+from decimal import Decimal
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any, Union
+
+if TYPE_CHECKING:
+    import numpy as np
+
+Number = Union[int, float, str, Fraction, Decimal, "np.floating[Any]", "np.integer[Any]"]
+"""A number: an ``int``, ``Fraction`` or ``Decimal`` is exact; a ``float`` stands for the decimal that Python prints, so
+0.1 is 1/10, as in a model file; a ``str`` is a formula with an optional unit: ``"pi/2"``, ``"30 deg"``, ``"8 cm"``."""
+
+
+def text_of(number: Number) -> str:
+    """The text of a number. Raises TypeError for what is none, ValueError for infinity and NaN."""
+    if isinstance(number, str):
+        return number
+    if isinstance(number, bool):
+        raise TypeError("a truth value is not a number")
+    if isinstance(number, numbers.Integral):
+        return str(int(number))
+    if isinstance(number, (Fraction, Decimal)):
+        if not math.isfinite(number):
+            raise ValueError(f"{number} is not a finite number")
+        return str(number)
+    if isinstance(number, numbers.Real):
+        value = float(number)
+        if not math.isfinite(value):
+            raise ValueError(f"{value} is not a finite number")
+        return repr(value)
+    raise TypeError(f"a number is an int, float, Fraction, Decimal or str, not {type(number).__name__}")
+
+
+def texts_of(values: Mapping[str, Number] | None) -> dict[str, str]:
+    """The same for values by name."""
+    return {name: text_of(value) for name, value in (values or {}).items()}
+
+
+def list_of(values: Iterable[Number]) -> list[str]:
+    """The same for a list or an array."""
+    return [text_of(value) for value in values]

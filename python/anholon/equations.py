@@ -1,0 +1,116 @@
+"""Equations of motion, proofs and certificates, as Python and notebooks show them."""
+
+from __future__ import annotations
+
+import html
+import json
+from typing import Any
+
+from . import _core
+
+
+class Equations:
+    """The equations of motion in a classical form: ``print`` shows text, a notebook typeset formulas.
+
+    Example:
+        >>> import anholon as an
+        >>> equations = an.load("chaplygin-sleigh").equations("chaplygin")
+        >>> equations.form
+        'chaplygin'
+    """
+
+    def __init__(self, core: _core.Equations) -> None:
+        self._core = core
+
+    @property
+    def form(self) -> str:
+        """The name of the form."""
+        return self._core.form
+
+    @property
+    def text(self) -> str:
+        """Plain text, as ``anholon derive`` prints it."""
+        return self._core.text
+
+    @property
+    def latex(self) -> str:
+        """LaTeX."""
+        return self._core.latex
+
+    @property
+    def mathml(self) -> str:
+        """MathML, as browsers show it."""
+        return self._core.mathml
+
+    @property
+    def json(self) -> Any:
+        """The equations as trees of formulas, as ``anholon derive --format json`` prints them."""
+        return json.loads(self._core.json)
+
+    def __str__(self) -> str:
+        return self.text
+
+    def __repr__(self) -> str:
+        return f"<equations, form {self.form!r}; print() shows them>"
+
+    def _repr_html_(self) -> str:
+        return self.mathml
+
+    def _repr_latex_(self) -> str:
+        return self.latex
+
+
+_SIGNS = {"proved": "✓", "refuted": "✗", "unknown": "?"}
+
+
+class Proof:
+    """Which forms are proved to agree with Routh's equations, with a certificate.
+
+    Example:
+        >>> import anholon as an
+        >>> proof = an.load("chaplygin-sleigh").prove("maggi", "kane")
+        >>> bool(proof), [form.verdict for form in proof.forms]
+        (True, ['proved', 'proved'])
+        >>> an.verify(proof).all_confirmed
+        True
+    """
+
+    def __init__(self, core: _core.Proof) -> None:
+        self._core = core
+
+    @property
+    def forms(self) -> list[_core.FormVerdict]:
+        """One verdict for each form."""
+        return self._core.forms
+
+    @property
+    def certificate(self) -> str:
+        """A text that :func:`verify` and ``anholon verify`` check without the prover."""
+        return self._core.certificate
+
+    def save(self, path: str) -> None:
+        """Writes the certificate to a file."""
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.certificate)
+
+    def __bool__(self) -> bool:
+        """Whether all forms are proved."""
+        return self._core.all_proved
+
+    def __repr__(self) -> str:
+        return "\n".join(f"{_SIGNS[f.verdict]} {f!r}" for f in self.forms)
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{html.escape(f.form)}</td><td>{_SIGNS[f.verdict]} {f.verdict}</td><td>{html.escape(f.detail)}</td></tr>" for f in self.forms
+        )
+        return f"<table><thead><tr><th>form</th><th>against Routh</th><th></th></tr></thead><tbody>{rows}</tbody></table>"
+
+
+def verify(proof: Proof | str) -> _core.Verification:
+    """Checks a certificate (or the one of a proof), sharing nothing with the prover but numbers.
+
+    Raises:
+        ModelError: the text is no certificate.
+    """
+    return _core.verify(proof.certificate if isinstance(proof, Proof) else proof)

@@ -1,0 +1,364 @@
+"""Models: how they are read, and what can be asked of them."""
+
+from __future__ import annotations
+
+import html
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+from . import _core
+from ._errors import Interrupted, MotionError
+from ._numbers import Number, list_of, text_of, texts_of
+from .equations import Equations, Proof
+from .run import Run
+from .sweep import Law, Sweep
+
+_KEPT = 16  # prepared systems of a model
+
+
+class Model:
+    """A mechanical system, as a model file has it. It never changes: :meth:`with_` makes another one.
+
+    Get one from :func:`load`, :func:`loads` or :func:`zoo`. Computations release the interpreter's lock; threads may share
+    a model.
+    """
+
+    def __init__(self, core: _core.Model, again: Callable[[dict[str, str], list[str]], _core.Model], given: dict[str, str], cases: list[str]) -> None:
+        self._core = core
+        self._again, self._given, self._cases = again, given, cases
+        self._prepared: dict[Any, _core.System] = {}
+
+    # ---- what it says ----
+
+    @property
+    def title(self) -> str:
+        """The title of the file."""
+        return self._core.title
+
+    @property
+    def text(self) -> str:
+        """The text it was read from."""
+        return self._core.text
+
+    @property
+    def coordinates(self) -> list[_core.Coordinate]:
+        """Names and units of the coordinates."""
+        return self._core.coordinates
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The values of the parameters by name, in SI units."""
+        return {p.name: p.value for p in self._core.parameters}
+
+    @property
+    def constraints(self) -> list[_core.Constraint]:
+        """Names and orders of the constraints."""
+        return self._core.constraints
+
+    @property
+    def states(self) -> list[str]:
+        """Further states with rates of their own."""
+        return self._core.states
+
+    @property
+    def inputs(self) -> list[str]:
+        """The names of [input]."""
+        return self._core.inputs
+
+    @property
+    def monitors(self) -> list[str]:
+        """The names of [monitor] and [output], which are columns of a run."""
+        return self._core.monitors
+
+    @property
+    def cases(self) -> list[str]:
+        """The scenarios [case.NAME] of the file."""
+        return self._core.cases
+
+    @property
+    def remarks(self) -> list[_core.Diagnostic]:
+        """Warnings and notes of the reader."""
+        return self._core.remarks
+
+    def with_(self, *, case: str | Sequence[str] = (), **parameters: Number) -> Model:
+        """The same model with other values of parameters, or with scenarios of the file laid over it.
+
+        Args:
+            case: names of [case.NAME], applied one after the other, after those that this model has already.
+            parameters: new values; names that are no Python identifiers come as ``**{"k'": 2}``.
+
+        Raises:
+            ModelError: a parameter or a case is not known.
+
+        Example:
+            >>> import anholon as an
+            >>> an.load("disc").with_(m=2, R="1/4").parameters["R"]
+            0.25
+        """
+        given = {**self._given, **texts_of(parameters)}
+        cases = [*self._cases, *([case] if isinstance(case, str) else case)]
+        return Model(self._again(given, cases), self._again, given, cases)
+
+    # ---- its equations ----
+
+    def forms(self) -> list[_core.Form]:
+        """All classical forms of the equations, with whether they apply, and why not.
+
+        Example:
+            >>> import anholon as an
+            >>> [form.name for form in an.load("disc").forms() if form.name.startswith("chaplygin")]
+            ['chaplygin']
+        """
+        return self._core.forms()
+
+    def equations(self, form: str = "routh", *, expand: str = "auto", steps: bool = False, reactions: bool = False) -> Equations:
+        """The equations of motion in a classical form.
+
+        Args:
+            form: a name that :meth:`forms` lists.
+            expand: ``auto``, ``none``, ``paper``, ``full`` or ``parts``: how far sums and products are written out.
+            steps: with the quantities that lead to them: energies, momenta, forces.
+            reactions: with the ideal reactions.
+
+        Raises:
+            ModelError: the form is not known, or does not apply.
+        """
+        return Equations(_core.derive(self._core, form, expand, steps, reactions))
+
+    def reactions(self, form: str = "routh") -> Equations:
+        """The equations together with the ideal reactions of the constraints."""
+        return self.equations(form, reactions=True)
+
+    def prove(self, *forms: str) -> Proof:
+        """Proves that forms (all that apply if none is named) agree with Routh's equations.
+
+        Raises:
+            ModelError: a form is not known.
+        """
+        return Proof(_core.prove(self._core, list(forms)))
+
+    # ---- its motion ----
+
+    def initial(self, *, form: str = "routh", eliminate: Iterable[str] = (), **values: Number) -> list[_core.InitialValue]:
+        """The consistent initial state, each value with where it comes from.
+
+        Raises:
+            MotionError: no state satisfies the constraints with the values given.
+        """
+        return self._system(form, texts_of(values), eliminate).initial
+
+    def _system(self, form: str, initial: Mapping[str, str], eliminate: Iterable[str]) -> _core.System:
+        key = (form, tuple(sorted(initial.items())), tuple(eliminate))
+        if key not in self._prepared:
+            while len(self._prepared) >= _KEPT:
+                self._prepared.pop(next(iter(self._prepared)), None)
+            self._prepared[key] = _core.prepare(self._core, form, dict(initial), list(key[2]))
+        return self._prepared[key]
+
+    def simulate(
+        self,
+        to: Number | None = None,
+        *,
+        every: Number | None = None,
+        at: Iterable[Number] = (),
+        initial: Mapping[str, Number] | None = None,
+        tolerance: Number | None = None,
+        form: str = "routh",
+        eliminate: Iterable[str] = (),
+        method: str | None = None,
+        digits: int | None = None,
+        order: int | None = None,
+        error_estimate: bool | None = None,
+        most_steps: int | None = None,
+        stop: Callable[[], bool] | None = None,
+        progress: Callable[[float, int], object] | None = None,
+        **others: Number | bool,
+    ) -> Run:
+        """One motion. What happens to it never raises: ``run.outcome`` tells why it stopped and what to do.
+
+        The numbers are those of ``anholon simulate`` with the same options, bit by bit.
+
+        Args:
+            to: the end, s; that of the file if it is None.
+            every: a row at each multiple of it after the start, s; a row at each step if it is None.
+            at: rows at these times and at no other, s.
+            initial: values instead of those of the file: ``{"theta": 1.3, "phi'": 6}``, in SI units.
+            tolerance: of each step, relative; 1e-12 if neither the file nor you say otherwise.
+            form: of the equations, or ``auto``: the one whose motion takes the fewest operations.
+            eliminate: coordinates that forms without multipliers eliminate; chosen if there are none.
+            method: ``auto``, ``taylor``, ``rk`` or ``bdf``.
+            digits: more than 16: multiple precision; see :meth:`Run.exact`.
+            order: of the Taylor polynomials.
+            error_estimate: digits to trust, by a second, sharper run; True: always, False: never, None: of short runs.
+            most_steps: the motion ends after so many.
+            stop: asked every 20 ms; True ends the motion.
+            progress: told the time and the number of steps every 20 ms.
+            others: any option of ``anholon simulate`` that changes the motion, with _ for -: ``rigorous=64``.
+
+        Raises:
+            ModelError: an argument makes no sense.
+            Interrupted: Ctrl-C; ``.result`` is the run as far as it came.
+
+        Example:
+            >>> import anholon as an
+            >>> run = an.load("disc").simulate(to=10, every=0.01, initial={"phi'": 6})
+            >>> len(run)
+            1001
+        """
+        options = {"to": to, "every": every, "tolerance": tolerance, "method": method, "digits": digits, "order": order, "most-steps": most_steps}
+        words = {name: text_of(value) for name, value in options.items() if value is not None}
+        if error_estimate is not None:
+            words["error-estimate"] = "always" if error_estimate else "never"
+        for name, value in others.items():
+            if value is not False and value is not None:
+                words[name.replace("_", "-")] = "" if value is True else text_of(value)
+        try:
+            system = self._system(form, texts_of(initial), eliminate)
+        except MotionError as error:
+            return Run(self, None, error.outcome)
+        core, raised = _core.simulate(system, words, list_of(at), stop, progress)
+        run = Run(self, core, core.outcome)
+        if isinstance(raised, KeyboardInterrupt):
+            raise Interrupted(run) from None
+        if isinstance(raised, BaseException):
+            raise raised
+        return run
+
+    def linearize(self, *, initial: Mapping[str, Number] | None = None, form: str = "routh") -> _core.LinearModel:
+        """The linear model z' = A z + B u, y = C z + D u at the initial state.
+
+        Raises:
+            MotionError: the configuration is singular, or eigenvalues could not be enclosed.
+        """
+        return _core.linearize(self._system(form, texts_of(initial), ()))
+
+    def sweep(
+        self,
+        vary: Mapping[str, Iterable[Number] | Law],
+        *,
+        to: Number | None = None,
+        cases: int | None = None,
+        seed: int = 0,
+        tolerance: Number | None = None,
+        initial: Mapping[str, Number] | None = None,
+        form: str = "routh",
+        threads: int = 0,
+        stop: Callable[[], bool] | None = None,
+        progress: Callable[[float, int], object] | None = None,
+    ) -> Sweep:
+        """Many motions, on all cores: all combinations of the values, the last name varying fastest.
+
+        Args:
+            vary: by the name of a parameter, a coordinate or a velocity: a list or an array of values, or a law
+                (:func:`normal`, :func:`uniform`) by which each case draws its own.
+            to: the end, s; that of the file if it is None.
+            cases: how many, where values are drawn; the cases go round the combinations of the lists.
+            seed: of the draws, which depend on it and on the number of the case alone.
+            tolerance: of each step, relative.
+            initial: values common to all cases.
+            form: of the equations.
+            threads: 0: as many as the machine has. The numbers are the same for any.
+            stop: asked every 20 ms; True ends the sweep.
+            progress: told the number of cases done every 20 ms, twice.
+
+        Raises:
+            ModelError: an argument makes no sense.
+            MotionError: the initial values of the model are inconsistent.
+            Interrupted: Ctrl-C; ``.result`` is the sweep as far as it came.
+        """
+        values = [(name, [] if isinstance(of, Law) else list_of(of)) for name, of in vary.items()]
+        laws = {name: str(of) for name, of in vary.items() if isinstance(of, Law)}
+        system = self._system(form, texts_of(initial), ())
+        core, raised = _core.sweep(
+            system,
+            values,
+            laws,
+            cases,
+            seed,
+            None if to is None else text_of(to),
+            None if tolerance is None else text_of(tolerance),
+            threads,
+            stop,
+            progress,
+        )
+        sweep = Sweep(self, core, list(vary))
+        if isinstance(raised, KeyboardInterrupt):
+            raise Interrupted(sweep) from None
+        if isinstance(raised, BaseException):
+            raise raised
+        return sweep
+
+    def c_code(self, *, initial: Mapping[str, Number] | None = None, form: str = "routh") -> str:
+        """The motion's right side as a C program that stands by itself."""
+        return _core.program_text(self._system(form, texts_of(initial), ()), "c")
+
+    def python_code(self, *, initial: Mapping[str, Number] | None = None, form: str = "routh") -> str:
+        """The same as a module of NumPy."""
+        return _core.program_text(self._system(form, texts_of(initial), ()), "python")
+
+    def __repr__(self) -> str:
+        names = ", ".join(c.name for c in self.coordinates)
+        return f"<model {self.title!r}: coordinates {names}; {len(self.constraints)} constraints>"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            ("coordinates", ", ".join(repr(c) for c in self.coordinates)),
+            ("parameters", ", ".join(repr(p) for p in self._core.parameters)),
+            ("constraints", ", ".join(repr(c) for c in self.constraints)),
+            ("outputs", ", ".join(self.monitors)),
+        ]
+        body = "".join(f"<tr><th style='text-align:left'>{k}</th><td style='text-align:left'>{html.escape(v)}</td></tr>" for k, v in rows if v)
+        return f"<table><caption>{html.escape(self.title)}</caption><tbody>{body}</tbody></table>"
+
+
+def load(path: str | os.PathLike[str], *, case: str | Sequence[str] = (), set: Mapping[str, Number] | None = None) -> Model:
+    """Reads a model file, or a shipped model by its name.
+
+    Args:
+        path: ``"disc"`` or ``"my/robot.toml"``.
+        case: scenarios [case.NAME] that are laid over the file.
+        set: values of parameters instead of those of the file.
+
+    Raises:
+        ModelError: all mistakes of the file at once, each with its line, a caret and a hint.
+
+    Example:
+        >>> import anholon as an
+        >>> an.load("disc").title
+        'Disc rolling on a plane'
+    """
+    name = os.fspath(path)
+    return _read(lambda given, cases: _core.read_file(name, given, cases), set, case)
+
+
+def loads(text: str, *, case: str | Sequence[str] = (), set: Mapping[str, Number] | None = None, name: str = "model") -> Model:
+    """The same for a text; `name` stands in its diagnostics.
+
+    Example:
+        >>> import anholon as an
+        >>> an.loads('''
+        ... title = "Pendulum"
+        ... coordinates = ["th"]
+        ... particle = [{name = "bob", mass = 1, position = ["sin(th)", "-cos(th)", 0]}]
+        ... gravity.field = "-9.81*ey"
+        ... ''').coordinates[0].name
+        'th'
+    """
+    return _read(lambda given, cases: _core.read_text(text, given, cases, name), set, case)
+
+
+def _read(again: Callable[[dict[str, str], list[str]], _core.Model], set: Mapping[str, Number] | None, case: str | Sequence[str]) -> Model:
+    given, cases = texts_of(set), [case] if isinstance(case, str) else list(case)
+    return Model(again(given, cases), again, given, cases)
+
+
+def zoo() -> list[_core.ShippedModel]:
+    """The models that come with the library: name, path, title.
+
+    Example:
+        >>> import anholon as an
+        >>> any(model.name == "disc" for model in an.zoo())
+        True
+    """
+    return _core.shipped_models()

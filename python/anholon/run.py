@@ -1,0 +1,240 @@
+"""A motion: arrays, events and a report of how far they can be trusted."""
+
+from __future__ import annotations
+
+import html
+import json
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from . import _arrow, _core
+from ._errors import MotionError
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+    import pandas
+    import polars
+    import xarray
+
+    from .model import Model
+
+    Array = npt.NDArray[np.float64]
+
+
+class Run:
+    """One motion. ``run["theta"]`` is an array of what the library holds, without a copy; it cannot be written to.
+
+    Example:
+        >>> import anholon as an
+        >>> run = an.load("disc").simulate(to=2, every="0.5")
+        >>> run.outcome.ok, run.t.tolist()
+        (True, [0.0, 0.5, 1.0, 1.5, 2.0])
+        >>> run["theta"].shape
+        (5,)
+    """
+
+    def __init__(self, model: Model, core: _core.Run | None, outcome: _core.Outcome) -> None:
+        self._core = core
+        self._columns = {} if core is None else {column.name: column for column in core.columns}
+        self.model: Model = model
+        #: How the motion ended, with a remedy where it stopped before its end. A motion never raises: see expect().
+        self.outcome: _core.Outcome = outcome
+
+    # ---- arrays ----
+
+    def __getitem__(self, name: str) -> Array:
+        """The numbers of a column, shape (rows,), in SI units: "t", "x", "x'", "lambda.rod", "N.x", a state, a monitor."""
+        if self._core is None or name not in self._columns:
+            raise KeyError(f"there is no column {name!r}; there are {', '.join(self._columns) or 'none: the motion has not begun'}")
+        return self._core.column(name)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._columns
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        """The number of rows."""
+        return 0 if self._core is None else self._core.rows
+
+    def keys(self) -> list[str]:
+        """The names of the columns, so that ``dict(run)`` has all arrays."""
+        return list(self._columns)
+
+    @property
+    def columns(self) -> list[_core.Column]:
+        """Name, kind, unit and order of each column."""
+        return list(self._columns.values())
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The units of the columns that have one."""
+        return {name: column.unit for name, column in self._columns.items() if column.unit}
+
+    @property
+    def t(self) -> Array:
+        """The times of the rows, s, shape (rows,)."""
+        return self["t"]
+
+    def _of_kind(self, kind: str) -> Array:
+        import numpy as np
+
+        names = [name for name, column in self._columns.items() if column.kind == kind]
+        return np.column_stack([self[name] for name in names]) if names else np.empty((len(self), 0))
+
+    @property
+    def q(self) -> Array:
+        """The coordinates, shape (rows, coordinates), in the order of ``model.coordinates``; put together from the columns."""
+        return self._of_kind("coordinates")
+
+    @property
+    def qdot(self) -> Array:
+        """Their rates, shape (rows, coordinates)."""
+        return self._of_kind("velocities")
+
+    @property
+    def qddot(self) -> Array:
+        """Their accelerations, shape (rows, coordinates)."""
+        return self._of_kind("accelerations")
+
+    @property
+    def lam(self) -> Array:
+        """The multipliers, shape (rows, constraints)."""
+        return self._of_kind("multipliers")
+
+    def exact(self, name: str) -> list[Any]:
+        """The numbers of a column with all digits of the run: of more than 16, ``mpmath.mpf`` if mpmath is there, else texts."""
+        if self._core is None or name not in self._columns:
+            raise KeyError(name)
+        texts = [self._core.text(row, name) for row in range(len(self))]
+        try:
+            import mpmath
+        except ImportError:
+            return list(texts)
+        with mpmath.workdps(max(len(text) for text in texts) if texts else 15):
+            return [mpmath.mpf(text) for text in texts]
+
+    # ---- how it went ----
+
+    @property
+    def ok(self) -> bool:
+        """Whether the end that was asked for is reached."""
+        return self.outcome.ok
+
+    def expect(self) -> Run:
+        """The run itself. Raises MotionError if it stopped before its end."""
+        if not self.ok:
+            raise MotionError(repr(self.outcome), self.outcome)
+        return self
+
+    @property
+    def events(self) -> list[_core.Event]:
+        """The events that happened, in order."""
+        return [] if self._core is None else self._core.events
+
+    @property
+    def report(self) -> _core.Report:
+        """Residuals, digits to trust, conserved quantities, warnings. Raises MotionError if the motion has not begun."""
+        if self._core is None:
+            raise MotionError(repr(self.outcome), self.outcome)
+        return self._core.report
+
+    # ---- other libraries, files ----
+
+    def to_dict(self) -> dict[str, Array]:
+        """All columns, without copies."""
+        return {name: self[name] for name in self}
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A DataFrame with the columns of the run; ``.attrs["units"]`` has the units. Needs pandas."""
+        import pandas
+
+        frame = pandas.DataFrame(self.to_dict())
+        frame.attrs["units"] = self.units
+        frame.attrs["title"] = self.model.title
+        return frame
+
+    def to_polars(self) -> polars.DataFrame:
+        """A DataFrame of polars, which it reads as an Arrow stream. Needs polars."""
+        import polars
+
+        return polars.DataFrame(self)
+
+    def to_xarray(self) -> xarray.Dataset:
+        """A Dataset over the dimension t, with units as attributes. Needs xarray."""
+        import xarray
+
+        return xarray.Dataset(
+            {name: ("t", self[name], {"units": column.unit} if column.unit else {}) for name, column in self._columns.items() if name != "t"},
+            coords={"t": ("t", self.t, {"units": "s"})},
+            attrs={"title": self.model.title},
+        )
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """The columns as an Arrow stream of one batch, which reads the numbers where they are."""
+        return _arrow.stream(self.to_dict(), self.units)
+
+    def save(self, path: str) -> str:
+        """Writes .csv, .json or .h5, by the end of the name. The file is there as a whole or stays as it was.
+
+        Raises:
+            ModelError: the name has another ending, or the file cannot be written.
+        """
+        return self._required().write(path)
+
+    def json(self) -> Any:
+        """Columns, rows and the report, as ``anholon simulate --json`` prints them."""
+        return json.loads(self._required().json())
+
+    def _required(self) -> _core.Run:
+        if self._core is None:
+            raise MotionError(repr(self.outcome), self.outcome)
+        return self._core
+
+    # ---- pictures ----
+
+    def plot(self, *names: str, x: str = "t", ax: Any = None) -> Any:
+        """Draws columns (all coordinates if none is named) over another one with Matplotlib; returns the axes.
+
+        Args:
+            names: columns to draw.
+            x: the column they are drawn over.
+            ax: axes of Matplotlib; new ones if it is None.
+        """
+        if ax is None:
+            import matplotlib.pyplot as plt
+
+            _, ax = plt.subplots()
+        chosen: Sequence[str] = names or [name for name, column in self._columns.items() if column.kind == "coordinates"]
+        for name in chosen:
+            unit = self.units.get(name)
+            ax.plot(self[x], self[name], label=f"{name} [{unit}]" if unit else name)
+        ax.set_xlabel(f"{x} [{self.units.get(x, 's' if x == 't' else '')}]".replace(" []", ""))
+        ax.legend()
+        return ax
+
+    def __repr__(self) -> str:
+        if self._core is None:
+            return f"<run of {self.model.title!r}: {self.outcome!r}>"
+        reached = f" to t = {self.t[-1]:g}" if len(self) else ""
+        digits = [trust.digits for trust in self.report.trust]
+        trusted = f", {min(digits)} digits to trust" if digits else ""
+        return f"<run of {self.model.title!r}: {self.outcome.kind}{reached}, {len(self)} rows{trusted}>"
+
+    def _repr_html_(self) -> str:
+        if self._core is None:
+            return f"<pre>{html.escape(repr(self.outcome))}</pre>"
+        report = self.report
+        lines = [("outcome", repr(self.outcome)), ("rows", f"{len(self)}, {report.steps} steps of order {report.order}, {report.seconds:.3g} s")]
+        if report.trust:
+            lines.append(("digits to trust", ", ".join(f"{trust.kind} {trust.digits}" for trust in report.trust)))
+        elif report.no_trust:
+            lines.append(("digits to trust", f"not estimated: {report.no_trust}"))
+        lines.append(("residuals", f"Newton's law {report.newton:.2g}, constraints {report.constraints:.2g}, power {report.power:.2g}"))
+        lines += [("conserved", f"{w.name}, largest change {w.largest_change:.2g}") for w in report.watched if w.conserved]
+        lines += [("event", repr(event)) for event in self.events[:20]]
+        lines += [("warning", text) for text in report.warnings]
+        rows = "".join(f"<tr><th style='text-align:left'>{html.escape(k)}</th><td style='text-align:left'>{html.escape(v)}</td></tr>" for k, v in lines)
+        return f"<table><caption>{html.escape(self.model.title)}</caption><tbody>{rows}</tbody></table>"

@@ -1,0 +1,123 @@
+"""Many motions: arrays over the cases."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from . import _arrow, _core
+from ._numbers import Number, text_of
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+    import pandas
+    import polars
+
+    from .model import Model
+
+    Array = npt.NDArray[np.float64]
+
+
+class Law(str):
+    """A law by which a value is drawn for each case; see :func:`normal` and :func:`uniform`."""
+
+
+def normal(mean: Number, deviation: Number) -> Law:
+    """Normally distributed values: ``{"theta": an.normal(0.3, 0.01)}``."""
+    return Law(f"normal({text_of(mean)},{text_of(deviation)})")
+
+
+def uniform(low: Number, high: Number) -> Law:
+    """Evenly distributed values between two numbers."""
+    return Law(f"uniform({text_of(low)},{text_of(high)})")
+
+
+class Sweep(Mapping[str, "Array"]):
+    """Final states of many motions; ``sweep["x"]`` has one number for each case, NaN where a case has no final state.
+
+    Example:
+        >>> import anholon as an
+        >>> sweep = an.load("disc").sweep({"phi'": [5, 6, 7]}, to=1)
+        >>> sweep.varied["phi'"].tolist(), sweep.finished
+        ([5.0, 6.0, 7.0], 3)
+    """
+
+    def __init__(self, model: Model, core: _core.Sweep, names: list[str]) -> None:
+        self.model: Model = model
+        self._core = core
+        #: The values that vary, one array for each name, shape (cases,).
+        self.varied: dict[str, Array] = {name: core.varied(name) for name in names}
+
+    def __getitem__(self, name: str) -> Array:
+        """A column at the end of each motion, shape (cases,), in SI units."""
+        if name not in self._core.columns:
+            raise KeyError(f"there is no column {name!r}; there are {', '.join(self._core.columns)}")
+        return self._core.column(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._core.columns)
+
+    def __len__(self) -> int:
+        """The number of columns; ``cases`` is that of the motions."""
+        return len(self._core.columns)
+
+    @property
+    def cases(self) -> int:
+        """How many motions there are."""
+        return self._core.cases
+
+    @property
+    def finished(self) -> int:
+        """How many reached their end."""
+        return self._core.finished
+
+    @property
+    def t(self) -> Array:
+        """The times reached, s, shape (cases,)."""
+        return self._core.t
+
+    @property
+    def outcome(self) -> _core.Outcome:
+        """Finished, or interrupted."""
+        return self._core.outcome
+
+    def outcome_of(self, case: int) -> _core.Outcome:
+        """How one motion ended."""
+        if not 0 <= case < self.cases:
+            raise IndexError(f"there are {self.cases} cases")
+        return self._core.outcome_of(case)
+
+    @property
+    def outcomes(self) -> list[str]:
+        """The kinds of all outcomes."""
+        return [self._core.outcome_of(case).kind for case in range(self.cases)]
+
+    def to_dict(self) -> dict[str, Array]:
+        """What varies, named as in ``anholon sweep`` (an initial value is ``x(0)``), the times reached and all columns."""
+        columns = set(self._core.columns)
+        table = {f"{name}(0)" if name in columns else name: values for name, values in self.varied.items()}
+        table["t"] = self.t
+        table.update({name: self[name] for name in self})
+        return table
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """A DataFrame with a row for each case, and its outcome. Needs pandas."""
+        import pandas
+
+        frame = pandas.DataFrame(self.to_dict())
+        frame.insert(len(self.varied), "outcome", self.outcomes)
+        return frame
+
+    def to_polars(self) -> polars.DataFrame:
+        """The same for polars. Needs polars."""
+        import polars
+
+        return polars.DataFrame(self.to_dict()).insert_column(len(self.varied), polars.Series("outcome", self.outcomes))
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """The numbers as an Arrow stream of one batch, read where they are."""
+        return _arrow.stream(self.to_dict(), {})
+
+    def __repr__(self) -> str:
+        return f"<sweep of {self.model.title!r}: {self.finished} of {self.cases} cases finished; varied: {', '.join(self.varied)}>"

@@ -1,0 +1,122 @@
+// The binding of the public headers to Python: one file for each header, and what they share.
+//
+// The classes here hold the C++ values as they are. What a user of Python sees is written in Python above them
+// (python/anholon): names, defaults, conversions, pictures.
+#pragma once
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <span>
+#include <string>
+#include <thread>
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/complex.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "anholon/anholon.h"
+
+namespace anholon::python {
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+// Numbers come from Python as the texts of exact decimals or formulas.
+using Numbers = std::map<std::string, std::string>;
+std::map<std::string, Number> numbers(const Numbers& texts);
+
+// An error of the library; it becomes an exception of the Python package.
+struct Trouble {
+  Error error;
+};
+
+// The value, or a Trouble.
+template <class T>
+T value_of(Result<T> result) {
+  if (!result) throw Trouble{result.error()};
+  return *std::move(result);
+}
+
+// Calls f without the interpreter's lock.
+template <class F>
+auto unlocked(const F& f) {
+  const nb::gil_scoped_release release;
+  return f();
+}
+
+// Looks after a computation that runs in a thread of its own, while this thread waits for it with the interpreter's lock
+// released: every 20 ms it lets Python's signal handlers run, of which one raises KeyboardInterrupt, asks `stop` and
+// tells `progress` (functions of the user, or None). Any of them that raises ends the computation.
+class Attendant {
+ public:
+  Attendant(nb::object stop, nb::object progress) : stop_(std::move(stop)), progress_(std::move(progress)) {}
+
+  // For the computation: whether it is to end, and how far it has come. Any thread may call them.
+  bool cancelled() const { return ends_.load(std::memory_order_relaxed); }
+  void tell(double done, std::size_t count) {
+    done_.store(done, std::memory_order_relaxed);
+    count_.store(count, std::memory_order_relaxed);
+  }
+
+  // Computes f() and returns its value.
+  template <class F>
+  auto attend(const F& f) {
+    std::optional<decltype(f())> value;
+    std::exception_ptr failed;
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool ready = false;
+    {
+      const nb::gil_scoped_release release;
+      std::thread computing([&] {
+        try {
+          value.emplace(f());
+        } catch (...) {
+          failed = std::current_exception();
+        }
+        const std::lock_guard lock(mutex);
+        ready = true;
+        changed.notify_one();
+      });
+      for (std::unique_lock lock(mutex); !changed.wait_for(lock, kPause, [&] { return ready; });) {
+        lock.unlock();
+        look();
+        lock.lock();
+      }
+      computing.join();
+    }
+    if (failed) std::rethrow_exception(failed);
+    return *std::move(value);
+  }
+  // What a handler, `stop` or `progress` raised, as a Python object; None if nothing was raised.
+  nb::object raised() const { return raised_; }
+
+ private:
+  static constexpr std::chrono::milliseconds kPause{20};
+  void look();
+
+  nb::object stop_, progress_, raised_ = nb::none();
+  std::atomic<bool> ends_{false};
+  std::atomic<double> done_{0};
+  std::atomic<std::size_t> count_{0};
+};
+
+// Numbers that `owner` holds, without a copy; the array keeps it alive, and cannot be written to.
+using View = nb::ndarray<nb::numpy, const double, nb::ndim<1>>;
+View view(std::span<const double> numbers, nb::handle owner);
+
+void bind_arrow(nb::module_& m);
+void bind_results(nb::module_& m);
+void bind_models(nb::module_& m);
+void bind_motions(nb::module_& m);
+void bind_sweeps(nb::module_& m);
+
+}  // namespace anholon::python

@@ -1,0 +1,10 @@
+#include "core.h"
+
+NB_MODULE(_core, m) {
+  m.doc() = "The C++ library of Anholon, as its public headers have it.";
+  anholon::python::bind_results(m);
+  anholon::python::bind_arrow(m);
+  anholon::python::bind_models(m);
+  anholon::python::bind_motions(m);
+  anholon::python::bind_sweeps(m);
+}

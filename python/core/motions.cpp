@@ -1,0 +1,177 @@
+#include "core.h"
+
+namespace anholon::python {
+
+namespace {
+
+using MatrixView = nb::ndarray<nb::numpy, const double, nb::ndim<2>>;
+
+// Numbers of `owner`, without a copy.
+MatrixView matrix(const Matrix& a, nb::handle owner) { return MatrixView(a.values.data(), {a.rows, a.columns}, owner); }
+
+// The member of a LinearModel as an array that keeps it alive.
+template <Matrix LinearModel::* member>
+MatrixView matrix_of(nb::handle self) {
+  return matrix(nb::cast<const LinearModel&>(self).*member, self);
+}
+
+void bind_system(nb::module_& m) {
+  nb::class_<InitialValue>(m, "InitialValue", "A value of the initial state, and where it comes from.")
+      .def_ro("name", &InitialValue::name)
+      .def_ro("value", &InitialValue::value, "SI.")
+      .def_prop_ro("origin",
+                   [](const InitialValue& v) {
+                     const char* names[] = {"given", "derived", "chosen", "guessed", "corrected"};
+                     return std::string(names[static_cast<int>(v.origin)]);
+                   },
+                   "'given', 'derived' from the constraints, 'chosen' (free, and set to 0), 'guessed' (the solution next "
+                   "to a guess) or 'corrected' (given, and moved onto the constraints).")
+      .def("__repr__", [](const InitialValue& v) {
+        return nb::cast<std::string>(nb::str("{} = {!r}").format(v.name, v.value));
+      });
+  nb::class_<ConstraintClass>(m, "ConstraintClass", "What kind of constraint it is.")
+      .def_ro("name", &ConstraintClass::name)
+      .def_ro("kind", &ConstraintClass::kind, "Holonomic, linear, affine or nonlinear in its highest derivatives.")
+      .def_ro("homogeneous", &ConstraintClass::homogeneous)
+      .def_ro("rheonomic", &ConstraintClass::rheonomic, "It holds t explicitly.")
+      .def_ro("redundant", &ConstraintClass::redundant, "It follows from the others at the initial state.")
+      .def("__repr__", [](const ConstraintClass& c) { return c.name + ": " + c.kind; });
+  nb::class_<System>(m, "System")
+      .def_prop_ro("form", &System::form)
+      .def_prop_ro("start", &System::start)
+      .def_prop_ro("initial", &System::initial)
+      .def_prop_ro("constraints", &System::constraints)
+      .def_prop_ro("degrees_of_freedom", &System::degrees_of_freedom)
+      .def_prop_ro("notes", &System::notes);
+  m.def(
+      "prepare",
+      [](const Model& model, const std::string& form, const Numbers& initial, const std::vector<std::string>& eliminate) {
+        const PrepareOptions options{form, numbers(initial), eliminate};
+        return value_of(unlocked([&] { return prepare(model, options); }));
+      },
+      "model"_a, "form"_a, "initial"_a, "eliminate"_a);
+  m.def(
+      "program_text",
+      [](const System& system, const std::string& language) {
+        return value_of(program_text(system, language == "c" ? Language::c : Language::python));
+      },
+      "system"_a, "language"_a);
+}
+
+void bind_run(nb::module_& m) {
+  nb::class_<Column>(m, "Column", "A column of a run.")
+      .def_ro("name", &Column::name)
+      .def_ro("kind", &Column::kind, "'coordinates', 'velocities', 'multipliers', 'reactions', …")
+      .def_ro("unit", &Column::unit, "Empty where the model names none.")
+      .def_ro("order", &Column::order, "Of the derivative.")
+      .def("__repr__", [](const Column& c) { return c.unit.empty() ? c.name : c.name + " [" + c.unit + "]"; });
+  nb::class_<Event::Change>(m, "Change", "A value that an event has changed.")
+      .def_ro("name", &Event::Change::name)
+      .def_ro("before", &Event::Change::before)
+      .def_ro("after", &Event::Change::after);
+  nb::class_<Event>(m, "Event", "An event that happened.")
+      .def_ro("name", &Event::name)
+      .def_ro("t", &Event::t, "s.")
+      .def_ro("changes", &Event::changes)
+      .def_ro("stop", &Event::stop, "It ended the motion.")
+      .def("__repr__", [](const Event& e) { return nb::cast<std::string>(nb::str("{} at t = {!r}").format(e.name, e.t)); });
+  nb::class_<Trust>(m, "Trust", "Digits of the columns of one kind that can be trusted.")
+      .def_ro("kind", &Trust::kind)
+      .def_ro("digits", &Trust::digits)
+      .def_ro("error", &Trust::error, "Of the worst column, in relation to its largest value.")
+      .def_ro("worst", &Trust::worst, "The worst column.")
+      .def("__repr__", [](const Trust& t) { return t.kind + ": " + std::to_string(t.digits) + " digits"; });
+  nb::class_<Watched>(m, "Watched", "A quantity that was watched from the first row to the last.")
+      .def_ro("name", &Watched::name)
+      .def_ro("first", &Watched::first)
+      .def_ro("last", &Watched::last)
+      .def_ro("least", &Watched::least)
+      .def_ro("greatest", &Watched::greatest)
+      .def_ro("largest_change", &Watched::largest_change, "From the first value, relative.")
+      .def_ro("conserved", &Watched::conserved, "It is known to be an integral of the motion.")
+      .def("__repr__", [](const Watched& w) { return nb::cast<std::string>(nb::str("{} = {!r}").format(w.name, w.last)); });
+  nb::class_<Report>(m, "Report",
+                     "How far a run can be trusted. All residuals are relative to the greatest of their terms along the "
+                     "motion.")
+      .def_ro("newton", &Report::newton, "Newton's law by the points themselves, with ideal reactions.")
+      .def_ro("projected", &Report::projected, "The same without multipliers.")
+      .def_ro("constraints", &Report::constraints, "Constraints and their derivatives at the rows.")
+      .def_ro("before_projection", &Report::before_projection, "The same before each step is projected.")
+      .def_ro("power", &Report::power, "The change of the energy less the work.")
+      .def_ro("smallest_sigma", &Report::smallest_sigma, "The least scaled singular value of the system Jacobian.")
+      .def_ro("smallest_sigma_t", &Report::smallest_sigma_t, "When it was met, s.")
+      .def_ro("steps", &Report::steps)
+      .def_ro("order", &Report::order, "Of the Taylor polynomials.")
+      .def_ro("method", &Report::method, "By which the last step was made.")
+      .def_ro("seconds", &Report::seconds)
+      .def_ro("trust", &Report::trust, "Empty if there is no estimate; no_trust then tells why.")
+      .def_ro("no_trust", &Report::no_trust)
+      .def_ro("watched", &Report::watched)
+      .def_ro("warnings", &Report::warnings)
+      .def_ro("notes", &Report::notes);
+  nb::class_<Run>(m, "Run")
+      .def_prop_ro("outcome", &Run::outcome)
+      .def_prop_ro("rows", &Run::rows)
+      .def_prop_ro("columns", &Run::columns)
+      .def("column",
+           [](nb::handle self, const std::string& name) { return view(nb::cast<const Run&>(self).column(name), self); },
+           "name"_a)
+      .def("text", &Run::text, "row"_a, "column"_a)
+      .def_prop_ro("events", &Run::events)
+      .def_prop_ro("report", &Run::report)
+      .def("json", [](const Run& run) { return unlocked([&] { return run.json(); }); })
+      .def("write",
+           [](const Run& run, const std::string& path) { return value_of(unlocked([&] { return run.write(path); })); },
+           "path"_a);
+  m.def(
+      "simulate",
+      [](const System& system, const std::map<std::string, std::string>& others, const std::vector<std::string>& at,
+         nb::object stop, nb::object progress) {
+        MotionOptions options;
+        options.others = others;
+        for (const std::string& t : at) options.at.emplace_back(t);
+        Attendant attendant(std::move(stop), std::move(progress));
+        options.cancelled = [&] { return attendant.cancelled(); };
+        options.progress = [&](double t, std::size_t steps) { attendant.tell(t, steps); };
+        Run run = value_of(attendant.attend([&] { return simulate(system, options); }));
+        return std::pair(std::move(run), attendant.raised());
+      },
+      "system"_a, "others"_a, "at"_a, "stop"_a.none(), "progress"_a.none());
+}
+
+void bind_linear(nb::module_& m) {
+  nb::class_<LinearModel>(m, "LinearModel",
+                          "The linear model z' = A z + B u, y = C z + D u of a motion at its initial state.")
+      .def_prop_ro("motion",
+                   [](const LinearModel& l) {
+                     const char* names[] = {"equilibrium", "steady", "unsteady", "unchecked"};
+                     return std::string(names[static_cast<int>(l.motion)]);
+                   },
+                   "'equilibrium', 'steady', 'unsteady' (A holds for an instant) or 'unchecked'.")
+      .def_ro("why", &LinearModel::why)
+      .def_ro("states", &LinearModel::states, "The independent coordinates and velocities z.")
+      .def_ro("inputs", &LinearModel::inputs)
+      .def_ro("outputs", &LinearModel::outputs)
+      .def_ro("values", &LinearModel::values, "Of z at the point.")
+      .def_prop_ro("A", matrix_of<&LinearModel::A>, "Shape (states, states).")
+      .def_prop_ro("B", matrix_of<&LinearModel::B>, "Shape (states, inputs).")
+      .def_prop_ro("C", matrix_of<&LinearModel::C>, "Shape (outputs, states).")
+      .def_prop_ro("D", matrix_of<&LinearModel::D>, "Shape (outputs, inputs).")
+      .def_ro("eigenvalues", &LinearModel::eigenvalues,
+              "Of A without the coordinates that influence nothing, with multiplicity, 1/s.")
+      .def("__repr__", [](const LinearModel& l) {
+        return "linear model, " + std::to_string(l.states.size()) + " states, " + std::to_string(l.inputs.size()) + " inputs";
+      });
+  m.def(
+      "linearize", [](const System& system) { return value_of(unlocked([&] { return linearize(system); })); }, "system"_a);
+}
+
+}  // namespace
+
+void bind_motions(nb::module_& m) {
+  bind_system(m);
+  bind_run(m);
+  bind_linear(m);
+}
+
+}  // namespace anholon::python

@@ -1,0 +1,48 @@
+#include "core.h"
+
+namespace anholon::python {
+
+void bind_sweeps(nb::module_& m) {
+  nb::class_<Sweep>(m, "Sweep")
+      .def_prop_ro("cases", &Sweep::cases)
+      .def_prop_ro("finished", &Sweep::finished)
+      .def_prop_ro("columns", &Sweep::columns)
+      .def("column",
+           [](nb::handle self, const std::string& name) { return view(nb::cast<const Sweep&>(self).column(name), self); },
+           "name"_a)
+      .def("varied",
+           [](nb::handle self, const std::string& name) { return view(nb::cast<const Sweep&>(self).varied(name), self); },
+           "name"_a)
+      .def_prop_ro("t",
+                   [](nb::handle self) { return view(nb::cast<const Sweep&>(self).t(), self); })
+      .def("outcome_of", nb::overload_cast<std::size_t>(&Sweep::outcome, nb::const_), "number"_a)
+      .def_prop_ro("outcome", nb::overload_cast<>(&Sweep::outcome, nb::const_));
+  m.def(
+      "sweep",
+      [](const System& system, const std::vector<std::pair<std::string, std::vector<std::string>>>& values,
+         const std::map<std::string, std::string>& laws, std::optional<std::size_t> cases, std::uint64_t seed,
+         std::optional<std::string> to, std::optional<std::string> tolerance, std::size_t threads, nb::object stop,
+         nb::object progress) {
+        SweepOptions options;
+        for (const auto& [name, list] : values) {
+          Vary& vary = options.vary.emplace_back();
+          vary.name = name;
+          for (const std::string& number : list) vary.values.emplace_back(number);
+          if (const auto law = laws.find(name); law != laws.end()) vary.law = law->second;
+        }
+        options.cases = cases;
+        options.seed = seed;
+        if (to) options.to = Number(*to);
+        if (tolerance) options.tolerance = Number(*tolerance);
+        options.threads = threads;
+        Attendant attendant(std::move(stop), std::move(progress));
+        options.cancelled = [&] { return attendant.cancelled(); };
+        options.progress = [&](std::size_t done) { attendant.tell(static_cast<double>(done), done); };
+        Sweep done = value_of(attendant.attend([&] { return sweep(system, options); }));
+        return std::pair(std::move(done), attendant.raised());
+      },
+      "system"_a, "values"_a, "laws"_a, "cases"_a.none(), "seed"_a, "to"_a.none(), "tolerance"_a.none(), "threads"_a,
+      "stop"_a.none(), "progress"_a.none());
+}
+
+}  // namespace anholon::python

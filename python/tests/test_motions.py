@@ -1,0 +1,172 @@
+"""Runs and sweeps: arrays of what the library holds, the same numbers as the command line."""
+
+import ctypes
+import gc
+import pathlib
+import resource
+import signal
+import threading
+import time
+from collections.abc import Callable
+
+import anholon as an
+import numpy as np
+import pytest
+
+Program = Callable[..., str]
+
+
+@pytest.mark.parametrize("model", [model.name for model in an.zoo()])
+def test_the_same_bytes_as_the_command_line(model: str, program: Program, tmp_path: pathlib.Path) -> None:
+    by_program, by_python = tmp_path / "program.csv", tmp_path / "python.csv"
+    program("simulate", model, "--quiet", "--error-estimate", "never", "-o", str(by_program))
+    try:
+        run = an.load(model).simulate(error_estimate=False)
+    except an.ModelError:
+        assert not by_program.exists(), "the program simulates it"
+        return
+    if len(run) == 0:
+        assert not run.ok and not by_program.exists()
+        return
+    run.save(str(by_python))
+    assert by_python.read_bytes() == by_program.read_bytes()
+
+
+def test_arrays_are_views(disc: an.Model) -> None:
+    run = disc.simulate(to=1, every=0.01)
+    theta = run["theta"]
+    assert theta.ctypes.data == run["theta"].ctypes.data, "no copy is made"
+    assert not theta.flags.owndata and not theta.flags.writeable
+    with pytest.raises(ValueError):
+        theta[0] = 1
+    first = theta[0]
+    del run
+    gc.collect()
+    assert theta[0] == first and len(theta) == 101, "the array keeps its numbers alive"
+    assert ctypes.cast(theta.ctypes.data, ctypes.POINTER(ctypes.c_double))[0] == first
+
+
+def test_columns(disc: an.Model) -> None:
+    run = disc.simulate(to=1, every="0.25")
+    assert run.t.tolist() == [0, 0.25, 0.5, 0.75, 1]
+    assert run.q.shape == run.qdot.shape == (5, 5)
+    assert run.lam.shape == (5, 2)
+    np.testing.assert_array_equal(run.q[:, 3], run["theta"])
+    assert dict(run)["x'"] is not None
+    with pytest.raises(KeyError, match="there is no column 'thet'"):
+        run["thet"]
+    assert run.report.newton < 1e-12 and run.report.trust
+    assert "digits to trust" in run._repr_html_()
+
+
+def test_physics_never_raises() -> None:
+    run = an.load("luo-zhao-example-2").simulate(to=1000)
+    assert not run.ok and run.outcome.kind == "negative_mass" and run.outcome.hint
+    assert len(run) > 0, "what was computed is there"
+    with pytest.raises(an.MotionError) as caught:
+        run.expect()
+    assert caught.value.outcome.kind == run.outcome.kind
+
+
+def test_an_inconsistent_start_is_an_outcome(disc: an.Model) -> None:
+    run = disc.simulate(to=1, initial={"x'": 1, "phi'": 6, "psi": 0})
+    assert run.outcome.kind == "inconsistent" and len(run) == 0
+    with pytest.raises(KeyError):
+        run["x"]
+
+
+def test_more_digits() -> None:
+    mpmath = pytest.importorskip("mpmath")
+    run = an.load("disc").simulate(to="0.1", at=["0.1"], digits=30, tolerance="1e-28", error_estimate=False)
+    (text,) = run.exact("theta")
+    assert mpmath.nstr(text, 30, strip_zeros=False)[:20] == run._required().text(0, "theta")[:20]
+    assert abs(float(text) - run["theta"][0]) < 1e-15
+
+
+def test_ctrl_c_keeps_what_was_computed(disc: an.Model) -> None:
+    pressed: list[float] = []
+
+    def press() -> None:
+        pressed.append(time.perf_counter())
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+
+    threading.Timer(0.5, press).start()
+    with pytest.raises(an.Interrupted) as caught:
+        disc.simulate(to=1_000_000, at=[1, 1_000_000], error_estimate=False)
+    assert time.perf_counter() - pressed[0] < 0.1
+    assert caught.value.result["t"][0] == 1
+    assert isinstance(caught.value, KeyboardInterrupt)
+    assert caught.value.result.outcome.kind == "interrupted"
+
+
+def test_stop_progress_and_their_mistakes(disc: an.Model) -> None:
+    told: list[float] = []
+    run = disc.simulate(to=1_000_000, at=[1_000_000], error_estimate=False, stop=lambda: len(told) > 3, progress=lambda t, steps: told.append(t))
+    assert run.outcome.kind == "interrupted" and told == sorted(told)
+
+    def wrong() -> bool:
+        raise RuntimeError("mine")
+
+    with pytest.raises(RuntimeError, match="mine"):
+        disc.simulate(to=1_000_000, at=[1_000_000], error_estimate=False, stop=wrong)
+
+
+def test_threads_share_a_model(disc: an.Model) -> None:
+    expected = disc.simulate(to=3, every=0.1, error_estimate=False)["theta"]
+    found: list[bool] = []
+
+    def work() -> None:
+        run = disc.simulate(to=3, every=0.1, error_estimate=False)
+        found.append(np.array_equal(run["theta"], expected) and an.load("snakeboard").simulate(to=1).ok)
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == [True] * 4
+
+
+def test_sweeps(disc: an.Model, program: Program, tmp_path: pathlib.Path) -> None:
+    file = tmp_path / "cases.csv"
+    program("sweep", "disc", "--vary", "phi'=5:7:9", "--vary", "m=1,2", "--to", "1", "--quiet", "-o", str(file), "--error-estimate", "never")
+    sweep = disc.sweep({"phi'": np.linspace(5, 7, 9), "m": [1, 2]}, to=1)
+    assert (sweep.cases, sweep.finished, sweep.outcomes[0]) == (18, 18, "finished")
+    lines = file.read_text().splitlines()
+    k = lines[0].split(",").index("theta")
+    assert [float(line.split(",")[k]) for line in lines[1:]] == sweep["theta"].tolist()
+    drawn = disc.sweep({"theta": an.normal(0.3, 0.01)}, to=0.5, cases=20, seed=7)
+    assert np.unique(drawn.varied["theta"]).size == 20
+    assert drawn.to_dict()["theta(0)"] is not None
+
+
+def test_a_loop_does_not_grow() -> None:
+    model = an.load("chaplygin-sleigh")
+
+    def rounds(count: int) -> None:
+        for _ in range(count):
+            assert model.simulate(to=0.01, error_estimate=False).ok
+
+    rounds(100)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    rounds(400)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 20_000, "kB"
+
+
+def test_other_libraries(disc: an.Model) -> None:
+    run = disc.simulate(to=1, every=0.1)
+    pandas = pytest.importorskip("pandas")
+    frame = run.to_pandas()
+    assert isinstance(frame, pandas.DataFrame) and list(frame.columns) == list(run)
+    polars = pytest.importorskip("polars")
+    assert run.to_polars()["theta"].to_list() == run["theta"].tolist()
+    assert isinstance(disc.sweep({"m": [1, 2]}, to=0.1).to_polars(), polars.DataFrame)
+    pytest.importorskip("xarray")
+    assert run.to_xarray()["theta"].dims == ("t",)
+    pyarrow = pytest.importorskip("pyarrow")
+    table = pyarrow.table(run)
+    column = table.column("theta").chunk(0)
+    assert column.buffers()[1].address == run["theta"].ctypes.data, "read where it is"
+    del run
+    gc.collect()
+    assert column.to_pylist()[0] == frame["theta"][0]
