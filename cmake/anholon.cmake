@@ -147,7 +147,10 @@ function(anholon_compiler_module)
   # would meet others of its kind in processes that load this one.
   llvm_map_components_to_libnames(llvm orcjit x86codegen x86desc x86info)
   target_link_libraries(anholon_jit PRIVATE ${llvm} anholon_options anholon_warnings)
-  target_link_options(anholon_jit PRIVATE -Wl,--exclude-libs,ALL -Wl,--gc-sections)
+  # By ld itself, which packs the relocations of LLVM's tables: they are a twentieth of the file.
+  target_link_options(anholon_jit PRIVATE -Wl,--exclude-libs,ALL -Wl,--gc-sections
+    -Wl,-z,pack-relative-relocs -Wl,-z,defs)
+  target_link_libraries(anholon_jit PRIVATE -fuse-ld=bfd)  # after the other one's name
   anholon_use_precompiled(anholon_jit compiler)
   anholon_in_batches(anholon_jit)
   # The name of the build is part of the key of what is kept on disk.

@@ -1,12 +1,19 @@
-# The Python module, in ${CMAKE_BINARY_DIR}/python: ANHOLON_PYTHON names an interpreter that has nanobind.
+# The Python module. In a build tree it lies in ${CMAKE_BINARY_DIR}/python; a wheel has it as the components `python` and
+# `jit` of the installation (python/pyproject.toml, python/jit/pyproject.toml).
 set(ANHOLON_PYTHON "" CACHE FILEPATH "An interpreter that has nanobind; empty: the Python module is not built")
 
 function(anholon_python_module)
-  if(NOT ANHOLON_PYTHON OR NOT TARGET anholon_api)
+  if(SKBUILD)
+    set(ANHOLON_PYTHON "${Python_EXECUTABLE}")
+    if(TARGET anholon_jit)
+      install(TARGETS anholon_jit LIBRARY DESTINATION anholon COMPONENT jit)
+    endif()
+  endif()
+  if(NOT ANHOLON_PYTHON OR NOT TARGET anholon_api OR SKBUILD_PROJECT_NAME STREQUAL "anholon-jit")
     return()
   endif()
   set(Python_EXECUTABLE "${ANHOLON_PYTHON}")
-  find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development.Module)
+  find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development.Module ${SKBUILD_SABI_COMPONENT})
   execute_process(COMMAND "${Python_EXECUTABLE}" -m nanobind --cmake_dir
     OUTPUT_STRIP_TRAILING_WHITESPACE OUTPUT_VARIABLE nanobind_ROOT COMMAND_ERROR_IS_FATAL ANY)
   find_package(nanobind CONFIG REQUIRED)
@@ -19,13 +26,16 @@ function(anholon_python_module)
   # The layers themselves, of which nothing is seen from outside: other modules in the process may have the same libraries.
   target_link_libraries(anholon_python PRIVATE anholon_api anholon_options)
   target_link_options(anholon_python PRIVATE -Wl,--exclude-libs,ALL)
+  nanobind_add_stub(anholon_python_stub MODULE anholon._core OUTPUT "${place}/_core.pyi"
+    PYTHON_PATH "${CMAKE_BINARY_DIR}/python" DEPENDS anholon_python)
+  install(TARGETS anholon_python LIBRARY DESTINATION anholon COMPONENT python)
+  install(FILES "${place}/_core.pyi" DESTINATION anholon COMPONENT python)
+  install(DIRECTORY "${PROJECT_SOURCE_DIR}/models/" DESTINATION anholon/share/anholon/models COMPONENT python)
   if(TARGET anholon_jit)
     add_dependencies(anholon_python anholon_jit)
     add_custom_command(TARGET anholon_python POST_BUILD
       COMMAND "${CMAKE_COMMAND}" -E create_symlink "$<TARGET_FILE:anholon_jit>" "${place}/anholon-compiler.so")
   endif()
-  nanobind_add_stub(anholon_python_stub MODULE anholon._core OUTPUT "${place}/_core.pyi"
-    PYTHON_PATH "${CMAKE_BINARY_DIR}/python" DEPENDS anholon_python)
   # What is written in Python is used where it lies.
   file(MAKE_DIRECTORY "${place}")
   foreach(module IN LISTS modules)

