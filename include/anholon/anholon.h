@@ -1,5 +1,6 @@
 // All of the library.
 #pragma once
+#include "anholon/dynamics.h"
 #include "anholon/equations.h"
 #include "anholon/linear.h"
 #include "anholon/model.h"

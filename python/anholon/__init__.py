@@ -10,6 +10,7 @@
 from ._core import version
 from ._errors import Interrupted, ModelError, MotionError
 from ._numbers import Number
+from .dynamics import Dynamics
 from .equations import Equations, Proof, verify
 from .model import Model, load, loads, zoo
 from .run import Run
@@ -18,6 +19,7 @@ from .sweep import Sweep, normal, uniform
 __version__: str = version()
 
 __all__ = [
+    "Dynamics",
     "Equations",
     "Interrupted",
     "Model",

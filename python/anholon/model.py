@@ -10,6 +10,7 @@ from typing import Any
 from . import _core
 from ._errors import Interrupted, MotionError
 from ._numbers import Number, list_of, text_of, texts_of
+from .dynamics import Dynamics
 from .equations import Equations, Proof
 from .run import Run
 from .sweep import Law, Sweep
@@ -288,6 +289,28 @@ class Model:
         if isinstance(raised, BaseException):
             raise raised
         return sweep
+
+    def dynamics(self, *, minimal: bool = True, initial: Mapping[str, Number] | None = None) -> Dynamics:
+        """The equations as a compiled function f(t, x) -> x', for integrators and optimizers of others.
+
+        Args:
+            minimal: in independent velocities, which satisfy the constraints whatever they are, if the equations have
+                them; else in all coordinates and velocities.
+            initial: values instead of those of the file, for ``f.start``.
+
+        Raises:
+            ModelError: the equations are not solved for accelerations alone (constraints of order 2 and more), or
+                constraints are redundant.
+
+        Example:
+            >>> import anholon as an, numpy as np
+            >>> f = an.load("disc").dynamics()
+            >>> [state.name for state in f.states]
+            ['x', 'y', 'psi', 'theta', 'phi', 'u1', 'u2', 'u3']
+            >>> f(0, f.start).shape, f(0, np.tile(f.start[:, None], 1000)).shape
+            ((8,), (8, 1000))
+        """
+        return Dynamics(self, _core.dynamics(self._system("routh", texts_of(initial), ()), minimal))
 
     def c_code(self, *, initial: Mapping[str, Number] | None = None, form: str = "routh") -> str:
         """The motion's right side as a C program that stands by itself."""

@@ -72,8 +72,15 @@ void release_schema(ArrowSchema* schema) {
 }
 
 void fill(ArrowSchema& schema, const char* format, SchemaNode* node) {
-  schema = {format, node->name.c_str(), node->metadata.empty() ? nullptr : node->metadata.c_str(), 0,
-            static_cast<std::int64_t>(node->children.size()), node->children.data(), nullptr, release_schema, node};
+  schema = {format,
+            node->name.c_str(),
+            node->metadata.empty() ? nullptr : node->metadata.c_str(),
+            0,
+            static_cast<std::int64_t>(node->children.size()),
+            node->children.data(),
+            nullptr,
+            release_schema,
+            node};
 }
 
 int get_schema(ArrowArrayStream* stream, ArrowSchema* out) {
@@ -107,8 +114,16 @@ void release_array(ArrowArray* array) {
 }
 
 void fill(ArrowArray& array, std::int64_t length, ArrayNode* node) {
-  array = {length, 0, 0, static_cast<std::int64_t>(node->buffers.size()), static_cast<std::int64_t>(node->children.size()),
-           node->buffers.data(), node->children.data(), nullptr, release_array, node};
+  array = {length,
+           0,
+           0,
+           static_cast<std::int64_t>(node->buffers.size()),
+           static_cast<std::int64_t>(node->children.size()),
+           node->buffers.data(),
+           node->children.data(),
+           nullptr,
+           release_array,
+           node};
 }
 
 int get_next(ArrowArrayStream* stream, ArrowArray* out) {
@@ -150,8 +165,9 @@ void bind_arrow(nb::module_& m) {
       [](std::vector<std::string> names, std::vector<std::string> units, std::vector<Doubles> arrays) {
         auto columns = std::make_shared<Columns>();
         columns->names = std::move(names), columns->units = std::move(units), columns->arrays = std::move(arrays);
-        auto* stream = new ArrowArrayStream{get_schema, get_next, [](ArrowArrayStream*) -> const char* { return nullptr; },
-                                            release_stream, new Shared(std::move(columns))};
+        auto* stream =
+            new ArrowArrayStream{get_schema, get_next, [](ArrowArrayStream*) -> const char* { return nullptr; },
+                                 release_stream, new Shared(std::move(columns))};
         return nb::capsule(stream, "arrow_array_stream", release_capsule);
       },
       "names"_a, "units"_a, "arrays"_a,

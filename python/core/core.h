@@ -20,6 +20,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include "anholon/anholon.h"
@@ -114,6 +115,7 @@ using View = nb::ndarray<nb::numpy, const double, nb::ndim<1>>;
 View view(std::span<const double> numbers, nb::handle owner);
 
 void bind_arrow(nb::module_& m);
+void bind_dynamics(nb::module_& m);
 void bind_results(nb::module_& m);
 void bind_models(nb::module_& m);
 void bind_motions(nb::module_& m);

@@ -4,9 +4,7 @@ namespace anholon::python {
 
 namespace {
 
-ReadOptions read_options(const Numbers& set, const std::vector<std::string>& cases) {
-  return {numbers(set), cases};
-}
+ReadOptions read_options(const Numbers& set, const std::vector<std::string>& cases) { return {numbers(set), cases}; }
 
 void bind_model(nb::module_& m) {
   nb::class_<Coordinate>(m, "Coordinate", "A coordinate of a model.")
@@ -18,7 +16,8 @@ void bind_model(nb::module_& m) {
       .def_ro("value", &Parameter::value, "SI; NaN if the file gives the parameter no value.")
       .def_ro("unit", &Parameter::unit)
       .def("__repr__", [](const Parameter& p) {
-        return nb::cast<std::string>(nb::str("{} = {!r}{}").format(p.name, p.value, p.unit.empty() ? "" : " " + p.unit));
+        return nb::cast<std::string>(
+            nb::str("{} = {!r}{}").format(p.name, p.value, p.unit.empty() ? "" : " " + p.unit));
       });
   nb::class_<Constraint>(m, "Constraint", "A constraint of a model.")
       .def_ro("name", &Constraint::name, "Its multiplier is lambda.NAME.")
@@ -31,7 +30,8 @@ void bind_model(nb::module_& m) {
       .def_ro("source", &Form::source)
       .def_ro("applies", &Form::applies, "Whether it applies to this model.")
       .def_ro("obstacle", &Form::obstacle, "Why it does not.")
-      .def("__repr__", [](const Form& f) { return f.name + (f.applies ? "" : " (does not apply: " + f.obstacle + ")"); });
+      .def("__repr__",
+           [](const Form& f) { return f.name + (f.applies ? "" : " (does not apply: " + f.obstacle + ")"); });
   nb::class_<ShippedModel>(m, "ShippedModel", "A model that comes with the library.")
       .def_ro("name", &ShippedModel::name)
       .def_ro("path", &ShippedModel::path)
@@ -83,16 +83,18 @@ void bind_equations(nb::module_& m) {
 void bind_proofs(nb::module_& m) {
   nb::class_<FormVerdict>(m, "FormVerdict", "Whether a form agrees with Routh's equations.")
       .def_ro("form", &FormVerdict::form)
-      .def_prop_ro("verdict",
-                   [](const FormVerdict& v) {
-                     return std::string(v.verdict == Verdict::proved    ? "proved"
-                                        : v.verdict == Verdict::refuted ? "refuted"
-                                                                        : "unknown");
-                   },
-                   "'proved', 'refuted', or 'unknown' if neither a proof nor a point that refutes was found.")
+      .def_prop_ro(
+          "verdict",
+          [](const FormVerdict& v) {
+            return std::string(v.verdict == Verdict::proved    ? "proved"
+                               : v.verdict == Verdict::refuted ? "refuted"
+                                                               : "unknown");
+          },
+          "'proved', 'refuted', or 'unknown' if neither a proof nor a point that refutes was found.")
       .def_ro("detail", &FormVerdict::detail, "The first difference that is not proved to vanish.")
       .def("__repr__", [](const FormVerdict& v) {
-        return v.form + ": " + nb::cast<std::string>(nb::cast(v).attr("verdict")) + (v.detail.empty() ? "" : ", " + v.detail);
+        return v.form + ": " + nb::cast<std::string>(nb::cast(v).attr("verdict")) +
+               (v.detail.empty() ? "" : ", " + v.detail);
       });
   nb::class_<Proof>(m, "Proof")
       .def_ro("forms", &Proof::forms)

@@ -19,16 +19,16 @@ void bind_system(nb::module_& m) {
   nb::class_<InitialValue>(m, "InitialValue", "A value of the initial state, and where it comes from.")
       .def_ro("name", &InitialValue::name)
       .def_ro("value", &InitialValue::value, "SI.")
-      .def_prop_ro("origin",
-                   [](const InitialValue& v) {
-                     const char* names[] = {"given", "derived", "chosen", "guessed", "corrected"};
-                     return std::string(names[static_cast<int>(v.origin)]);
-                   },
-                   "'given', 'derived' from the constraints, 'chosen' (free, and set to 0), 'guessed' (the solution next "
-                   "to a guess) or 'corrected' (given, and moved onto the constraints).")
-      .def("__repr__", [](const InitialValue& v) {
-        return nb::cast<std::string>(nb::str("{} = {!r}").format(v.name, v.value));
-      });
+      .def_prop_ro(
+          "origin",
+          [](const InitialValue& v) {
+            const char* names[] = {"given", "derived", "chosen", "guessed", "corrected"};
+            return std::string(names[static_cast<int>(v.origin)]);
+          },
+          "'given', 'derived' from the constraints, 'chosen' (free, and set to 0), 'guessed' (the solution next "
+          "to a guess) or 'corrected' (given, and moved onto the constraints).")
+      .def("__repr__",
+           [](const InitialValue& v) { return nb::cast<std::string>(nb::str("{} = {!r}").format(v.name, v.value)); });
   nb::class_<ConstraintClass>(m, "ConstraintClass", "What kind of constraint it is.")
       .def_ro("name", &ConstraintClass::name)
       .def_ro("kind", &ConstraintClass::kind, "Holonomic, linear, affine or nonlinear in its highest derivatives.")
@@ -45,7 +45,8 @@ void bind_system(nb::module_& m) {
       .def_prop_ro("notes", &System::notes);
   m.def(
       "prepare",
-      [](const Model& model, const std::string& form, const Numbers& initial, const std::vector<std::string>& eliminate) {
+      [](const Model& model, const std::string& form, const Numbers& initial,
+         const std::vector<std::string>& eliminate) {
         const PrepareOptions options{form, numbers(initial), eliminate};
         return value_of(unlocked([&] { return prepare(model, options); }));
       },
@@ -74,7 +75,8 @@ void bind_run(nb::module_& m) {
       .def_ro("t", &Event::t, "s.")
       .def_ro("changes", &Event::changes)
       .def_ro("stop", &Event::stop, "It ended the motion.")
-      .def("__repr__", [](const Event& e) { return nb::cast<std::string>(nb::str("{} at t = {!r}").format(e.name, e.t)); });
+      .def("__repr__",
+           [](const Event& e) { return nb::cast<std::string>(nb::str("{} at t = {!r}").format(e.name, e.t)); });
   nb::class_<Trust>(m, "Trust", "Digits of the columns of one kind that can be trusted.")
       .def_ro("kind", &Trust::kind)
       .def_ro("digits", &Trust::digits)
@@ -89,10 +91,12 @@ void bind_run(nb::module_& m) {
       .def_ro("greatest", &Watched::greatest)
       .def_ro("largest_change", &Watched::largest_change, "From the first value, relative.")
       .def_ro("conserved", &Watched::conserved, "It is known to be an integral of the motion.")
-      .def("__repr__", [](const Watched& w) { return nb::cast<std::string>(nb::str("{} = {!r}").format(w.name, w.last)); });
-  nb::class_<Report>(m, "Report",
-                     "How far a run can be trusted. All residuals are relative to the greatest of their terms along the "
-                     "motion.")
+      .def("__repr__",
+           [](const Watched& w) { return nb::cast<std::string>(nb::str("{} = {!r}").format(w.name, w.last)); });
+  nb::class_<Report>(
+      m, "Report",
+      "How far a run can be trusted. All residuals are relative to the greatest of their terms along the "
+      "motion.")
       .def_ro("newton", &Report::newton, "Newton's law by the points themselves, with ideal reactions.")
       .def_ro("projected", &Report::projected, "The same without multipliers.")
       .def_ro("constraints", &Report::constraints, "Constraints and their derivatives at the rows.")
@@ -113,16 +117,18 @@ void bind_run(nb::module_& m) {
       .def_prop_ro("outcome", &Run::outcome)
       .def_prop_ro("rows", &Run::rows)
       .def_prop_ro("columns", &Run::columns)
-      .def("column",
-           [](nb::handle self, const std::string& name) { return view(nb::cast<const Run&>(self).column(name), self); },
-           "name"_a)
+      .def(
+          "column",
+          [](nb::handle self, const std::string& name) { return view(nb::cast<const Run&>(self).column(name), self); },
+          "name"_a)
       .def("text", &Run::text, "row"_a, "column"_a)
       .def_prop_ro("events", &Run::events)
       .def_prop_ro("report", &Run::report)
       .def("json", [](const Run& run) { return unlocked([&] { return run.json(); }); })
-      .def("write",
-           [](const Run& run, const std::string& path) { return value_of(unlocked([&] { return run.write(path); })); },
-           "path"_a);
+      .def(
+          "write",
+          [](const Run& run, const std::string& path) { return value_of(unlocked([&] { return run.write(path); })); },
+          "path"_a);
   m.def(
       "simulate",
       [](const System& system, const std::map<std::string, std::string>& others, const std::vector<std::string>& at,
@@ -142,12 +148,13 @@ void bind_run(nb::module_& m) {
 void bind_linear(nb::module_& m) {
   nb::class_<LinearModel>(m, "LinearModel",
                           "The linear model z' = A z + B u, y = C z + D u of a motion at its initial state.")
-      .def_prop_ro("motion",
-                   [](const LinearModel& l) {
-                     const char* names[] = {"equilibrium", "steady", "unsteady", "unchecked"};
-                     return std::string(names[static_cast<int>(l.motion)]);
-                   },
-                   "'equilibrium', 'steady', 'unsteady' (A holds for an instant) or 'unchecked'.")
+      .def_prop_ro(
+          "motion",
+          [](const LinearModel& l) {
+            const char* names[] = {"equilibrium", "steady", "unsteady", "unchecked"};
+            return std::string(names[static_cast<int>(l.motion)]);
+          },
+          "'equilibrium', 'steady', 'unsteady' (A holds for an instant) or 'unchecked'.")
       .def_ro("why", &LinearModel::why)
       .def_ro("states", &LinearModel::states, "The independent coordinates and velocities z.")
       .def_ro("inputs", &LinearModel::inputs)
@@ -160,10 +167,12 @@ void bind_linear(nb::module_& m) {
       .def_ro("eigenvalues", &LinearModel::eigenvalues,
               "Of A without the coordinates that influence nothing, with multiplicity, 1/s.")
       .def("__repr__", [](const LinearModel& l) {
-        return "linear model, " + std::to_string(l.states.size()) + " states, " + std::to_string(l.inputs.size()) + " inputs";
+        return "linear model, " + std::to_string(l.states.size()) + " states, " + std::to_string(l.inputs.size()) +
+               " inputs";
       });
   m.def(
-      "linearize", [](const System& system) { return value_of(unlocked([&] { return linearize(system); })); }, "system"_a);
+      "linearize", [](const System& system) { return value_of(unlocked([&] { return linearize(system); })); },
+      "system"_a);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-#include "core.h"
-
 #include <memory>
+
+#include "core.h"
 
 namespace anholon::python {
 
@@ -25,9 +25,10 @@ void translate(const std::exception_ptr& thrown, void*) {
   try {
     std::rethrow_exception(thrown);
   } catch (const Trouble& trouble) {
-    const nb::object made = nb::module_::import_("anholon._errors")
-                                .attr("error_of")(trouble.error.text, diagnostics_of(trouble.error),
-                                                  trouble.error.outcome ? nb::cast(*trouble.error.outcome) : nb::none());
+    const nb::object made =
+        nb::module_::import_("anholon._errors")
+            .attr("error_of")(trouble.error.text, diagnostics_of(trouble.error),
+                              trouble.error.outcome ? nb::cast(*trouble.error.outcome) : nb::none());
     PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(made.ptr())), made.ptr());
   }
 }
@@ -54,9 +55,10 @@ void bind_results(nb::module_& m) {
         return d.file + ":" + std::to_string(d.line) + ":" + std::to_string(d.column) + ": " + d.message;
       });
   nb::class_<Outcome>(m, "Outcome", "How a computation ended, and what to do if it stopped early.")
-      .def_prop_ro("kind", [](const Outcome& o) { return std::string(name(o.kind)); },
-                   "'finished', 'singular', 'step_collapse', 'blow_up', 'negative_mass', 'not_a_number', "
-                   "'no_convergence', 'inconsistent', 'interrupted' or 'too_large'.")
+      .def_prop_ro(
+          "kind", [](const Outcome& o) { return std::string(name(o.kind)); },
+          "'finished', 'singular', 'step_collapse', 'blow_up', 'negative_mass', 'not_a_number', "
+          "'no_convergence', 'inconsistent', 'interrupted' or 'too_large'.")
       .def_ro("message", &Outcome::message, "What happened, and where.")
       .def_ro("hint", &Outcome::hint, "What to do.")
       .def_prop_ro("ok", &Outcome::ok)

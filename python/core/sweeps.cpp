@@ -7,14 +7,19 @@ void bind_sweeps(nb::module_& m) {
       .def_prop_ro("cases", &Sweep::cases)
       .def_prop_ro("finished", &Sweep::finished)
       .def_prop_ro("columns", &Sweep::columns)
-      .def("column",
-           [](nb::handle self, const std::string& name) { return view(nb::cast<const Sweep&>(self).column(name), self); },
-           "name"_a)
-      .def("varied",
-           [](nb::handle self, const std::string& name) { return view(nb::cast<const Sweep&>(self).varied(name), self); },
-           "name"_a)
-      .def_prop_ro("t",
-                   [](nb::handle self) { return view(nb::cast<const Sweep&>(self).t(), self); })
+      .def(
+          "column",
+          [](nb::handle self, const std::string& name) {
+            return view(nb::cast<const Sweep&>(self).column(name), self);
+          },
+          "name"_a)
+      .def(
+          "varied",
+          [](nb::handle self, const std::string& name) {
+            return view(nb::cast<const Sweep&>(self).varied(name), self);
+          },
+          "name"_a)
+      .def_prop_ro("t", [](nb::handle self) { return view(nb::cast<const Sweep&>(self).t(), self); })
       .def("outcome_of", nb::overload_cast<std::size_t>(&Sweep::outcome, nb::const_), "number"_a)
       .def_prop_ro("outcome", nb::overload_cast<>(&Sweep::outcome, nb::const_));
   m.def(

@@ -117,6 +117,27 @@ class Kernel {
     for (const Beyond& b : p.beyond_double) number(b.at, lane) = 0;
     set_time(lane, t);
   }
+  // The states of all lanes at one time, for `solve_point`: value(j, k, lane) is x_j^(k), k <= d_j.
+  template <class Value>
+  void load_point(double t, const Value& value) {
+    const Plan& p = plan_->plan();
+    const std::vector<double>& inverse = plan_->tables().inverse_factorial;
+    for (std::size_t j = 0; j < p.x.size(); ++j)
+      for (int k = 0; k <= p.d[j]; ++k) {
+        double* x = slot(p.x[j] + static_cast<std::uint32_t>(k));
+        for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes_); ++lane)
+          x[lane] = value(j, k, lane) * inverse[static_cast<std::size_t>(k)];
+      }
+    for (const Beyond& b : p.beyond_double)
+      for (int lane = 0; lane < lanes_; ++lane) number(b.at, lane) = 0;
+    for (int lane = 0; lane < lanes_; ++lane) set_time(lane, t);
+  }
+  // Solves for the leading derivatives alone, without projection.
+  void solve_point() {
+    started_ = false;
+    shows_last_ = true;
+    solve(code(), false);
+  }
   // Projects the state on the hidden constraints if it violates them (unless `projected` is false), solves for the
   // leading derivatives, and computes all coefficients.
   void expand(bool projected = true) { expand(code(), projected); }

@@ -75,9 +75,7 @@ struct Coefficient {
  private:
   // By parts of GMP that are compiled in place: the compiler module asks, too, which has no GMP of its own.
   static bool is_one(mpz_srcptr n) { return mpz_size(n) == 1 && mpz_getlimbn(n, 0) == 1; }
-  bool is_unit() const {
-    return slots.empty() && is_one(rational.get_num_mpz_t()) && is_one(rational.get_den_mpz_t());
-  }
+  bool is_unit() const { return slots.empty() && is_one(rational.get_num_mpz_t()) && is_one(rational.get_den_mpz_t()); }
 };
 
 // A partial derivative that is no coefficient of a series: computed once per expansion.

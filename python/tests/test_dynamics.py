@@ -1,0 +1,86 @@
+"""The equations as a function: the accelerations of the motion, alone and in batches, for other integrators."""
+
+import threading
+
+import anholon as an
+import numpy as np
+import pytest
+
+MODELS = ["disc", "chaplygin-sleigh", "snakeboard", "car-three-trailers", "rolling-coin", "chain", "two-wheeled-pendulum", "double-pendulum-cartesian", "fourbar"]
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_rates_are_those_of_the_motion(name: str) -> None:
+    model = an.load(name)
+    run = model.simulate(to=1, every="0.25", error_estimate=False).expect()
+    f = model.dynamics(minimal=False)
+    names = [state.name for state in f.states]
+    assert not f.minimal and all(state.meaning == "" for state in f.states)
+    q = [c.name for c in model.coordinates]
+    for row, t in enumerate(run.t):
+        rates = dict(zip(names, f(t, [run[state][row] for state in names]), strict=True))
+        for c in q:
+            assert rates[c] == run[c + "'"][row]
+            assert rates[c + "'"] == pytest.approx(run[c + "''"][row], rel=1e-11, abs=1e-11)
+
+
+@pytest.mark.parametrize("name", ["disc", "chaplygin-sleigh", "snakeboard", "rolling-coin"])
+def test_independent_velocities_give_the_same_motion(name: str) -> None:
+    integrate = pytest.importorskip("scipy.integrate")
+    model = an.load(name)
+    run = model.simulate(to=1, at=[1], error_estimate=False).expect()
+    f = model.dynamics()
+    assert f.minimal and len(f.start) < 2 * len(model.coordinates)
+    done = integrate.solve_ivp(f, (f.t0, 1), f.start, "DOP853", rtol=1e-12, atol=1e-12)
+    motion = f.motion(done.y[:, -1], 1.0)
+    for c in model.coordinates:
+        assert motion[c.name] == pytest.approx(run[c.name][0], rel=1e-9, abs=1e-9)
+        assert motion[c.name + "'"] == pytest.approx(run[c.name + "'"][0], rel=1e-9, abs=1e-9)
+    # Some parameter of another value makes another motion.
+    others = [model.with_(**{p: 3}).dynamics()(0.5, f.start) for p in model.parameters]
+    assert any(not np.allclose(other, f(0.5, f.start), rtol=1e-6) for other in others)
+
+
+def test_states_there_and_back() -> None:
+    f = an.load("disc").dynamics()
+    motion = f.motion(f.start)
+    again = f.state(q={k: v for k, v in motion.items() if not k.endswith("'")}, qdot={k: v for k, v in motion.items() if k.endswith("'")})
+    np.testing.assert_allclose(again, f.start, rtol=0, atol=1e-15)
+    with pytest.raises(KeyError, match="there is no 'thet'"):
+        f.state(q={"thet": 1}, qdot={})
+
+
+def test_batches_have_the_same_bits() -> None:
+    f = an.load("disc").dynamics()
+    x = f.start[:, None] * (1 + 1e-2 * np.random.default_rng(0).standard_normal((len(f.start), 20_001)))
+    all_rates = f(0.5, x)
+    for k in (0, 1, 17, 4095, 4096, 20_000):
+        np.testing.assert_array_equal(all_rates[:, k], f(0.5, x[:, k]))
+    np.testing.assert_array_equal(f(0.5, x[:, :7]), all_rates[:, :7])
+    np.testing.assert_array_equal(f(0.5, x.reshape(len(x), 3, 6667)), all_rates.reshape(len(x), 3, 6667))
+    out = np.empty_like(x)
+    assert f(0.5, x, out) is out
+    with pytest.raises(ValueError, match="first axis has to be the 8 states"):
+        f(0, x[:3])
+
+
+def test_threads_share_a_function() -> None:
+    f = an.load("disc").dynamics()
+    x = np.tile(f.start[:, None], 1000)
+    expected = f(0, x)
+    same: list[bool] = []
+
+    def work() -> None:
+        same.extend(np.array_equal(f(0, x), expected) and np.array_equal(f(0, x[:, 0]), expected[:, 0]) for _ in range(50))
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(same) == 200 and all(same)
+
+
+def test_who_has_no_such_function_says_why() -> None:
+    with pytest.raises(an.ModelError, match=r"no function x' = f\(t, x\)"):
+        an.load("rheonomic-order-3").dynamics()

@@ -1,0 +1,173 @@
+#include "motion/dynamics.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "kernel/plan/planner.h"
+#include "motion/representation.h"
+
+namespace anholon {
+
+namespace {
+
+// Below these numbers of states, code for lanes, and further threads, do not pay.
+constexpr std::size_t kManyLanes = 16, kManyThreads = 4096;
+
+}  // namespace
+
+std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice, bool minimal, std::string& why) {
+  const auto no = [&](std::string reason) {
+    why = std::move(reason);
+    return nullptr;
+  };
+  if (!s.elimination.pivots().empty())
+    return no("the form eliminates coordinates, whose choice holds in a part of the motion");
+  if (!s.redundant.empty()) return no("constraints are redundant");
+  const std::size_t n = s.system.coordinates, all = s.system.size(), mechanical = s.system.mechanical();
+  for (std::size_t j = 0; j < all; ++j)
+    if (s.structure.d[j] != (j < n ? 2 : j < mechanical ? 0 : 1))
+      return no("the equations are not solved for accelerations: constraints of order 2 and more, or coordinates "
+                "without mass");
+  const auto program = std::make_shared<const Program>(anholon::program(s.system, s.structure));
+  if (std::string reason = no_plan(*program); !reason.empty()) return no(std::move(reason));
+  Start<long double> here;
+  if (const Outcome o = initial_state(s, choice, here); !o.ok()) return no(o.message);
+  std::unique_ptr<Dynamics> made(new Dynamics);
+  made->parameters_ = parameter_values<long double>(*s.model);
+  const std::vector<double> state(here.state.begin(), here.state.end());
+  const double t = made->start_time_ = static_cast<double>(here.t);
+  const auto derived = KernelPlan::make(program, 1, made->parameters_, t, state, Company::in_lanes);
+  if (!derived) return no("the equations are singular at the start");
+  const std::vector<Representation> list = representations(
+      {derived, s.structure, {}, made->parameters_, t, state, s.mechanics.get()}, WritingEffort::long_motion);
+  const auto quasi = std::find_if(list.begin(), list.end(), [](const Representation& r) { return r.plan->map(); });
+  const bool mapped = minimal && quasi != list.end();
+  const Representation& best = mapped ? *quasi : cheapest_unmapped(list);
+  made->plan_ = best.plan;
+  made->coordinates_ = n;
+  made->model_states_ = all - mechanical;
+  const std::vector<std::string>& names = s.system.variable_names;
+  std::size_t at = 0;
+  for (std::size_t a = 0; a < n; ++a, ++at) made->states_.push_back({names[a], {}});
+  const std::size_t velocities = mapped ? best.plan->map()->velocities() : n;
+  for (std::size_t i = 0; i < velocities; ++i)
+    made->states_.push_back(mapped ? State{"u" + std::to_string(i + 1), best.velocities[i]}
+                                   : State{names[i] + "'", {}});
+  for (std::size_t z = mechanical; z < all; ++z) made->states_.push_back({names[z], {}});
+  if (mapped) {
+    made->map_ = std::shared_ptr<const StateMap>(best.plan, best.plan->map());
+    // The kernel's unknowns: coordinates, the model's states, then velocities.
+    for (std::size_t j = 0; j < best.plan->plan().x.size(); ++j) {
+      const std::size_t place = j < n ? j : j < n + made->model_states_ ? velocities + j : j - made->model_states_;
+      made->unknowns_.push_back({place, place, 1});
+    }
+  } else {
+    for (std::size_t j = 0; j < all; ++j) {
+      const std::size_t place = j < n ? j : j - mechanical + 2 * n;
+      made->unknowns_.push_back(j < n            ? Unknown{j, n + j, 2}
+                                : j < mechanical ? Unknown{0, 0, 0}
+                                                 : Unknown{place, place, 1});
+    }
+  }
+  std::vector<double> q, qd, z;
+  for (std::size_t a = 0; a < n; ++a) q.push_back(state[2 * a]), qd.push_back(state[2 * a + 1]);
+  z.assign(state.begin() + static_cast<std::ptrdiff_t>(2 * n), state.end());
+  made->start_ = made->from_motion(t, q, qd, z);
+  made->plan_->compile(code_cache());
+  return made;
+}
+
+template <class F>
+void Dynamics::with_kernel(int lanes, const F& f) const {
+  std::vector<std::unique_ptr<Kernel>>& pool = lanes == 1 ? alone_ : in_lanes_;
+  std::unique_ptr<Kernel> kernel;
+  {
+    const std::lock_guard lock(idle_);
+    if (!pool.empty()) kernel = std::move(pool.back()), pool.pop_back();
+  }
+  if (!kernel) {
+    kernel = std::make_unique<Kernel>(plan_, lanes);
+    for (int lane = 0; lane < lanes; ++lane) kernel->set_parameters(lane, parameters_);
+  }
+  f(*kernel);
+  const std::lock_guard lock(idle_);
+  pool.push_back(std::move(kernel));
+}
+
+// The states from..to, as many at once as the kernel has lanes; what is left over of them holds the last one.
+void Dynamics::compute(Kernel& kernel, double t, const double* x, std::size_t count, std::size_t from, std::size_t to,
+                       double* rates) const {
+  const std::size_t lanes = static_cast<std::size_t>(kernel.lanes());
+  for (std::size_t first = from; first < to; first += lanes) {
+    const std::size_t some = std::min(lanes, to - first);
+    const auto state = [&](std::size_t i, std::size_t lane) { return x[i * count + first + std::min(lane, some - 1)]; };
+    kernel.load_point(t, [&](std::size_t j, int k, std::size_t lane) {
+      const Unknown& u = unknowns_[j];
+      return k < u.order ? state(k == 0 ? u.value : u.rate, lane) : 0;
+    });
+    kernel.solve_point();
+    for (std::size_t j = 0; j < unknowns_.size(); ++j) {
+      const Unknown& u = unknowns_[j];
+      if (u.order == 0) continue;
+      for (std::size_t lane = 0; lane < some; ++lane) {
+        const std::size_t k = first + lane;
+        if (u.order == 2) rates[u.value * count + k] = state(u.rate, lane);
+        rates[u.rate * count + k] = kernel.derivative(j, u.order, static_cast<int>(lane));
+      }
+    }
+  }
+}
+
+void Dynamics::rates(double t, const double* x, std::size_t count, double* rates) const {
+  if (count < kManyLanes) {
+    with_kernel(1, [&](Kernel& k) { compute(k, t, x, count, 0, count, rates); });
+    return;
+  }
+  const int lanes = tiers().back().lanes;
+  plan_->compile(code_cache(), lanes);
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    with_kernel(lanes, [&](Kernel& k) {
+      for (std::size_t from; (from = next.fetch_add(kManyThreads)) < count;)
+        compute(k, t, x, count, from, std::min(count, from + kManyThreads), rates);
+    });
+  };
+  std::vector<std::jthread> others;
+  const std::size_t threads = std::min<std::size_t>(std::thread::hardware_concurrency(), count / kManyThreads);
+  while (others.size() + 1 < threads) others.emplace_back(work);
+  work();
+}
+
+std::vector<double> Dynamics::from_motion(double t, const std::vector<double>& q, const std::vector<double>& qd,
+                                          const std::vector<double>& z) const {
+  std::vector<double> x = q;
+  if (!map_) {
+    x.insert(x.end(), qd.begin(), qd.end());
+  } else {
+    std::vector<long double> state, own;
+    for (std::size_t a = 0; a < coordinates_; ++a) state.insert(state.end(), {q[a], qd[a]});
+    state.insert(state.end(), z.begin(), z.end());
+    StateReader(*map_, parameters_).own(t, state, own);
+    for (std::size_t i = coordinates_ + model_states_; i < own.size(); ++i) x.push_back(static_cast<double>(own[i]));
+  }
+  x.insert(x.end(), z.begin(), z.end());
+  return x;
+}
+
+Dynamics::Full Dynamics::to_motion(double t, const std::vector<double>& x) const {
+  const auto n = static_cast<std::ptrdiff_t>(coordinates_), states = static_cast<std::ptrdiff_t>(model_states_);
+  Full full{{x.begin(), x.begin() + n}, {x.begin() + n, x.end() - states}, {x.end() - states, x.end()}};
+  if (!map_) return full;
+  std::vector<long double> own(full.q.begin(), full.q.end()), state;
+  own.insert(own.end(), full.z.begin(), full.z.end());
+  own.insert(own.end(), full.qd.begin(), full.qd.end());
+  StateReader(*map_, parameters_).motion(t, own, state);
+  full.qd.clear();
+  for (std::size_t a = 0; a < coordinates_; ++a) full.qd.push_back(static_cast<double>(state[2 * a + 1]));
+  return full;
+}
+
+}  // namespace anholon
