@@ -12,6 +12,7 @@ from ._errors import Interrupted, ModelError, MotionError
 from ._numbers import Number
 from .dynamics import Dynamics
 from .equations import Equations, Proof, verify
+from .from_sympy import from_sympy
 from .model import Model, load, loads, zoo
 from .run import Run
 from .sweep import Sweep, normal, uniform
@@ -29,6 +30,7 @@ __all__ = [
     "Proof",
     "Run",
     "Sweep",
+    "from_sympy",
     "load",
     "loads",
     "normal",

@@ -1,6 +1,7 @@
 """The equations as a function: the accelerations of the motion, alone and in batches, for other integrators."""
 
 import threading
+from typing import Any
 
 import anholon as an
 import numpy as np
@@ -37,7 +38,8 @@ def test_independent_velocities_give_the_same_motion(name: str) -> None:
         assert motion[c.name] == pytest.approx(run[c.name][0], rel=1e-9, abs=1e-9)
         assert motion[c.name + "'"] == pytest.approx(run[c.name + "'"][0], rel=1e-9, abs=1e-9)
     # Some parameter of another value makes another motion.
-    others = [model.with_(**{p: 3}).dynamics()(0.5, f.start) for p in model.parameters]
+    changes: list[dict[str, Any]] = [{p: 3} for p in model.parameters]
+    others = [model.with_(**change).dynamics()(0.5, f.start) for change in changes]
     assert any(not np.allclose(other, f(0.5, f.start), rtol=1e-6) for other in others)
 
 

@@ -1,0 +1,252 @@
+"""Systems of sympy.physics.mechanics come in, and have the accelerations that SymPy finds for them."""
+
+from collections.abc import Callable
+from typing import Any
+
+import anholon as an
+import numpy as np
+import pytest
+from anholon.from_sympy import _Import
+
+sm = pytest.importorskip("sympy")
+me = pytest.importorskip("sympy.physics.mechanics")
+
+Made = tuple[Any, dict[Any, Any]]
+
+
+def rolling_disc() -> Made:
+    """Of the documentation of KanesMethod: only the velocity of the mass centre is known."""
+    q1, q2, q3, u1, u2, u3 = me.dynamicsymbols("q1 q2 q3 u1 u2 u3")
+    r, m, g = sm.symbols("r m g")
+    N = me.ReferenceFrame("N")
+    Y = N.orientnew("Y", "Axis", [q1, N.z])
+    L = Y.orientnew("L", "Axis", [q2, Y.x])
+    R = L.orientnew("R", "Axis", [q3, L.y])
+    spin = R.ang_vel_in(N)
+    R.set_ang_vel(N, u1 * L.x + u2 * L.y + u3 * L.z)
+    C = me.Point("C")
+    C.set_vel(N, 0)
+    center = C.locatenew("Dmc", r * L.z)
+    center.v2pt_theory(C, N, R)
+    body = me.RigidBody("BodyD", center, R, m, (me.inertia(L, m / 4 * r**2, m / 2 * r**2, m / 4 * r**2), center))
+    kane = me.KanesMethod(N, [q1, q2, q3], [u1, u2, u3], kd_eqs=[me.dot(R.ang_vel_in(N) - spin, v) for v in L])
+    kane.kanes_equations([body], [(center, -m * g * Y.z)])
+    return kane, {r: 0.5, m: 1, g: 9.8125}
+
+
+def pendulum_on_cart(links: int = 2) -> Made:
+    """sympy.physics.mechanics.models, with a force on the cart that is a function of time."""
+    models = pytest.importorskip("sympy.physics.mechanics.models")
+    kane = models.n_link_pendulum_on_cart(links, cart_force=False)
+    symbols = sorted(set().union(*(e.free_symbols for e in kane.mass_matrix_full)) | {sm.Symbol("g")}, key=str)
+    return kane, {s: 1 + k / 4 for k, s in enumerate(s for s in symbols if s != me.dynamicsymbols._t)}
+
+
+def springs() -> Made:
+    models = pytest.importorskip("sympy.physics.mechanics.models")
+    kane = models.multi_mass_spring_damper(3, True)
+    symbols = sorted(set().union(*(e.free_symbols for e in [*kane.mass_matrix_full, *kane.forcing_full])), key=str)
+    return kane, {s: 1 + k / 8 for k, s in enumerate(s for s in symbols if s != me.dynamicsymbols._t)}
+
+
+def torsional_pendulum() -> Made:
+    q, u = me.dynamicsymbols("q u")
+    J, m, k, c, l, g = sm.symbols("J m k c l g")
+    N = me.ReferenceFrame("N")
+    B = N.orientnew("B", "Axis", [q, N.z])
+    B.set_ang_vel(N, u * N.z)
+    O = me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    P = O.locatenew("P", l * B.x)
+    P.v2pt_theory(O, N, B)
+    body = me.RigidBody("rod", P, B, m, (me.inertia(B, 0, J, J), P))
+    kane = me.KanesMethod(N, [q], [u], kd_eqs=[q.diff() - u])
+    kane.kanes_equations([body], [(B, (-k * q - c * u) * N.z), (P, m * g * N.x)])
+    return kane, {J: 0.1, m: 2, k: 3, c: 0.25, l: 0.5, g: 9.8125}
+
+
+def two_particles_with_odd_speeds() -> Made:
+    """Generalized speeds that are combinations of the rates."""
+    q1, q2, u1, u2 = me.dynamicsymbols("q1 q2 u1 u2")
+    m, k = sm.symbols("m k")
+    N = me.ReferenceFrame("N")
+    O = me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    P1, P2 = O.locatenew("P1", q1 * N.x), O.locatenew("P2", q2 * N.x + sm.sin(q1) * N.y)
+    P1.set_vel(N, (u1 + u2) / 2 * N.x)
+    P2.set_vel(N, (u1 - u2) / 2 * N.x + sm.cos(q1) * (u1 + u2) / 2 * N.y)
+    kane = me.KanesMethod(N, [q1, q2], [u1, u2], kd_eqs=[q1.diff() + q2.diff() - u1, q1.diff() - q2.diff() - u2])
+    kane.kanes_equations([me.Particle("A", P1, m), me.Particle("B", P2, 2 * m)], [(P1, -k * q1 * N.x), (P2, -k * (q2 - q1) ** 3 * N.x)])
+    return kane, {m: 1.5, k: 2}
+
+
+def skate() -> Made:
+    """A dependent speed: a sleigh on a blade."""
+    x, y, th, ux, uy, w = me.dynamicsymbols("x y th u_x u_y w")
+    m, J, a = sm.symbols("m J a")
+    N = me.ReferenceFrame("N")
+    B = N.orientnew("B", "Axis", [th, N.z])
+    B.set_ang_vel(N, w * N.z)
+    O = me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    P = O.locatenew("P", x * N.x + y * N.y)
+    P.set_vel(N, ux * N.x + uy * N.y)
+    G = P.locatenew("G", a * B.x)
+    G.v2pt_theory(P, N, B)
+    body = me.RigidBody("sleigh", G, B, m, (me.inertia(B, 0, 0, J), G))
+    kane = me.KanesMethod(
+        N, [x, y, th], [ux, w], kd_eqs=[x.diff() - ux, y.diff() - uy, th.diff() - w], u_dependent=[uy], velocity_constraints=[-ux * sm.sin(th) + uy * sm.cos(th)]
+    )
+    kane.kanes_equations([body], [(P, -0.5 * ux * N.x)])
+    return kane, {m: 2, J: 0.5, a: 0.625}
+
+
+def lagrange_pendulum() -> Made:
+    """Cartesian coordinates and a holonomic constraint, by the bodies of a LagrangesMethod."""
+    q1, q2 = me.dynamicsymbols("q1:3")
+    L, m, g = sm.symbols("L m g")
+    N = me.ReferenceFrame("N")
+    O = me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    P = O.locatenew("P", q1 * N.x + q2 * N.y)
+    P.set_vel(N, P.pos_from(O).dt(N))
+    bob = me.Particle("bob", P, m)
+    method = me.LagrangesMethod(me.Lagrangian(N, bob), [q1, q2], hol_coneqs=[q1**2 + q2**2 - L**2], forcelist=[(P, m * g * N.x)], bodies=[bob], frame=N)
+    method.form_lagranges_equations()
+    return method, {L: 1.5, m: 2, g: 9.8125}
+
+
+def lagrange_with_potential() -> Made:
+    q = me.dynamicsymbols("th")
+    l, m, g = sm.symbols("l m g")
+    N = me.ReferenceFrame("N")
+    O = me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    P = O.locatenew("P", l * sm.sin(q) * N.x - l * sm.cos(q) * N.y)
+    P.set_vel(N, P.pos_from(O).dt(N))
+    bob = me.Particle("bob", P, m)
+    bob.potential_energy = -m * g * l * sm.cos(q)
+    method = me.LagrangesMethod(me.Lagrangian(N, bob), [q], bodies=[bob], frame=N)
+    method.form_lagranges_equations()
+    return method, {l: 0.75, m: 2, g: 9.8125}
+
+
+def system_of_joints() -> Made:
+    """System with joints: a cart and a pendulum."""
+    M, m, l, g = sm.symbols("M m l g")
+    q1, q2, u1, u2 = me.dynamicsymbols("q1 q2 u1 u2")
+    rail = me.RigidBody("rail")
+    cart = me.RigidBody("cart", mass=M)
+    bob = me.Particle("bob", mass=m)
+    frame = me.ReferenceFrame("bob_frame")
+    system = me.System.from_newtonian(rail)
+    slider = me.PrismaticJoint("slider", rail, cart, q1, u1, joint_axis=rail.x)
+    pin = me.PinJoint("pin", cart, bob, q2, u2, joint_axis=cart.z, child_interframe=frame, child_point=l * frame.y)
+    system.add_joints(slider, pin)
+    system.apply_uniform_gravity(-g * rail.y)
+    system.add_loads(me.Force(cart, -0.5 * u1 * rail.x))
+    system.form_eoms()
+    return system, {M: 3, m: 1, l: 0.75, g: 9.8125}
+
+
+CASES: list[Callable[[], Made]] = [
+    rolling_disc,
+    pendulum_on_cart,
+    springs,
+    torsional_pendulum,
+    two_particles_with_odd_speeds,
+    skate,
+    lagrange_pendulum,
+    lagrange_with_potential,
+    system_of_joints,
+]
+
+
+def accelerations_of_sympy(method: Any, made: _Import, values: dict[Any, Any], state: dict[Any, Any]) -> dict[Any, float]:
+    """q'' at a state (coordinates, and rates by q') by SymPy's own equations, with 30 digits."""
+    q, u, t = made.writer.q, made.parts.u, made.writer.time
+    numbers = {**{k: sm.Float(str(v), 40) for k, v in values.items()}, **{k: sm.Float(v, 40) for k, v in state.items()}}
+    rates = [x.diff(t) for x in q]
+    if not u:
+        speeds = list(rates)
+        solved = method.mass_matrix_full, method.forcing_full
+    else:
+        speeds = u
+        solved = method.mass_matrix_full, method.forcing_full
+        for x in u:
+            numbers[x] = sm.N(made.speeds[x].subs({r: numbers[r] for r in rates}).subs({k: v for k, v in numbers.items()}), 40)
+
+    def at(e: Any) -> Any:
+        return sm.N(e.subs({r: numbers[r] for r in rates}).subs(numbers), 40)
+
+    a, b = (matrix.applyfunc(at) for matrix in solved)
+    x = list(a.LUsolve(b))
+    change = dict(zip(speeds, x[len(q) : len(q) + len(speeds)], strict=True))
+    if not u:
+        return {c: float(change[c.diff(t)]) for c in q}
+    # q' = F(q, u): its rate by the chain rule.
+    flow = sm.Matrix(made.parts.kinematic).jacobian(rates).LUsolve(-sm.Matrix([e.subs(dict.fromkeys(rates, 0)) for e in made.parts.kinematic]))
+    found = {}
+    for c, f in zip(q, flow, strict=True):
+        second = sum(sm.diff(f, z) * dz for z, dz in [*((p, numbers[p.diff(t)]) for p in q), *change.items()])
+        found[c] = float(at(sm.sympify(second)))
+    return found
+
+
+def consistent(made: _Import, values: dict[Any, Any]) -> dict[Any, Any]:
+    """A random state that satisfies the constraints: coordinates, and rates by q'."""
+    draw = np.random.default_rng(3)
+    q = made.writer.q
+    state = {c: float(x) for c, x in zip(q, draw.uniform(0.3, 0.9, len(q)), strict=True)}
+    numbers = {k: sm.Float(str(v), 40) for k, v in values.items()}
+    holonomic = [sm.sympify(e).subs(numbers) for e in made.parts.holonomic]
+    if holonomic:
+        free = q[-len(holonomic) :]
+        fixed = {c: state[c] for c in q if c not in free}
+        state.update(zip(free, (float(x) for x in sm.nsolve([e.subs(fixed) for e in holonomic], free, [state[c] for c in free], prec=40)), strict=True))
+    rates = made.writer.rates
+    equations = [made.in_rates(e.diff(made.writer.time)) for e in made.parts.holonomic] + [made.in_rates(e) for e in made.parts.velocity]
+    v = draw.uniform(-1, 1, len(rates))
+    if equations:
+        rows = sm.Matrix(equations)
+        jacobian = np.array(rows.jacobian(rates).subs(numbers).subs(state).evalf(30).tolist(), dtype=float)
+        rest = np.array(rows.subs(dict.fromkeys(rates, 0)).subs(numbers).subs(state).evalf(30).tolist(), dtype=float)[:, 0]
+        v -= np.linalg.pinv(jacobian) @ (jacobian @ v + rest)
+        v -= np.linalg.pinv(jacobian) @ (jacobian @ v + rest)
+    state.update(zip(rates, (float(x) for x in v), strict=True))
+    return state
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.__name__)
+def test_accelerations_agree(case: Callable[[], Made]) -> None:
+    method, values = case()
+    made = _Import(method)
+    model = an.from_sympy(method, values=values, initial={})
+    made.text("", values, {})  # names its extra coordinates
+    state = consistent(made, values)
+    names = made.writer.names
+    numbers = {**{k: sm.Float(str(v), 40) for k, v in values.items()}, **state}
+    extra = {f"{name}'": float(sm.N(rate.subs({r: state[r] for r in made.writer.rates}).subs(numbers), 30)) for name, rate in made.extra}
+    f = model.dynamics(minimal=False)
+    x = f.state(0.0, q={names[c]: state[c] for c in made.writer.q}, qdot={**{names[c] + "'": state[c.diff(made.writer.time)] for c in made.writer.q}, **extra})
+    rates = dict(zip((s.name for s in f.states), f(0.0, x), strict=True))
+    expected = accelerations_of_sympy(method, made, values, state)
+    for c in made.writer.q:
+        assert rates[names[c] + "'"] == pytest.approx(expected[c], rel=1e-12, abs=1e-12)
+
+
+def test_what_cannot_be_read_says_why() -> None:
+    method, values = torsional_pendulum()
+    with pytest.raises(an.ModelError, match="values are missing for J, c, g, k, l, m"):
+        an.from_sympy(method)
+    with pytest.raises(TypeError, match="KanesMethod"):
+        an.from_sympy(42)
+    q = me.dynamicsymbols("q")
+    with pytest.raises(an.ModelError, match="read by its bodies"):
+        an.from_sympy(me.LagrangesMethod(q.diff() ** 2, [q]))
+
+
+def test_a_motion_of_an_imported_system() -> None:
+    method, values = skate()
+    run = an.from_sympy(method, values=values, initial={"x'": -0.5, "th'": 1.5}).simulate(to=2).expect()
+    assert run.report.constraints < 1e-13 and run.report.newton < 1e-12
