@@ -5,6 +5,7 @@
 #include "anholon/linear.h"
 #include "anholon/model.h"
 #include "anholon/motion.h"
+#include "anholon/page.h"
 #include "anholon/proof.h"
 #include "anholon/sweep.h"
 #include "anholon/system.h"

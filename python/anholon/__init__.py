@@ -14,7 +14,7 @@ from .dynamics import Dynamics
 from .equations import Equations, Proof, verify
 from .from_sympy import from_sympy
 from .model import Model, load, loads, zoo
-from .run import Run
+from .run import Page, Run
 from .sweep import Sweep, normal, uniform
 
 __version__: str = version()
@@ -27,6 +27,7 @@ __all__ = [
     "ModelError",
     "MotionError",
     "Number",
+    "Page",
     "Proof",
     "Run",
     "Sweep",

@@ -22,6 +22,24 @@ if TYPE_CHECKING:
     Array = npt.NDArray[np.float64]
 
 
+class Page:
+    """A page of HTML that stands by itself. A notebook shows it in a frame."""
+
+    def __init__(self, html: str) -> None:
+        self.html: str = html
+
+    def save(self, path: str) -> None:
+        """Writes the page to a file."""
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.html)
+
+    def _repr_html_(self) -> str:
+        return f'<iframe srcdoc="{html.escape(self.html)}" style="width:100%;height:44em;border:0" sandbox="allow-scripts allow-downloads"></iframe>'
+
+    def __repr__(self) -> str:
+        return f"<page, {len(self.html) / 1000:.0f} kB; a notebook shows it, save(path) writes it>"
+
+
 class Run:
     """One motion. ``run["theta"]`` is an array of what the library holds, without a copy; it cannot be written to.
 
@@ -194,6 +212,26 @@ class Run:
         return self._core
 
     # ---- pictures ----
+
+    def page(self, path: str | None = None, *, forms: Sequence[str] = (), proof: bool = True) -> Page:
+        """The motion as a page of HTML that stands by itself: equations, proof, plots, animation, trust.
+
+        Args:
+            path: a file for it; a notebook shows the page in its output.
+            forms: whose equations are shown; chosen if there are none.
+            proof: proves that the forms agree, where the equations are not too long.
+
+        Raises:
+            ModelError: a form is not known, or there are no rows.
+        """
+        page = Page(self._required().page(list(forms), proof))
+        if path is not None:
+            page.save(path)
+        return page
+
+    def animate(self) -> Page:
+        """The motion as a picture that plays in a notebook: its page, without a proof."""
+        return self.page(proof=False)
 
     def plot(self, *names: str, x: str = "t", ax: Any = None) -> Any:
         """Draws columns (all coordinates if none is named) over another one with Matplotlib; returns the axes.

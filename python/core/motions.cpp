@@ -124,6 +124,12 @@ void bind_run(nb::module_& m) {
       .def("text", &Run::text, "row"_a, "column"_a)
       .def_prop_ro("events", &Run::events)
       .def_prop_ro("report", &Run::report)
+      .def(
+          "page",
+          [](const Run& run, const std::vector<std::string>& forms, bool proof) {
+            return value_of(unlocked([&] { return page(run, PageOptions{forms, proof}); }));
+          },
+          "forms"_a, "proof"_a)
       .def("json", [](const Run& run) { return unlocked([&] { return run.json(); }); })
       .def(
           "write",

@@ -153,6 +153,17 @@ def test_a_loop_does_not_grow() -> None:
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 20_000, "kB"
 
 
+def test_a_page(disc: an.Model, tmp_path: pathlib.Path) -> None:
+    run = disc.simulate(to=1, every=0.1)
+    page = run.page(str(tmp_path / "disc.html"), forms=["maggi"], proof=False)
+    assert "<!doctype html>" in page.html.lower()[:200] and "The proof was left out" in page.html
+    assert (tmp_path / "disc.html").read_text(encoding="utf-8") == page.html
+    assert page._repr_html_().startswith("<iframe srcdoc=") and "<script" not in page._repr_html_().split(">")[0]
+    assert "claims" in run.page().html
+    with pytest.raises(an.ModelError):
+        run.page(forms=["magi"])
+
+
 def test_other_libraries(disc: an.Model) -> None:
     run = disc.simulate(to=1, every=0.1)
     pandas = pytest.importorskip("pandas")

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "api/data.h"
+#include "api/run_data.h"
 #include "mechanics/conserved.h"
 #include "result/format.h"
 #include "result/json_run.h"
@@ -11,15 +11,6 @@
 #include "simulation/simulate.h"
 
 namespace anholon::v1 {
-
-struct Run::Data {
-  inner::RunFile run;
-  Outcome outcome;
-  std::vector<Column> columns;
-  std::vector<Event> events;
-  std::vector<std::string> notes;  // on the options
-  Report report;
-};
 
 namespace {
 
@@ -99,7 +90,7 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     inner::Workspace s(of.scenario);
     inner::SimulationOptions o;
     o.state = of.choice;
-    auto data = std::make_shared<Run::Data>();
+    const auto data = std::shared_ptr<Run::Data>(new Run::Data{system, {}, {}, {}, {}, {}, {}});
     const inner::Asker asker{"", "", [&](const std::string& note) { data->notes.push_back(note); }};
     inner::ask(inner::merged(settings_of(asked), s.model->simulate), s, asker, o);
     o.cancelled = asked.cancelled;
@@ -122,7 +113,7 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     data->run.model.push_back({source.name, source.text});
     for (const inner::SourceText& other : source.others) data->run.model.push_back({other.name, other.text});
     data->run.report = inner::report_json(r);
-    return Run(std::move(data));
+    return Run(data);
   });
 }
 

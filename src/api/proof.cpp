@@ -4,7 +4,7 @@
 
 #include "anholon/version.h"
 #include "api/data.h"
-#include "base/hash.h"
+#include "modelfile/hash.h"
 #include "proof/checker/verify.h"
 #include "proof/prove.h"
 #include "setup/eliminate.h"
@@ -40,7 +40,7 @@ Result<Proof> prove(const Model& model, const std::vector<std::string>& names) {
         if (d.verdict != inner::Verdict::proved && v.detail.empty()) v.detail = d.component + ": " + d.detail;
     }
     result.certificate = inner::to_json(inner::certificate(
-        m, p, eliminations.front(), std::string("anholon ") + version(), inner::sha256_text(model.text())));
+        m, p, eliminations.front(), std::string("anholon ") + version(), inner::model_hash(model.data().model->source_text)));
     return result;
   });
 }

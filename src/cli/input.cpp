@@ -66,12 +66,6 @@ static std::pair<std::string, std::string> assignment(const std::string& text, c
   return {normal_name(text.substr(0, equals)), text.substr(equals + 1)};
 }
 
-std::string all_text(const SourceText& source) {
-  std::string text = source.text;
-  for (const SourceText& s : source.others) text += s.text;
-  return text;
-}
-
 Reader read(const Options& o) { return read(o, model_text(o.model, ANHOLON_MODELS_DIR)); }
 
 Reader read(const Options& o, SourceText source) {

@@ -23,8 +23,6 @@ struct Reader {
   std::shared_ptr<Names> names;
   SourceText source;
 };
-// The texts of all files that a model was read from, for its fingerprint.
-std::string all_text(const SourceText& source);
 // Reads the model named by the options (a path, or the name of a shipped model) with --set applied.
 Reader read(const Options& o);
 // As above, from a text that is already in memory.

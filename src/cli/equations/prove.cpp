@@ -5,10 +5,10 @@
 
 #include <unistd.h>
 
-#include "base/hash.h"
 #include "base/json.h"
 #include "cli/input.h"
 #include "cli/say.h"
+#include "modelfile/hash.h"
 #include "result/file.h"
 
 namespace anholon::cli {
@@ -146,7 +146,7 @@ int prove(const Options& o) {
   const Proof p = anholon::prove(m, forms, eliminations, options);
   if (terminal) say(stderr, "\r\033[K");
   const Certificate c =
-      certificate(m, p, eliminations.front(), "anholon " ANHOLON_VERSION, sha256_text(all_text(in.source)));
+      certificate(m, p, eliminations.front(), "anholon " ANHOLON_VERSION, model_hash(in.source));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   SymbolNames names = model.names;
   if (eliminations.front().quasi.quasi) names.quasi = eliminations.front().quasi.free.names;

@@ -3,26 +3,20 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 
 #include <unistd.h>
 
-#include "base/hash.h"
 #include "cli/motions/result_file.h"
 #include "cli/motions/run_formulas.h"
 #include "cli/motions/run_info.h"
 #include "cli/say.h"
 #include "observe/rows/row_values.h"
-#include "proof/checker/verify.h"
-#include "report/page/page.h"
+#include "report/page/page_of.h"
 #include "result/file.h"
 
 namespace anholon::cli {
 
 namespace {
-
-// Limits: a proof of all forms takes long, and equations of more coordinates are too long to read.
-constexpr std::size_t kMostProved = 12, kMostNodesProved = 600, kMostRead = 24;
 
 void make_ready(const Options& o, Told& x) {
   Scenario prepared;
@@ -35,64 +29,6 @@ void make_ready(const Options& o, Told& x) {
   const bool reset =
       std::any_of(x.in.model->events.begin(), x.in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
   if (!reset) x.conserved = conserved(*x.scenario->mechanics);
-}
-
-// Routh's equations, those of the motion, and Maggi's if there are constraints to eliminate.
-std::vector<const Formulation*> shown_forms(const Options& o, const Told& x) {
-  const Mechanics& m = *x.scenario->mechanics;
-  std::vector<const Formulation*> list;
-  const auto add = [&](const Formulation* f) {
-    if (f && obstacle(*f, m).empty() && std::find(list.begin(), list.end(), f) == list.end()) list.push_back(f);
-  };
-  for (const std::string& name : split(o.forms)) {
-    Options one = o;
-    one.motion.form = name;
-    add(&form(one, *x.in.model, &m));
-  }
-  if (!list.empty()) return list;
-  add(find_formulation("routh"));
-  add(x.scenario->system.form);
-  if (!m.phi.empty() && m.q.size() <= kMostRead) add(find_formulation("maggi"));
-  return list;
-}
-
-// Equations longer than kLong are not printed on the page; the steps of the derivation are shown if the result is
-// shorter than kShort.
-constexpr std::size_t kLong = 40000, kShort = 6000, kMostArranged = 320;
-
-std::size_t length(const Derivation& d) {
-  std::size_t n = 0;
-  for (const Line& l : d.equations) {
-    if (l.left) n += print(*l.left, d.names, Format::text).size();
-    n += print(l.right, d.names, Format::text).size();
-  }
-  return n;
-}
-
-// The number of nodes to arrange and to prove.
-std::size_t nodes(const Mechanics& m, const Formulation& f, const Elimination& e) {
-  const Equations raw = f.equations(m, e);
-  Column all = raw.left;
-  all.insert(all.end(), raw.right.begin(), raw.right.end());
-  return reachable(all).size();
-}
-
-Derivation derived(const Mechanics& m, const Formulation& f, const Elimination& e, Arranger& arranger) {
-  const auto in_parts = [&] {
-    Arranger parts("parts");
-    return derivation(m, f, e, parts, false);
-  };
-  if (nodes(m, f, e) > kMostArranged) return in_parts();
-  Derivation d = derivation(m, f, e, arranger, false);
-  const std::size_t n = length(d);
-  if (n > kLong) return in_parts();
-  return f.eliminates() && n < kShort ? derivation(m, f, e, arranger, true) : d;
-}
-
-std::string eliminated(const Elimination& e, const Model& model) {
-  std::string list;
-  for (std::size_t k : e.dependent) list += (list.empty() ? "" : ", ") + model.coordinates[k].name;
-  return list.empty() ? "" : "The constraints are solved for derivatives of " + list + ".";
 }
 
 }  // namespace
@@ -121,72 +57,34 @@ void check_page(const Options& o) {
 }
 
 void write_page(const Options& o, std::deque<Told>& cases) {
-  Page page;
   Told& first = cases[0];
-  const Model& model = *first.in.model;
-  const Mechanics& m = *first.scenario->mechanics;
-  std::deque<Explanation> explanations;
-  for (Told& x : cases) {
-    explanations.push_back(explain(*x.scenario));
-    page.cases.push_back({x.name, x.scenario.get(), &explanations.back(), x.conserved, x.run});
-  }
   // Equations and proof use the eliminations at the state of the run.
   const Options was = first.run.settings.empty() ? o : options_of(first.run, o);
-  const StateChoice choice = state_choice(was, model);
-  Arranger arranger("auto");
-  std::map<Unknowns, Elimination> eliminations;
-  std::size_t first_size = 0;
-  for (const Formulation* f : shown_forms(o, first)) {
-    if (!eliminations.count(f->unknowns)) eliminations.emplace(f->unknowns, elimination(first.in, m, *f, choice));
-    const Elimination& e = eliminations.at(f->unknowns);
-    const std::size_t size = nodes(m, *f, e);
-    if (page.equations.empty())
-      first_size = size;
-    else if (size > kMostArranged && o.forms.empty())
-      continue;  // it was not asked for, and is too long to read
-    page.equations.push_back(derived(m, *f, e, arranger));
-    page.eliminations.push_back(f->eliminates() ? eliminated(e, model) : "");
+  PageRequest request;
+  request.choice = state_choice(was, *first.in.model);
+  for (const std::string& name : split(o.forms)) {
+    Options one = o;
+    one.motion.form = name;
+    request.forms.push_back(&form(one, *first.in.model, &*first.scenario->mechanics));
   }
-  page.version = "anholon " ANHOLON_VERSION;
-  page.model_hash = sha256_text(all_text(first.in.source));
-  page.source = first.in.source;
-  page.command = o.command_line;
-  Proof proof;
-  std::shared_ptr<const Model> fresh;  // the model of the proof
-  if (o.no_proof || m.q.size() > kMostProved || first_size > kMostNodesProved) {
-    page.no_proof = o.no_proof
-                        ? "The proof was left out (--no-proof)."
-                        : "For equations of this length a proof takes its time: anholon prove " + first.in.source.name;
-  } else {
-    std::vector<const Formulation*> forms;
-    for (const Formulation* f : formulations())
-      if (obstacle(*f, m).empty()) forms.push_back(f);
-    // On a graph of its own: that of the motion and the printed equations has grown.
-    fresh = clone(*first.in.model);
-    const Mechanics own = mechanics(*fresh);
-    const std::vector<Eliminations> offered = eliminations_of(first.in, own, choice);
-    ProofOptions options;
-    const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
-    std::size_t done = 0;
-    if (terminal)
-      options.progress = [&](const Formulation& f) {
-        say(stderr, "\r\033[Kproof: %zu of %zu, %s", ++done, forms.size(), f.name);
-      };
-    proof = anholon::prove(own, forms, offered, options);
-    if (terminal) say(stderr, "\r\033[K");
-    const Certificate c = certificate(own, proof, offered.front(), page.version, page.model_hash);
-    page.proof = &proof;
-    page.hypotheses = c.hypotheses;
-    page.meaning = c.meaning;
-    // Checks the certificate like a recipient: from its text.
-    page.certificate = to_json(c);
-    const Verification checked = verify(read_certificate(page.certificate));
-    page.claims = checked.claims.size();
-    page.confirmed =
-        static_cast<std::size_t>(std::count_if(checked.claims.begin(), checked.claims.end(),
-                                               [](const ClaimFinding& f) { return f.finding == Finding::confirmed; }));
+  if (o.no_proof) request.no_proof = "The proof was left out (--no-proof).";
+  request.version = "anholon " ANHOLON_VERSION;
+  request.command = o.command_line;
+  request.source = first.in.source;
+  const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
+  if (terminal)
+    request.progress = [](std::size_t done, std::size_t all, const std::string& name) {
+      say(stderr, "\r\033[Kproof: %zu of %zu, %s", done, all, name.c_str());
+    };
+  std::vector<PagedRun> runs;
+  for (Told& x : cases) runs.push_back({x.name, x.scenario.get(), x.conserved, x.run});
+  std::string text;
+  try {
+    text = page_of(std::move(runs), first.in.model, request);
+  } catch (const Failure& e) {
+    throw UsageError{print(e.diagnostic, first.in.source)};
   }
-  const std::string text = html(page);
+  if (terminal) say(stderr, "\r\033[K");
   if (const std::string why = write_whole(o.report, text); !why.empty()) throw UsageError{"error: " + why + "\n"};
   if (!o.quiet) say(stderr, "page: %s, %.0f kB\n", o.report.c_str(), static_cast<double>(text.size()) / 1000);
 }

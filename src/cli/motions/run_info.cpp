@@ -1,7 +1,7 @@
 #include "cli/motions/run_info.h"
 
-#include "base/hash.h"
 #include "cli/model_options.h"
+#include "modelfile/hash.h"
 #include "observe/rows/row_values.h"
 
 namespace anholon::cli {
@@ -22,7 +22,7 @@ RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, c
   one("t", o.t), one("start", number_text(scenario.state.t));
   for (const MotionOption& m : motion_options()) info.settings[m.name] = words(settings, m);
   one("continued", o.resume);
-  one("model_sha256", sha256_text(all_text(in.source)));
+  one("model_sha256", model_hash(in.source));
   return info;
 }
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "base/hash.h"
 #include "cli/model_options.h"
+#include "modelfile/hash.h"
 
 namespace anholon::cli {
 
@@ -47,7 +47,7 @@ SavedRun continued(Options& o) {
 
 void same_model(const SavedRun& run, const Reader& in) {
   with_file("the saved run", [&] {
-    if (run.one("model") != sha256_text(all_text(in.source)))
+    if (run.one("model") != model_hash(in.source))
       throw UsageError{"error: the saved run is of another model ('" + run.one("title") + "'), or " + in.source.name +
                        " has changed since\nhint: only the same model goes on with the same bits; to start from a "
                        "state, give it in [initial]\n"};
@@ -59,7 +59,7 @@ void describe_run(SavedRun& run, const Options& o, const Reader& in, const Motio
   run.set("t0", o.t.empty() ? SavedRun::Texts{} : SavedRun::Texts{o.t});
   for (const MotionOption& m : motion_options())
     if (m.kept) run.set(m.name, words(settings, m));
-  run.set("model", {sha256_text(all_text(in.source))});
+  run.set("model", {model_hash(in.source)});
   run.set("title", {in.model->title});
 }
 

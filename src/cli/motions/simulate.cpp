@@ -7,7 +7,6 @@
 #include <deque>
 #include <filesystem>
 
-#include "base/hash.h"
 #include "cli/input.h"
 #include "cli/models/show.h"
 #include "cli/motions/motion_report.h"
@@ -17,6 +16,7 @@
 #include "cli/motions/run_info.h"
 #include "cli/motions/saved.h"
 #include "cli/say.h"
+#include "modelfile/hash.h"
 #include "result/file.h"
 #include "result/format.h"
 #include "simulation/report_json.h"
@@ -69,7 +69,7 @@ void go_on(RunWriter& rows, const Options& o, const SavedRun& resume, const Read
     const auto model = before.settings.find("model_sha256");
     const std::vector<double> given = resume.numbers<double>("given", 2);
     const auto count = static_cast<std::size_t>(given[0]);
-    if (model == before.settings.end() || model->second != std::vector<std::string>{sha256_text(all_text(in.source))} ||
+    if (model == before.settings.end() || model->second != std::vector<std::string>{model_hash(in.source)} ||
         before.table.rows() < count)
       return;
     rows.go_on(before, count, static_cast<std::size_t>(given[1]));
