@@ -19,6 +19,7 @@ struct MotionOptions {
   bool error_estimate = true;            // by a second, sharper run, where there are no more than 5000 steps
   // Any option of `anholon simulate` that changes the motion, by its name: {{"numbers", "quad"}, {"rigorous", "64"}}.
   std::map<std::string, std::string> others = {};
+  bool dense = false;  // keeps the polynomials of all steps, for Run::at; all steps are then Taylor's
   std::optional<std::size_t> most_steps = {};  // the motion ends after so many; empty: that of the file, or 50 million
   std::function<bool()> cancelled = {};        // asked at every step; true ends the motion
   std::function<void(double t, std::size_t steps)> progress = {};
@@ -90,6 +91,11 @@ class ANHOLON_API Run {
   std::string text(std::size_t row, const std::string& column) const;
   const std::vector<Event>& events() const;
   const Report& report() const;
+  // Whether the polynomials are there (MotionOptions::dense).
+  bool has_dense() const;
+  // The derivative of that order of a coordinate, or of a state of the model, at any times of the motion, by the
+  // polynomials of its steps; NaN at other times, or if there are none. At an event that changes values: those before.
+  std::vector<double> at(const std::string& name, std::span<const double> times, int order = 0) const;
   // Columns, rows and the report as `anholon simulate --json` prints them.  (doc/json.md)
   std::string json() const;
   // Writes .csv, .json or .h5 by the end of the name; the file is there as a whole or stays as it was.

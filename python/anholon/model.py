@@ -172,6 +172,7 @@ class Model:
         order: int | None = None,
         error_estimate: bool | None = None,
         most_steps: int | None = None,
+        dense: bool = False,
         stop: Callable[[], bool] | None = None,
         progress: Callable[[float, int], object] | None = None,
         **others: Number | bool,
@@ -193,6 +194,7 @@ class Model:
             order: of the Taylor polynomials.
             error_estimate: digits to trust, by a second, sharper run; True: always, False: never, None: of short runs.
             most_steps: the motion ends after so many.
+            dense: keeps the polynomials of all steps, so that ``run(t)`` has them; without, it makes the motion once more.
             stop: asked every 20 ms; True ends the motion.
             progress: told the time and the number of steps every 20 ms.
             others: any option of ``anholon simulate`` that changes the motion, with _ for -: ``rigorous=64``.
@@ -218,8 +220,16 @@ class Model:
             system = self._system(form, texts_of(initial), eliminate)
         except MotionError as error:
             return Run(self, None, error.outcome)
-        core, raised = _core.simulate(system, words, list_of(at), stop, progress)
-        run = Run(self, core, core.outcome)
+        times = list_of(at)
+
+        def again() -> _core.Run:
+            made, raised = _core.simulate(system, {**words, "error-estimate": "never"}, times, True, stop, None)
+            if isinstance(raised, BaseException):
+                raise raised
+            return made
+
+        core, raised = _core.simulate(system, words, times, dense, stop, progress)
+        run = Run(self, core, core.outcome, again)
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted(run) from None
         if isinstance(raised, BaseException):

@@ -121,6 +121,15 @@ void bind_run(nb::module_& m) {
           "column",
           [](nb::handle self, const std::string& name) { return view(nb::cast<const Run&>(self).column(name), self); },
           "name"_a)
+      .def_prop_ro("has_dense", &Run::has_dense)
+      .def(
+          "at",
+          [](const Run& run, const std::string& name, const View& times, int order) {
+            auto* values = new std::vector<double>(run.at(name, {times.data(), times.size()}, order));
+            const nb::capsule owner(values, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+            return nb::ndarray<nb::numpy, double, nb::ndim<1>>(values->data(), {values->size()}, owner);
+          },
+          "name"_a, "times"_a, "order"_a)
       .def("text", &Run::text, "row"_a, "column"_a)
       .def_prop_ro("events", &Run::events)
       .def_prop_ro("report", &Run::report)
@@ -138,9 +147,10 @@ void bind_run(nb::module_& m) {
   m.def(
       "simulate",
       [](const System& system, const std::map<std::string, std::string>& others, const std::vector<std::string>& at,
-         nb::object stop, nb::object progress) {
+         bool dense, nb::object stop, nb::object progress) {
         MotionOptions options;
         options.others = others;
+        options.dense = dense;
         for (const std::string& t : at) options.at.emplace_back(t);
         Attendant attendant(std::move(stop), std::move(progress));
         options.cancelled = [&] { return attendant.cancelled(); };
@@ -148,7 +158,7 @@ void bind_run(nb::module_& m) {
         Run run = value_of(attendant.attend([&] { return simulate(system, options); }));
         return std::pair(std::move(run), attendant.raised());
       },
-      "system"_a, "others"_a, "at"_a, "stop"_a.none(), "progress"_a.none());
+      "system"_a, "others"_a, "at"_a, "dense"_a, "stop"_a.none(), "progress"_a.none());
 }
 
 void bind_linear(nb::module_& m) {

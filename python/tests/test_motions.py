@@ -153,6 +153,25 @@ def test_a_loop_does_not_grow() -> None:
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 20_000, "kB"
 
 
+def test_dense_output(disc: an.Model) -> None:
+    rows = disc.simulate(to=3, every="0.07", error_estimate=False)
+    run = disc.simulate(to=3, at=[3], error_estimate=False)
+    at = rows.t
+    # Each derivative of a polynomial loses a digit or so.
+    for order, (mark, within) in enumerate([("", 1e-12), ("'", 1e-11), ("''", 1e-9)]):
+        values = run(at, order)
+        for c in disc.coordinates:
+            np.testing.assert_allclose(values[c.name], rows[c.name + mark], rtol=within, atol=within)
+    assert np.isnan(run([-0.1, 3.1])["theta"]).all() and run(np.ones((2, 3)))["theta"].shape == (2, 3)
+    assert disc.simulate(to=1, dense=True)._dense is not None
+    # A polynomial and its derivative belong together.
+    h = 1e-6
+    slope = (run(1.0 + h)["theta"] - run(1.0 - h)["theta"]) / (2 * h)
+    assert abs(slope - run(1.0, 1)["theta"]) < 1e-8
+    with pytest.raises(an.ModelError, match="polynomials of Taylor"):
+        disc.simulate(to=1, dense=True, method="rk")
+
+
 def test_a_page(disc: an.Model, tmp_path: pathlib.Path) -> None:
     run = disc.simulate(to=1, every=0.1)
     page = run.page(str(tmp_path / "disc.html"), forms=["maggi"], proof=False)

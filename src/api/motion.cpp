@@ -1,6 +1,8 @@
 #include "anholon/motion.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "api/run_data.h"
 #include "mechanics/conserved.h"
@@ -82,6 +84,32 @@ inner::MotionSettings settings_of(const MotionOptions& asked) {
   return settings;
 }
 
+void keep_polynomials(Run::Data& data, const inner::Model& model, inner::SimulationOptions& o) {
+  if (o.method != inner::Method::automatic && o.method != inner::Method::taylor)
+    throw inner::Failure({}, "dense output comes from the polynomials of Taylor's method", "method = \"taylor\"");
+  o.method = inner::Method::taylor;
+  DenseOutput& dense = data.dense;
+  for (const inner::Coordinate& c : model.coordinates) dense.names.push_back(c.name);
+  for (const auto& z : model.states) dense.names.push_back(z.name);
+  o.dense = [&dense](const inner::StepPolynomials& step) {
+    dense.order = step.order;
+    dense.begin.push_back(step.begin), dense.end.push_back(step.end);
+    for (std::size_t j = 0; j < dense.names.size(); ++j)
+      for (int k = 0; k <= step.order; ++k) dense.coefficients.push_back(step.coefficient(j, k));
+  };
+}
+
+// The derivative of a polynomial with `order` + 1 coefficients.
+double derivative(const double* c, int order, int k, double h) {
+  double sum = 0;
+  for (int i = order; i >= k; --i) {
+    double factor = 1;
+    for (int m = 0; m < k; ++m) factor *= i - m;
+    sum = sum * h + factor * c[i];
+  }
+  return sum;
+}
+
 }  // namespace
 
 Result<Run> simulate(const System& system, const MotionOptions& asked) {
@@ -90,9 +118,10 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     inner::Workspace s(of.scenario);
     inner::SimulationOptions o;
     o.state = of.choice;
-    const auto data = std::shared_ptr<Run::Data>(new Run::Data{system, {}, {}, {}, {}, {}, {}});
+    const auto data = std::shared_ptr<Run::Data>(new Run::Data{system, {}, {}, {}, {}, {}, {}, {}});
     const inner::Asker asker{"", "", [&](const std::string& note) { data->notes.push_back(note); }};
     inner::ask(inner::merged(settings_of(asked), s.model->simulate), s, asker, o);
+    if (asked.dense) keep_polynomials(*data, *s.model, o);
     o.cancelled = asked.cancelled;
     o.progress = asked.progress;
     if (!inner::sets_values(*s.model)) o.conserved = inner::conserved(*s.mechanics);
@@ -136,6 +165,29 @@ std::string Run::text(std::size_t row, const std::string& column) const {
 }
 
 std::string Run::json() const { return inner::json_run(data_->run); }
+
+bool Run::has_dense() const { return !data_->dense.begin.empty(); }
+
+std::vector<double> Run::at(const std::string& name, std::span<const double> times, int order) const {
+  const DenseOutput& dense = data_->dense;
+  std::vector<double> values(times.size(), std::numeric_limits<double>::quiet_NaN());
+  const auto known = std::find(dense.names.begin(), dense.names.end(), name);
+  if (dense.begin.empty() || known == dense.names.end() || order < 0) return values;
+  const std::size_t j = static_cast<std::size_t>(known - dense.names.begin()),
+                    size = static_cast<std::size_t>(dense.order) + 1;
+  const double direction = dense.end.front() < dense.begin.front() ? -1 : 1;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const double t = times[i];
+    // The first step that ends at t or after it.
+    const auto step =
+        std::partition_point(dense.end.begin(), dense.end.end(), [&](double end) { return direction * (end - t) < 0; });
+    if (step == dense.end.end() || direction * (t - dense.begin.front()) < 0 || std::isnan(t)) continue;
+    const std::size_t k = static_cast<std::size_t>(step - dense.end.begin());
+    values[i] =
+        derivative(&dense.coefficients[(k * dense.names.size() + j) * size], dense.order, order, t - dense.begin[k]);
+  }
+  return values;
+}
 
 Result<std::string> Run::write(const std::string& path) const {
   const inner::ResultFormat* format = inner::format_of(path);

@@ -13,6 +13,14 @@ namespace anholon {
 enum class ErrorEstimate : std::uint8_t { never, short_runs, always };
 inline constexpr std::size_t kShortRun = 5000;  // steps
 
+// A step of Taylor's method as it was made: x_j(t) = sum_k coefficient(j, k) (t - begin)^k, k <= order, in doubles, for
+// the coordinates and then the model's states.
+struct StepPolynomials {
+  double begin, end;
+  int order;
+  std::function<double(std::size_t j, int k)> coefficient;
+};
+
 struct SimulationOptions {
   StateChoice state;
   std::optional<Rational> to;
@@ -31,7 +39,8 @@ struct SimulationOptions {
   std::vector<std::string> at_text;     // the times as written, to be printed as given
   std::function<void(double t, std::size_t steps)> progress;
   std::function<bool()> cancelled;
-  std::function<void(const std::string&)> note;  // told of the notes of the report as soon as there is one
+  std::function<void(const StepPolynomials&)> dense;  // told of every step of Taylor's method
+  std::function<void(const std::string&)> note;       // told of the notes of the report as soon as there is one
   std::size_t most_steps = 50'000'000;
   bool kernel = true;  // where there is one: its pivots, chosen at the start, are seen in the last digits
   ErrorEstimate estimate = ErrorEstimate::never;

@@ -202,6 +202,7 @@ class Run {
     if (watch_.any_redundant())
       if (report_.outcome = watch_.still_redundant(course_.begun(), report_); !report_.outcome.ok()) return false;
     const MassLimit<W> masses = masses_positive_until<N>(*s_.model, course_);
+    if (o_.dense && course_.by_taylor()) tell_polynomials(masses.t);
     if (defect_) defect_->step(dense_step(motion().stepper(), masses.t));
     if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
     rows_until(masses.t);
@@ -212,6 +213,15 @@ class Run {
       reached_ = masses.t;
     }
     return !(report_.outcome.ok() && course_.by_taylor() && motion().fired()) || events();
+  }
+
+  void tell_polynomials(const W& end) const {
+    const Stepper<N>& stepper = motion().stepper();
+    const std::size_t n = s_.system.coordinates, mechanical = s_.system.mechanical();
+    o_.dense({to_double(stepper.before()), to_double(end), stepper.order(), [&](std::size_t j, int k) {
+                const std::size_t unknown = j < n ? j : mechanical + j - n;
+                return k > stepper.degree(unknown) ? 0 : to_double(stepper.coefficient(unknown, k));
+              }});
   }
 
   // Takes the events that fired in the last step; returns false if they end the motion.
