@@ -13,13 +13,14 @@ from ._numbers import Number
 from .dynamics import Dynamics
 from .equations import Equations, Proof, verify
 from .from_sympy import from_sympy
-from .model import Model, load, loads, zoo
+from .model import Check, Model, load, loads, zoo
 from .run import Page, Run
 from .sweep import Sweep, normal, uniform
 
 __version__: str = version()
 
 __all__ = [
+    "Check",
     "Dynamics",
     "Equations",
     "Interrupted",

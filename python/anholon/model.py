@@ -139,6 +139,20 @@ class Model:
         """
         return Proof(_core.prove(self._core, list(forms)))
 
+    def check(self, *, form: str = "routh", initial: Mapping[str, Number] | None = None) -> Check:
+        """What kind of system this is: degrees of freedom, kinds of constraints, the consistent initial state.
+
+        Raises:
+            MotionError: no state satisfies the constraints with the values given, or the configuration is singular.
+
+        Example:
+            >>> import anholon as an
+            >>> check = an.load("disc").check()
+            >>> check.degrees_of_freedom, check.constraints[0].kind
+            (3, 'linear')
+        """
+        return Check(self, self._system(form, texts_of(initial), ()))
+
     # ---- its motion ----
 
     def initial(self, *, form: str = "routh", eliminate: Iterable[str] = (), **values: Number) -> list[_core.InitialValue]:
@@ -343,6 +357,40 @@ class Model:
         ]
         body = "".join(f"<tr><th style='text-align:left'>{k}</th><td style='text-align:left'>{html.escape(v)}</td></tr>" for k, v in rows if v)
         return f"<table><caption>{html.escape(self.title)}</caption><tbody>{body}</tbody></table>"
+
+
+class Check:
+    """What kind of system a model is, at its initial state."""
+
+    def __init__(self, model: Model, core: _core.System) -> None:
+        self.model: Model = model
+        self._core = core
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Velocities that the constraints leave free; coordinates without constraints."""
+        return self._core.degrees_of_freedom
+
+    @property
+    def constraints(self) -> list[_core.ConstraintClass]:
+        """The kind of each constraint."""
+        return self._core.constraints
+
+    @property
+    def initial(self) -> list[_core.InitialValue]:
+        """The consistent initial state, each value with where it comes from."""
+        return self._core.initial
+
+    @property
+    def notes(self) -> list[str]:
+        """Choices that were made for the initial state."""
+        return self._core.notes
+
+    def __repr__(self) -> str:
+        lines = [self.model.title, f"degrees of freedom {self.degrees_of_freedom}"]
+        lines += [f"  {c!r}{', redundant' if c.redundant else ''}" for c in self.constraints]
+        lines += [f"  {v!r} ({v.origin})" for v in self.initial]
+        return "\n".join([*lines, *self.notes])
 
 
 def load(path: str | os.PathLike[str], *, case: str | Sequence[str] = (), set: Mapping[str, Number] | None = None) -> Model:
