@@ -1,18 +1,18 @@
 # The Python module. In a build tree it lies in ${CMAKE_BINARY_DIR}/python; a wheel has it as the components `python` and
 # `jit` of the installation (python/pyproject.toml, python/jit/pyproject.toml).
-set(ANHOLON_PYTHON "" CACHE FILEPATH "An interpreter that has nanobind; empty: the Python module is not built")
+set(ANHOLON_MODULE_PYTHON "" CACHE FILEPATH "An interpreter that has nanobind; empty: the Python module is not built")
 
 function(anholon_python_module)
   if(SKBUILD)
-    set(ANHOLON_PYTHON "${Python_EXECUTABLE}")
+    set(ANHOLON_MODULE_PYTHON "${Python_EXECUTABLE}")
     if(TARGET anholon_jit)
       install(TARGETS anholon_jit LIBRARY DESTINATION anholon COMPONENT jit)
     endif()
   endif()
-  if(NOT ANHOLON_PYTHON OR NOT TARGET anholon_api OR SKBUILD_PROJECT_NAME STREQUAL "anholon-jit")
+  if(NOT ANHOLON_MODULE_PYTHON OR NOT TARGET anholon_api OR SKBUILD_PROJECT_NAME STREQUAL "anholon-jit")
     return()
   endif()
-  set(Python_EXECUTABLE "${ANHOLON_PYTHON}")
+  set(Python_EXECUTABLE "${ANHOLON_MODULE_PYTHON}")
   find_package(Python 3.11 REQUIRED COMPONENTS Interpreter Development.Module ${SKBUILD_SABI_COMPONENT})
   execute_process(COMMAND "${Python_EXECUTABLE}" -m nanobind --cmake_dir
     OUTPUT_STRIP_TRAILING_WHITESPACE OUTPUT_VARIABLE nanobind_ROOT COMMAND_ERROR_IS_FATAL ANY)

@@ -31,6 +31,15 @@ class ANHOLON_API Dynamics {
   // REQUIRES: the sizes fit.
   void rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates) const;
 
+  // The exact derivatives of the rates of one state x by x and by the model's parameters, in the order of
+  // Model::parameters: number (i, k) at [i * columns + k]. NaN where the equations have no solution.
+  // REQUIRES: not minimal; the size fits.
+  struct Jacobian {
+    std::size_t states = 0, parameters = 0;
+    std::vector<double> by_state, by_parameter;  // states x states, states x parameters
+  };
+  Jacobian jacobian(double t, const std::vector<double>& x) const;
+
   // One state from coordinates q, velocities qdot and the model's states z, and back. REQUIRES: the sizes fit.
   std::vector<double> from_motion(double t, const std::vector<double>& q, const std::vector<double>& qdot,
                                   const std::vector<double>& z = {}) const;

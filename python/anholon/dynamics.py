@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from . import _core
+from ._errors import ModelError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -76,6 +77,40 @@ class Dynamics:
             out = np.empty_like(given)
         self._core.rates(t, given, out)
         return out
+
+    def jac(self, t: float, x: npt.ArrayLike, by: str = "x") -> Array:
+        """The exact derivatives of the rates of one state, not differences.
+
+        Args:
+            t: the time, s.
+            x: one state, shape (states,).
+            by: "x": shape (states, states); "p": by the parameters, in the order of ``model.parameters``, shape
+                (states, parameters).
+
+        Raises:
+            ModelError: the velocities are independent ones; ``dynamics(minimal=False)`` has derivatives.
+            ValueError: the shape does not fit, or `by` is something else.
+        """
+        import numpy as np
+
+        if self.minimal:
+            raise ModelError("derivatives by independent velocities are not made yet\nhint: dynamics(minimal=False)")
+        given = np.asarray(x, dtype=np.float64)
+        if given.shape != (self._count,) or by not in ("x", "p"):
+            raise ValueError(f"x has to have the shape ({self._count},), and by is 'x' or 'p'")
+        return self._core.jacobian(t, given.tolist(), by == "p")
+
+    def jvp(self, t: float, x: npt.ArrayLike, v: npt.ArrayLike) -> Array:
+        """The derivatives times a direction: jac(t, x) v, shape (states,)."""
+        import numpy as np
+
+        return np.asarray(self.jac(t, x) @ np.asarray(v, dtype=np.float64))
+
+    def vjp(self, t: float, x: npt.ArrayLike, w: npt.ArrayLike) -> Array:
+        """A covector times the derivatives: w jac(t, x), shape (states,)."""
+        import numpy as np
+
+        return np.asarray(np.asarray(w, dtype=np.float64) @ self.jac(t, x))
 
     def state(self, t: float | None = None, *, q: Mapping[str, float], qdot: Mapping[str, float], z: Mapping[str, float] | None = None) -> Array:
         """x from values of coordinates, velocities ("x'") and states of the model by name; 0 for those left out.

@@ -33,6 +33,16 @@ void bind_dynamics(nb::module_& m) {
       .def("rates", rates, "t"_a, "x"_a, "out"_a)
       .def("from_motion", &Dynamics::from_motion, "t"_a, "q"_a, "qdot"_a, "z"_a)
       .def(
+          "jacobian",
+          [](const Dynamics& f, double t, const std::vector<double>& x, bool by_parameter) {
+            Dynamics::Jacobian made = f.jacobian(t, x);
+            auto* values = new std::vector<double>(std::move(by_parameter ? made.by_parameter : made.by_state));
+            const nb::capsule owner(values, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+            return nb::ndarray<nb::numpy, double, nb::ndim<2>>(
+                values->data(), {made.states, by_parameter ? made.parameters : made.states}, owner);
+          },
+          "t"_a, "x"_a, "by_parameter"_a)
+      .def(
           "to_motion",
           [](const Dynamics& f, double t, const std::vector<double>& x) {
             const Dynamics::Motion motion = f.to_motion(t, x);

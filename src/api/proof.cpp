@@ -39,8 +39,9 @@ Result<Proof> prove(const Model& model, const std::vector<std::string>& names) {
       for (const inner::Difference& d : f.differences)
         if (d.verdict != inner::Verdict::proved && v.detail.empty()) v.detail = d.component + ": " + d.detail;
     }
-    result.certificate = inner::to_json(inner::certificate(
-        m, p, eliminations.front(), std::string("anholon ") + version(), inner::model_hash(model.data().model->source_text)));
+    result.certificate =
+        inner::to_json(inner::certificate(m, p, eliminations.front(), std::string("anholon ") + version(),
+                                          inner::model_hash(model.data().model->source_text)));
     return result;
   });
 }

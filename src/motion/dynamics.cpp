@@ -141,6 +141,16 @@ void Dynamics::rates(double t, const double* x, std::size_t count, double* rates
   work();
 }
 
+std::vector<double> Dynamics::leading(double t, const std::vector<double>& x) const {
+  std::vector<double> list(unknowns_.size());
+  with_kernel(1, [&](Kernel& k) {
+    std::vector<double> rates(x.size());
+    compute(k, t, x.data(), 1, 0, 1, rates.data());
+    for (std::size_t j = 0; j < list.size(); ++j) list[j] = k.derivative(j, unknowns_[j].order);
+  });
+  return list;
+}
+
 std::vector<double> Dynamics::from_motion(double t, const std::vector<double>& q, const std::vector<double>& qd,
                                           const std::vector<double>& z) const {
   std::vector<double> x = q;

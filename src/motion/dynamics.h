@@ -32,6 +32,11 @@ class Dynamics {
   // threads; large batches are computed by several. NaN where the equations have no solution.
   void rates(double t, const double* x, std::size_t count, double* rates) const;
 
+  // What leads one state, unknown by unknown: accelerations, multipliers, rates of the model's states. REQUIRES: not
+  // minimal.
+  std::vector<double> leading(double t, const std::vector<double>& x) const;
+  const std::vector<long double>& parameters() const { return parameters_; }
+
   // Converts one state from coordinates, velocities q' and the model's states, and back.
   std::vector<double> from_motion(double t, const std::vector<double>& q, const std::vector<double>& qd,
                                   const std::vector<double>& z) const;
