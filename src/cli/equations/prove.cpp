@@ -145,8 +145,7 @@ int prove(const Options& o) {
     };
   const Proof p = anholon::prove(m, forms, eliminations, options);
   if (terminal) say(stderr, "\r\033[K");
-  const Certificate c =
-      certificate(m, p, eliminations.front(), "anholon " ANHOLON_VERSION, model_hash(in.source));
+  const Certificate c = certificate(m, p, eliminations.front(), "anholon " ANHOLON_VERSION, model_hash(in.source));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   SymbolNames names = model.names;
   if (eliminations.front().quasi.quasi) names.quasi = eliminations.front().quasi.free.names;
