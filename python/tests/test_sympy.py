@@ -149,6 +149,43 @@ def system_of_joints() -> Made:
     return system, {M: 3, m: 1, l: 0.75, g: 9.8125}
 
 
+def four_bar() -> Made:
+    """Of the documentation: three links on pins, closed by two holonomic constraints."""
+    q = me.dynamicsymbols("q1:4")
+    u = me.dynamicsymbols("u1:4")
+    l1, l2, l3, l4, m1, m2, m3, g = sm.symbols("l1 l2 l3 l4 m1 m2 m3 g")
+    N = me.ReferenceFrame("N")
+    P = me.Point("P1")
+    P.set_vel(N, 0)
+    start, bodies, loads, frame, here = P, [], [], N, P
+    for k, (length, mass) in enumerate([(l1, m1), (l2, m2), (l3, m3)]):
+        link = frame.orientnew(f"A{k}", "Axis", [q[k], N.z])
+        link.set_ang_vel(frame, u[k] * N.z)
+        center = here.locatenew(f"C{k}", length / 2 * link.x)
+        center.v2pt_theory(here, N, link)
+        end = here.locatenew(f"E{k}", length * link.x)
+        end.v2pt_theory(here, N, link)
+        bodies.append(me.RigidBody(f"link{k}", center, link, mass, (me.inertia(link, 0, mass * length**2 / 12, mass * length**2 / 12), center)))
+        loads.append((center, -mass * g * N.y))
+        frame, here = link, end
+    loop = here.pos_from(start) - l4 * N.x
+    holonomic = [loop.dot(N.x), loop.dot(N.y)]
+    kinematic = [c.diff() - v for c, v in zip(q, u, strict=True)]
+    rates = dict(zip([c.diff() for c in q], u, strict=True))
+    kane = me.KanesMethod(
+        N,
+        q_ind=[q[0]],
+        u_ind=[u[0]],
+        kd_eqs=kinematic,
+        q_dependent=q[1:],
+        configuration_constraints=holonomic,
+        u_dependent=u[1:],
+        velocity_constraints=[c.diff(me.dynamicsymbols._t).subs(rates) for c in holonomic],
+    )
+    kane.kanes_equations(bodies, loads)
+    return kane, {l1: 1, l2: 2, l3: 1.5, l4: 1.75, m1: 1, m2: 2, m3: 1.5, g: 9.8125}
+
+
 CASES: list[Callable[[], Made]] = [
     rolling_disc,
     pendulum_on_cart,
@@ -159,6 +196,7 @@ CASES: list[Callable[[], Made]] = [
     lagrange_pendulum,
     lagrange_with_potential,
     system_of_joints,
+    four_bar,
 ]
 
 
