@@ -114,6 +114,15 @@ class Attendant {
 using View = nb::ndarray<nb::numpy, const double, nb::ndim<1>>;
 View view(std::span<const double> numbers, nb::handle owner);
 
+// Numbers of their own, which the array owns.
+template <int dimensions>
+nb::ndarray<nb::numpy, double, nb::ndim<dimensions>> array(std::vector<double> numbers,
+                                                           std::initializer_list<std::size_t> shape) {
+  auto* held = new std::vector<double>(std::move(numbers));
+  const nb::capsule owner(held, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
+  return {held->data(), shape, owner};
+}
+
 void bind_arrow(nb::module_& m);
 void bind_dynamics(nb::module_& m);
 void bind_results(nb::module_& m);

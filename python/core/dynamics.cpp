@@ -36,10 +36,8 @@ void bind_dynamics(nb::module_& m) {
           "jacobian",
           [](const Dynamics& f, double t, const std::vector<double>& x, bool by_parameter) {
             Dynamics::Jacobian made = f.jacobian(t, x);
-            auto* values = new std::vector<double>(std::move(by_parameter ? made.by_parameter : made.by_state));
-            const nb::capsule owner(values, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-            return nb::ndarray<nb::numpy, double, nb::ndim<2>>(
-                values->data(), {made.states, by_parameter ? made.parameters : made.states}, owner);
+            return array<2>(std::move(by_parameter ? made.by_parameter : made.by_state),
+                            {made.states, by_parameter ? made.parameters : made.states});
           },
           "t"_a, "x"_a, "by_parameter"_a)
       .def(

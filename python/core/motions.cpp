@@ -125,9 +125,7 @@ void bind_run(nb::module_& m) {
       .def(
           "at",
           [](const Run& run, const std::string& name, const View& times, int order) {
-            auto* values = new std::vector<double>(run.at(name, {times.data(), times.size()}, order));
-            const nb::capsule owner(values, [](void* p) noexcept { delete static_cast<std::vector<double>*>(p); });
-            return nb::ndarray<nb::numpy, double, nb::ndim<1>>(values->data(), {values->size()}, owner);
+            return array<1>(run.at(name, {times.data(), times.size()}, order), {times.size()});
           },
           "name"_a, "times"_a, "order"_a)
       .def("text", &Run::text, "row"_a, "column"_a)

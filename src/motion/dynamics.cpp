@@ -8,6 +8,7 @@
 
 #include "kernel/plan/planner.h"
 #include "motion/representation.h"
+#include "program/expansion.h"
 
 namespace anholon {
 
@@ -97,6 +98,22 @@ void Dynamics::with_kernel(int lanes, const F& f) const {
   pool.push_back(std::move(kernel));
 }
 
+// What leads one state by the reference; NaN where the equations have no solution.
+std::vector<double> Dynamics::by_reference(double t, const std::function<double(std::size_t)>& state) const {
+  Expansion<long double> point(plan_->program(), parameters_, 1);
+  std::vector<long double> entries;
+  for (const Unknown& u : unknowns_)
+    for (int k = 0; k < u.order; ++k) entries.push_back(state(k == 0 ? u.value : u.rate));
+  point.load(t, entries, {});
+  Outcome o = point.prepare();
+  if (o.ok()) o = point.solve();
+  std::vector<double> solved;
+  for (std::size_t j = 0; j < unknowns_.size(); ++j)
+    solved.push_back(o.ok() ? static_cast<double>(point.derivative(j, unknowns_[j].order))
+                            : std::numeric_limits<double>::quiet_NaN());
+  return solved;
+}
+
 // The states from..to, as many at once as the kernel has lanes; what is left over of them holds the last one.
 void Dynamics::compute(Kernel& kernel, double t, const double* x, std::size_t count, std::size_t from, std::size_t to,
                        double* rates) const {
@@ -109,13 +126,17 @@ void Dynamics::compute(Kernel& kernel, double t, const double* x, std::size_t co
       return k < u.order ? state(k == 0 ? u.value : u.rate, lane) : 0;
     });
     kernel.solve_point();
-    for (std::size_t j = 0; j < unknowns_.size(); ++j) {
-      const Unknown& u = unknowns_[j];
-      if (u.order == 0) continue;
-      for (std::size_t lane = 0; lane < some; ++lane) {
-        const std::size_t k = first + lane;
+    for (std::size_t lane = 0; lane < some; ++lane) {
+      // The pivots were chosen at the start: where they are small, the reference chooses others.
+      const bool healthy = kernel.pivots(static_cast<int>(lane)).health > kHealthy;
+      const std::vector<double> solved =
+          healthy ? std::vector<double>() : by_reference(t, [&](std::size_t i) { return state(i, lane); });
+      const std::size_t k = first + lane;
+      for (std::size_t j = 0; j < unknowns_.size(); ++j) {
+        const Unknown& u = unknowns_[j];
+        if (u.order == 0) continue;
         if (u.order == 2) rates[u.value * count + k] = state(u.rate, lane);
-        rates[u.rate * count + k] = kernel.derivative(j, u.order, static_cast<int>(lane));
+        rates[u.rate * count + k] = healthy ? kernel.derivative(j, u.order, static_cast<int>(lane)) : solved[j];
       }
     }
   }
@@ -147,6 +168,7 @@ std::vector<double> Dynamics::leading(double t, const std::vector<double>& x) co
     std::vector<double> rates(x.size());
     compute(k, t, x.data(), 1, 0, 1, rates.data());
     for (std::size_t j = 0; j < list.size(); ++j) list[j] = k.derivative(j, unknowns_[j].order);
+    if (!(k.pivots(0).health > kHealthy)) list = by_reference(t, [&](std::size_t i) { return x[i]; });
   });
   return list;
 }

@@ -4,6 +4,7 @@
 // It is evaluated by a kernel, many states side by side, with machine code if there is a compiler. A state's rates have
 // the same bits alone, in any lane and on any number of threads.
 #pragma once
+#include <functional>
 #include <memory>
 #include <mutex>
 
@@ -54,6 +55,7 @@ class Dynamics {
   };
   void compute(Kernel& kernel, double t, const double* x, std::size_t count, std::size_t from, std::size_t to,
                double* rates) const;
+  std::vector<double> by_reference(double t, const std::function<double(std::size_t)>& state) const;
   // Calls f with a kernel of that many lanes that nobody else uses meanwhile.
   template <class F>
   void with_kernel(int lanes, const F& f) const;
