@@ -1,4 +1,4 @@
-// The equations of a motion as a function x' = f(t, x), for integrators and optimizers of others.
+// The equations of a motion as a function x' = f(t, x, u, p), for integrators and optimizers of others.
 #pragma once
 #include <span>
 
@@ -10,6 +10,9 @@ struct DynamicsOptions {
   // In independent velocities, which satisfy the constraints whatever their values are (theory: quasi-velocities), if
   // the equations have them; else in all velocities.
   bool minimal = true;
+  // Whether inputs of the model are arguments u: all that can be set, or those named. Else their formulas stand in f.
+  bool inputs = false;
+  std::vector<std::string> input_names = {};
 };
 
 struct StateName {
@@ -17,28 +20,59 @@ struct StateName {
   std::string meaning;  // of an independent velocity: its formula in coordinates and velocities; else empty
 };
 
-// Immutable, cheap to copy, and safe to use from many threads. All numbers are in SI units.
+// A function  x' = f(t, x, u, p)  with outputs  y = h(t, x, u, p).  p: the parameters of the model that do not follow from
+// others. Immutable, cheap to copy, and safe to use from many threads. All numbers are in SI units.
 class ANHOLON_API Dynamics {
  public:
   // What x holds: coordinates, velocities, then the model's states.
   const std::vector<StateName>& states() const;
+  std::vector<std::string> inputs() const;      // what u holds
+  std::vector<std::string> parameters() const;  // what p holds
+  std::vector<std::string> outputs() const;     // what y holds: monitors and outputs of the model
   bool minimal() const;
   double start_time() const;
-  const std::vector<double>& start() const;  // x at the initial state
+  const std::vector<double>& start() const;      // x at the initial state
+  std::vector<double> start_inputs() const;      // u there
+  std::vector<double> parameter_values() const;  // p as the model has it
+
+  // u and p of a call: empty (the inputs by their formulas, the parameters of the model), one set of numbers for all
+  // states, or one for each, in the order of x.
+  struct Given {
+    std::span<const double> u = {}, p = {};
+  };
 
   // The rates of `count` states at time t. Number i of state k is at [i * count + k] of both arrays, of the size
   // states() * count. NaN where the equations have no solution. A state has the same bits alone and among others.
   // REQUIRES: the sizes fit.
-  void rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates) const;
+  void rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates, const Given& given) const;
+  void rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates) const {
+    this->rates(t, x, count, rates, Given{});
+  }
 
-  // The exact derivatives of the rates of one state x by x and by the model's parameters, in the order of
-  // Model::parameters: number (i, k) at [i * columns + k]. NaN where the equations have no solution.
-  // REQUIRES: not minimal; the size fits.
+  // The outputs and the inputs of one state. Inputs are those of the formulas of the model. REQUIRES: the sizes fit.
+  std::vector<double> outputs(double t, const std::vector<double>& x, const Given& given) const;
+  std::vector<double> inputs(double t, const std::vector<double>& x, std::span<const double> p) const;
+
+  // The exact derivatives of the rates, then of the outputs, of one state by x, u and p: number (i, k) at
+  // [i * columns + k]. NaN where the equations have no solution. REQUIRES: the sizes fit.
   struct Jacobian {
-    std::size_t states = 0, parameters = 0;
-    std::vector<double> by_state, by_parameter;  // states x states, states x parameters
+    std::size_t rows = 0, columns = 0;
+    std::vector<double> values;
   };
-  Jacobian jacobian(double t, const std::vector<double>& x) const;
+  Jacobian jacobian(double t, const std::vector<double>& x, const Given& given) const;
+
+  // The linear equations that are solved at one state for accelerations, multipliers and rates of the model's states:
+  // matrix unknowns = right, the matrix row by row. REQUIRES: not minimal; the sizes fit.
+  struct Equations {
+    std::vector<std::string> unknowns;
+    std::vector<double> matrix, right;
+  };
+  Equations equations(double t, const std::vector<double>& x, const Given& given) const;
+
+  // The function as source text: a C file with name_rhs and, in CasADi's external interface, name and jac_name; a Python
+  // module whose functions take the library for arrays as an argument.
+  enum class Source : std::uint8_t { casadi, formulas };
+  std::string source(Source kind, const std::string& name = "motion") const;
 
   // One state from coordinates q, velocities qdot and the model's states z, and back. REQUIRES: the sizes fit.
   std::vector<double> from_motion(double t, const std::vector<double>& q, const std::vector<double>& qdot,
@@ -56,7 +90,7 @@ class ANHOLON_API Dynamics {
 };
 
 // Errors: equations that are not solved for accelerations alone, as constraints of order 2 and more ask for, redundant
-// constraints, formulas that kernels do not know (diagnostics that say which).
+// constraints, formulas that kernels do not know (diagnostics that say which), an input that cannot be set.
 ANHOLON_API Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options = {});
 
 }  // namespace anholon::v1

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, Union
 
 from . import _core
 from ._errors import ModelError
+from .formulas import Formulas, compile_c
 
 if TYPE_CHECKING:
     import numpy as np
@@ -17,8 +18,14 @@ if TYPE_CHECKING:
     Array = npt.NDArray[np.float64]
 
 
+Values = Union["npt.ArrayLike", Mapping[str, float], None]
+"""Inputs or parameters: an array in their order, values by name (the others keep theirs), or None for those of the model."""
+
+
 class Dynamics:
-    """A function f(t, x) -> x' in SI units. Threads may share it; large batches are computed on all cores.
+    """A function f(t, x, u, p) -> x' in SI units, with outputs y. Threads may share it; large batches take all cores.
+
+    Get one from :meth:`Model.dynamics`.
 
     Example:
         >>> import anholon as an
@@ -32,11 +39,27 @@ class Dynamics:
         self.model: Model = model
         self._core = core
         self._count = len(core.states)
+        self._formulas: Formulas | None = None
 
     @property
     def states(self) -> list[_core.StateName]:
         """What x holds: coordinates, velocities (or independent ones, with their formulas), then the model's states."""
         return self._core.states
+
+    @property
+    def inputs(self) -> list[str]:
+        """What u holds: inputs of the model that are arguments."""
+        return self._core.inputs
+
+    @property
+    def parameters(self) -> list[str]:
+        """What p holds: the parameters that do not follow from others."""
+        return self._core.parameters
+
+    @property
+    def outputs(self) -> list[str]:
+        """What y holds: monitors and outputs of the model. In independent velocities those with multipliers are left out."""
+        return self._core.outputs
 
     @property
     def minimal(self) -> bool:
@@ -55,18 +78,59 @@ class Dynamics:
 
         return np.array(self._core.start)
 
-    def __call__(self, t: float, x: npt.ArrayLike, out: Array | None = None) -> Array:
+    @property
+    def u0(self) -> Array:
+        """u at the initial state, shape (inputs,)."""
+        import numpy as np
+
+        return np.array(self._core.start_inputs)
+
+    @property
+    def p0(self) -> Array:
+        """p of the model, shape (parameters,)."""
+        import numpy as np
+
+        return np.array(self._core.parameter_values)
+
+    def _values(self, given: Values, names: list[str], usual: Callable[[], Array], what: str, shape: tuple[int, ...] = ()) -> Array | None:
+        """One set of numbers, or one for each state of a batch of this shape. Raises KeyError, ValueError."""
+        import numpy as np
+
+        if given is None:
+            return None
+        if isinstance(given, Mapping):
+            for name in given:
+                if name not in names:
+                    raise KeyError(f"there is no {name!r} in {what}; there are {', '.join(names) or 'none'}")
+            own = usual()
+            rows = [np.asarray(given.get(name, own[i]), dtype=np.float64) for i, name in enumerate(names)]
+            given = np.stack(np.broadcast_arrays(*rows)) if rows else np.empty(0)
+        array = np.ascontiguousarray(given, dtype=np.float64)
+        if array.shape[:1] != (len(names),) or array.shape[1:] not in ((), shape):
+            raise ValueError(f"{what} has the shape {array.shape}; it has to be {(len(names),)}" + (f" or {(len(names), *shape)}" if shape else ""))
+        return array
+
+    def __call__(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None, *, out: Array | None = None) -> Array:
         """The rates x' of one state, shape (states,), or of many, shape (states, …): the last axes count them.
 
         Args:
             t: the time, s.
             x: states.
-            out: an array of that shape for the result; a new one if it is None.
+            u: inputs, shape (inputs,), or (inputs, …) for each state; by the formulas of the model if it is None.
+            p: parameters, shape (parameters,), or (parameters, …) for each state; those of the model if it is None.
+            out: an array of the shape of x for the result; a new one if it is None.
 
         NaN where the equations have no solution. A state has the same bits alone and among others.
 
         Raises:
-            ValueError: the shape does not fit.
+            ValueError: a shape does not fit.
+            KeyError: there is no input or parameter of that name.
+
+        Example:
+            >>> import anholon as an
+            >>> f = an.load("disc").dynamics()
+            >>> bool((f(0, f.start, p={"g": 1.62}) == f(0, f.start)).all())   # on the moon
+            False
         """
         import numpy as np
 
@@ -75,42 +139,133 @@ class Dynamics:
             raise ValueError(f"x has the shape {given.shape}; its first axis has to be the {self._count} states")
         if out is None:
             out = np.empty_like(given)
-        self._core.rates(t, given, out)
+        if u is None and p is None:
+            self._core.rates(t, given, out)
+        else:
+            some = self._values(u, self.inputs, lambda: self.u0, "u", given.shape[1:])
+            others = self._values(p, self.parameters, lambda: self.p0, "p", given.shape[1:])
+            self._core.rates(t, given, out, some, others)
         return out
 
-    def jac(self, t: float, x: npt.ArrayLike, by: str = "x") -> Array:
-        """The exact derivatives of the rates of one state, not differences.
+    def _one(self, x: npt.ArrayLike, u: Values, p: Values) -> tuple[list[float], list[float], list[float]]:
+        """One state with its inputs and parameters, as lists; empty where the model has them."""
+        import numpy as np
+
+        state = np.asarray(x, dtype=np.float64)
+        if state.shape != (self._count,):
+            raise ValueError(f"x has the shape {state.shape}; it has to be that of one state, {(self._count,)}")
+        some = self._values(u, self.inputs, lambda: self.u0, "u")
+        others = self._values(p, self.parameters, lambda: self.p0, "p")
+        return state.tolist(), [] if some is None else some.tolist(), [] if others is None else others.tolist()
+
+    def output(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None) -> Array:
+        """The outputs y of one state, shape (outputs,)."""
+        import numpy as np
+
+        return np.array(self._core.outputs_at(t, *self._one(x, u, p)))
+
+    def input(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
+        """The inputs by the formulas of the model, shape (inputs,): the controller of the file."""
+        import numpy as np
+
+        state, _, parameters = self._one(x, None, p)
+        return np.array(self._core.inputs_at(t, state, parameters))
+
+    def jac(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
+        """The exact derivatives of the rates (or outputs) of one state, not differences.
 
         Args:
             t: the time, s.
             x: one state, shape (states,).
-            by: "x": shape (states, states); "p": by the parameters, in the order of ``model.parameters``, shape
-                (states, parameters).
+            u: inputs, which are held where the derivatives are by x; those of the formulas of the model if it is None.
+            p: parameters; those of the model if it is None.
+            by: "x", "u" or "p": shape (rows, states), (rows, inputs) or (rows, parameters).
+            of: "x'": the rates; "y": the outputs.
 
         Raises:
-            ModelError: the velocities are independent ones; ``dynamics(minimal=False)`` has derivatives.
-            ValueError: the shape does not fit, or `by` is something else.
+            ValueError: a shape does not fit, or `by` or `of` is something else.
+
+        Example:
+            >>> import anholon as an
+            >>> f = an.load("two-wheeled-pendulum").dynamics(inputs=True)
+            >>> f.jac(0, f.start).shape, f.jac(0, f.start, by="u").shape
+            ((8, 8), (8, 2))
         """
+        if by not in ("x", "u", "p") or of not in ("x'", "y"):
+            raise ValueError("by is 'x', 'u' or 'p', and of is \"x'\" or 'y'")
+        whole = self._core.jacobian(t, *self._one(x, u, p))
+        rows = whole[: self._count] if of == "x'" else whole[self._count :]
+        ends = [0, self._count, self._count + len(self.inputs), whole.shape[1]]
+        k = "xup".index(by)
+        return rows[:, ends[k] : ends[k + 1]]
+
+    def jvp(self, t: float, x: npt.ArrayLike, v: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x") -> Array:
+        """The derivatives times a direction: jac(t, x, u, p, by=by) v, shape (states,)."""
         import numpy as np
 
+        return np.asarray(self.jac(t, x, u, p, by=by) @ np.asarray(v, dtype=np.float64))
+
+    def vjp(self, t: float, x: npt.ArrayLike, w: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x") -> Array:
+        """A covector times the derivatives: w jac(t, x, u, p, by=by)."""
+        import numpy as np
+
+        return np.asarray(np.asarray(w, dtype=np.float64) @ self.jac(t, x, u, p, by=by))
+
+    def _equations(self, t: float, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array]:
         if self.minimal:
-            raise ModelError("derivatives by independent velocities are not made yet\nhint: dynamics(minimal=False)")
-        given = np.asarray(x, dtype=np.float64)
-        if given.shape != (self._count,) or by not in ("x", "p"):
-            raise ValueError(f"x has to have the shape ({self._count},), and by is 'x' or 'p'")
-        return self._core.jacobian(t, given.tolist(), by == "p")
+            raise ModelError("in independent velocities there is no mass matrix\nhint: dynamics(minimal=False)")
+        _, matrix, right = self._core.equations(t, *self._one(x, u, p))
+        return matrix, right
 
-    def jvp(self, t: float, x: npt.ArrayLike, v: npt.ArrayLike) -> Array:
-        """The derivatives times a direction: jac(t, x) v, shape (states,)."""
-        import numpy as np
+    def mass_matrix(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
+        """M of  M q'' + bias = Phi^T lambda,  shape (coordinates, coordinates). The model's own formulas give the inputs.
 
-        return np.asarray(self.jac(t, x) @ np.asarray(v, dtype=np.float64))
+        Raises:
+            ModelError: the velocities are independent ones; take ``dynamics(minimal=False)``.
 
-    def vjp(self, t: float, x: npt.ArrayLike, w: npt.ArrayLike) -> Array:
-        """A covector times the derivatives: w jac(t, x), shape (states,)."""
-        import numpy as np
+        Example:
+            >>> import anholon as an
+            >>> f = an.load("chaplygin-sleigh").dynamics(minimal=False)
+            >>> f.mass_matrix(0, f.start).shape, f.constraint_jacobian(0, f.start).shape
+            ((3, 3), (1, 3))
+        """
+        n = len(self.model.coordinates)
+        return self._equations(t, x, None, p)[0][:n, :n]
 
-        return np.asarray(np.asarray(w, dtype=np.float64) @ self.jac(t, x))
+    def bias(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None) -> Array:
+        """What remains of  M q'' + bias = Phi^T lambda:  inertia and forces without accelerations, shape (coordinates,)."""
+        return -self._equations(t, x, u, p)[1][: len(self.model.coordinates)]
+
+    def constraint_jacobian(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
+        """Phi, the derivatives of the constraints by the velocities (of holonomic ones by the coordinates), shape
+        (constraints, coordinates)."""
+        n, states = len(self.model.coordinates), len(self.model.states)
+        matrix = self._equations(t, x, None, p)[0]
+        return matrix[n : len(matrix) - states, :n]
+
+    @property
+    def formulas(self) -> Formulas:
+        """The rates as formulas of NumPy, JAX, CasADi, SymPy and mpmath."""
+        if self._formulas is None:
+            self._formulas = Formulas(self, self._core.source(False, ""))
+        return self._formulas
+
+    def c_code(self, name: str = "motion") -> str:
+        """A C file that stands by itself: ``name_rhs(t, x, u, p, dx)``, and in CasADi's external interface ``name``,
+        (t, x, u, p) -> (dx, y), with the sparse Jacobian ``jac_name``. CasADi and acados load it compiled as it is."""
+        return self._core.source(True, name)
+
+    def casadi(self, name: str = "motion") -> Any:
+        """The function as a ``casadi.Function`` (t, x, u, p) -> (dx, y), compiled from :meth:`c_code`, with its Jacobian.
+
+        ``f.formulas.casadi()`` is of CasADi's own expressions, which have second derivatives, too.
+
+        Raises:
+            ModelError: there is no C compiler.
+        """
+        import casadi
+
+        return casadi.external(name, compile_c(self.c_code(name)))
 
     def state(self, t: float | None = None, *, q: Mapping[str, float], qdot: Mapping[str, float], z: Mapping[str, float] | None = None) -> Array:
         """x from values of coordinates, velocities ("x'") and states of the model by name; 0 for those left out.

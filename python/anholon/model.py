@@ -314,17 +314,25 @@ class Model:
             raise raised
         return sweep
 
-    def dynamics(self, *, minimal: bool = True, initial: Mapping[str, Number] | None = None) -> Dynamics:
-        """The equations as a compiled function f(t, x) -> x', for integrators and optimizers of others.
+    def dynamics(
+        self,
+        *,
+        minimal: bool = True,
+        inputs: bool | Sequence[str] = False,
+        initial: Mapping[str, Number] | None = None,
+    ) -> Dynamics:
+        """The equations as a compiled function f(t, x, u, p) -> x', for integrators and optimizers of others.
 
         Args:
             minimal: in independent velocities, which satisfy the constraints whatever they are, if the equations have
                 them; else in all coordinates and velocities.
+            inputs: which inputs of the model are arguments u: all that can be set, those named, or none. The formulas
+                of the others stand in f.
             initial: values instead of those of the file, for ``f.start``.
 
         Raises:
-            ModelError: the equations are not solved for accelerations alone (constraints of order 2 and more), or
-                constraints are redundant.
+            ModelError: the equations are not solved for accelerations alone (constraints of order 2 and more),
+                constraints are redundant, or an input cannot be set from outside.
 
         Example:
             >>> import anholon as an, numpy as np
@@ -334,7 +342,8 @@ class Model:
             >>> f(0, f.start).shape, f(0, np.tile(f.start[:, None], 1000)).shape
             ((8,), (8, 1000))
         """
-        return Dynamics(self, _core.dynamics(self._system("routh", texts_of(initial), ()), minimal))
+        names = [] if isinstance(inputs, bool) else list(inputs)
+        return Dynamics(self, _core.dynamics(self._system("routh", texts_of(initial), ()), minimal, inputs is True, names))
 
     def c_code(self, *, initial: Mapping[str, Number] | None = None, form: str = "routh") -> str:
         """The motion's right side as a C program that stands by itself."""

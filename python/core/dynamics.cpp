@@ -6,16 +6,23 @@ namespace {
 
 using In = nb::ndarray<nb::numpy, const double, nb::c_contig>;
 using Out = nb::ndarray<nb::numpy, double, nb::c_contig>;
+using Some = std::optional<In>;
+using Doubles = std::vector<double>;
+
+std::span<const double> span_of(const Some& numbers) {
+  return numbers ? std::span(numbers->data(), numbers->size()) : std::span<const double>();
+}
 
 // Without the interpreter's lock where that pays.
-void rates(const Dynamics& f, double t, const In& x, const Out& out) {
+void rates(const Dynamics& f, double t, const In& x, const Out& out, const Some& u, const Some& p) {
   constexpr std::size_t kLong = 64;
   const std::size_t states = f.states().size(), count = states == 0 ? 0 : x.size() / states;
   if (x.size() != states * count || out.size() != x.size()) throw nb::value_error("the shapes of x and out do not fit");
   const std::span<const double> from(x.data(), x.size());
   const std::span<double> to(out.data(), out.size());
-  if (count < kLong) return f.rates(t, from, count, to);
-  unlocked([&] { f.rates(t, from, count, to); });
+  const Dynamics::Given given{span_of(u), span_of(p)};
+  if (count < kLong) return f.rates(t, from, count, to, given);
+  unlocked([&] { f.rates(t, from, count, to, given); });
 }
 
 }  // namespace
@@ -27,32 +34,62 @@ void bind_dynamics(nb::module_& m) {
       .def("__repr__", [](const StateName& s) { return s.meaning.empty() ? s.name : s.name + " = " + s.meaning; });
   nb::class_<Dynamics>(m, "Dynamics")
       .def_prop_ro("states", &Dynamics::states)
+      .def_prop_ro("inputs", [](const Dynamics& f) { return f.inputs(); })
+      .def_prop_ro("parameters", &Dynamics::parameters)
+      .def_prop_ro("outputs", [](const Dynamics& f) { return f.outputs(); })
       .def_prop_ro("minimal", &Dynamics::minimal)
       .def_prop_ro("start_time", &Dynamics::start_time)
       .def_prop_ro("start", &Dynamics::start)
-      .def("rates", rates, "t"_a, "x"_a, "out"_a)
-      .def("from_motion", &Dynamics::from_motion, "t"_a, "q"_a, "qdot"_a, "z"_a)
+      .def_prop_ro("start_inputs", &Dynamics::start_inputs)
+      .def_prop_ro("parameter_values", &Dynamics::parameter_values)
+      .def("rates", rates, "t"_a, "x"_a, "out"_a, "u"_a = nb::none(), "p"_a = nb::none())
+      .def(
+          "outputs_at",
+          [](const Dynamics& f, double t, const Doubles& x, const Doubles& u, const Doubles& p) {
+            return f.outputs(t, x, {u, p});
+          },
+          "t"_a, "x"_a, "u"_a, "p"_a)
+      .def(
+          "inputs_at",
+          [](const Dynamics& f, double t, const Doubles& x, const Doubles& p) { return f.inputs(t, x, p); }, "t"_a,
+          "x"_a, "p"_a)
       .def(
           "jacobian",
-          [](const Dynamics& f, double t, const std::vector<double>& x, bool by_parameter) {
-            Dynamics::Jacobian made = f.jacobian(t, x);
-            return array<2>(std::move(by_parameter ? made.by_parameter : made.by_state),
-                            {made.states, by_parameter ? made.parameters : made.states});
+          [](const Dynamics& f, double t, const Doubles& x, const Doubles& u, const Doubles& p) {
+            Dynamics::Jacobian made = unlocked([&] { return f.jacobian(t, x, {u, p}); });
+            return array<2>(std::move(made.values), {made.rows, made.columns});
           },
-          "t"_a, "x"_a, "by_parameter"_a)
+          "t"_a, "x"_a, "u"_a, "p"_a)
+      .def(
+          "equations",
+          [](const Dynamics& f, double t, const Doubles& x, const Doubles& u, const Doubles& p) {
+            Dynamics::Equations made = unlocked([&] { return f.equations(t, x, {u, p}); });
+            const std::size_t n = made.right.size();
+            return std::tuple(made.unknowns, array<2>(std::move(made.matrix), {n, n}),
+                              array<1>(std::move(made.right), {n}));
+          },
+          "t"_a, "x"_a, "u"_a, "p"_a)
+      .def(
+          "source",
+          [](const Dynamics& f, bool casadi, const std::string& name) {
+            return unlocked(
+                [&] { return f.source(casadi ? Dynamics::Source::casadi : Dynamics::Source::formulas, name); });
+          },
+          "casadi"_a, "name"_a)
+      .def("from_motion", &Dynamics::from_motion, "t"_a, "q"_a, "qdot"_a, "z"_a)
       .def(
           "to_motion",
-          [](const Dynamics& f, double t, const std::vector<double>& x) {
+          [](const Dynamics& f, double t, const Doubles& x) {
             const Dynamics::Motion motion = f.to_motion(t, x);
             return std::tuple(motion.q, motion.qdot, motion.z);
           },
           "t"_a, "x"_a);
   m.def(
       "dynamics",
-      [](const System& system, bool minimal) {
-        return value_of(unlocked([&] { return dynamics(system, DynamicsOptions{minimal}); }));
+      [](const System& system, bool minimal, bool inputs, const std::vector<std::string>& names) {
+        return value_of(unlocked([&] { return dynamics(system, DynamicsOptions{minimal, inputs, names}); }));
       },
-      "system"_a, "minimal"_a);
+      "system"_a, "minimal"_a, "inputs"_a, "names"_a);
 }
 
 }  // namespace anholon::python

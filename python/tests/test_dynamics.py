@@ -87,7 +87,7 @@ def test_batches_have_the_same_bits() -> None:
     np.testing.assert_array_equal(f(0.5, x[:, :7]), all_rates[:, :7])
     np.testing.assert_array_equal(f(0.5, x.reshape(len(x), 3, 6667)), all_rates.reshape(len(x), 3, 6667))
     out = np.empty_like(x)
-    assert f(0.5, x, out) is out
+    assert f(0.5, x, out=out) is out
     with pytest.raises(ValueError, match="first axis has to be the 8 states"):
         f(0, x[:3])
 

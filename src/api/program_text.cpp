@@ -1,6 +1,6 @@
 #include "anholon/system.h"
 #include "api/data.h"
-#include "program/emit.h"
+#include "emit/emit.h"
 #include "setup/inputs.h"
 
 namespace anholon::v1 {
@@ -15,7 +15,7 @@ Result<std::string> program_text(const System& system, Language language) {
     if (const std::size_t slash = options.name.rfind('/'); slash != std::string::npos) options.name.erase(0, slash + 1);
     if (const std::size_t dot = options.name.rfind('.'); dot != std::string::npos) options.name.erase(dot);
     options.made_by = std::string("anholon ") + ANHOLON_VERSION;
-    options.start = {s.state.t, s.state.q, s.state.qd};
+    options.start = {s.state.t, s.state.q, s.state.qd, s.state.states};
     inner::OpenSystem open = inner::open_inputs(s);
     options.inputs = std::move(open.inputs);
     return (language == Language::c ? inner::emit_c : inner::emit_python)(open.system, s.structure, options);

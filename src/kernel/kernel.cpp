@@ -329,9 +329,13 @@ void Kernel::set_shrink(double shrink) {
   set_all(plan_->tables().margin, -(shrink + 0.7 / plan_->plan().stages) * kLog2e);
 }
 
-void Kernel::set_parameters(int lane, const std::vector<long double>& parameters, Rounding rounding) {
+void Kernel::set_coefficients(int lane, const std::vector<long double>& parameters, Rounding rounding) {
   const std::vector<double> values = coefficient_values(plan_->plan(), plan_->program(), parameters, rounding);
   for (std::size_t i = 0; i < values.size(); ++i) number(static_cast<std::uint32_t>(i), lane) = values[i];
+}
+
+void Kernel::set_parameters(int lane, const std::vector<long double>& parameters, Rounding rounding) {
+  set_coefficients(lane, parameters, rounding);
   if (!plan_->map()) return;
   while (readers_.size() < static_cast<std::size_t>(lanes_)) readers_.emplace_back(*plan_->map(), parameters);
   readers_[static_cast<std::size_t>(lane)] = StateReader(*plan_->map(), parameters);

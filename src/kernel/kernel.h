@@ -99,6 +99,8 @@ class Kernel {
   int lanes() const { return lanes_; }
   const KernelPlan& plan() const { return *plan_; }
   void set_parameters(int lane, const std::vector<long double>& parameters, Rounding rounding = Rounding::nearest);
+  // The same for the equations alone: the reader of the lane keeps its parameters.
+  void set_coefficients(int lane, const std::vector<long double>& parameters, Rounding rounding = Rounding::nearest);
   // Converts between the kernel's state and that of the motion, with the parameters of a lane, if the plan has a map.
   StateReader& reader(int lane) { return readers_[static_cast<std::size_t>(lane)]; }
   // A state for `expand`: x_j^(k), k < d_j, one after the other; `leading`: a first guess of x_j^(d_j).

@@ -1,6 +1,7 @@
 #include "setup/inputs.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace anholon {
@@ -61,6 +62,59 @@ OpenSystem open_inputs(Workspace& s) {
   OpenSystem open{std::move(system), {}};
   for (std::size_t k : inputs) open.inputs.push_back({k, *s.model->controls[k].value});
   return open;
+}
+
+// The value of a formula at the consistent start.
+static Rational value_at_start(const Scenario& s, const Model& model, Expr formula) {
+  const Tape tape = compile({&formula, 1});
+  Machine<double> machine(tape, 0, parameter_values<double>(model));
+  bind(machine, *model.graph, [&](const Node& n, NodeId) {
+    switch (n.kind) {
+    case Kind::time:
+      return s.state.t;
+    case Kind::jet:
+      return n.order == 0 ? s.state.q[n.index] : s.state.qd[n.index];
+    default:
+      return s.state.states[n.index];
+    }
+  });
+  machine.evaluate();
+  if (const double value = machine.value(0); std::isfinite(value)) return Rational(value);
+  return Rational(0);
+}
+
+InputsAsParameters inputs_as_parameters(const Scenario& s, const std::vector<std::string>& names) {
+  Workspace own(s);
+  std::set<std::size_t> free;
+  for (const InputFormula& u : open_inputs(own).inputs) free.insert(u.control);
+  std::vector<std::string> known;
+  for (const Control& u : s.model->controls) known.push_back(u.name);
+  const std::shared_ptr<Model> m = given_model(s);
+  InputsAsParameters out{m, {}, {}};
+  for (const std::string& name : names)
+    if (const auto at = std::find(known.begin(), known.end(), name); at == known.end()) {
+      const std::string near = did_you_mean(name, known);
+      throw Failure({}, "there is no input '" + name + "'",
+                    !near.empty()   ? "did you mean '" + near + "'?"
+                    : known.empty() ? "[input] declares inputs"
+                                    : "");
+    } else if (!free.count(static_cast<std::size_t>(at - known.begin()))) {
+      throw Failure({}, "the input '" + name + "' cannot be set from outside",
+                    "it keeps a constraint, holds accelerations or multipliers, or stands in an equation that is "
+                    "differentiated");
+    }
+  for (const std::size_t k : free) {
+    Control& u = m->controls[k];
+    if (!names.empty() && std::find(names.begin(), names.end(), u.name) == names.end()) continue;
+    const Rational value = value_at_start(s, *m, *u.value);
+    out.names.push_back(u.name);
+    out.formulas.push_back(u.value->id);
+    u.value = m->graph->parameter(static_cast<std::uint32_t>(m->parameters.size()));
+    m->parameters.push_back({u.name, m->graph->number(value), "", u.span});
+    m->names.parameters.push_back(u.name);
+    if (!m->parameter_units.empty()) m->parameter_units.emplace_back();
+  }
+  return out;
 }
 
 std::optional<Diagnostic> not_emitted(const Model& model, const Mechanics& m) {

@@ -1,6 +1,6 @@
 // A system whose inputs can be set from outside: their symbols stand in the equations, their formulas beside them.
 #pragma once
-#include "program/emit.h"
+#include "emit/emit.h"
 #include "setup/scenario.h"
 
 namespace anholon {
@@ -15,6 +15,16 @@ struct OpenSystem {
 // potential, mass or constraint.
 // The system is of the workspace.
 OpenSystem open_inputs(Workspace& scenario);
+
+// A model whose inputs are parameters, the last ones, so that whoever gives a parameter sets an input. It starts as the
+// given one does: each holds the value of its formula there.
+struct InputsAsParameters {
+  std::shared_ptr<const Model> model;
+  std::vector<std::string> names;
+  std::vector<NodeId> formulas;  // of the inputs, in the graph of the model
+};
+// All inputs that can be set where `names` has none. Throws Failure for a name that is no input, or one that cannot be set.
+InputsAsParameters inputs_as_parameters(const Scenario& scenario, const std::vector<std::string>& names = {});
 
 // Why the motion of the model cannot be written as a program: programs do not solve for what enters nonlinearly, and do
 // not start from more than positions and velocities. Returns nullopt if it can.

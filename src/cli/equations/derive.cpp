@@ -5,7 +5,7 @@
 #include "cli/input.h"
 #include "cli/models/show.h"
 #include "cli/say.h"
-#include "program/emit.h"
+#include "emit/emit.h"
 #include "report/equations.h"
 #include "result/file.h"
 #include "setup/eliminate.h"
@@ -59,7 +59,7 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
   options.made_by =
       "anholon derive " + o.model + " --format " + o.format + (o.motion.form ? " --form " + *o.motion.form : "");
   for (const std::string& set : o.set) options.made_by += " --set " + set;
-  options.start = {s.state.t, s.state.q, s.state.qd};
+  options.start = {s.state.t, s.state.q, s.state.qd, s.state.states};
   // What constraints settle is solved for in wider numbers, as for a motion.
   Workspace own(s);
   if (Start<long double> start; initial_state(own, choice, start).ok()) {

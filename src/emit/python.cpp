@@ -1,7 +1,7 @@
 #include "base/escape.h"
+#include "emit/statements.h"
+#include "emit/text.h"
 #include "numeric/number.h"
-#include "program/emit_statements.h"
-#include "program/emit_text.h"
 
 namespace anholon {
 
@@ -68,9 +68,9 @@ std::string arrays(const Statements& b) {
   std::string out;
   if (b.time) out += "    t = np.asarray(t, dtype=float)[()]\n";
   out += "    state = np.asarray(state, dtype=float)\n";
-  if (b.lead) out += "    lead = np.asarray(lead, dtype=float)\n";
-  if (b.parameters) out += "    p = DEFAULTS if p is None else np.asarray(p, dtype=float)\n";
-  if (b.inputs) out += "    u = inputs(t, state, p) if u is None else np.asarray(u, dtype=float)\n";
+  if (b.reads("lead")) out += "    lead = np.asarray(lead, dtype=float)\n";
+  if (b.reads("p")) out += "    p = DEFAULTS if p is None else np.asarray(p, dtype=float)\n";
+  if (b.reads("u")) out += "    u = inputs(t, state, p) if u is None else np.asarray(u, dtype=float)\n";
   return out;
 }
 
@@ -79,7 +79,7 @@ class PythonModule {
  public:
   PythonModule(const System& system, const Structure& structure, const EmitOptions& options)
       : system_(system), structure_(structure), options_(options), m_(motion(system, structure, options)),
-        names_(system, structure, m_), writer_(system, structure, m_, names_, Language::python),
+        names_(system, structure, m_), writer_(*system.model->graph, names_, Language::python),
         inputs_(!m_.inputs.empty()) {}
 
   std::string text() {

@@ -1,10 +1,10 @@
-#include "program/emit_statements.h"
+#include "emit/statements.h"
 
 #include <algorithm>
 #include <functional>
 
 #include "base/assert.h"
-#include "program/emit_text.h"
+#include "emit/text.h"
 
 namespace anholon::emit {
 
@@ -29,11 +29,6 @@ std::size_t bases(const Rational& exponent) {
 }
 
 }  // namespace
-
-Writer::Writer(const System& system, const Structure& structure, const Motion& motion, const LocalNames& names,
-               Language language)
-    : g_(*system.model->graph), system_(system), structure_(structure), motion_(motion), names_(names),
-      language_(language) {}
 
 std::string Writer::wrapped(const Text& t, int strength) { return t.strength >= strength ? t.s : "(" + t.s + ")"; }
 
@@ -210,13 +205,13 @@ void Writer::write(NodeId id, Statements& body) {
   case Kind::parameter:
   case Kind::multiplier:
   case Kind::control:
+  case Kind::state:
     text_[id] = {names_.symbol(id), kAtom};
     return;
   case Kind::mass:
   case Kind::given:
   case Kind::quasi:
-  case Kind::state:
-    ANHOLON_ASSERT(!"a frozen mass, unknown function, quasi-velocity or state in a program");
+    ANHOLON_ASSERT(!"a frozen mass, unknown function or quasi-velocity in a program");
     return;
   case Kind::sum:
     pieces = sum(id), strength = kSum;
@@ -245,33 +240,22 @@ void Writer::write(NodeId id, Statements& body) {
 }
 
 void Writer::load(const std::vector<NodeId>& ids, Statements& body) {
-  std::vector<std::pair<std::size_t, NodeId>> state, lead, parameters, inputs;
-  for (NodeId id : ids) {
-    const Node& n = g_.node(id);
-    if (n.kind == Kind::time) body.time = true;
-    if (n.kind == Kind::parameter) parameters.push_back({n.index, id});
-    if (n.kind == Kind::control) {
-      const auto at = std::find(motion_.inputs.begin(), motion_.inputs.end(), n.index);
-      ANHOLON_ASSERT(at != motion_.inputs.end() && n.order == 0);
-      inputs.push_back({static_cast<std::size_t>(at - motion_.inputs.begin()), id});
-    }
-    const auto j = system_.variable(id);
-    if (!j) continue;
-    if (static_cast<int>(n.order) < structure_.d[*j])
-      state.push_back({motion_.place(*j, n.order), id});
-    else
-      lead.push_back({*j, id});
-  }
-  const auto read = [&](std::vector<std::pair<std::size_t, NodeId>>& list, const char* array) {
-    std::sort(list.begin(), list.end());
-    for (const auto& [index, id] : list)
-      body.text += assign(names_.symbol(id), {{'+', std::string(array) + "[" + std::to_string(index) + "]"}}, true);
-    return !list.empty();
+  struct Read {
+    std::size_t array, index;
+    NodeId id;
+    auto operator<=>(const Read&) const = default;
   };
-  body.state = read(state, "state");
-  body.lead = read(lead, "lead");
-  body.parameters = read(parameters, "p");
-  body.inputs = read(inputs, "u");
+  std::vector<Read> all;
+  for (NodeId id : ids) {
+    if (g_.node(id).kind == Kind::time) body.time = true;
+    if (const LocalNames::Place* place = names_.place(id)) all.push_back({place->array, place->index, id});
+  }
+  std::sort(all.begin(), all.end());
+  for (const Read& r : all) {
+    const std::string& array = names_.arrays()[r.array];
+    body.text += assign(names_.symbol(r.id), {{'+', array + "[" + std::to_string(r.index) + "]"}}, true);
+    body.arrays.insert(array);
+  }
 }
 
 Statements Writer::body(const Column& es, const std::vector<std::string>& targets, bool sparse) {

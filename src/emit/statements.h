@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "program/emit_names.h"
+#include "emit/names.h"
 
 namespace anholon::emit {
 
@@ -14,13 +14,15 @@ enum class Language : std::uint8_t { c, python };
 // or is long, gets a variable.
 struct Statements {
   std::string text;
-  bool time = false, state = false, lead = false, parameters = false, inputs = false;  // the arguments that it reads
+  bool time = false;             // whether it reads t
+  std::set<std::string> arrays;  // the other arguments that it reads
+  bool reads(const std::string& array) const { return arrays.count(array) > 0; }
 };
 
 class Writer {
  public:
-  Writer(const System& system, const Structure& structure, const Motion& motion, const LocalNames& names,
-         Language language);
+  Writer(const Graph& graph, const LocalNames& names, Language language)
+      : g_(graph), names_(names), language_(language) {}
   // targets[i] = es[i], after the variables; structural zeros are left out if `sparse`.
   Statements body(const Column& es, const std::vector<std::string>& targets, bool sparse = false);
   bool used_sign() const { return used_sign_; }
@@ -46,10 +48,7 @@ class Writer {
   static std::string wrapped(const Text& t, int strength);
   std::string fresh();
 
-  Graph& g_;
-  const System& system_;
-  const Structure& structure_;
-  const Motion& motion_;
+  const Graph& g_;
   const LocalNames& names_;
   Language language_;
   std::unordered_map<NodeId, Text> text_;

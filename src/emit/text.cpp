@@ -1,4 +1,4 @@
-#include "program/emit_text.h"
+#include "emit/text.h"
 
 #include <algorithm>
 #include <limits>
@@ -6,6 +6,81 @@
 #include "base/escape.h"
 
 namespace anholon::emit {
+
+namespace {
+
+// The tolerances are those of program/expansion.cpp.
+constexpr const char* kSolver = R"(
+/* Factors a (row by row), its rows and columns divided by their largest entries, with partial
+   pivoting. Returns 1 if a pivot is no more than round-off, 3 if an entry is not a number. */
+static int $_factor(double *a, int *order, double *row, double *column)
+{
+  const int n = $_UNKNOWNS;
+  const double tiny = 50 * 1.1102230246251565e-16;
+  int i, j, k;
+  for (i = 0; i < n; ++i) {
+    order[i] = i;
+    row[i] = 0;
+    for (j = 0; j < n; ++j) {
+      if (!isfinite(a[i * n + j])) return 3;
+      if (fabs(a[i * n + j]) > row[i]) row[i] = fabs(a[i * n + j]);
+    }
+    if (!(row[i] > 0)) return 1;
+    for (j = 0; j < n; ++j) a[i * n + j] /= row[i];
+  }
+  for (j = 0; j < n; ++j) {
+    column[j] = 0;
+    for (i = 0; i < n; ++i)
+      if (fabs(a[i * n + j]) > column[j]) column[j] = fabs(a[i * n + j]);
+    if (!(column[j] > 0)) return 1;
+    for (i = 0; i < n; ++i) a[i * n + j] /= column[j];
+  }
+  for (k = 0; k < n; ++k) {
+    int best = k;
+    const double *top;
+    for (i = k + 1; i < n; ++i)
+      if (fabs(a[order[i] * n + k]) > fabs(a[order[best] * n + k])) best = i;
+    i = order[k], order[k] = order[best], order[best] = i;
+    top = a + order[k] * n;
+    if (!(fabs(top[k]) > tiny)) return 1;
+    for (i = k + 1; i < n; ++i) {
+      double *r = a + order[i] * n;
+      r[k] /= top[k];
+      for (j = k + 1; j < n; ++j) r[j] -= r[k] * top[j];
+    }
+  }
+  return 0;
+}
+
+/* x = a^-1 b with the factors of a. */
+static void $_solve(const double *a, const int *order, const double *row, const double *column,
+  const double *b, double *x)
+{
+  const int n = $_UNKNOWNS;
+  int i, j;
+  for (i = 0; i < n; ++i) {
+    const double *r = a + order[i] * n;
+    x[i] = b[order[i]] / row[order[i]];
+    for (j = 0; j < i; ++j) x[i] -= r[j] * x[j];
+  }
+  for (i = n - 1; i >= 0; --i) {
+    const double *r = a + order[i] * n;
+    for (j = i + 1; j < n; ++j) x[i] -= r[j] * x[j];
+    x[i] /= r[i];
+  }
+  for (i = 0; i < n; ++i) x[i] /= column[i];
+}
+)";
+
+}  // namespace
+
+const char* c_solver() { return kSolver; }
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+    text.replace(at, from.size(), to);
+  return text;
+}
 
 std::string lines(const std::vector<std::string>& list, const std::string& indent) {
   std::string out;

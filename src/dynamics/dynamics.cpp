@@ -1,4 +1,4 @@
-#include "motion/dynamics.h"
+#include "dynamics/dynamics.h"
 
 #include <algorithm>
 #include <atomic>
@@ -19,7 +19,8 @@ constexpr std::size_t kManyLanes = 16, kManyThreads = 4096;
 
 }  // namespace
 
-std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice, bool minimal, std::string& why) {
+std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice, const Choice& wanted,
+                                         std::string& why) {
   const auto no = [&](std::string reason) {
     why = std::move(reason);
     return nullptr;
@@ -38,14 +39,15 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
   if (const Outcome o = initial_state(s, choice, here); !o.ok()) return no(o.message);
   std::unique_ptr<Dynamics> made(new Dynamics);
   made->parameters_ = parameter_values<long double>(*s.model);
-  const std::vector<double> state(here.state.begin(), here.state.end());
+  made->find_free_parameters(*s.model, wanted.inputs);
+  const std::vector<double>& state = made->motion_start_ = {here.state.begin(), here.state.end()};
   const double t = made->start_time_ = static_cast<double>(here.t);
-  const auto derived = KernelPlan::make(program, 1, made->parameters_, t, state, Company::in_lanes);
-  if (!derived) return no("the equations are singular at the start");
+  made->derived_ = KernelPlan::make(program, 1, made->parameters_, t, state, Company::in_lanes);
+  if (!made->derived_) return no("the equations are singular at the start");
   const std::vector<Representation> list = representations(
-      {derived, s.structure, {}, made->parameters_, t, state, s.mechanics.get()}, WritingEffort::long_motion);
+      {made->derived_, s.structure, {}, made->parameters_, t, state, s.mechanics.get()}, WritingEffort::long_motion);
   const auto quasi = std::find_if(list.begin(), list.end(), [](const Representation& r) { return r.plan->map(); });
-  const bool mapped = minimal && quasi != list.end();
+  const bool mapped = wanted.minimal && quasi != list.end();
   const Representation& best = mapped ? *quasi : cheapest_unmapped(list);
   made->plan_ = best.plan;
   made->coordinates_ = n;
@@ -81,26 +83,82 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
   return made;
 }
 
+// Parameters that follow from others are those whose values hold symbols; the inputs are the last ones.
+void Dynamics::find_free_parameters(const Model& model, std::size_t inputs) {
+  inputs_ = inputs;
+  Graph& g = *model.graph;
+  Column values;
+  for (const Parameter& p : model.parameters) values.push_back(p.value);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const bool follows = !symbols({&values[i], 1}).empty();
+    some_follow_ = some_follow_ || follows;
+    if (!follows && i + inputs < values.size()) free_.push_back(i);
+    if (!follows) values[i] = g.parameter(static_cast<std::uint32_t>(i));
+  }
+  for (std::size_t depth = 0; depth < values.size(); ++depth)
+    values = substitute(values, [&](NodeId id) {
+      const Node& n = g.node(id);
+      return n.kind == Kind::parameter ? values[n.index] : Expr{};
+    });
+  if (some_follow_) all_parameters_ = compile(values);
+}
+
+double Dynamics::at_start(const Node& n) const {
+  if (n.kind == Kind::time) return start_time_;
+  if (n.kind == Kind::parameter) return static_cast<double>(parameters_[n.index]);
+  if (n.kind == Kind::jet && n.index < coordinates_ && n.order < 2) return motion_start_[2 * n.index + n.order];
+  if (n.kind == Kind::state && n.index < model_states_ && n.order == 0)
+    return motion_start_[2 * coordinates_ + n.index];
+  return 0;
+}
+
+std::vector<long double> Dynamics::parameters(InputsAndParameters given, std::size_t count, std::size_t k) const {
+  std::vector<long double> all = parameters_;
+  const auto number = [&](std::span<const double> of, std::size_t size, std::size_t i) {
+    return of.size() == size ? of[i] : of[i * count + k];
+  };
+  if (!given.p.empty()) {
+    for (std::size_t i = 0; i < free_.size(); ++i) all[free_[i]] = number(given.p, free_.size(), i);
+    if (some_follow_) {
+      Machine<long double> machine(all_parameters_, 0, all);
+      machine.evaluate();
+      for (std::size_t i = 0; i < all.size(); ++i) all[i] = machine.value(i);
+    }
+  }
+  if (!given.u.empty())
+    for (std::size_t i = 0; i < inputs_; ++i) all[all.size() - inputs_ + i] = number(given.u, inputs_, i);
+  return all;
+}
+
+bool Dynamics::Call::common(std::size_t inputs, std::size_t parameters) const {
+  return count == 1 || (given.u.size() <= inputs && given.p.size() <= parameters);
+}
+
 template <class F>
-void Dynamics::with_kernel(int lanes, const F& f) const {
-  std::vector<std::unique_ptr<Kernel>>& pool = lanes == 1 ? alone_ : in_lanes_;
-  std::unique_ptr<Kernel> kernel;
+void Dynamics::with_kernel(int lanes, const Call& call, const F& f) const {
+  std::vector<Worker>& pool = lanes == 1 ? alone_ : in_lanes_;
+  Worker worker;
   {
     const std::lock_guard lock(idle_);
-    if (!pool.empty()) kernel = std::move(pool.back()), pool.pop_back();
+    if (!pool.empty()) worker = std::move(pool.back()), pool.pop_back();
   }
-  if (!kernel) {
-    kernel = std::make_unique<Kernel>(plan_, lanes);
-    for (int lane = 0; lane < lanes; ++lane) kernel->set_parameters(lane, parameters_);
-  }
-  f(*kernel);
+  const bool fresh = !worker.kernel;
+  if (fresh) worker.kernel = std::make_unique<Kernel>(plan_, lanes);
+  const auto set = [&](const std::vector<long double>& parameters) {
+    for (int lane = 0; lane < lanes; ++lane) worker.kernel->set_coefficients(lane, parameters);
+  };
+  if (call.of_start() && (fresh || worker.as_given)) set(parameters_);
+  if (!call.of_start() && call.common(inputs_, free_.size())) set(parameters(call.given, call.count, 0));
+  worker.as_given = !call.of_start();
+  f(*worker.kernel);
   const std::lock_guard lock(idle_);
-  pool.push_back(std::move(kernel));
+  pool.push_back(std::move(worker));
 }
 
 // What leads one state by the reference; NaN where the equations have no solution.
-std::vector<double> Dynamics::by_reference(double t, const std::function<double(std::size_t)>& state) const {
-  Expansion<long double> point(plan_->program(), parameters_, 1);
+std::vector<double> Dynamics::by_reference(double t, const std::function<double(std::size_t)>& state,
+                                           const std::vector<long double>& parameters) const {
+  Expansion<long double> point(plan_->program(), parameters, 1);
   std::vector<long double> entries;
   for (const Unknown& u : unknowns_)
     for (int k = 0; k < u.order; ++k) entries.push_back(state(k == 0 ? u.value : u.rate));
@@ -115,13 +173,19 @@ std::vector<double> Dynamics::by_reference(double t, const std::function<double(
 }
 
 // The states from..to, as many at once as the kernel has lanes; what is left over of them holds the last one.
-void Dynamics::compute(Kernel& kernel, double t, const double* x, std::size_t count, std::size_t from, std::size_t to,
-                       double* rates) const {
-  const std::size_t lanes = static_cast<std::size_t>(kernel.lanes());
+void Dynamics::compute(Kernel& kernel, const Call& call, std::size_t from, std::size_t to) const {
+  const std::size_t lanes = static_cast<std::size_t>(kernel.lanes()), count = call.count;
+  const bool common = call.common(inputs_, free_.size());
   for (std::size_t first = from; first < to; first += lanes) {
     const std::size_t some = std::min(lanes, to - first);
-    const auto state = [&](std::size_t i, std::size_t lane) { return x[i * count + first + std::min(lane, some - 1)]; };
-    kernel.load_point(t, [&](std::size_t j, int k, std::size_t lane) {
+    const auto state = [&](std::size_t i, std::size_t lane) {
+      return call.x[i * count + first + std::min(lane, some - 1)];
+    };
+    if (!common)
+      for (std::size_t lane = 0; lane < lanes; ++lane)
+        kernel.set_coefficients(static_cast<int>(lane),
+                                parameters(call.given, count, first + std::min(lane, some - 1)));
+    kernel.load_point(call.t, [&](std::size_t j, int k, std::size_t lane) {
       const Unknown& u = unknowns_[j];
       return k < u.order ? state(k == 0 ? u.value : u.rate, lane) : 0;
     });
@@ -129,31 +193,34 @@ void Dynamics::compute(Kernel& kernel, double t, const double* x, std::size_t co
     for (std::size_t lane = 0; lane < some; ++lane) {
       // The pivots were chosen at the start: where they are small, the reference chooses others.
       const bool healthy = kernel.pivots(static_cast<int>(lane)).health > kHealthy;
-      const std::vector<double> solved =
-          healthy ? std::vector<double>() : by_reference(t, [&](std::size_t i) { return state(i, lane); });
       const std::size_t k = first + lane;
+      const std::vector<double> solved =
+          healthy
+              ? std::vector<double>()
+              : by_reference(call.t, [&](std::size_t i) { return state(i, lane); }, parameters(call.given, count, k));
       for (std::size_t j = 0; j < unknowns_.size(); ++j) {
         const Unknown& u = unknowns_[j];
         if (u.order == 0) continue;
-        if (u.order == 2) rates[u.value * count + k] = state(u.rate, lane);
-        rates[u.rate * count + k] = healthy ? kernel.derivative(j, u.order, static_cast<int>(lane)) : solved[j];
+        if (u.order == 2) call.rates[u.value * count + k] = state(u.rate, lane);
+        call.rates[u.rate * count + k] = healthy ? kernel.derivative(j, u.order, static_cast<int>(lane)) : solved[j];
       }
     }
   }
 }
 
-void Dynamics::rates(double t, const double* x, std::size_t count, double* rates) const {
+void Dynamics::rates(double t, const double* x, std::size_t count, double* rates, InputsAndParameters given) const {
+  const Call call{t, x, count, rates, given};
   if (count < kManyLanes) {
-    with_kernel(1, [&](Kernel& k) { compute(k, t, x, count, 0, count, rates); });
+    with_kernel(1, call, [&](Kernel& k) { compute(k, call, 0, count); });
     return;
   }
   const int lanes = tiers().back().lanes;
   plan_->compile(code_cache(), lanes);
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
-    with_kernel(lanes, [&](Kernel& k) {
+    with_kernel(lanes, call, [&](Kernel& k) {
       for (std::size_t from; (from = next.fetch_add(kManyThreads)) < count;)
-        compute(k, t, x, count, from, std::min(count, from + kManyThreads), rates);
+        compute(k, call, from, std::min(count, from + kManyThreads));
     });
   };
   std::vector<std::jthread> others;
@@ -162,13 +229,14 @@ void Dynamics::rates(double t, const double* x, std::size_t count, double* rates
   work();
 }
 
-std::vector<double> Dynamics::leading(double t, const std::vector<double>& x) const {
-  std::vector<double> list(unknowns_.size());
-  with_kernel(1, [&](Kernel& k) {
-    std::vector<double> rates(x.size());
-    compute(k, t, x.data(), 1, 0, 1, rates.data());
+std::vector<double> Dynamics::leading(double t, const std::vector<double>& x, InputsAndParameters given) const {
+  std::vector<double> list(unknowns_.size()), rates(x.size());
+  const Call call{t, x.data(), 1, rates.data(), given};
+  with_kernel(1, call, [&](Kernel& k) {
+    compute(k, call, 0, 1);
     for (std::size_t j = 0; j < list.size(); ++j) list[j] = k.derivative(j, unknowns_[j].order);
-    if (!(k.pivots(0).health > kHealthy)) list = by_reference(t, [&](std::size_t i) { return x[i]; });
+    if (!(k.pivots(0).health > kHealthy))
+      list = by_reference(t, [&](std::size_t i) { return x[i]; }, parameters(given, 1, 0));
   });
   return list;
 }

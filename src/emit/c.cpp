@@ -1,9 +1,9 @@
 #include <algorithm>
 
 #include "base/escape.h"
+#include "emit/statements.h"
+#include "emit/text.h"
 #include "numeric/number.h"
-#include "program/emit_statements.h"
-#include "program/emit_text.h"
 
 namespace anholon {
 
@@ -11,69 +11,7 @@ namespace {
 
 using namespace emit;
 
-// `$` marks the name that the user gave. The tolerances are those of program/expansion.cpp.
-constexpr const char* kSolver = R"(
-/* Factors a (row by row), its rows and columns divided by their largest entries, with partial
-   pivoting. Returns 1 if a pivot is no more than round-off, 3 if an entry is not a number. */
-static int $_factor(double *a, int *order, double *row, double *column)
-{
-  const int n = $_UNKNOWNS;
-  const double tiny = 50 * 1.1102230246251565e-16;
-  int i, j, k;
-  for (i = 0; i < n; ++i) {
-    order[i] = i;
-    row[i] = 0;
-    for (j = 0; j < n; ++j) {
-      if (!isfinite(a[i * n + j])) return 3;
-      if (fabs(a[i * n + j]) > row[i]) row[i] = fabs(a[i * n + j]);
-    }
-    if (!(row[i] > 0)) return 1;
-    for (j = 0; j < n; ++j) a[i * n + j] /= row[i];
-  }
-  for (j = 0; j < n; ++j) {
-    column[j] = 0;
-    for (i = 0; i < n; ++i)
-      if (fabs(a[i * n + j]) > column[j]) column[j] = fabs(a[i * n + j]);
-    if (!(column[j] > 0)) return 1;
-    for (i = 0; i < n; ++i) a[i * n + j] /= column[j];
-  }
-  for (k = 0; k < n; ++k) {
-    int best = k;
-    const double *top;
-    for (i = k + 1; i < n; ++i)
-      if (fabs(a[order[i] * n + k]) > fabs(a[order[best] * n + k])) best = i;
-    i = order[k], order[k] = order[best], order[best] = i;
-    top = a + order[k] * n;
-    if (!(fabs(top[k]) > tiny)) return 1;
-    for (i = k + 1; i < n; ++i) {
-      double *r = a + order[i] * n;
-      r[k] /= top[k];
-      for (j = k + 1; j < n; ++j) r[j] -= r[k] * top[j];
-    }
-  }
-  return 0;
-}
-
-/* x = a^-1 b with the factors of a. */
-static void $_solve(const double *a, const int *order, const double *row, const double *column,
-  const double *b, double *x)
-{
-  const int n = $_UNKNOWNS;
-  int i, j;
-  for (i = 0; i < n; ++i) {
-    const double *r = a + order[i] * n;
-    x[i] = b[order[i]] / row[order[i]];
-    for (j = 0; j < i; ++j) x[i] -= r[j] * x[j];
-  }
-  for (i = n - 1; i >= 0; --i) {
-    const double *r = a + order[i] * n;
-    for (j = i + 1; j < n; ++j) x[i] -= r[j] * x[j];
-    x[i] /= r[i];
-  }
-  for (i = 0; i < n; ++i) x[i] /= column[i];
-}
-)";
-
+// `$` marks the name that the user gave.
 // The Jacobian is computed once (@ONCE) or in each round (@EACH); @SETTLED: the step no longer shrinks, and the bound
 // on its size.
 constexpr const char* kNewton = R"(
@@ -100,12 +38,6 @@ int $_leading(double t, const double *state, const double *p, double *lead)
 }
 )";
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
-  return text;
-}
-
 std::vector<std::string> targets(const std::string& array, std::size_t count) {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < count; ++i) out.push_back(array + "[" + std::to_string(i) + "]");
@@ -130,8 +62,7 @@ class CFile {
  public:
   CFile(const System& system, const Structure& structure, const EmitOptions& options)
       : system_(system), structure_(structure), options_(options), m_(motion(system, structure, options)),
-        names_(system, structure, m_), writer_(system, structure, m_, names_, Language::c),
-        inputs_(!m_.inputs.empty()) {
+        names_(system, structure, m_), writer_(*system.model->graph, names_, Language::c), inputs_(!m_.inputs.empty()) {
     const std::size_t n = system.size();
     residual_ = writer_.body(m_.residual, targets("out", n));
     jacobian_ = writer_.body(entries(m_.jacobian), targets("out", n * n), true);
@@ -143,7 +74,7 @@ class CFile {
   }
 
   std::string text() const {
-    const std::string program = contents() + declarations() + tables() + parameters() + equations() + kSolver +
+    const std::string program = contents() + declarations() + tables() + parameters() + equations() + c_solver() +
                                 newton() + right_side() + start();
     // A title may contain a $.
     return "/*\n" + lines(head(system_, structure_, m_, options_), " * ") +
@@ -165,12 +96,14 @@ class CFile {
 
   // What precedes the statements of a function of all arguments: its own inputs, and a mention of what it does not read.
   std::string before(const Statements& s) const {
-    const std::string own = !inputs_   ? ""
-                            : s.inputs ? "  double own[$_INPUTS];\n  if (!u) $_inputs(t, state, p, own), u = own;\n"
-                                       : "  (void)u;\n";
-    const bool all = s.inputs;  // passed on to the formulas of the inputs
-    return own +
-           unused({{"t", all || s.time}, {"state", all || s.state}, {"lead", s.lead}, {"p", all || s.parameters}});
+    const std::string own = !inputs_       ? ""
+                            : s.reads("u") ? "  double own[$_INPUTS];\n  if (!u) $_inputs(t, state, p, own), u = own;\n"
+                                           : "  (void)u;\n";
+    const bool all = s.reads("u");  // passed on to the formulas of the inputs
+    return own + unused({{"t", all || s.time},
+                         {"state", all || s.reads("state")},
+                         {"lead", s.reads("lead")},
+                         {"p", all || s.reads("p")}});
   }
 
   // The comment that lists the functions, and the headers.
@@ -236,15 +169,15 @@ class CFile {
     std::string out;
     if (inputs_)
       out += "\nvoid $_inputs(double t, const double *state, const double *p, double *out)\n{\n" +
-             unused({{"t", formulas_.time}, {"state", formulas_.state}, {"p", formulas_.parameters}}) + formulas_.text +
-             "}\n";
+             unused({{"t", formulas_.time}, {"state", formulas_.reads("state")}, {"p", formulas_.reads("p")}}) +
+             formulas_.text + "}\n";
     out += "\nvoid $_residual" + arguments() + "\n{\n" + before(residual_) + residual_.text + "}\n";
     out += "\nvoid $_jacobian" + arguments() + "\n{\n  int i;\n" + before(jacobian_) +
            "  for (i = 0; i < $_UNKNOWNS * $_UNKNOWNS; ++i) out[i] = 0;\n" + jacobian_.text + "}\n";
     return out + "\nvoid $_hidden(double t, const double *state, const double *p, double *out)\n{\n" +
            unused({{"t", hidden_.time},
-                   {"state", hidden_.state},
-                   {"p", hidden_.parameters},
+                   {"state", hidden_.reads("state")},
+                   {"p", hidden_.reads("p")},
                    {"out", !m_.hidden.empty()}}) +
            hidden_.text + "}\n";
   }

@@ -1,4 +1,4 @@
-#include "program/emit_motion.h"
+#include "emit/motion.h"
 
 #include "base/assert.h"
 
@@ -10,17 +10,15 @@ std::string times_differentiated(int c) {
   return c == 0 ? "" : c == 1 ? ", differentiated once" : ", differentiated " + std::to_string(c) + " times";
 }
 
-// Throws Failure for a model whose motion a program cannot compute.
-void refuse_unwritable(const System& s) {
-  const Model& model = *s.model;
-  if (!model.states.empty())
-    throw Failure(model.states[0].span,
-                  "a program for a model with states ('" + model.states[0].name + "') is not written yet",
-                  "anholon simulate computes its motion");
+void refuse_events(const Model& model) {
   for (const Event& e : model.events)
     if (!e.set.empty())
       throw Failure(e.span, "a program for a model whose events set something ('" + e.name + "') is not written yet",
                     "anholon simulate computes its motion");
+}
+
+void refuse_unknown_functions(const System& s) {
+  const Model& model = *s.model;
   for (NodeId id : symbols(s.equations)) {
     const Node& node = model.graph->node(id);
     if (node.kind == Kind::given)
@@ -120,9 +118,14 @@ std::size_t Motion::place(std::size_t variable, unsigned order) const {
 }
 
 Motion motion(const System& s, const Structure& structure, const EmitOptions& options) {
-  refuse_unwritable(s);
+  refuse_events(*s.model);
+  return motion_between_events(s, structure, options.inputs);
+}
+
+Motion motion_between_events(const System& s, const Structure& structure, std::span<const InputFormula> inputs) {
+  refuse_unknown_functions(s);
   Motion m;
-  for (const InputFormula& u : options.inputs) {
+  for (const InputFormula& u : inputs) {
     m.inputs.push_back(u.control);
     m.input_values.push_back(u.value);
     m.input_names.push_back(s.model->controls[u.control].name);
@@ -137,9 +140,10 @@ Motion motion(const System& s, const Structure& structure, const EmitOptions& op
 std::vector<double> start_state(const System& s, const Motion& m, const EmitOptions::Start& start) {
   std::vector<double> out;
   for (const StateEntry& e : m.state)
-    out.push_back(e.variable >= s.coordinates || e.order > 1 ? 0
-                  : e.order == 0                             ? start.q[e.variable]
-                                                             : start.qd[e.variable]);
+    out.push_back(e.variable >= s.mechanical()                 ? start.states[e.variable - s.mechanical()]
+                  : e.variable >= s.coordinates || e.order > 1 ? 0
+                  : e.order == 0                               ? start.q[e.variable]
+                                                               : start.qd[e.variable]);
   return out;
 }
 

@@ -1,9 +1,9 @@
 // The generated texts in detail; test/backends/check_generated.py compiles and runs them.
 #include <gtest/gtest.h>
 
+#include "emit/names.h"
+#include "emit/text.h"
 #include "numeric/number.h"
-#include "program/emit_names.h"
-#include "program/emit_text.h"
 #include "support/chain.h"
 #include "support/models.h"
 #include "tape/tape.h"

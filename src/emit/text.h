@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "program/emit_motion.h"
+#include "emit/motion.h"
 
 namespace anholon::emit {
 
@@ -27,6 +27,12 @@ Column entries(const std::vector<Column>& jacobian);
 
 // The time derivative of entry i of the state: lead[j] or state[k].
 std::string rate_of_state(const Structure& structure, const Motion& motion, std::size_t i);
+
+// The functions $_factor and $_solve of linear equations in C, of $_UNKNOWNS; `$` marks the prefix of names.
+const char* c_solver();
+
+// The text with all of `from` replaced.
+std::string replaced(std::string text, const std::string& from, const std::string& to);
 
 // The text with its first `mark` replaced.
 std::string put(std::string text, const std::string& mark, const std::string& by);

@@ -13,6 +13,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "structure/structure.h"
 
@@ -29,7 +30,8 @@ struct EmitOptions {
   std::string made_by;          // the command line, for the head of the text
   struct Start {
     double t = 0;
-    std::vector<double> q, qd;  // by coordinate
+    std::vector<double> q, qd;   // by coordinate
+    std::vector<double> states;  // of the model
   };
   std::optional<Start> start;  // an initial state
   std::vector<InputFormula> inputs;

@@ -1,4 +1,4 @@
-#include "program/emit_names.h"
+#include "emit/names.h"
 
 #include <algorithm>
 #include <cctype>
@@ -121,20 +121,51 @@ std::string LocalNames::fresh(const std::string& wanted) {
   return name;
 }
 
-LocalNames::LocalNames(const System& s, const Structure& structure, const Motion& motion)
-    : taken_(std::begin(kReserved), std::end(kReserved)) {
+LocalNames::LocalNames(std::vector<std::string> arrays)
+    : arrays_(std::move(arrays)), taken_(std::begin(kReserved), std::end(kReserved)) {
   for (const FunctionInfo& f : elementary_functions()) taken_.insert(f.c);
+  taken_.insert(arrays_.begin(), arrays_.end());
+}
+
+void LocalNames::add(NodeId id, const std::string& wanted, Place place) {
+  symbols_[id] = fresh(wanted);
+  places_[id] = place;
+}
+
+const LocalNames::Place* LocalNames::place(NodeId id) const {
+  const auto it = places_.find(id);
+  return it == places_.end() ? nullptr : &it->second;
+}
+
+LocalNames::LocalNames(const System& s, const Structure& structure, const Motion& motion)
+    : LocalNames(std::vector<std::string>{"state", "lead", "p"}) {
+  enum { state, lead, parameters, inputs };
   Graph& g = *s.model->graph;
   symbols_[g.time().id] = "t";
-  if (!motion.inputs.empty()) taken_.insert({"u", "own"});
-  for (std::size_t j = 0; j < s.size(); ++j) symbols_[s.symbol(j, 0).id] = fresh(s.variable_names[j]);
+  if (!motion.inputs.empty()) arrays_.push_back("u"), taken_.insert({"u", "own"});
+  const auto add_variable = [&](std::size_t j, int k, const std::string& wanted) {
+    add(s.symbol(j, static_cast<unsigned>(k)).id, wanted,
+        k < structure.d[j] ? Place{state, motion.place(j, static_cast<unsigned>(k))} : Place{lead, j});
+  };
+  for (std::size_t j = 0; j < s.size(); ++j) add_variable(j, 0, s.variable_names[j]);
   for (std::size_t i = 0; i < s.model->parameters.size(); ++i)
-    symbols_[g.parameter(static_cast<std::uint32_t>(i)).id] = fresh(s.model->parameters[i].name);
+    add(g.parameter(static_cast<std::uint32_t>(i)).id, s.model->parameters[i].name, {parameters, i});
   for (std::size_t k = 0; k < motion.inputs.size(); ++k)
-    symbols_[g.control(static_cast<std::uint32_t>(motion.inputs[k]), 0).id] = fresh(motion.input_names[k]);
+    add(g.control(static_cast<std::uint32_t>(motion.inputs[k]), 0).id, motion.input_names[k], {inputs, k});
   for (std::size_t j = 0; j < s.size(); ++j)
-    for (int k = 1; k <= structure.d[j]; ++k)
-      symbols_[s.symbol(j, static_cast<unsigned>(k)).id] = fresh(s.variable_names[j] + "_" + std::to_string(k));
+    for (int k = 1; k <= structure.d[j]; ++k) add_variable(j, k, s.variable_names[j] + "_" + std::to_string(k));
+}
+
+LocalNames::LocalNames(const RateFormulas& f) : LocalNames(std::vector<std::string>{"x", "lead", "u", "p"}) {
+  enum { x, lead, inputs, parameters };
+  symbols_[f.model->graph->time().id] = "t";
+  const auto add_all = [&](const RateFormulas::Symbols& list, std::size_t array) {
+    for (std::size_t i = 0; i < list.symbols.size(); ++i) add(list.symbols[i].id, list.names[i], {array, i});
+  };
+  add_all(f.x, x);
+  add_all(f.u, inputs);
+  add_all(f.p, parameters);
+  add_all(f.lead, lead);
 }
 
 }  // namespace anholon::emit

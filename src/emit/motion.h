@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "program/emit.h"
+#include "emit/emit.h"
 
 namespace anholon::emit {
 
@@ -29,7 +29,10 @@ struct Motion {
   std::size_t place(std::size_t variable, unsigned order) const;
 };
 
+// Throws Failure for a model whose motion a program cannot compute.
 Motion motion(const System& system, const Structure& structure, const EmitOptions& options);
+// The equations between events, of which all models have some. Throws Failure for functions without a formula.
+Motion motion_between_events(const System& system, const Structure& structure, std::span<const InputFormula> inputs);
 
 // The initial state in the order of the state; multipliers begin with zero.
 std::vector<double> start_state(const System& system, const Motion& motion, const EmitOptions::Start& start);

@@ -1,0 +1,264 @@
+"""The rates as formulas, in the words of other libraries: NumPy, JAX, CasADi, SymPy, mpmath."""
+
+from __future__ import annotations
+
+import ast
+import ctypes
+import functools
+import os
+import shutil
+import subprocess
+import tempfile
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+from ._errors import ModelError
+
+if TYPE_CHECKING:
+    from .dynamics import Dynamics
+
+# NumPy's names of elementary functions, and those of other libraries where they differ.
+_SHORT = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh"}
+
+
+class _Library:
+    """What a library has, under NumPy's names.
+
+    Args:
+        module: the library.
+        names: its names of functions.
+        choose: choose(condition, a, b), for formulas with cases.
+    """
+
+    def __init__(self, module: Any, names: dict[str, str], choose: Callable[[Any, Any, Any], Any]) -> None:
+        self._module, self._names, self._choose = module, names, choose
+
+    def __getattr__(self, name: str) -> Any:
+        found = getattr(self._module, self._names.get(name, name))
+        setattr(self, name, found)
+        return found
+
+    def where(self, condition: Any, a: Any, b: Any) -> Any:
+        return self._choose(condition, a, b)
+
+    def searchsorted(self, knots: Sequence[float], x: Any, side: str) -> Any:
+        """The steps of a table: for take()."""
+        del side
+        return knots, x
+
+    def take(self, values: Sequence[float], at: Any) -> Any:
+        """The value whose index is the number of knots not above x."""
+        knots, x = at
+        out: Any = values[-1]
+        for knot, value in zip(reversed(knots), reversed(values[:-1]), strict=True):
+            out = self._choose(x < knot, value, out)
+        return out
+
+
+class _ExactNumbers(ast.NodeTransformer):
+    """Replaces 0.5 by _number("0.5")."""
+
+    def visit_Constant(self, node: ast.Constant) -> ast.AST:
+        if not isinstance(node.value, float):
+            return node
+        return ast.copy_location(ast.Call(ast.Name("_number", ast.Load()), [ast.Constant(repr(node.value))], []), node)
+
+
+class Formulas:
+    """The rates x' = f(t, x, u, p) and outputs y as formulas; see :meth:`Dynamics.formulas`.
+
+    Example:
+        >>> import anholon as an
+        >>> formulas = an.load("chaplygin-sleigh").dynamics().formulas
+        >>> formulas.sympy().rates.shape
+        (5, 1)
+    """
+
+    def __init__(self, dynamics: Dynamics, source: str) -> None:
+        self.dynamics: Dynamics = dynamics
+        self.source: str = source
+        self._module: dict[str, Any] = {}
+        exec(compile(source, "<formulas>", "exec"), self._module)
+
+    def _with_numbers(self, number: Callable[[str], Any]) -> dict[str, Any]:
+        """The functions of the module with numbers of another kind, made from their decimals."""
+        tree = ast.parse(self.source)
+        tree.body = [_ExactNumbers().visit(node) if isinstance(node, ast.FunctionDef) else node for node in tree.body]
+        module: dict[str, Any] = {"_number": number}
+        exec(compile(ast.fix_missing_locations(tree), "<formulas>", "exec"), module)
+        return module
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Outputs of the model that hold what these formulas do not know: multipliers, in independent velocities."""
+        return tuple(self._module["LEFT_OUT"])
+
+    def evaluate(
+        self,
+        library: Any,
+        solve: Callable[[list[list[Any]], list[Any]], Any],
+        t: Any,
+        x: Any,
+        u: Any,
+        p: Any,
+        number: Callable[[str], Any] | None = None,
+    ) -> tuple[list[Any], list[Any]]:
+        """Rates and outputs with the functions of any library.
+
+        Args:
+            library: has sin, cos, … and where under NumPy's names.
+            solve: solves matrix lead = right, given row by row.
+            t: the time, s.
+            x: the state, u: the inputs, p: the parameters; anything with an index.
+            number: makes the numbers in the formulas of their decimals; they are floats without it.
+        """
+        module = self._module if number is None else self._with_numbers(number)
+        lead = None
+        if module["LEAD"]:
+            matrix, right = module["equations"](library, t, x, u, p)
+            lead = solve(matrix, right)
+        return module["rates"](library, t, x, u, p, lead), module["outputs"](library, t, x, u, p, lead)
+
+    def numpy(self) -> Callable[..., Any]:
+        """A function f(t, x, u, p) of NumPy alone, with the shapes of :class:`Dynamics`; returns (x', y)."""
+        import numpy as np
+
+        def solve(matrix: list[list[Any]], right: list[Any]) -> Any:
+            rows = np.stack(np.broadcast_arrays(*(entry for row in matrix for entry in row), *right))
+            n = len(right)
+            a = np.moveaxis(rows[: n * n].reshape(n, n, *rows.shape[1:]), (0, 1), (-2, -1))
+            b = np.moveaxis(rows[n * n :], 0, -1)[..., None]
+            return np.moveaxis(np.linalg.solve(a, b)[..., 0], -1, 0)
+
+        def f(t: Any, x: Any, u: Any = None, p: Any = None) -> Any:
+            x = np.asarray(x, dtype=float)
+            u = self._module["START_INPUTS"] if u is None else np.asarray(u, dtype=float)
+            p = self._module["DEFAULTS"] if p is None else np.asarray(p, dtype=float)
+            with np.errstate(all="ignore"):
+                rates, outputs = self.evaluate(np, solve, t, x, u, p)
+            stacked = [np.stack([np.broadcast_to(row, x.shape[1:]) for row in rows]) if rows else np.empty((0, *x.shape[1:])) for rows in (rates, outputs)]
+            return stacked[0], stacked[1]
+
+        return f
+
+    def jax(self) -> Callable[..., Any]:
+        """A pure function f(t, x, u, p) of JAX, for ``jit``, ``vmap``, ``grad``; returns (x', y).
+
+        JAX computes with 32 bits unless ``jax.config.update("jax_enable_x64", True)`` comes first.
+        """
+        import jax.numpy as jnp
+
+        library = _Library(jnp, {}, jnp.where)
+        defaults, start_inputs = self._module["DEFAULTS"], self._module["START_INPUTS"]
+
+        def stack(rows: Sequence[Any], x: Any) -> Any:
+            return jnp.stack([jnp.broadcast_to(row, x.shape[1:]) for row in rows]) if rows else jnp.empty((0, *x.shape[1:]))
+
+        def f(t: Any, x: Any, u: Any = None, p: Any = None) -> Any:
+            x = jnp.asarray(x)
+
+            def solve(matrix: list[list[Any]], right: list[Any]) -> Any:
+                a = jnp.stack([stack(row, x) for row in matrix])
+                b = stack(right, x)
+                return jnp.moveaxis(jnp.linalg.solve(jnp.moveaxis(a, (0, 1), (-2, -1)), jnp.moveaxis(b, 0, -1)[..., None])[..., 0], -1, 0)
+
+            rates, outputs = self.evaluate(library, solve, t, x, start_inputs if u is None else u, defaults if p is None else p)
+            return stack(rates, x), stack(outputs, x)
+
+        return f
+
+    def sympy(self) -> SymPyRates:
+        """The formulas as SymPy expressions."""
+        return SymPyRates(self)
+
+    def casadi(self, name: str = "f") -> Any:
+        """A ``casadi.Function`` (t, x, u, p) -> (dx, y) of CasADi's own expressions, with all derivatives.
+
+        For long formulas :meth:`Dynamics.casadi_external` is faster.
+        """
+        import casadi
+
+        d = self.dynamics
+        t, x, u, p = (casadi.SX.sym(n, k) for n, k in (("t", 1), ("x", len(d.states)), ("u", len(d.inputs)), ("p", len(d.parameters))))
+
+        def solve(matrix: list[list[Any]], right: list[Any]) -> Any:
+            a = casadi.vertcat(*(casadi.horzcat(*row) for row in matrix))
+            return casadi.solve(a, casadi.vertcat(*right))
+
+        library = _Library(casadi, _SHORT | {"abs": "fabs"}, casadi.if_else)
+        rates, outputs = self.evaluate(library, solve, t, x, u, p)
+        return casadi.Function(name, [t, x, u, p], [casadi.vertcat(*rates), casadi.vertcat(*outputs)], ["t", "x", "u", "p"], ["dx", "y"])
+
+    def mpmath(self, t: Any, x: Sequence[Any], u: Sequence[Any] = (), p: Sequence[Any] | None = None) -> Any:
+        """The rates of one state with as many digits as mpmath has set; returns (x', y), two lists."""
+        import mpmath
+
+        def solve(matrix: list[list[Any]], right: list[Any]) -> Any:
+            return list(mpmath.lu_solve(mpmath.matrix(matrix), mpmath.matrix(right)))
+
+        library = _Library(mpmath, _SHORT | {"abs": "fabs"}, lambda condition, a, b: a if condition else b)
+        return self.evaluate(library, solve, mpmath.mpf(t), x, u, self._module["DEFAULTS"] if p is None else p, mpmath.mpf)
+
+
+class SymPyRates:
+    """Rates and outputs as SymPy expressions in symbols of these names, with the exact numbers of the model.
+
+    Where the rates are not explicit (``matrix`` is not None), they hold the symbols ``lead``, and ``matrix * lead = right``.
+    """
+
+    def __init__(self, formulas: Formulas) -> None:
+        import sympy
+
+        module = formulas._with_numbers(sympy.Rational)
+        self.t: Any = sympy.Symbol("t")
+        self.x, self.u, self.p, self.lead = (
+            [sympy.Symbol(name, real=True) for name in module[key]] for key in ("STATES", "INPUTS", "PARAMETERS", "LEAD")
+        )
+
+        def choose(condition: Any, a: Any, b: Any) -> Any:
+            return sympy.Piecewise((a, condition), (b, True))
+
+        library = _Library(sympy, _SHORT | {"abs": "Abs"}, choose)
+        given = (library, self.t, self.x, self.u, self.p)
+        self.matrix: Any = None
+        self.right: Any = None
+        if self.lead:
+            matrix, right = module["equations"](*given)
+            self.matrix, self.right = sympy.Matrix(matrix), sympy.Matrix(right)
+        rates, outputs = (module[key](*given, self.lead) for key in ("rates", "outputs"))
+        self.rates: Any = sympy.Matrix(rates)
+        self.outputs: Any = sympy.Matrix(outputs) if outputs else sympy.zeros(0, 1)
+
+
+@functools.lru_cache(maxsize=64)
+def compile_c(source: str, flags: tuple[str, ...] = ("-O2",)) -> str:
+    """Compiles C to a shared library that lives as long as the process; returns its path.
+
+    Raises:
+        ModelError: there is no C compiler, or it fails.
+    """
+    compiler = os.environ.get("CC") or shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
+    if not compiler:
+        raise ModelError("there is no C compiler\nhint: install one, such as gcc, or name it in the variable CC")
+    with tempfile.TemporaryDirectory(prefix="anholon-") as folder:
+        path = os.path.join(folder, "motion.c")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(source)
+        made = path[:-2] + ".so"
+        done = subprocess.run([compiler, *flags, "-fPIC", "-shared", path, "-o", made, "-lm"], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise ModelError(f"{compiler} fails:\n{done.stderr.strip()}")
+        # The loaded library stays when its file goes, but CasADi opens it by name.
+        kept = os.path.join(_folder(), f"{abs(hash((source, flags))):x}.so")
+        shutil.copyfile(made, kept)
+    ctypes.CDLL(kept)
+    return kept
+
+
+@functools.cache
+def _folder() -> str:
+    import atexit
+
+    folder = tempfile.mkdtemp(prefix="anholon-")
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder

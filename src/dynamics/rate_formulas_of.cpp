@@ -1,0 +1,280 @@
+#include "dynamics/rate_formulas_of.h"
+
+#include <limits>
+#include <set>
+
+#include "base/assert.h"
+#include "emit/motion.h"
+#include "expr/copy.h"
+#include "lowering/quasi_velocities.h"
+#include "lowering/velocity_algebra.h"
+#include "numeric/linear.h"
+
+namespace anholon {
+
+namespace {
+
+class Builder {
+ public:
+  Builder(Workspace& s, const Dynamics& of, std::span<const NodeId> input_formulas)
+      : s_(s), of_(of), motion_(emit::motion_between_events(s.system, s.structure, {})) {
+    const Model& model = *s.model;
+    for (const NodeId id : input_formulas) input_formulas_.push_back(put_masses(model, Expr{model.graph.get(), id}));
+    for (const Monitor& m : model.monitors) {
+      f_.output_names.push_back(m.name);
+      f_.outputs.push_back(put_masses(model, m.value));
+    }
+    f_.title = model.title;
+    f_.t = of.start_time();
+    f_.start = of.start();
+    for (const Dynamics::State& state : of.states())
+      f_.x.names.push_back(state.name), f_.meanings.push_back(state.meaning);
+  }
+
+  RateFormulas run() {
+    if (of_.minimal())
+      in_independent_velocities();
+    else
+      in_all_velocities();
+    const std::vector<Parameter>& parameters = s_.model->parameters;
+    Graph& g = *f_.model->graph;
+    const auto add = [&](RateFormulas::Symbols& to, std::vector<double>& values, std::size_t i) {
+      to.add(parameters[i].name, g.parameter(static_cast<std::uint32_t>(i)));
+      values.push_back(static_cast<double>(of_.parameters()[i]));
+    };
+    for (const std::size_t i : of_.free_parameters()) add(f_.p, f_.parameters, i);
+    for (std::size_t i = parameters.size() - of_.inputs(); i < parameters.size(); ++i) add(f_.u, f_.inputs, i);
+    put_parameters();
+    leave_out();
+    return std::move(f_);
+  }
+
+ private:
+  // x = q, q', z; lead: what the system is solved for.
+  void in_all_velocities() {
+    const System& s = s_.system;
+    f_.model = s_.model;
+    const std::size_t n = s.coordinates;
+    for (std::size_t j = 0; j < s.size(); ++j)
+      f_.lead.add(motion_.leading_names[j], s.symbol(j, static_cast<unsigned>(s_.structure.d[j])));
+    for (unsigned k = 0; k < 2; ++k)
+      for (std::size_t a = 0; a < n; ++a) {
+        f_.x.symbols.push_back(s.symbol(a, k));
+        f_.rates.push_back(s.symbol(a, k + 1));
+      }
+    for (std::size_t j = s.mechanical(); j < s.size(); ++j) {
+      f_.x.symbols.push_back(s.symbol(j, 0));
+      f_.rates.push_back(s.symbol(j, 1));
+    }
+    f_.equations = motion_.residual;
+    f_.input_formulas = input_formulas_;
+  }
+
+  // x = q, p, z with explicit rates. What holds multipliers is left out.
+  void in_independent_velocities() {
+    const System& s = s_.system;
+    const std::size_t n = s.coordinates, z = s_.model->states.size();
+    Column others;
+    std::vector<std::size_t> kept;
+    for (std::size_t i = 0; i < f_.outputs.size(); ++i)
+      if (!holds_multipliers(f_.outputs[i])) others.push_back(f_.outputs[i]), kept.push_back(i);
+    others.insert(others.end(), input_formulas_.begin(), input_formulas_.end());
+    const auto q = quasi_velocities(s, *s_.mechanics, others, [&](const Node& symbol) { return of_.at_start(symbol); });
+    ANHOLON_ASSERT(q && q->count + z + n == of_.states().size());
+    f_.model = q->system.model;
+    Graph& g = *f_.model->graph;
+    const auto written = [&](Expr e) { return written_out(e, n, q->system.rates); };
+    const auto unknown = [&](std::size_t i, unsigned order) { return g.state(static_cast<std::uint32_t>(i), order); };
+    // Equation n + i is  (state i)' - rate.
+    Column derivatives, rates;
+    for (std::size_t i = 0; i < z + q->count; ++i) {
+      derivatives.push_back(unknown(i, 1));
+      rates.push_back(written(derivatives[i] - q->system.equations[n + i]));
+    }
+    for (std::size_t a = 0; a < n; ++a) {
+      f_.x.symbols.push_back(g.jet(static_cast<std::uint32_t>(a), 0));
+      f_.rates.push_back(written(q->velocities[a]));
+    }
+    for (const auto& [from, to] : {std::pair{z, z + q->count}, std::pair{std::size_t{0}, z}})
+      for (std::size_t i = from; i < to; ++i) f_.x.symbols.push_back(unknown(i, 0)), f_.rates.push_back(rates[i]);
+    Column values;
+    for (Expr e : q->others) values.push_back(put(written(e), derivatives, rates));
+    std::vector<std::string> names;
+    std::size_t next = 0;
+    f_.outputs.clear();
+    for (std::size_t i = 0; i < f_.output_names.size(); ++i)
+      if (next < kept.size() && kept[next] == i)
+        names.push_back(f_.output_names[i]), f_.outputs.push_back(values[next++]);
+      else
+        f_.left_out.push_back(f_.output_names[i]);
+    f_.output_names = std::move(names);
+    f_.input_formulas.assign(values.begin() + static_cast<std::ptrdiff_t>(next), values.end());
+  }
+
+  static bool holds_multipliers(Expr e) {
+    for (const NodeId id : symbols({&e, 1}))
+      if (e.graph->node(id).kind == Kind::multiplier) return true;
+    return false;
+  }
+
+  // Parameters that follow from others, by their formulas.
+  void put_parameters() {
+    if (motion_.derived.empty()) return;
+    Column formulas;
+    for (const std::size_t i : motion_.derived) formulas.push_back(motion_.parameters[i]);
+    if (f_.model != s_.model) formulas = copied(formulas, *f_.model->graph);
+    for (Column* es : {&f_.rates, &f_.equations, &f_.outputs, &f_.input_formulas})
+      *es = substitute(*es, [&](NodeId id) {
+        const Node& n = f_.model->graph->node(id);
+        if (n.kind != Kind::parameter) return Expr{};
+        for (std::size_t k = 0; k < formulas.size(); ++k)
+          if (motion_.derived[k] == n.index) return formulas[k];
+        return Expr{};
+      });
+  }
+
+  // Leaves out what holds other symbols: derivatives beyond those solved for. Formulas of inputs hold no input and
+  // nothing that is solved for.
+  void leave_out() {
+    std::set<NodeId> known{f_.model->graph->time().id};
+    for (const RateFormulas::Symbols* list : {&f_.x, &f_.p})
+      for (Expr e : list->symbols) known.insert(e.id);
+    const auto holds_others = [&](Expr e) {
+      for (const NodeId id : symbols({&e, 1}))
+        if (!known.count(id)) return true;
+      return false;
+    };
+    for (Expr e : f_.input_formulas)
+      if (holds_others(e)) {
+        f_.input_formulas.clear();
+        break;
+      }
+    for (const RateFormulas::Symbols* list : {&f_.u, &f_.lead})
+      for (Expr e : list->symbols) known.insert(e.id);
+    for (std::size_t i = f_.outputs.size(); i-- > 0;)
+      if (holds_others(f_.outputs[i])) {
+        f_.left_out.push_back(f_.output_names[i]);
+        f_.outputs.erase(f_.outputs.begin() + static_cast<std::ptrdiff_t>(i));
+        f_.output_names.erase(f_.output_names.begin() + static_cast<std::ptrdiff_t>(i));
+      }
+  }
+
+  Workspace& s_;
+  const Dynamics& of_;
+  emit::Motion motion_;
+  Column input_formulas_;
+  RateFormulas f_;
+};
+
+Column gradients(const Column& es, const Column& by, std::size_t first_row, const auto& found) {
+  Column all;
+  for (std::size_t i = 0; i < es.size(); ++i) {
+    const Column d = gradient(es[i], by);
+    for (std::size_t c = 0; c < d.size(); ++c)
+      if (!is_zero(d[c])) all.push_back(d[c]), found(first_row + i, c);
+  }
+  return all;
+}
+
+}  // namespace
+
+RateFormulas rate_formulas_of(Workspace& s, const Dynamics& dynamics, std::span<const NodeId> input_formulas) {
+  return Builder(s, dynamics, input_formulas).run();
+}
+
+FormulaValues::FormulaValues(RateFormulas formulas) : formulas_(std::move(formulas)) {
+  const RateFormulas& f = formulas_;
+  inputs_ = compiled(f.input_formulas);
+  outputs_ = compiled(f.outputs);
+  Column equations;
+  for (const Column& row : f.matrix()) equations.insert(equations.end(), row.begin(), row.end());
+  const Column right = f.right();
+  equations.insert(equations.end(), right.begin(), right.end());
+  equations_ = compiled(equations);
+  Column by;
+  for (const RateFormulas::Symbols* list : {&f.lead, &f.x, &f.u, &f.p})
+    by.insert(by.end(), list->symbols.begin(), list->symbols.end());
+  Column partials;
+  std::size_t row = 0;
+  for (const Column* es : {&f.equations, &f.rates, &f.outputs}) {
+    const Column some = gradients(*es, by, row, [&](std::size_t r, std::size_t c) { partials_.push_back({r, c}); });
+    partials.insert(partials.end(), some.begin(), some.end());
+    row += es->size();
+  }
+  derivatives_ = compiled(partials);
+}
+
+FormulaValues::Compiled FormulaValues::compiled(const Column& es) const {
+  if (es.empty()) return {};
+  Compiled out{compile(es), {}};
+  std::unordered_map<NodeId, Compiled::Input> places{{formulas_.model->graph->time().id, {Compiled::From::time, 0}}};
+  const auto add = [&](const RateFormulas::Symbols& list, Compiled::From from) {
+    for (std::size_t i = 0; i < list.size(); ++i) places[list.symbols[i].id] = {from, i};
+  };
+  add(formulas_.x, Compiled::From::state);
+  add(formulas_.lead, Compiled::From::lead);
+  for (const Input& in : out.tape.inputs) out.inputs.push_back(places.at(in.symbol));
+  return out;
+}
+
+std::vector<double> FormulaValues::values(const Compiled& of, const Point& at) {
+  Machine<double> machine(of.tape, 0, {at.parameters.begin(), at.parameters.end()});
+  for (std::size_t i = 0; i < of.inputs.size(); ++i) {
+    const Compiled::Input& in = of.inputs[i];
+    machine.series(of.tape.inputs[i].slot)[0] = in.from == Compiled::From::time    ? at.t
+                                                : in.from == Compiled::From::state ? at.x[in.index]
+                                                : at.lead.empty()                  ? 0
+                                                                                   : at.lead[in.index];
+  }
+  machine.evaluate();
+  std::vector<double> out;
+  for (std::size_t i = 0; i < of.tape.roots.size(); ++i) out.push_back(machine.value(i));
+  return out;
+}
+
+std::vector<double> FormulaValues::inputs(const Point& at) const { return values(inputs_, at); }
+std::vector<double> FormulaValues::outputs(const Point& at) const { return values(outputs_, at); }
+
+FormulaValues::Equations FormulaValues::equations(const Point& at) const {
+  Equations out{values(equations_, at), {}};
+  const auto middle = out.matrix.end() - static_cast<std::ptrdiff_t>(formulas_.lead.size());
+  out.right.assign(middle, out.matrix.end());
+  out.matrix.erase(middle, out.matrix.end());
+  return out;
+}
+
+// d rates / dx  =  partial  -  d rates / d lead . (d equations / d lead)^-1 . d equations / dx
+FormulaValues::Derivatives FormulaValues::derivatives(const Point& at) const {
+  const RateFormulas& f = formulas_;
+  const std::size_t n = f.lead.size(), columns = f.x.size() + f.u.size() + f.p.size();
+  const std::vector<double> partials = values(derivatives_, at);
+  Derivatives out{f.rates.size() + f.outputs.size(), columns, {}};
+  Matrix<double> of_lead(n, n), others(n, columns), through(out.rows, n);
+  out.values.assign(out.rows * columns, 0);
+  for (std::size_t k = 0; k < partials_.size(); ++k) {
+    const auto [row, column] = partials_[k];
+    if (row < n)
+      (column < n ? of_lead(row, column) : others(row, column - n)) = partials[k];
+    else if (column < n)
+      through(row - n, column) = partials[k];
+    else
+      out.values[(row - n) * columns + column - n] = partials[k];
+  }
+  if (n == 0) return out;
+  Lu<double> lu;
+  if (!lu.factor(of_lead)) {
+    out.values.assign(out.values.size(), std::numeric_limits<double>::quiet_NaN());
+    return out;
+  }
+  std::vector<double> b(n), change;
+  for (std::size_t c = 0; c < columns; ++c) {
+    for (std::size_t i = 0; i < n; ++i) b[i] = others(i, c);
+    lu.solve(b, change);
+    for (std::size_t r = 0; r < out.rows; ++r)
+      for (std::size_t j = 0; j < n; ++j)
+        if (through(r, j) != 0) out.values[r * columns + c] -= through(r, j) * change[j];
+  }
+  return out;
+}
+
+}  // namespace anholon

@@ -1,0 +1,60 @@
+// The formulas of a function of rates (emit/rate_formulas.h), and their values and derivatives in doubles.
+#pragma once
+#include "dynamics/dynamics.h"
+#include "emit/rate_formulas.h"
+
+namespace anholon {
+
+// `scenario` is that of which `dynamics` was made; `input_formulas`: expressions of its model, one for each input.
+// Throws Failure for functions without a formula.
+RateFormulas rate_formulas_of(Workspace& scenario, const Dynamics& dynamics, std::span<const NodeId> input_formulas);
+
+// The formulas as tapes. May be called by many threads.
+class FormulaValues {
+ public:
+  explicit FormulaValues(RateFormulas formulas);
+  const RateFormulas& formulas() const { return formulas_; }
+
+  // A point: all parameters of the model, inputs among them, and what the equations were solved for (empty where rates
+  // are explicit).
+  struct Point {
+    double t;
+    std::span<const double> x, parameters, lead;
+  };
+  std::vector<double> inputs(const Point& at) const;
+  std::vector<double> outputs(const Point& at) const;
+  // matrix lead = right: the matrix row by row. REQUIRES: rates are not explicit; no lead is needed.
+  struct Equations {
+    std::vector<double> matrix, right;
+  };
+  Equations equations(const Point& at) const;
+  // Exact derivatives of rates, then outputs, by x, u and p: row by row. NaN where the equations have no solution.
+  struct Derivatives {
+    std::size_t rows = 0, columns = 0;
+    std::vector<double> values;
+  };
+  Derivatives derivatives(const Point& at) const;
+
+ private:
+  // An expression list as a tape, with what its inputs are.
+  struct Compiled {
+    enum class From : std::uint8_t { time, state, lead };
+    struct Input {
+      From from;
+      std::size_t index;
+    };
+    Tape tape;
+    std::vector<Input> inputs;
+  };
+  struct Partial {
+    std::size_t row, column;
+  };
+  Compiled compiled(const Column& es) const;
+  static std::vector<double> values(const Compiled& of, const Point& at);
+
+  RateFormulas formulas_;
+  Compiled inputs_, outputs_, equations_, derivatives_;
+  std::vector<Partial> partials_;  // of the derivatives: rows of equations, rates, outputs; columns of lead, x, u, p
+};
+
+}  // namespace anholon

@@ -1,0 +1,351 @@
+#include <algorithm>
+
+#include "base/escape.h"
+#include "emit/rate_formulas.h"
+#include "emit/statements.h"
+#include "emit/text.h"
+#include "numeric/number.h"
+
+namespace anholon {
+
+namespace {
+
+using namespace emit;
+
+// One block of the Jacobian: its entries column by column, each with the place of its value.
+struct Block {
+  std::size_t rows, columns;
+  std::vector<std::vector<std::pair<std::size_t, std::size_t>>> entries;  // by column: row, place
+};
+
+class CasadiFile {
+ public:
+  CasadiFile(const RateFormulas& f, const std::string& name, const std::string& made_by)
+      : f_(f), names_(f), writer_(*f.model->graph, names_, Language::c), name_(identifier(name, "motion")),
+        made_by_(made_by) {
+    symbols_ = {{f_.model->graph->time()}, f_.x.symbols, f_.u.symbols, f_.p.symbols};
+    results_ = {f_.rates, f_.outputs};
+  }
+
+  std::string text() {
+    const std::string functions = this->functions(),
+                      sign = writer_.used_sign() ? "static double $_sign(double x) { return x > 0 ? 1 : x "
+                                                   "< 0 ? -1 : 0; }\n\n"
+                                                 : "";
+    return replaced(head() + constants() + sign + functions + right_side() + interface(), "$", name_);
+  }
+
+ private:
+  static constexpr const char* kArguments =
+      "double t, const double *x, const double *lead, const double *u, const double *p";
+
+  std::string head() const {
+    std::string out = "/*\n * " + comment_line(f_.title.empty() ? "A motion" : f_.title) +
+                      "\n * Written by: " + comment_line(made_by_) + "\n *\n * Numbers are double, in SI units.\n";
+    const auto list = [&](const char* name, const std::vector<std::string>& of,
+                          const std::vector<std::string>& meanings) {
+      out += std::string(" * ") + name + ":";
+      for (std::size_t i = 0; i < of.size(); ++i)
+        out += "\n *   " + std::to_string(i) + "  " + comment_line(of[i]) +
+               (i < meanings.size() && !meanings[i].empty() ? " = " + comment_line(meanings[i]) : "");
+      out += of.empty() ? " none\n" : "\n";
+    };
+    list("x", f_.x.names, f_.meanings);
+    list("u", f_.u.names, {});
+    list("p", f_.p.names, {});
+    list("y", f_.output_names, {});
+    return out + R"( *
+ * int $_rhs(t, x, u, p, dx) has the rates; a null pointer for p stands for the default values. It returns 0, or 1 if the
+ * equations have no solution (dx is then NaN).
+ * $ is a function (t, x, u, p) -> (dx, y) in CasADi's external interface, with its Jacobian jac_$.
+ */
+#include <math.h>
+#include <string.h>
+
+#ifndef casadi_real
+#define casadi_real double
+#endif
+#ifndef casadi_int
+#define casadi_int long long int
+#endif
+
+)";
+  }
+
+  std::string constants() const {
+    std::string out =
+        "enum { $_STATES = " + std::to_string(f_.x.size()) + ", $_INPUTS = " + std::to_string(f_.u.size()) +
+        ", $_PARAMETERS = " + std::to_string(f_.p.size()) + ", $_OUTPUTS = " + std::to_string(f_.outputs.size()) +
+        ", $_UNKNOWNS = " + std::to_string(f_.lead.size()) + " };\n\n";
+    const auto numbers = [&](const char* name, const std::vector<double>& list) {
+      out += std::string("static const double $_") + name + "[] = {";
+      for (double x : list) out += number_text(x) + ", ";
+      out += "0};\n";
+    };
+    numbers("start", f_.start);
+    numbers("input_values", f_.inputs);
+    numbers("defaults", f_.parameters);
+    return out + "\n";
+  }
+
+  // A function of all arguments that sets out[i] to the i-th expression.
+  std::string function(const std::string& name, const Column& es, bool sparse = false) {
+    std::vector<std::string> targets;
+    for (std::size_t i = 0; i < es.size(); ++i) targets.push_back("out[" + std::to_string(i) + "]");
+    const Statements s = writer_.body(es, targets, sparse);
+    std::string out = "static void $_" + name + "(" + kArguments + ", double *out)\n{\n";
+    for (const char* argument : {"t", "x", "lead", "u", "p"})
+      if (!(std::string(argument) == "t" ? s.time : s.reads(argument)))
+        out += std::string("  (void)") + argument + ";\n";
+    return out + (es.empty() ? "  (void)out;\n" : "") + s.text + "}\n\n";
+  }
+
+  std::string functions() {
+    std::string out = function("rates", f_.rates) + function("outputs", f_.outputs);
+    if (!f_.explicit_rates()) {
+      out += function("matrix", entries(f_.matrix()), true) + function("right", f_.right());
+      out += replaced(c_solver(), "static int $_factor", "static int $_factor") + "\n";
+    }
+    return out + solution() + partials();
+  }
+
+  // lead, and the factors of its matrix for the Jacobian.
+  std::string solution() const {
+    if (f_.explicit_rates()) return {};
+    return R"(typedef struct {
+  double a[$_UNKNOWNS * $_UNKNOWNS], row[$_UNKNOWNS], column[$_UNKNOWNS], lead[$_UNKNOWNS];
+  int order[$_UNKNOWNS];
+} $_solution;
+
+static int $_leading(double t, const double *x, const double *u, const double *p, $_solution *s)
+{
+  double right[$_UNKNOWNS];
+  int i;
+  memset(s->a, 0, sizeof s->a);
+  $_matrix(t, x, 0, u, p, s->a);
+  $_right(t, x, 0, u, p, right);
+  if ($_factor(s->a, s->order, s->row, s->column)) {
+    for (i = 0; i < $_UNKNOWNS; ++i) s->lead[i] = NAN;
+    return 1;
+  }
+  $_solve(s->a, s->order, s->row, s->column, right, s->lead);
+  return 0;
+}
+
+)";
+  }
+
+  std::string right_side() const {
+    std::string out = "int $_rhs(double t, const double *x, const double *u, const double *p, double *dx)\n{\n";
+    out += f_.explicit_rates() ? "  int i;\n" : "  $_solution s;\n  int i, status;\n";
+    out += "  if (!p) p = $_defaults;\n";
+    out += f_.explicit_rates()
+               ? "  $_rates(t, x, 0, u, p, dx);\n  for (i = 0; i < $_STATES; ++i)\n    if (!isfinite(dx[i])) "
+                 "return 1;\n  return 0;\n}\n\n"
+               : "  status = $_leading(t, x, u, p, &s);\n  $_rates(t, x, s.lead, u, p, dx);\n  for (i = 0; i < "
+                 "$_STATES; ++i)\n    if (!isfinite(dx[i])) return 1;\n  return status;\n}\n\n";
+    return out;
+  }
+
+  // Partial derivatives of a list by lead, t, x, u and p; those that are not zero, and where they belong.
+  struct Partials {
+    Column es;
+    std::vector<std::vector<std::ptrdiff_t>> place;  // by row: of each column, or -1
+  };
+  Partials partials_of(const Column& es) const {
+    Column by = f_.lead.symbols;
+    for (const Column& s : symbols_) by.insert(by.end(), s.begin(), s.end());
+    Partials out;
+    for (Expr e : es) {
+      out.place.emplace_back();
+      for (Expr d : gradient(e, by)) {
+        out.place.back().push_back(is_zero(d) ? -1 : static_cast<std::ptrdiff_t>(out.es.size()));
+        if (!is_zero(d)) out.es.push_back(d);
+      }
+    }
+    return out;
+  }
+
+  // The Jacobian of the results as values one after the other, block by block.
+  std::string partials() {
+    Column results;
+    for (const Column& r : results_) results.insert(results.end(), r.begin(), r.end());
+    const Partials own = partials_of(results), below = partials_of(f_.equations);
+    std::string out =
+        function("partials", own.es) + (f_.explicit_rates() ? "" : function("equation_partials", below.es));
+    const std::size_t n = f_.lead.size();
+    // d equation / d column occurs; d result / d lead occurs.
+    const auto occurs = [&](std::size_t column) {
+      return std::any_of(below.place.begin(), below.place.end(), [&](const auto& row) { return row[n + column] >= 0; });
+    };
+    const auto through_lead = [&](std::size_t row) {
+      return std::any_of(own.place[row].begin(), own.place[row].begin() + static_cast<std::ptrdiff_t>(n),
+                         [](std::ptrdiff_t p) { return p >= 0; });
+    };
+    out += std::string(
+               "static int $_jacobian(double t, const double *x, const double *u, const double *p, double *out)\n{\n") +
+           "  double d[" + std::to_string(own.es.size() + 1) + "];\n";
+    if (!f_.explicit_rates())
+      out += "  double e[" + std::to_string(below.es.size() + 1) +
+             "], b[$_UNKNOWNS], s[$_UNKNOWNS];\n  $_solution at;\n  const int status = $_leading(t, x, u, p, &at);\n"
+             "  const double *lead = at.lead;\n  $_equation_partials(t, x, lead, u, p, e);\n";
+    else
+      out += "  const double *lead = 0;\n  const int status = 0;\n";
+    out += "  $_partials(t, x, lead, u, p, d);\n";
+    // Blocks: the result, then the argument.
+    for (const Column& result : results_)
+      for (const Column& argument : symbols_)
+        blocks_.push_back({result.size(), argument.size(), decltype(Block::entries)(argument.size())});
+    std::size_t place = 0, column = 0;
+    for (std::size_t argument = 0; argument < symbols_.size(); ++argument)
+      for (std::size_t c = 0; c < symbols_[argument].size(); ++c, ++column) {
+        const bool solved = n > 0 && occurs(column);
+        if (solved) {
+          for (std::size_t i = 0; i < n; ++i) {
+            const std::ptrdiff_t k = below.place[i][n + column];
+            out += "  b[" + std::to_string(i) + "] = " + (k < 0 ? "0" : "-e[" + std::to_string(k) + "]") + ";\n";
+          }
+          out += "  $_solve(at.a, at.order, at.row, at.column, b, s);\n";
+        }
+        std::size_t row = 0;
+        for (std::size_t result = 0; result < results_.size(); ++result) {
+          Block& block = blocks_[result * symbols_.size() + argument];
+          for (std::size_t r = 0; r < block.rows; ++r, ++row) {
+            const std::ptrdiff_t direct = own.place[row][n + column];
+            if (direct < 0 && !(solved && through_lead(row))) continue;
+            std::string value = direct < 0 ? "0" : "d[" + std::to_string(direct) + "]";
+            if (solved)
+              for (std::size_t j = 0; j < n; ++j)
+                if (own.place[row][j] >= 0)
+                  value += " + d[" + std::to_string(own.place[row][j]) + "]*s[" + std::to_string(j) + "]";
+            out += "  out[" + std::to_string(place) + "] = " + value + ";\n";
+            block.entries[c].push_back({r, place++});
+          }
+        }
+      }
+    values_ = place;
+    return out + "  return status;\n}\n\n";
+  }
+
+  static std::string ccs(const Block& b) {
+    std::string out = std::to_string(b.rows) + ", " + std::to_string(b.columns) + ", 0";
+    std::size_t total = 0;
+    for (const auto& column : b.entries) out += ", " + std::to_string(total += column.size());
+    for (const auto& column : b.entries)
+      for (const auto& [row, place] : column) out += ", " + std::to_string(row);
+    return out;
+  }
+
+  static Block dense(std::size_t rows) { return {rows, 1, {dense_column(rows)}}; }
+  static std::vector<std::pair<std::size_t, std::size_t>> dense_column(std::size_t rows) {
+    std::vector<std::pair<std::size_t, std::size_t>> out;
+    for (std::size_t r = 0; r < rows; ++r) out.push_back({r, r});
+    return out;
+  }
+  static Block empty(std::size_t rows) { return {rows, 1, {{}}}; }
+
+  static std::string cases(const std::string& function, const std::vector<std::string>& values, const char* otherwise) {
+    std::string out = function + "(casadi_int i)\n{\n  switch (i) {\n";
+    for (std::size_t i = 0; i < values.size(); ++i)
+      out += "  case " + std::to_string(i) + ": return " + values[i] + ";\n";
+    return out + "  default: return " + otherwise + ";\n  }\n}\n";
+  }
+
+  // What CasADi asks of a function: names and sparsities of its arguments and results.
+  static std::string asked(const std::string& function, const std::vector<std::string>& in,
+                           const std::vector<Block>& in_blocks, const std::vector<std::string>& out_names,
+                           const std::vector<Block>& out_blocks) {
+    std::string out = "casadi_int " + function + "_n_in(void) { return " + std::to_string(in.size()) +
+                      "; }\ncasadi_int " + function + "_n_out(void) { return " + std::to_string(out_names.size()) +
+                      "; }\n";
+    const auto quoted = [](const std::vector<std::string>& list) {
+      std::vector<std::string> all;
+      for (const std::string& s : list) all.push_back("\"" + s + "\"");
+      return all;
+    };
+    out += cases("const char *" + function + "_name_in", quoted(in), "0");
+    out += cases("const char *" + function + "_name_out", quoted(out_names), "0");
+    for (const bool into : {true, false}) {
+      const std::vector<Block>& blocks = into ? in_blocks : out_blocks;
+      const std::string name = function + (into ? "_sparsity_in" : "_sparsity_out");
+      std::vector<std::string> tables;
+      for (std::size_t i = 0; i < blocks.size(); ++i) {
+        tables.push_back(name + "_" + std::to_string(i));
+        out += "static const casadi_int " + tables.back() + "[] = {" + ccs(blocks[i]) + "};\n";
+      }
+      out += cases("const casadi_int *" + name, tables, "0");
+    }
+    return out + "int " + function +
+           "_work(casadi_int *sz_arg, casadi_int *sz_res, casadi_int *sz_iw, casadi_int *sz_w)\n{\n  if (sz_arg) "
+           "*sz_arg = " +
+           std::to_string(in.size()) + ";\n  if (sz_res) *sz_res = " + std::to_string(out_names.size()) +
+           ";\n  if (sz_iw) *sz_iw = 0;\n  if (sz_w) *sz_w = 0;\n  return 0;\n}\n\n";
+  }
+
+  std::string interface() const {
+    std::string out =
+        R"(static const double $_zeros[$_STATES + $_INPUTS + $_PARAMETERS + 1];
+
+int $(const casadi_real **arg, casadi_real **res, casadi_int *iw, casadi_real *w, int mem)
+{
+  const double t = arg[0] ? arg[0][0] : 0, *x = arg[1] ? arg[1] : $_zeros, *u = arg[2] ? arg[2] : $_zeros, *p = arg[3] ? arg[3] : $_zeros;
+  int status = 0;
+)" +
+        std::string(f_.explicit_rates()
+                        ? "  const double *lead = 0;\n"
+                        : "  const double *lead;\n  $_solution s;\n  status = $_leading(t, x, u, p, &s);\n  lead = "
+                          "s.lead;\n") +
+        R"(  (void)iw, (void)w, (void)mem;
+  if (res[0]) $_rates(t, x, lead, u, p, res[0]);
+  if (res[1]) $_outputs(t, x, lead, u, p, res[1]);
+  return status;
+}
+
+)";
+    const std::vector<std::string> in{"t", "x", "u", "p"}, results{"dx", "y"};
+    std::vector<Block> in_blocks, result_blocks, nothing;
+    for (const Column& s : symbols_) in_blocks.push_back(dense(s.size()));
+    for (const Column& r : results_) result_blocks.push_back(dense(r.size())), nothing.push_back(empty(r.size()));
+    out += asked("$", in, in_blocks, results, result_blocks);
+    out += "double $_default_in(casadi_int i) { (void)i; return 0; }\n\n";
+    std::vector<std::string> jac_in = in, jac_out;
+    for (const std::string& r : results) jac_in.push_back("out_" + r);
+    std::vector<Block> jac_in_blocks = in_blocks;
+    jac_in_blocks.insert(jac_in_blocks.end(), nothing.begin(), nothing.end());
+    for (const std::string& r : results)
+      for (const std::string& a : in) jac_out.push_back("jac_" + r + "_" + a);
+    out += "int jac_$(const casadi_real **arg, casadi_real **res, casadi_int *iw, casadi_real *w, int mem)\n{\n"
+           "  const double t = arg[0] ? arg[0][0] : 0, *x = arg[1] ? arg[1] : $_zeros, *u = arg[2] ? arg[2] : $_zeros, "
+           "*p = "
+           "arg[3] ? arg[3] : $_zeros;\n  double v[" +
+           std::to_string(values_ + 1) +
+           "];\n  const int status = $_jacobian(t, x, u, p, v);\n  (void)iw, (void)w, (void)mem;\n";
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      std::string body;
+      std::size_t k = 0;
+      for (const auto& column : blocks_[b].entries)
+        for (const auto& [row, place] : column)
+          body +=
+              "    res[" + std::to_string(b) + "][" + std::to_string(k++) + "] = v[" + std::to_string(place) + "];\n";
+      if (!body.empty()) out += "  if (res[" + std::to_string(b) + "]) {\n" + body + "  }\n";
+    }
+    out += "  return status;\n}\n\n";
+    return out + asked("jac_$", jac_in, jac_in_blocks, jac_out, blocks_);
+  }
+
+  const RateFormulas& f_;
+  LocalNames names_;
+  Writer writer_;
+  std::string name_, made_by_;
+  std::vector<Column> symbols_, results_;  // t, x, u, p; dx, y
+  std::vector<Block> blocks_;
+  std::size_t values_ = 0;
+};
+
+}  // namespace
+
+std::string emit_casadi(const RateFormulas& formulas, const std::string& name, const std::string& made_by) {
+  return CasadiFile(formulas, name, made_by).text();
+}
+
+}  // namespace anholon

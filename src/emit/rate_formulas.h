@@ -1,0 +1,51 @@
+// The motion as formulas  x' = f(t, x, u, p),  y = h(t, x, u, p)  for programs of others.
+//
+// Rates are explicit in independent velocities (theory: quasi-velocities). Otherwise they hold further unknowns `lead`:
+// accelerations, multipliers and rates of states, of which  equations(t, x, u, p, lead) = 0,  linear in them.
+#pragma once
+#include <memory>
+
+#include "system/system.h"
+
+namespace anholon {
+
+struct RateFormulas {
+  struct Symbols {
+    std::vector<std::string> names;
+    Column symbols;
+    std::size_t size() const { return symbols.size(); }
+    void add(std::string name, Expr symbol) {
+      names.push_back(std::move(name));
+      symbols.push_back(symbol);
+    }
+  };
+
+  std::shared_ptr<const Model> model;  // whose graph has the expressions, and whose names print them
+  std::string title;
+  Symbols x, u, p, lead;              // p: the parameters that do not follow from others
+  std::vector<std::string> meanings;  // of x: what an independent velocity is; empty for the others
+  Column rates;                       // of x, one by one
+  Column equations;                   // one for each of lead
+  Column input_formulas;              // u as the model has it, in t, x, p; empty where some hold what is solved for
+  std::vector<std::string> output_names;
+  Column outputs;
+  std::vector<std::string> left_out;  // outputs that hold multipliers, which independent velocities do not have
+
+  double t = 0;  // the initial state
+  std::vector<double> start, parameters, inputs;
+
+  bool explicit_rates() const { return lead.size() == 0; }
+  // d equations / d lead, row by row, and  right = -equations at lead = 0:  matrix lead = right.
+  std::vector<Column> matrix() const;
+  Column right() const;
+};
+
+// The rates as a Python module, whose functions take the library for arrays as an argument: NumPy, JAX, or what stands for
+// CasADi, SymPy and mpmath.
+std::string emit_formulas(const RateFormulas& formulas);
+
+// The rates as a C file: name_rhs(t, x, u, p, dx), and name with its Jacobian jac_name in CasADi's external interface,
+// (t, x, u, p) -> (dx, y).
+std::string emit_casadi(const RateFormulas& formulas, const std::string& name, const std::string& made_by);
+
+}  // namespace anholon
