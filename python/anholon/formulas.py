@@ -231,7 +231,7 @@ class SymPyRates:
 
 
 @functools.lru_cache(maxsize=64)
-def compile_c(source: str, flags: tuple[str, ...] = ("-O2",)) -> str:
+def compile_c(source: str, flags: tuple[str, ...] = ("-O1",)) -> str:
     """Compiles C to a shared library that lives as long as the process; returns its path.
 
     Raises:

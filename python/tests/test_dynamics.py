@@ -43,30 +43,146 @@ def test_independent_velocities_give_the_same_motion(name: str) -> None:
     assert any(not np.allclose(other, f(0.5, f.start), rtol=1e-6) for other in others)
 
 
-@pytest.mark.parametrize("name", [*MODELS, "rocket", "whipple"])
-def test_derivatives_are_exact(name: str) -> None:
+def by_differences(f: an.Dynamics, t: float, x: Any, u: Any, p: Any) -> Any:
+    """The derivatives of the rates by x, u and p: differences of order 4 in 40 digits, from the formulas."""
+    mpmath = pytest.importorskip("mpmath")
+    with mpmath.workdps(40):
+        h = mpmath.mpf(10) ** -9
+        given = [mpmath.mpf(float(v)) for v in (*x, *u, *p)]
+        n, m = len(x), len(u)
+
+        def rates(k: int, change: int) -> list[Any]:
+            at = [v + change * h if i == k else v for i, v in enumerate(given)]
+            rows: list[Any] = f.formulas.mpmath(t, at[:n], at[n : n + m], at[n + m :])[0]
+            return rows
+
+        columns = []
+        for k in range(len(given)):
+            up, down, up2, down2 = (rates(k, change) for change in (1, -1, 2, -2))
+            columns.append([float((8 * (a - b) - (c - d)) / (12 * h)) for a, b, c, d in zip(up, down, up2, down2, strict=True)])
+        return np.array(columns).T
+
+
+CASES = [(name, minimal) for name in [*MODELS, "rocket", "trailers", "snake"] for minimal in (True, False)] + [("whipple", False)]
+
+
+@pytest.mark.parametrize(("name", "minimal"), CASES)
+def test_derivatives_are_exact(name: str, minimal: bool) -> None:
     model = an.load(name)
+    f = model.dynamics(minimal=minimal, inputs=True)
+    x = f.start + 0.01 * np.cos(np.arange(len(f.start)))
+    u, p = f.u0 + 0.3, f.p0[:] * (1 if name == "whipple" else 1.01)
+    expected = by_differences(f, 0.25, x, u, p)
+    found = np.hstack([f.jac(0.25, x, u, p, by=by) for by in "xup"])
+    # Numbers of formulas are rounded to doubles on the one side.
+    assert np.abs(found - expected).max() <= 1e-12 * np.abs(expected).max()
+    v, w = np.cos(np.arange(len(x))), np.sin(np.arange(len(x)))
+    np.testing.assert_array_equal(f.jvp(0.25, x, v, u, p), f.jac(0.25, x, u, p) @ v)
+    np.testing.assert_array_equal(f.vjp(0.25, x, w, u, p, by="p"), w @ f.jac(0.25, x, u, p, by="p"))
+    wrong = expected.copy()
+    wrong[-1, 2] += 1e-9 * np.abs(expected).max()
+    assert np.abs(found - wrong).max() > 1e-12 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("name", ["trailers", "snake"])
+def test_inputs_are_arguments(name: str) -> None:
+    model = an.load(name)
+    for minimal in (True, False):
+        closed, f = model.dynamics(minimal=minimal), model.dynamics(minimal=minimal, inputs=True)
+        assert f.inputs == model.inputs and closed.inputs == []
+        x = f.start + 0.02
+        by_formulas = f.input(0.4, x)
+        np.testing.assert_allclose(f(0.4, x), closed(0.4, x), rtol=1e-11, atol=1e-12)
+        np.testing.assert_allclose(f(0.4, x, by_formulas), closed(0.4, x), rtol=1e-11, atol=1e-12)
+        assert not np.allclose(f(0.4, x, by_formulas + 1), closed(0.4, x), rtol=1e-3)
+        named = dict(zip(f.inputs, by_formulas, strict=True))
+        np.testing.assert_array_equal(f(0.4, x, named), f(0.4, x, by_formulas))
+        # One set of inputs for each state has the bits of a call of its own.
+        many = np.tile(x[:, None], 300)
+        u = by_formulas[:, None] + np.linspace(-1, 1, 300)
+        rates = f(0.4, many, u)
+        for k in (0, 7, 299):
+            np.testing.assert_array_equal(rates[:, k], f(0.4, x, u[:, k]))
+    one = model.dynamics(inputs=[model.inputs[-1]])
+    assert one.inputs == model.inputs[-1:]
+    with pytest.raises(an.ModelError, match="there is no input 'thrust'"):
+        model.dynamics(inputs=["thrust"])
+    with pytest.raises(ValueError, match="u has the shape"):
+        f(0.4, x, np.ones(7))
+    with pytest.raises(KeyError, match="thrust"):
+        f(0.4, x, {"thrust": 1})
+
+
+def test_parameters_are_arguments() -> None:
+    model = an.load("disc")
+    f = model.dynamics()
+    x = f.start + 0.1
+    other = model.with_(R=2, g=1.62).dynamics()
+    given = f(0, x, p={"R": 2, "g": 1.62})
+    assert other.parameters == f.parameters and not np.allclose(given, f(0, x), rtol=1e-3)
+    p = f.p0.copy()
+    p[f.parameters.index("R")], p[f.parameters.index("g")] = 2, 1.62
+    np.testing.assert_array_equal(given, f(0, x, None, p))
+    np.testing.assert_allclose(given, f.formulas.numpy()(0, x, None, p)[0], rtol=1e-13)
+    np.testing.assert_array_equal(f(0, x), f(0, x, None, None))
+    full, full_other = model.dynamics(minimal=False), model.with_(R=2, g=1.62).dynamics(minimal=False)
+    y = full.start + 0.1
+    np.testing.assert_allclose(full(0, y, p={"R": 2, "g": 1.62}), full_other(0, y), rtol=1e-12)
+
+
+def test_parameters_that_follow_from_others_change_with_them() -> None:
+    model = an.loads(
+        """
+        coordinates = ["x"]
+        particle = [{name = "a", mass = "m", position = ["x", 0, 0]}]
+        force = [{on = "a", vector = "-k*x*ex"}]
+        [parameters]
+        m = 2
+        w = 3
+        k = "m*w^2"
+        [initial]
+        q = {x = 1}
+        """
+    )
     f = model.dynamics(minimal=False)
-    x = f.start * (1 + 0.01 * np.cos(np.arange(len(f.start)))) + 0.01
-    jac = f.jac(0.25, x)
-    size = np.abs(jac).max()
-    for k in range(len(x)):
-        # Central differences of order 6.
-        h, e = 1e-3, np.eye(len(x))[k]
-        g = [f(0.25, x + i * h * e) - f(0.25, x - i * h * e) for i in (1, 2, 3)]
-        by_differences = (45 * g[0] - 9 * g[1] + g[2]) / (60 * h)
-        np.testing.assert_allclose(jac[:, k], by_differences, rtol=1e-7, atol=1e-7 * size)
-    v = np.cos(np.arange(len(x)))
-    np.testing.assert_array_equal(f.jvp(0.25, x, v), jac @ v)
-    np.testing.assert_array_equal(f.vjp(0.25, x, v), v @ jac)
-    if name in ("fourbar", "double-pendulum-cartesian"):
-        return  # with another length the start is inconsistent
-    by_parameter = f.jac(0.25, x, by="p")
-    for k, (p, value) in enumerate(model.parameters.items()):
-        h = 1e-4 * max(1, abs(value))
-        changes: list[dict[str, Any]] = [{p: value + h}, {p: value - h}]
-        up, down = (model.with_(**change).dynamics(minimal=False)(0.25, x) for change in changes)
-        np.testing.assert_allclose(by_parameter[:, k], (up - down) / (2 * h), rtol=1e-4, atol=1e-5 * max(1, np.abs(by_parameter).max()))
+    assert f.parameters == ["m", "w"]
+    assert f(0, [1, 0], p={"w": 5})[1] == pytest.approx(-25, rel=1e-15)
+    np.testing.assert_allclose(f.jac(0, [1, 0], by="p"), [[0, 0], [0, -6]], atol=1e-15)
+    assert f.formulas.sympy().lead and f.mass_matrix(0, [1, 0]).tolist() == [[2]]
+
+
+def test_the_equations_of_motion_as_arrays() -> None:
+    model = an.load("disc")
+    f = model.dynamics(minimal=False)
+    x = f.start + 0.05 * np.sin(np.arange(len(f.start)))
+    n = len(model.coordinates)
+    mass, phi, bias = f.mass_matrix(0, x), f.constraint_jacobian(0, x), f.bias(0, x)
+    assert mass.shape == (n, n) and phi.shape == (2, n) and np.allclose(mass, mass.T)
+    acceleration = f(0, x)[n:]
+    free = np.linalg.svd(phi)[2][len(phi) :]  # directions that the constraints leave free
+    np.testing.assert_allclose(free @ (mass @ acceleration + bias), 0, atol=1e-13)
+    assert np.abs(free @ bias).max() > 0.1
+    # The constraints keep their value to second order.
+    dt = 1e-6
+    later = x + dt * f(0, x)
+    np.testing.assert_allclose(f.constraint_jacobian(0, later) @ later[n:], phi @ x[n:], atol=1e-10)
+    with pytest.raises(an.ModelError, match="no mass matrix"):
+        model.dynamics().mass_matrix(0, model.dynamics().start)
+
+
+def test_outputs_are_those_of_a_run() -> None:
+    model = an.load("trailers")
+    run = model.simulate(to=1, every="0.5", error_estimate=False).expect()
+    for minimal in (True, False):
+        f = model.dynamics(minimal=minimal)
+        names = [state.name for state in f.states]
+        for row, t in enumerate(run.t):
+            full = {name: run[name][row] for name in run.columns}
+            x = [full[n] for n in names] if not minimal else f.state(
+                t, q={c.name: full[c.name] for c in model.coordinates}, qdot={c.name + "'": full[c.name + "'"] for c in model.coordinates}
+            )
+            for name, value in zip(f.outputs, f.output(t, x), strict=True):
+                assert value == pytest.approx(run[name][row], rel=1e-12, abs=1e-12)
 
 
 def test_states_there_and_back() -> None:

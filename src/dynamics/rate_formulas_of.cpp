@@ -1,11 +1,14 @@
 #include "dynamics/rate_formulas_of.h"
 
+#include <cmath>
 #include <limits>
 #include <set>
 
 #include "base/assert.h"
 #include "emit/motion.h"
+#include "emit/text.h"
 #include "expr/copy.h"
+#include "kernel/sparse_lu.h"
 #include "lowering/quasi_velocities.h"
 #include "lowering/velocity_algebra.h"
 #include "numeric/linear.h"
@@ -13,6 +16,8 @@
 namespace anholon {
 
 namespace {
+
+constexpr double kAround = 0.3;  // in coordinates and velocities
 
 class Builder {
  public:
@@ -46,6 +51,7 @@ class Builder {
     for (std::size_t i = parameters.size() - of_.inputs(); i < parameters.size(); ++i) add(f_.u, f_.inputs, i);
     put_parameters();
     leave_out();
+    choose_pivots();
     return std::move(f_);
   }
 
@@ -133,6 +139,34 @@ class Builder {
       });
   }
 
+  // By the values of the matrix around the start.
+  void choose_pivots() {
+    const std::size_t n = f_.lead.size();
+    if (n == 0) return;
+    const Column entries = emit::entries(f_.matrix());
+    const CompiledFormulas matrix(f_, entries);
+    std::vector<double> parameters(of_.parameters().begin(), of_.parameters().end()), x = f_.start;
+    std::vector<SampledEntry> sampled;
+    for (std::size_t k = 0; k < entries.size(); ++k)
+      if (!is_zero(entries[k]))
+        sampled.push_back(
+            {static_cast<std::uint32_t>(k / n), static_cast<std::uint32_t>(k % n), {}, is_number(entries[k])});
+    std::size_t samples = 0;
+    for (std::size_t attempt = 0; attempt < 3 * kSamples && samples < kSamples; ++attempt) {
+      for (std::size_t i = 0; i < x.size() && attempt > 0; ++i)
+        x[i] = f_.start[i] + kAround * std::sin(static_cast<double>(64 * attempt + i));
+      const std::vector<double> values = matrix.values({f_.t, x, parameters, {}});
+      std::size_t next = 0;
+      bool good = true;
+      for (std::size_t k = 0; k < values.size(); ++k)
+        if (!is_zero(entries[k])) good = std::isfinite(sampled[next++].value[samples] = values[k]) && good;
+      samples += good;
+    }
+    for (; samples > 0 && f_.pivots.empty(); --samples)
+      for (const SparseLu::Pivot& p : eliminate_sparse(static_cast<std::uint32_t>(n), sampled, samples).lu.pivots)
+        f_.pivots.push_back({p.row, p.column});
+  }
+
   // Leaves out what holds other symbols: derivatives beyond those solved for. Formulas of inputs hold no input and
   // nothing that is solved for.
   void leave_out() {
@@ -184,13 +218,12 @@ RateFormulas rate_formulas_of(Workspace& s, const Dynamics& dynamics, std::span<
 
 FormulaValues::FormulaValues(RateFormulas formulas) : formulas_(std::move(formulas)) {
   const RateFormulas& f = formulas_;
-  inputs_ = compiled(f.input_formulas);
-  outputs_ = compiled(f.outputs);
-  Column equations;
-  for (const Column& row : f.matrix()) equations.insert(equations.end(), row.begin(), row.end());
+  inputs_ = {f, f.input_formulas};
+  outputs_ = {f, f.outputs};
+  Column equations = emit::entries(f.matrix());
   const Column right = f.right();
   equations.insert(equations.end(), right.begin(), right.end());
-  equations_ = compiled(equations);
+  equations_ = {f, equations};
   Column by;
   for (const RateFormulas::Symbols* list : {&f.lead, &f.x, &f.u, &f.p})
     by.insert(by.end(), list->symbols.begin(), list->symbols.end());
@@ -201,42 +234,41 @@ FormulaValues::FormulaValues(RateFormulas formulas) : formulas_(std::move(formul
     partials.insert(partials.end(), some.begin(), some.end());
     row += es->size();
   }
-  derivatives_ = compiled(partials);
+  derivatives_ = {f, partials};
 }
 
-FormulaValues::Compiled FormulaValues::compiled(const Column& es) const {
-  if (es.empty()) return {};
-  Compiled out{compile(es), {}};
-  std::unordered_map<NodeId, Compiled::Input> places{{formulas_.model->graph->time().id, {Compiled::From::time, 0}}};
-  const auto add = [&](const RateFormulas::Symbols& list, Compiled::From from) {
+CompiledFormulas::CompiledFormulas(const RateFormulas& f, const Column& es) {
+  if (es.empty()) return;
+  tape_ = compile(es);
+  std::unordered_map<NodeId, Source> places{{f.model->graph->time().id, {From::time, 0}}};
+  const auto add = [&](const RateFormulas::Symbols& list, From from) {
     for (std::size_t i = 0; i < list.size(); ++i) places[list.symbols[i].id] = {from, i};
   };
-  add(formulas_.x, Compiled::From::state);
-  add(formulas_.lead, Compiled::From::lead);
-  for (const Input& in : out.tape.inputs) out.inputs.push_back(places.at(in.symbol));
-  return out;
+  add(f.x, From::state);
+  add(f.lead, From::lead);
+  for (const Input& in : tape_.inputs) inputs_.push_back(places.at(in.symbol));
 }
 
-std::vector<double> FormulaValues::values(const Compiled& of, const Point& at) {
-  Machine<double> machine(of.tape, 0, {at.parameters.begin(), at.parameters.end()});
-  for (std::size_t i = 0; i < of.inputs.size(); ++i) {
-    const Compiled::Input& in = of.inputs[i];
-    machine.series(of.tape.inputs[i].slot)[0] = in.from == Compiled::From::time    ? at.t
-                                                : in.from == Compiled::From::state ? at.x[in.index]
-                                                : at.lead.empty()                  ? 0
-                                                                                   : at.lead[in.index];
+std::vector<double> CompiledFormulas::values(const FormulaPoint& at) const {
+  Machine<double> machine(tape_, 0, {at.parameters.begin(), at.parameters.end()});
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const auto [from, index] = inputs_[i];
+    machine.series(tape_.inputs[i].slot)[0] = from == From::time    ? at.t
+                                              : from == From::state ? at.x[index]
+                                              : at.lead.empty()     ? 0
+                                                                    : at.lead[index];
   }
   machine.evaluate();
   std::vector<double> out;
-  for (std::size_t i = 0; i < of.tape.roots.size(); ++i) out.push_back(machine.value(i));
+  for (std::size_t i = 0; i < tape_.roots.size(); ++i) out.push_back(machine.value(i));
   return out;
 }
 
-std::vector<double> FormulaValues::inputs(const Point& at) const { return values(inputs_, at); }
-std::vector<double> FormulaValues::outputs(const Point& at) const { return values(outputs_, at); }
+std::vector<double> FormulaValues::inputs(const Point& at) const { return inputs_.values(at); }
+std::vector<double> FormulaValues::outputs(const Point& at) const { return outputs_.values(at); }
 
 FormulaValues::Equations FormulaValues::equations(const Point& at) const {
-  Equations out{values(equations_, at), {}};
+  Equations out{equations_.values(at), {}};
   const auto middle = out.matrix.end() - static_cast<std::ptrdiff_t>(formulas_.lead.size());
   out.right.assign(middle, out.matrix.end());
   out.matrix.erase(middle, out.matrix.end());
@@ -247,7 +279,7 @@ FormulaValues::Equations FormulaValues::equations(const Point& at) const {
 FormulaValues::Derivatives FormulaValues::derivatives(const Point& at) const {
   const RateFormulas& f = formulas_;
   const std::size_t n = f.lead.size(), columns = f.x.size() + f.u.size() + f.p.size();
-  const std::vector<double> partials = values(derivatives_, at);
+  const std::vector<double> partials = derivatives_.values(at);
   Derivatives out{f.rates.size() + f.outputs.size(), columns, {}};
   Matrix<double> of_lead(n, n), others(n, columns), through(out.rows, n);
   out.values.assign(out.rows * columns, 0);

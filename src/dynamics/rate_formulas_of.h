@@ -9,18 +9,37 @@ namespace anholon {
 // Throws Failure for functions without a formula.
 RateFormulas rate_formulas_of(Workspace& scenario, const Dynamics& dynamics, std::span<const NodeId> input_formulas);
 
+// A point: all parameters of the model, inputs among them, and what the equations were solved for (empty where rates are
+// explicit).
+struct FormulaPoint {
+  double t;
+  std::span<const double> x, parameters, lead;
+};
+
+// A list of expressions as a tape, with what its inputs are.
+class CompiledFormulas {
+ public:
+  CompiledFormulas() = default;
+  CompiledFormulas(const RateFormulas& formulas, const Column& es);
+  std::vector<double> values(const FormulaPoint& at) const;
+
+ private:
+  enum class From : std::uint8_t { time, state, lead };
+  struct Source {
+    From from;
+    std::size_t index;
+  };
+  Tape tape_;
+  std::vector<Source> inputs_;
+};
+
 // The formulas as tapes. May be called by many threads.
 class FormulaValues {
  public:
   explicit FormulaValues(RateFormulas formulas);
   const RateFormulas& formulas() const { return formulas_; }
 
-  // A point: all parameters of the model, inputs among them, and what the equations were solved for (empty where rates
-  // are explicit).
-  struct Point {
-    double t;
-    std::span<const double> x, parameters, lead;
-  };
+  using Point = FormulaPoint;
   std::vector<double> inputs(const Point& at) const;
   std::vector<double> outputs(const Point& at) const;
   // matrix lead = right: the matrix row by row. REQUIRES: rates are not explicit; no lead is needed.
@@ -36,24 +55,11 @@ class FormulaValues {
   Derivatives derivatives(const Point& at) const;
 
  private:
-  // An expression list as a tape, with what its inputs are.
-  struct Compiled {
-    enum class From : std::uint8_t { time, state, lead };
-    struct Input {
-      From from;
-      std::size_t index;
-    };
-    Tape tape;
-    std::vector<Input> inputs;
-  };
   struct Partial {
     std::size_t row, column;
   };
-  Compiled compiled(const Column& es) const;
-  static std::vector<double> values(const Compiled& of, const Point& at);
-
   RateFormulas formulas_;
-  Compiled inputs_, outputs_, equations_, derivatives_;
+  CompiledFormulas inputs_, outputs_, equations_, derivatives_;
   std::vector<Partial> partials_;  // of the derivatives: rows of equations, rates, outputs; columns of lead, x, u, p
 };
 

@@ -1,8 +1,9 @@
 #include <algorithm>
 
 #include "base/escape.h"
+#include "emit/names.h"
 #include "emit/rate_formulas.h"
-#include "emit/statements.h"
+#include "emit/straight_line.h"
 #include "emit/text.h"
 #include "numeric/number.h"
 
@@ -21,17 +22,16 @@ struct Block {
 class CasadiFile {
  public:
   CasadiFile(const RateFormulas& f, const std::string& name, const std::string& made_by)
-      : f_(f), names_(f), writer_(*f.model->graph, names_, Language::c), name_(identifier(name, "motion")),
-        made_by_(made_by) {
+      : f_(f), name_(identifier(name, "motion")), made_by_(made_by) {
     symbols_ = {{f_.model->graph->time()}, f_.x.symbols, f_.u.symbols, f_.p.symbols};
     results_ = {f_.rates, f_.outputs};
   }
 
   std::string text() {
     const std::string functions = this->functions(),
-                      sign = writer_.used_sign() ? "static double $_sign(double x) { return x > 0 ? 1 : x "
-                                                   "< 0 ? -1 : 0; }\n\n"
-                                                 : "";
+                      sign = used_sign_ ? "static double $_sign(double x) { return x > 0 ? 1 : x "
+                                          "< 0 ? -1 : 0; }\n\n"
+                                        : "";
     return replaced(head() + constants() + sign + functions + right_side() + interface(), "$", name_);
   }
 
@@ -88,63 +88,149 @@ class CasadiFile {
     return out + "\n";
   }
 
-  // A function of all arguments that sets out[i] to the i-th expression.
+  // Functions that set out[i] to the i-th expression: $_name by constants c, which $_name_constants makes of p.
   std::string function(const std::string& name, const Column& es, bool sparse = false) {
-    std::vector<std::string> targets;
-    for (std::size_t i = 0; i < es.size(); ++i) targets.push_back("out[" + std::to_string(i) + "]");
-    const Statements s = writer_.body(es, targets, sparse);
-    std::string out = "static void $_" + name + "(" + kArguments + ", double *out)\n{\n";
-    for (const char* argument : {"t", "x", "lead", "u", "p"})
-      if (!(std::string(argument) == "t" ? s.time : s.reads(argument)))
-        out += std::string("  (void)") + argument + ";\n";
-    return out + (es.empty() ? "  (void)out;\n" : "") + s.text + "}\n\n";
+    const StraightLine made(f_, es);
+    used_sign_ = used_sign_ || made.used_sign();
+    const std::size_t count = made.constant_count();
+    std::string out = "enum { $_" + name + "_size = " + std::to_string(count + 1) + " };\n";
+    out += "static void $_" + name + "_constants(const double *p, double *c)\n{\n" +
+           (made.constants().find("p[") == std::string::npos ? "  (void)p;\n" : "") + (count ? "" : "  (void)c;\n") +
+           made.constants() + "}\n\n";
+    out += "static const double $_" + name + "_defaults[] = {";
+    for (const double c : made.default_constants()) out += number_text(c) + ", ";
+    out += "0};\n\nstatic void $_" + name +
+           "(double t, const double *x, const double *lead, const double *u, const double *c, double *out)\n{\n";
+    if (!made.reads_time()) out += "  (void)t;\n";
+    for (const char* argument : {"x", "lead", "u", "c"})
+      if (!made.reads(argument)) out += std::string("  (void)") + argument + ";\n";
+    return out + (es.empty() ? "  (void)out;\n" : "") + made.statements(sparse) + "}\n\n";
   }
 
   std::string functions() {
     std::string out = function("rates", f_.rates) + function("outputs", f_.outputs);
     if (!f_.explicit_rates()) {
-      out += function("matrix", entries(f_.matrix()), true) + function("right", f_.right());
-      out += replaced(c_solver(), "static int $_factor", "static int $_factor") + "\n";
+      out += function("equations", matrix_and_right(), true) + elimination() + c_solver() + "\n";
     }
     return out + solution() + partials();
   }
 
-  // lead, and the factors of its matrix for the Jacobian.
+  Column matrix_and_right() const {
+    Column all = entries(f_.matrix());
+    const Column right = f_.right();
+    all.insert(all.end(), right.begin(), right.end());
+    return all;
+  }
+
+  // Gauss's elimination in the given order of pivots, statement by statement. Where a multiplier is large the order does
+  // not hold, and the function says so.
+  std::string elimination() const {
+    const std::size_t n = f_.lead.size();
+    const Column given = matrix_and_right();
+    const auto place = [](const char* array, std::size_t k) { return array + std::to_string(k); };
+    std::vector<std::vector<std::string>> a(n, std::vector<std::string>(n));
+    std::string out =
+        R"(/* Solves the equations e by elimination, with the pivots that suit the start. Returns 1 if they do not suit e. */
+static int $_eliminate(const double *e, double *lead)
+{
+  double l, largest = 0;
+)";
+    for (std::size_t k = 0; k < n * n; ++k)
+      if (!is_zero(given[k])) {
+        a[k / n][k % n] = place("a", k);
+        out += "  double " + a[k / n][k % n] + " = e[" + std::to_string(k) + "];\n";
+      }
+    for (std::size_t i = 0; i < n; ++i)
+      out += "  double " + place("b", i) + " = e[" + std::to_string(n * n + i) + "];\n";
+    std::vector<bool> done(n, false);
+    for (const auto& [row, column] : f_.pivots) {
+      done[row] = true;
+      out += "  const double " + place("d", row) + " = 1/" + a[row][column] + ";\n";
+      for (std::size_t i = 0; i < n; ++i) {
+        if (done[i] || a[i][column].empty()) continue;
+        out += "  l = " + a[i][column] + "*" + place("d", row) + ", largest = fmax(largest, fabs(l));\n";
+        for (std::size_t j = 0; j < n; ++j) {
+          if (a[row][j].empty() || j == column) continue;
+          const bool fill = a[i][j].empty();
+          if (fill) a[i][j] = place("a", i * n + j);
+          out += "  " + (fill ? "double " + a[i][j] + " = -" : a[i][j] + " -= ") + "l*" + a[row][j] + ";\n";
+        }
+        out += "  " + place("b", i) + " -= l*" + place("b", row) + ";\n";
+        a[i][column].clear();
+      }
+    }
+    for (std::size_t k = f_.pivots.size(); k-- > 0;) {
+      const auto [row, column] = f_.pivots[k];
+      out += "  lead[" + std::to_string(column) + "] = (" + place("b", row);
+      for (std::size_t j = 0; j < n; ++j)
+        if (j != column && !a[row][j].empty()) out += " - " + a[row][j] + "*lead[" + std::to_string(j) + "]";
+      out += ")*" + place("d", row) + ";\n";
+    }
+    return out + (f_.pivots.empty() ? "  (void)e, (void)lead, (void)l, (void)largest;\n  return 1;\n}\n"
+                                    : "  return !(largest < 1e3);\n}\n");
+  }
+
+  // lead by elimination or, where its pivots do not suit, by one that searches; the factors of the matrix for the
+  // Jacobian.
   std::string solution() const {
     if (f_.explicit_rates()) return {};
-    return R"(typedef struct {
+    std::string out = R"(typedef struct {
   double a[$_UNKNOWNS * $_UNKNOWNS], row[$_UNKNOWNS], column[$_UNKNOWNS], lead[$_UNKNOWNS];
   int order[$_UNKNOWNS];
 } $_solution;
 
-static int $_leading(double t, const double *x, const double *u, const double *p, $_solution *s)
+static int $_factored(const double *e, $_solution *s)
 {
-  double right[$_UNKNOWNS];
   int i;
-  memset(s->a, 0, sizeof s->a);
-  $_matrix(t, x, 0, u, p, s->a);
-  $_right(t, x, 0, u, p, right);
+  memcpy(s->a, e, sizeof s->a);
   if ($_factor(s->a, s->order, s->row, s->column)) {
     for (i = 0; i < $_UNKNOWNS; ++i) s->lead[i] = NAN;
     return 1;
   }
-  $_solve(s->a, s->order, s->row, s->column, right, s->lead);
+  $_solve(s->a, s->order, s->row, s->column, e + $_UNKNOWNS * $_UNKNOWNS, s->lead);
   return 0;
+}
+
+static int $_leading(double t, const double *x, const double *u, const double *p, double *lead)
+{
+@DECLARE  double e[$_UNKNOWNS * ($_UNKNOWNS + 1)] = {0};
+  $_solution s;
+  int status;
+@SET  $_equations(t, x, 0, u, c_equations, e);
+  if (!$_eliminate(e, lead)) return 0;
+  status = $_factored(e, &s);
+  memcpy(lead, s.lead, sizeof s.lead);
+  return status;
+}
+
+)";
+    return put(put(out, "@DECLARE", constants_of("equations")), "@SET", set_constants_of("equations"));
+  }
+
+  // Statements that declare `lead` and `status`, and solve for it.
+  std::string solved() const {
+    return f_.explicit_rates() ? "  const double *lead = 0;\n  int status = 0;\n"
+                               : "  double lead[$_UNKNOWNS];\n  int status = $_leading(t, x, u, p, lead);\n";
+  }
+
+  std::string right_side() const {
+    return "int $_rhs(double t, const double *x, const double *u, const double *p, double *dx)\n{\n" +
+           constants_of("rates") + solved() + "  int i;\n" + set_constants_of("rates") +
+           R"(  $_rates(t, x, lead, u, c_rates, dx);
+  for (i = 0; i < $_STATES; ++i)
+    if (!isfinite(dx[i])) status = 1;
+  return status;
 }
 
 )";
   }
 
-  std::string right_side() const {
-    std::string out = "int $_rhs(double t, const double *x, const double *u, const double *p, double *dx)\n{\n";
-    out += f_.explicit_rates() ? "  int i;\n" : "  $_solution s;\n  int i, status;\n";
-    out += "  if (!p) p = $_defaults;\n";
-    out += f_.explicit_rates()
-               ? "  $_rates(t, x, 0, u, p, dx);\n  for (i = 0; i < $_STATES; ++i)\n    if (!isfinite(dx[i])) "
-                 "return 1;\n  return 0;\n}\n\n"
-               : "  status = $_leading(t, x, u, p, &s);\n  $_rates(t, x, s.lead, u, p, dx);\n  for (i = 0; i < "
-                 "$_STATES; ++i)\n    if (!isfinite(dx[i])) return 1;\n  return status;\n}\n\n";
-    return out;
+  // Statements that declare the constants of a function: those of p, or of the default values for a null pointer.
+  static std::string constants_of(const std::string& function) {
+    return replaced("  double own_@[$_@_size];\n  const double *c_@ = $_@_defaults;\n", "@", function);
+  }
+  static std::string set_constants_of(const std::string& function) {
+    return replaced("  if (p) $_@_constants(p, own_@), c_@ = own_@;\n", "@", function);
   }
 
   // Partial derivatives of a list by lead, t, x, u and p; those that are not zero, and where they belong.
@@ -184,14 +270,18 @@ static int $_leading(double t, const double *x, const double *u, const double *p
     };
     out += std::string(
                "static int $_jacobian(double t, const double *x, const double *u, const double *p, double *out)\n{\n") +
-           "  double d[" + std::to_string(own.es.size() + 1) + "];\n";
+           "  double d[" + std::to_string(own.es.size() + 1) + "];\n" + constants_of("partials") +
+           (f_.explicit_rates() ? "" : constants_of("equations") + constants_of("equation_partials"));
     if (!f_.explicit_rates())
       out += "  double e[" + std::to_string(below.es.size() + 1) +
-             "], b[$_UNKNOWNS], s[$_UNKNOWNS];\n  $_solution at;\n  const int status = $_leading(t, x, u, p, &at);\n"
-             "  const double *lead = at.lead;\n  $_equation_partials(t, x, lead, u, p, e);\n";
+             "], of[$_UNKNOWNS * ($_UNKNOWNS + 1)] = {0}, b[$_UNKNOWNS], s[$_UNKNOWNS];\n  $_solution at;\n"
+             "  const double *lead = at.lead;\n  int status;\n" +
+             set_constants_of("partials") + set_constants_of("equations") + set_constants_of("equation_partials") +
+             "  $_equations(t, x, 0, u, c_equations, of);\n  status = $_factored(of, &at);\n"
+             "  $_equation_partials(t, x, lead, u, c_equation_partials, e);\n";
     else
-      out += "  const double *lead = 0;\n  const int status = 0;\n";
-    out += "  $_partials(t, x, lead, u, p, d);\n";
+      out += "  const double *lead = 0;\n  const int status = 0;\n" + set_constants_of("partials");
+    out += "  $_partials(t, x, lead, u, c_partials, d);\n";
     // Blocks: the result, then the argument.
     for (const Column& result : results_)
       for (const Column& argument : symbols_)
@@ -289,15 +379,12 @@ static int $_leading(double t, const double *x, const double *u, const double *p
 int $(const casadi_real **arg, casadi_real **res, casadi_int *iw, casadi_real *w, int mem)
 {
   const double t = arg[0] ? arg[0][0] : 0, *x = arg[1] ? arg[1] : $_zeros, *u = arg[2] ? arg[2] : $_zeros, *p = arg[3] ? arg[3] : $_zeros;
-  int status = 0;
-)" +
-        std::string(f_.explicit_rates()
-                        ? "  const double *lead = 0;\n"
-                        : "  const double *lead;\n  $_solution s;\n  status = $_leading(t, x, u, p, &s);\n  lead = "
-                          "s.lead;\n") +
+)" + std::string("  double own_rates[$_rates_size], own_outputs[$_outputs_size];\n") +
+        solved() +
         R"(  (void)iw, (void)w, (void)mem;
-  if (res[0]) $_rates(t, x, lead, u, p, res[0]);
-  if (res[1]) $_outputs(t, x, lead, u, p, res[1]);
+  $_rates_constants(p, own_rates), $_outputs_constants(p, own_outputs);
+  if (res[0]) $_rates(t, x, lead, u, own_rates, res[0]);
+  if (res[1]) $_outputs(t, x, lead, u, own_outputs, res[1]);
   return status;
 }
 
@@ -334,8 +421,7 @@ int $(const casadi_real **arg, casadi_real **res, casadi_int *iw, casadi_real *w
   }
 
   const RateFormulas& f_;
-  LocalNames names_;
-  Writer writer_;
+  bool used_sign_ = false;
   std::string name_, made_by_;
   std::vector<Column> symbols_, results_;  // t, x, u, p; dx, y
   std::vector<Block> blocks_;

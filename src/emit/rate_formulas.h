@@ -31,6 +31,9 @@ struct RateFormulas {
   Column outputs;
   std::vector<std::string> left_out;  // outputs that hold multipliers, which independent velocities do not have
 
+  // An order of pivots of the matrix, row and column, that suits the start: one for each of lead.
+  std::vector<std::pair<std::size_t, std::size_t>> pivots;
+
   double t = 0;  // the initial state
   std::vector<double> start, parameters, inputs;
 

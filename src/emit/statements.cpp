@@ -1,7 +1,6 @@
 #include "emit/statements.h"
 
 #include <algorithm>
-#include <functional>
 
 #include "base/assert.h"
 #include "emit/text.h"
@@ -55,6 +54,19 @@ Writer::Text Writer::power(NodeId base, const Rational& exponent) const {
   return {wrapped(x, kAtom) + "**" + (e.find('/') == std::string::npos ? e : "(" + e + ")"), kPower};
 }
 
+// Roots and reciprocals that are used more than once get variables.
+void Writer::name_powers(NodeId id, Statements& body) {
+  for (const Term& t : g_.terms(id)) {
+    const Rational& e = g_.rational(t.weight);
+    const auto uses = power_uses_.find({t.node, e});
+    if (uses == power_uses_.end() || uses->second < 2 || powers_.count(uses->first)) continue;
+    const Text x = power(t.node, abs(e));
+    const std::string name = fresh();
+    body.text += assign(name, {{e < 0 ? '/' : '*', e < 0 ? wrapped(x, kPower) : x.s}}, true);
+    powers_[uses->first] = name;
+  }
+}
+
 std::vector<Writer::Piece> Writer::product(NodeId id) {
   std::vector<Text> bottom;
   std::vector<Piece> out;
@@ -64,7 +76,9 @@ std::vector<Writer::Piece> Writer::product(NodeId id) {
   };
   for (const Term& t : g_.terms(id)) {
     const Rational& e = g_.rational(t.weight);
-    if (e < 0)
+    if (const auto named = powers_.find({t.node, e}); named != powers_.end())
+      out.push_back({'*', named->second});
+    else if (e < 0)
       bottom.push_back(power(t.node, -e));
     else
       out.push_back({'*', factor(power(t.node, e))});
@@ -121,13 +135,7 @@ std::string Writer::call(NodeId id) {
     };
     if (language_ == Language::python)
       return "np.take(" + list(f.values) + ", np.searchsorted(" + list(f.knots) + ", " + x + ", side='right'))";
-    // Splits in halves, because compilers recurse over nested expressions.
-    const std::function<std::string(std::size_t, std::size_t)> among = [&](std::size_t from, std::size_t to) {
-      if (from == to) return number(f.values[from]);
-      const std::size_t middle = from + (to - from) / 2;
-      return choice("(" + x + ") < " + number(f.knots[middle]), among(from, middle), among(middle + 1, to));
-    };
-    return among(0, f.knots.size());
+    return c_lookup(f, x);
   }
   if (n.kind == Kind::atan2)
     return std::string(language_ == Language::c ? "atan2(" : "np.arctan2(") + text_.at(g_.terms(id)[0].node).s + ", " +
@@ -217,6 +225,7 @@ void Writer::write(NodeId id, Statements& body) {
     pieces = sum(id), strength = kSum;
     break;
   case Kind::product:
+    name_powers(id, body);
     pieces = product(id), strength = kProduct;
     break;
   case Kind::function:
@@ -262,12 +271,18 @@ Statements Writer::body(const Column& es, const std::vector<std::string>& target
   Statements body;
   text_.clear();
   uses_.clear();
+  power_uses_.clear();
+  powers_.clear();
   next_ = 0;
   const std::vector<NodeId> ids = reachable(es);
   for (Expr e : es) ++uses_[e.id];
   for (NodeId id : ids)
-    for (const Term& t : g_.summands(id))
-      uses_[t.node] += g_.node(id).kind == Kind::product ? bases(g_.rational(t.weight)) : 1;
+    for (const Term& t : g_.summands(id)) {
+      const bool power = g_.node(id).kind == Kind::product;
+      const Rational e = power ? g_.rational(t.weight) : Rational(1);
+      uses_[t.node] += power ? bases(e) : 1;
+      if (power && (e < 0 || e.get_den() != 1)) ++power_uses_[{t.node, e}];
+    }
   load(ids, body);
   for (NodeId id : ids) write(id, body);
   for (std::size_t i = 0; i < es.size(); ++i)

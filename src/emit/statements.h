@@ -1,5 +1,7 @@
 // Expressions as statements of C or Python, by one sweep from the leaves up without recursion, so the depth is not limited.
 #pragma once
+#include <map>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -43,6 +45,7 @@ class Writer {
   std::vector<Piece> product(NodeId id);
   std::string call(NodeId id);
   Text power(NodeId base, const Rational& exponent) const;
+  void name_powers(NodeId product, Statements& body);
   void write(NodeId id, Statements& body);
   std::string assign(const std::string& name, const std::vector<Piece>& pieces, bool declare) const;
   static std::string wrapped(const Text& t, int strength);
@@ -53,6 +56,8 @@ class Writer {
   Language language_;
   std::unordered_map<NodeId, Text> text_;
   std::unordered_map<NodeId, std::size_t> uses_;
+  std::map<std::pair<NodeId, Rational>, std::size_t> power_uses_;  // of roots and reciprocals
+  std::map<std::pair<NodeId, Rational>, std::string> powers_;      // those that have a variable
   std::size_t next_ = 0;
   bool used_sign_ = false;
 };

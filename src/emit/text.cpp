@@ -1,6 +1,7 @@
 #include "emit/text.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 
 #include "base/escape.h"
@@ -136,6 +137,17 @@ std::string number(const Rational& r) {
   const std::size_t whole = static_cast<std::size_t>(exponent);
   if (digits.size() <= whole) return sign + digits + std::string(whole - digits.size(), '0') + ".0";
   return sign + digits.substr(0, whole) + "." + digits.substr(whole);
+}
+
+std::string c_lookup(const StepFunction& f, const std::string& x) {
+  // Splits in halves, because compilers recurse over nested expressions.
+  const std::function<std::string(std::size_t, std::size_t)> among = [&](std::size_t from, std::size_t to) {
+    if (from == to) return number(f.values[from]);
+    const std::size_t middle = from + (to - from) / 2;
+    return "((" + x + ") < " + number(f.knots[middle]) + " ? " + among(from, middle) + " : " + among(middle + 1, to) +
+           ")";
+  };
+  return among(0, f.knots.size());
 }
 
 ParameterAssignments parameter_assignments(const Motion& m) {

@@ -10,6 +10,9 @@ namespace anholon::emit {
 // A rational number as a number of both languages: 2.5, 2.0/3.0, 1e-9.
 std::string number(const Rational& r);
 
+// The value of a step function at x as an expression of C.
+std::string c_lookup(const StepFunction& f, const std::string& x);
+
 // Values and the places that they are assigned to.
 struct Assignments {
   Column values;
