@@ -187,9 +187,9 @@ class Dynamics:
 
         Example:
             >>> import anholon as an
-            >>> f = an.load("two-wheeled-pendulum").dynamics(inputs=True)
+            >>> f = an.load("trailers").dynamics(inputs=True)
             >>> f.jac(0, f.start).shape, f.jac(0, f.start, by="u").shape
-            ((8, 8), (8, 2))
+            ((9, 9), (9, 2))
         """
         if by not in ("x", "u", "p") or of not in ("x'", "y"):
             raise ValueError("by is 'x', 'u' or 'p', and of is \"x'\" or 'y'")

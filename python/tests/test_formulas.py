@@ -56,7 +56,7 @@ def test_casadi(name: str, minimal: bool) -> None:
         dx, y = g(0.3, x, u, p)
         np.testing.assert_allclose(np.array(dx)[:, 0], f(0.3, x, u, p), rtol=1e-11, atol=1e-12)
         np.testing.assert_allclose(np.array(y).reshape(-1), f.output(0.3, x, u, p), rtol=1e-11, atol=1e-12)
-        blocks = g.factory("jac", ["t", "x", "u", "p"], ["jac:dx:x", "jac:dx:u", "jac:dx:p", "jac:y:x"])(0.3, x, u, p)
+        blocks = g.factory("derivatives", ["t", "x", "u", "p"], ["jac:dx:x", "jac:dx:u", "jac:dx:p", "jac:y:x"])(0.3, x, u, p)
         for block, by in zip(blocks, "xup", strict=False):
             expected = f.jac(0.3, x, u, p, by=by)
             assert block.shape == expected.shape

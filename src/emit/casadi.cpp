@@ -57,6 +57,7 @@ class CasadiFile {
     return out + R"( *
  * int $_rhs(t, x, u, p, dx) has the rates; a null pointer for p stands for the default values. It returns 0, or 1 if the
  * equations have no solution (dx is then NaN).
+ * $_start, $_input_values and $_defaults are the initial state, inputs and parameters of the model.
  * $ is a function (t, x, u, p) -> (dx, y) in CasADi's external interface, with its Jacobian jac_$.
  */
 #include <math.h>
@@ -78,7 +79,7 @@ class CasadiFile {
         ", $_PARAMETERS = " + std::to_string(f_.p.size()) + ", $_OUTPUTS = " + std::to_string(f_.outputs.size()) +
         ", $_UNKNOWNS = " + std::to_string(f_.lead.size()) + " };\n\n";
     const auto numbers = [&](const char* name, const std::vector<double>& list) {
-      out += std::string("static const double $_") + name + "[] = {";
+      out += std::string("const double $_") + name + "[] = {";
       for (double x : list) out += number_text(x) + ", ";
       out += "0};\n";
     };
@@ -88,8 +89,11 @@ class CasadiFile {
     return out + "\n";
   }
 
-  // Functions that set out[i] to the i-th expression: $_name by constants c, which $_name_constants makes of p.
-  std::string function(const std::string& name, const Column& es, bool sparse = false) {
+  // Functions that set out[i] to the i-th expression: $_name by constants c, which $_name_constants makes of p. The
+  // constants of the default parameters are written for functions that a null pointer for p reaches.
+  enum class Parameters { given, given_or_null };
+  std::string function(const std::string& name, const Column& es, Parameters p = Parameters::given_or_null,
+                       bool sparse = false) {
     const StraightLine made(f_, es);
     used_sign_ = used_sign_ || made.used_sign();
     const std::size_t count = made.constant_count();
@@ -97,9 +101,12 @@ class CasadiFile {
     out += "static void $_" + name + "_constants(const double *p, double *c)\n{\n" +
            (made.constants().find("p[") == std::string::npos ? "  (void)p;\n" : "") + (count ? "" : "  (void)c;\n") +
            made.constants() + "}\n\n";
-    out += "static const double $_" + name + "_defaults[] = {";
-    for (const double c : made.default_constants()) out += number_text(c) + ", ";
-    out += "0};\n\nstatic void $_" + name +
+    if (p == Parameters::given_or_null) {
+      out += "static const double $_" + name + "_defaults[] = {";
+      for (const double c : made.default_constants()) out += number_text(c) + ", ";
+      out += "0};\n\n";
+    }
+    out += "static void $_" + name +
            "(double t, const double *x, const double *lead, const double *u, const double *c, double *out)\n{\n";
     if (!made.reads_time()) out += "  (void)t;\n";
     for (const char* argument : {"x", "lead", "u", "c"})
@@ -108,9 +115,10 @@ class CasadiFile {
   }
 
   std::string functions() {
-    std::string out = function("rates", f_.rates) + function("outputs", f_.outputs);
+    std::string out = function("rates", f_.rates) + function("outputs", f_.outputs, Parameters::given);
     if (!f_.explicit_rates()) {
-      out += function("equations", matrix_and_right(), true) + elimination() + c_solver() + "\n";
+      out += function("equations", matrix_and_right(), Parameters::given_or_null, true) + elimination() + c_solver() +
+             "\n";
     }
     return out + solution() + partials();
   }
