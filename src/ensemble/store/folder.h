@@ -1,0 +1,29 @@
+// Files of a folder that many processes fill, on one machine or on several with a common file system.
+//
+// A file is written under a name of its own, is synchronized, and gets its final name by a hard link: the name is taken
+// once, by one process, and the file is complete from then on. A kill leaves a file that begins with ".tmp-".
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace anholon {
+
+struct Committed {
+  enum class How : std::uint8_t { mine, other, failed } how = How::failed;
+  std::string error;  // the reason of a failure
+};
+
+// Writes a file that exists completely or not at all. `other`: a file of that name was there before; it is not changed.
+Committed commit_file(const std::string& folder, const std::string& name, std::string_view bytes);
+
+// The names of all files in a folder, in ascending order. Throws Failure without a place if it cannot be read.
+std::vector<std::string> files_of(const std::string& folder);
+
+// Removes unfinished files of processes of this machine that have ended. Returns how many unfinished files are left.
+std::size_t clear_unfinished(const std::string& folder);
+
+// Seconds since the epoch at which a file was written; 0 if there is none.
+double written_at(const std::string& path);
+
+}  // namespace anholon

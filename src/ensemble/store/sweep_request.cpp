@@ -1,0 +1,58 @@
+#include "ensemble/store/sweep_request.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/diagnostic.h"
+#include "base/json.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr int kVersion = 1;
+
+}  // namespace
+
+std::string request_json(const SweepRequest& r, const std::string& program) {
+  JsonWriter j;
+  j.open_object().key("format").string("anholon sweep").key("format_version").integer(kVersion);
+  j.key("program").string(program);
+  j.key("cases").integer(static_cast<long long>(r.cases)).key("chunk").integer(static_cast<long long>(r.chunk));
+  j.key("columns").open_array();
+  for (const std::string& name : r.columns) j.string(name);
+  j.close().key("asked").open_object();
+  for (const auto& [name, text] : r.asked) j.key(name).string(text);
+  return j.close().close().text() + "\n";
+}
+
+SweepRequest request_of(const std::string& text, const std::string& path) {
+  using Json = nlohmann::ordered_json;
+  const auto refuse = [&](const std::string& why) -> SweepRequest {
+    throw Failure({}, path + " " + why, "it was changed, or another program wrote it");
+  };
+  const Json j = Json::parse(text, nullptr, false);
+  if (!j.is_object() || j.value("format", Json()) != "anholon sweep") return refuse("does not tell of a sweep");
+  if (const Json version = j.value("format_version", Json()); version != kVersion)
+    return refuse("is of version " + version.dump() + ", and this program reads version " + std::to_string(kVersion));
+  const auto count = [&](const char* key) {
+    const auto at = j.find(key);
+    return at != j.end() && at->is_number_unsigned() ? at->get<std::size_t>() : std::size_t{0};
+  };
+  SweepRequest r;
+  r.cases = count("cases"), r.chunk = count("chunk");
+  const auto columns = j.find("columns"), asked = j.find("asked");
+  if (r.cases == 0 || r.chunk == 0 || columns == j.end() || !columns->is_array() || asked == j.end() ||
+      !asked->is_object())
+    return refuse("is damaged");
+  for (const Json& name : *columns) {
+    if (!name.is_string()) return refuse("is damaged");
+    r.columns.push_back(name.get<std::string>());
+  }
+  for (const auto& [name, value] : asked->items()) {
+    if (!value.is_string()) return refuse("is damaged");
+    r.asked.emplace_back(name, value.get<std::string>());
+  }
+  return r;
+}
+
+}  // namespace anholon

@@ -1,0 +1,24 @@
+// What a sweep in a folder was asked for, and its file sweep.json. (doc/sweeps.md)
+#pragma once
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace anholon {
+
+struct SweepRequest {
+  // Everything on which the rows depend, in the order in which messages name differences: the texts of the model and of
+  // the options by their names.
+  std::vector<std::pair<std::string, std::string>> asked;
+  std::vector<std::string> columns;
+  std::size_t cases = 0;
+  std::size_t chunk = 0;  // cases of a part
+};
+
+// The version of the program is told and does not distinguish sweeps.
+std::string request_json(const SweepRequest& request, const std::string& program);
+// Throws Failure without a place; `path` names the file in messages.
+SweepRequest request_of(const std::string& json, const std::string& path);
+
+}  // namespace anholon

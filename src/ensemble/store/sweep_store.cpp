@@ -1,0 +1,264 @@
+#include "ensemble/store/sweep_store.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include <sys/stat.h>
+
+#include "base/assert.h"
+#include "base/diagnostic.h"
+#include "base/hash.h"
+#include "base/json.h"
+#include "base/read_file.h"
+#include "ensemble/store/folder.h"
+
+namespace anholon {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRequest = "sweep.json";
+constexpr std::string_view kPart = "part-", kEnding = ".parquet";
+constexpr const char *kSweepNote = "anholon.sweep", *kFirstNote = "anholon.first", *kOutcomesNote = "anholon.outcomes";
+
+// Differences in a long text are not printed.
+std::string shown(const std::string& text) {
+  constexpr std::size_t kMost = 60;
+  if (text.empty()) return "not given";
+  return text.size() > kMost || text.find('\n') != std::string::npos ? "another text" : "'" + text + "'";
+}
+
+// Throws Failure that names the first thing in which two requests differ.
+void must_agree(const std::string& folder, const SweepRequest& there, const SweepRequest& here) {
+  const auto refuse = [&](const std::string& what, const std::string& old, const std::string& now) {
+    throw Failure({}, folder + " holds another sweep: " + what + " is " + old + " there and " + now + " here",
+                  "give another folder; a sweep goes on by the same command");
+  };
+  std::set<std::string> names;
+  for (const SweepRequest* r : {&here, &there})
+    for (const auto& [name, text] : r->asked) {
+      if (!names.insert(name).second) continue;
+      const auto text_in = [&, &name = name](const SweepRequest& of) {
+        const auto at = std::find_if(of.asked.begin(), of.asked.end(), [&](const auto& e) { return e.first == name; });
+        return at == of.asked.end() ? std::string() : at->second;
+      };
+      const std::string old = text_in(there), now = text_in(here);
+      if (old != now) refuse(name, shown(old), shown(now));
+    }
+  if (there.cases != here.cases) refuse("the number of cases", std::to_string(there.cases), std::to_string(here.cases));
+  for (std::size_t k = 0; k < std::max(there.columns.size(), here.columns.size()); ++k) {
+    const auto name = [&](const SweepRequest& r) { return k < r.columns.size() ? r.columns[k] : std::string(); };
+    if (name(there) != name(here)) refuse("column " + std::to_string(k + 1), shown(name(there)), shown(name(here)));
+  }
+}
+
+// Creates a folder, and those above it. Returns an empty string, or the reason of a failure.
+std::string create_folder(const std::string& folder) {
+  std::error_code why;
+  fs::create_directories(folder, why);
+  if (why && !fs::is_directory(folder)) return "cannot create the folder " + folder + ": " + why.message();
+  return {};
+}
+
+std::string without_slash(std::string folder) {
+  while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
+  return folder;
+}
+
+std::string read_or_fail(const std::string& path) {
+  std::string text, why;
+  if (!read_file(path, text, &why)) throw Failure({}, "cannot read " + path + ": " + why);
+  return text;
+}
+
+// The number of a part by the name of its file.
+std::optional<std::size_t> part_of(std::string_view name) {
+  if (!name.starts_with(kPart) || !name.ends_with(kEnding)) return std::nullopt;
+  name.remove_prefix(kPart.size()), name.remove_suffix(kEnding.size());
+  std::size_t number = 0;
+  const auto [end, why] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (why != std::errc() || end != name.data() + name.size()) return std::nullopt;
+  return number;
+}
+
+std::string outcomes_of(const ParquetTable& rows) {
+  std::map<std::string, std::size_t> count;
+  for (const ParquetColumn& c : rows.columns)
+    if (const auto* words = std::get_if<Words>(&c.values); words && c.name == "outcome")
+      for (const std::uint32_t k : words->rows) ++count[words->different[k]];
+  std::string text;
+  for (const auto& [outcome, cases] : count) text += (text.empty() ? "" : ",") + outcome + " " + std::to_string(cases);
+  return text;
+}
+
+void add_outcomes(std::string_view text, std::map<std::string, std::size_t>& to) {
+  while (!text.empty()) {
+    const std::size_t comma = std::min(text.find(','), text.size()), space = text.find(' ');
+    std::size_t count = 0;
+    if (space < comma) std::from_chars(text.data() + space + 1, text.data() + comma, count);
+    to[std::string(text.substr(0, std::min(space, comma)))] += count;
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+}
+
+// The end of a file, with the metadata of a Parquet file.
+std::string end_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const auto size = static_cast<std::streamoff>(file.tellg());
+  const auto last = [&](std::streamoff count) {
+    std::string text(static_cast<std::size_t>(count), '\0');
+    file.seekg(size - count);
+    file.read(text.data(), count);
+    return text;
+  };
+  constexpr std::streamoff kLast = 8;
+  if (!file || size < kLast) return {};
+  const auto end = static_cast<std::streamoff>(parquet_end(last(kLast)));
+  return end == 0 || end > size ? std::string() : last(end);
+}
+
+}  // namespace
+
+SweepStore::SweepStore(std::string folder, SweepRequest request)
+    : folder_(std::move(folder)), request_(std::move(request)), id_(sha256_text(request_json(request_, ""))) {}
+
+bool SweepStore::is_there(const std::string& folder) {
+  std::error_code none;
+  return fs::is_regular_file(folder + "/" + kRequest, none);
+}
+
+SweepStore SweepStore::open(const std::string& named) {
+  const std::string folder = without_slash(named);
+  if (!is_there(folder))
+    throw Failure({}, folder + " is no folder of a sweep: it holds no " + kRequest,
+                  "anholon sweep MODEL --vary … -o " + folder + "/ makes one");
+  return {folder, request_of(read_or_fail(folder + "/" + kRequest), folder + "/" + kRequest)};
+}
+
+SweepStore SweepStore::open(const std::string& named, const SweepRequest& wanted, const std::string& program) {
+  ANHOLON_ASSERT(wanted.chunk > 0);
+  const std::string folder = without_slash(named);
+  if (!is_there(folder)) {
+    if (std::string why = create_folder(folder); !why.empty()) throw Failure({}, why);
+    for (const std::string& name : files_of(folder))
+      if (!name.starts_with(".tmp-") && name != kRequest)
+        throw Failure({}, "the folder " + folder + " holds other files ('" + name + "') and no sweep",
+                      "give the name of a new folder, or of an empty one");
+    const Committed done = commit_file(folder, kRequest, request_json(wanted, program));
+    if (done.how == Committed::How::failed) throw Failure({}, done.error);
+  }
+  SweepStore store = open(folder);
+  must_agree(folder, store.request_, wanted);
+  clear_unfinished(folder);
+  return store;
+}
+
+const std::string& SweepStore::asked(const std::string& name) const {
+  static const std::string none;
+  for (const auto& [key, text] : request_.asked)
+    if (key == name) return text;
+  return none;
+}
+
+std::size_t SweepStore::parts() const { return (request_.cases + request_.chunk - 1) / request_.chunk; }
+
+std::pair<std::size_t, std::size_t> SweepStore::range(std::size_t part) const {
+  return {part * request_.chunk, std::min(request_.cases, (part + 1) * request_.chunk)};
+}
+
+std::string SweepStore::path_of(std::size_t part) const {
+  std::string number = std::to_string(part);
+  constexpr std::size_t kDigits = 6;
+  if (number.size() < kDigits) number.insert(0, kDigits - number.size(), '0');
+  return folder_ + "/" + std::string(kPart) + number + std::string(kEnding);
+}
+
+std::vector<std::size_t> SweepStore::present() const {
+  std::vector<std::size_t> list;
+  for (const std::string& name : files_of(folder_))
+    if (const auto part = part_of(name); part && *part < parts()) list.push_back(*part);
+  std::sort(list.begin(), list.end());
+  return list;
+}
+
+std::vector<std::size_t> SweepStore::missing() const {
+  const std::vector<std::size_t> there = present();
+  std::vector<std::size_t> list;
+  for (std::size_t part = 0; part < parts(); ++part)
+    if (!std::binary_search(there.begin(), there.end(), part)) list.push_back(part);
+  return list;
+}
+
+std::string SweepStore::commit(std::size_t part, ParquetTable rows) const {
+  rows.notes = {{kSweepNote, id_}, {kFirstNote, std::to_string(range(part).first)}, {kOutcomesNote, outcomes_of(rows)}};
+  const std::string bytes = parquet_bytes(rows), path = path_of(part);
+  const Committed done = commit_file(folder_, fs::path(path).filename().string(), bytes);
+  if (done.how != Committed::How::other) return done.error;
+  std::string there;
+  if (!read_file(path, there, nullptr) || there != bytes)
+    return path +
+           " has other numbers than those computed here: it was changed, or another version of the program wrote it";
+  return {};
+}
+
+void SweepStore::check(std::size_t part, const std::string& path, std::string_view belongs,
+                       std::string_view first) const {
+  if (belongs != id_ || first != std::to_string(range(part).first))
+    throw Failure({}, path + " belongs to another sweep", "remove it; the same command of the sweep computes it again");
+}
+
+ParquetTable SweepStore::read(std::size_t part) const {
+  const std::string path = path_of(part);
+  const std::string bytes = read_or_fail(path);
+  try {
+    ParquetTable table = read_parquet(bytes);
+    check(part, path, table.note(kSweepNote), table.note(kFirstNote));
+    return table;
+  } catch (const Failure& f) {
+    if (f.diagnostic.message.starts_with(path)) throw;
+    throw Failure({}, path + ": " + f.diagnostic.message, "remove it; the same command of the sweep computes it again");
+  }
+}
+
+SweepStore::Progress SweepStore::progress() const {
+  Progress p;
+  p.all_parts = parts(), p.all_cases = request_.cases;
+  std::vector<std::pair<double, std::size_t>> written;  // when, how many cases
+  for (const std::size_t part : present()) {
+    const std::string path = path_of(part);
+    ParquetSummary end;
+    try {
+      end = parquet_summary(end_of(path));
+    } catch (const Failure& f) {
+      throw Failure({}, path + ": " + f.diagnostic.message,
+                    "remove it; the same command of the sweep computes it again");
+    }
+    ParquetTable notes;
+    notes.notes = std::move(end.notes);
+    check(part, path, notes.note(kSweepNote), notes.note(kFirstNote));
+    const auto [from, to] = range(part);
+    ++p.parts, p.cases += to - from;
+    add_outcomes(notes.note(kOutcomesNote), p.outcomes);
+    written.emplace_back(written_at(path), to - from);
+  }
+  // Rows of a table may be several for a case, so cases are counted by ranges.
+  std::sort(written.begin(), written.end());
+  constexpr std::size_t kLast = 64;
+  if (written.size() > 1) {
+    const std::size_t from = written.size() > kLast ? written.size() - kLast : 0;
+    std::size_t cases = 0;
+    for (std::size_t k = from + 1; k < written.size(); ++k) cases += written[k].second;
+    const double seconds = written.back().first - written[from].first;
+    if (seconds > 0) p.cases_per_second = static_cast<double>(cases) / seconds;
+  }
+  for (const std::string& name : files_of(folder_)) p.unfinished += name.starts_with(".tmp-");
+  return p;
+}
+
+}  // namespace anholon

@@ -1,0 +1,68 @@
+// A sweep in a folder: sweep.json says what was asked, and each part file holds a range of the cases.
+//
+// A part is written once and never changed, so a range may be computed twice and counts once: two processes that compute
+// the same cases write the same bytes. The same request opens the folder again and computes what is missing; another
+// request is refused. Any number of processes may work on one folder. (doc/sweeps.md)
+#pragma once
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ensemble/store/sweep_request.h"
+#include "result/parquet/parquet.h"
+
+namespace anholon {
+
+class SweepStore {
+ public:
+  // Opens the folder, or creates it; `wanted.chunk` holds for a new folder only. Throws Failure without a place: another
+  // sweep is in the folder (the message names the first difference), the folder holds other files, or it cannot be
+  // written.
+  static SweepStore open(const std::string& folder, const SweepRequest& wanted, const std::string& program);
+  // Opens a folder that holds a sweep. Throws Failure without a place.
+  static SweepStore open(const std::string& folder);
+  // Whether a folder holds a sweep.
+  static bool is_there(const std::string& folder);
+
+  const std::string& folder() const { return folder_; }
+  const SweepRequest& request() const { return request_; }
+  // The text of something that was asked; empty if it was not.
+  const std::string& asked(const std::string& name) const;
+
+  std::size_t parts() const;
+  // The cases of a part: from the first to the one before the second.
+  std::pair<std::size_t, std::size_t> range(std::size_t part) const;
+  // The numbers of the parts that are there, or not there, in ascending order; the folder is read at each call.
+  std::vector<std::size_t> present() const;
+  std::vector<std::size_t> missing() const;
+
+  // Adds a part: rows of the columns, by case. Returns an empty string, or the reason why it is not in the folder: a full
+  // disk, or a part of that number whose numbers are others.
+  std::string commit(std::size_t part, ParquetTable rows) const;
+  // Reads a part. Throws Failure without a place if it is damaged, was changed, or belongs to another sweep.
+  ParquetTable read(std::size_t part) const;
+
+  struct Progress {
+    std::size_t parts = 0, all_parts = 0, cases = 0, all_cases = 0;
+    std::map<std::string, std::size_t> outcomes;  // cases by the name of their outcome
+    double cases_per_second = 0;                  // by the times at which the last parts were written; 0: unknown
+    std::size_t unfinished = 0;                   // files of parts under way, or of processes that were killed
+  };
+  // Reads the ends of all parts. Throws Failure as `read` does.
+  Progress progress() const;
+
+  std::string path_of(std::size_t part) const;
+
+ private:
+  SweepStore(std::string folder, SweepRequest request);
+  void check(std::size_t part, const std::string& path, std::string_view belongs, std::string_view first) const;
+
+  std::string folder_;
+  SweepRequest request_;
+  std::string id_;  // hash of the request
+};
+
+}  // namespace anholon

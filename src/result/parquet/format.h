@@ -1,0 +1,26 @@
+// Numbers of the Parquet format that its writer and its reader share.
+#pragma once
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace anholon::parquet {
+
+// Numbers are stored as the memory of this machine holds them.
+static_assert(std::endian::native == std::endian::little);
+
+inline constexpr char kMagic[] = "PAR1";
+inline constexpr std::size_t kMagicSize = 4, kTail = 8;  // length of the metadata and the magic at the end
+inline constexpr char kDataNote[] = "anholon.data";
+
+enum PhysicalType : std::int32_t { int64 = 2, real = 5, bytes_type = 6 };
+enum Encoding : std::int32_t { plain = 0, rle = 3, rle_dictionary = 8 };
+enum PageType : std::int32_t { data_page = 0, dictionary_page = 2 };
+inline constexpr std::int32_t kRequired = 0, kUtf8 = 0, kUncompressed = 0, kVersion = 1;
+
+// Rows of a page: its size has to fit into 32 bits.
+inline constexpr std::size_t kPageRows = std::size_t{1} << 20;
+// Rows of a row group, which a reader takes as one piece.
+inline constexpr std::size_t kGroupRows = kPageRows;
+
+}  // namespace anholon::parquet

@@ -1,0 +1,88 @@
+// Thrift's compact protocol, in which the metadata of a Parquet file is written.
+// (Apache Thrift, "Thrift compact protocol encoding")
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace anholon::thrift {
+
+enum class Type : std::uint8_t {
+  stop = 0,
+  yes = 1,
+  no = 2,
+  byte = 3,
+  i16 = 4,
+  i32 = 5,
+  i64 = 6,
+  real = 7,
+  binary = 8,
+  list = 9,
+  set = 10,
+  map = 11,
+  structure = 12,
+};
+
+// Appends values to a text. The fields of a structure are given by ascending numbers.
+class Writer {
+ public:
+  const std::string& text() const { return text_; }
+
+  Writer& i32(int field, std::int64_t value) { return integer(field, Type::i32, value); }
+  Writer& i64(int field, std::int64_t value) { return integer(field, Type::i64, value); }
+  Writer& binary(int field, std::string_view value);
+  // A list of structures or numbers follows, element by element.
+  Writer& list(int field, Type elements, std::size_t size);
+  // Elements of a list.
+  Writer& element(std::int64_t value);
+  Writer& element(std::string_view value);
+  // A field that is a structure, or an element that is one, up to `close`.
+  Writer& open(int field);
+  Writer& open_element();
+  Writer& close();
+
+ private:
+  Writer& integer(int field, Type type, std::int64_t value);
+  void header(int field, Type type);
+  void varint(std::uint64_t value);
+  std::string text_;
+  std::string outer_;  // the last field numbers of the structures around
+  int last_ = 0;       // number of the last field
+};
+
+// Reads values one after the other. What is damaged makes `good` false, and all that is read then is 0.
+class Reader {
+ public:
+  explicit Reader(std::string_view text) : text_(text) {}
+
+  bool good() const { return good_; }
+  std::size_t at() const { return at_; }
+
+  struct Field {
+    int number = 0;
+    Type type = Type::stop;
+  };
+  // Begins a structure; `next` gives its fields, the last of which is `stop`.
+  void open();
+  Field next();
+  std::int64_t integer();
+  std::string_view binary();
+  struct List {
+    Type elements = Type::stop;
+    std::size_t size = 0;
+  };
+  List list();
+  // Passes over a value of this type.
+  void skip(Type type, int depth = 0);
+
+ private:
+  std::uint64_t varint();
+  std::uint8_t byte();
+  std::string_view text_;
+  std::size_t at_ = 0;
+  bool good_ = true;
+  std::string outer_;
+  int last_ = 0;
+};
+
+}  // namespace anholon::thrift
