@@ -15,6 +15,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/complex.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
@@ -123,6 +124,7 @@ nb::ndarray<nb::numpy, double, nb::ndim<dimensions>> array(std::vector<double> n
   return {held->data(), shape, owner};
 }
 
+void bind_analysis(nb::module_& m);
 void bind_arrow(nb::module_& m);
 void bind_dynamics(nb::module_& m);
 void bind_results(nb::module_& m);
