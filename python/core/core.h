@@ -34,6 +34,18 @@ using namespace nb::literals;
 using Numbers = std::map<std::string, std::string>;
 std::map<std::string, Number> numbers(const Numbers& texts);
 
+// Adds the methods by which a notebook shows an object: the functions NAME and NAME_latex of anholon._display.
+template <class C>
+void shown(nb::class_<C>& c, const char* name, bool latex = false) {
+  const auto add = [&](const char* method, const std::string& function) {
+    c.def(method, [function](nb::handle self) {
+      return nb::cast<std::string>(nb::module_::import_("anholon._display").attr(function.c_str())(self));
+    });
+  };
+  add("_repr_html_", name);
+  if (latex) add("_repr_latex_", std::string(name) + "_latex");
+}
+
 // An error of the library; it becomes an exception of the Python package.
 struct Trouble {
   Error error;
