@@ -14,7 +14,7 @@ from .dynamics import Dynamics
 from .equations import Equations, Proof, verify
 from .from_sympy import from_sympy
 from .model import Check, Model, load, loads, zoo
-from .run import Page, Run
+from .run import Figure, Page, Run
 from .sweep import Sweep, normal, uniform
 
 __version__: str = version()
@@ -23,6 +23,7 @@ __all__ = [
     "Check",
     "Dynamics",
     "Equations",
+    "Figure",
     "Interrupted",
     "Model",
     "ModelError",
