@@ -1,7 +1,9 @@
 // All of the library.
 #pragma once
+#include "anholon/compare.h"
 #include "anholon/dynamics.h"
 #include "anholon/equations.h"
+#include "anholon/evaluate.h"
 #include "anholon/linear.h"
 #include "anholon/model.h"
 #include "anholon/motion.h"

@@ -10,6 +10,7 @@
 from ._core import version
 from ._errors import Interrupted, ModelError, MotionError
 from ._numbers import Number
+from .analysis import Comparison, LinearModel, Stability, State
 from .dynamics import Dynamics
 from .equations import Equations, Proof, verify
 from .from_sympy import from_sympy
@@ -21,10 +22,12 @@ __version__: str = version()
 
 __all__ = [
     "Check",
+    "Comparison",
     "Dynamics",
     "Equations",
     "Figure",
     "Interrupted",
+    "LinearModel",
     "Model",
     "ModelError",
     "MotionError",
@@ -32,6 +35,8 @@ __all__ = [
     "Page",
     "Proof",
     "Run",
+    "Stability",
+    "State",
     "Sweep",
     "from_sympy",
     "load",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from . import _core
 
 if TYPE_CHECKING:
+    from .analysis import LinearModel
     from .equations import Proof
     from .model import Check
     from .run import Run
@@ -92,7 +93,7 @@ def _eigenvalue(value: complex) -> str:
     return f"{value.real:.6g}" + (f" {'+' if value.imag > 0 else '−'} {abs(value.imag):.6g} i" if value.imag else "")
 
 
-def linear_model(of: _core.LinearModel) -> str:
+def linear_model(of: LinearModel) -> str:
     """z' = A z + B u, y = C z + D u with numbers, and the eigenvalues."""
     head = f"linear model, {of.motion}" + (f": {of.why}" if of.why else "")
     eigenvalues = ", ".join(_eigenvalue(value) for value in of.eigenvalues[:_MOST]) or "none"
@@ -112,7 +113,7 @@ def _bmatrix(lines: Iterable[Iterable[str]]) -> str:
     return "\\begin{bmatrix}" + r" \\ ".join(" & ".join(line) for line in lines) + "\\end{bmatrix}"
 
 
-def linear_model_latex(of: _core.LinearModel) -> str:
+def linear_model_latex(of: LinearModel) -> str:
     """The same in LaTeX."""
     z = _bmatrix([_core.symbol(name)[0]] for name in of.states)
 

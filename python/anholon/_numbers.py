@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import numbers
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Union
@@ -53,3 +53,22 @@ def float_of(text: str | None) -> float | None:
 def list_of(values: Iterable[Number]) -> list[str]:
     """The same for a list or an array."""
     return [text_of(value) for value in values]
+
+
+def exact_numbers(texts: Sequence[str]) -> list[Any]:
+    """Numbers with all digits of their texts: ``mpmath.mpf`` if mpmath is there, else the texts."""
+    try:
+        import mpmath
+    except ImportError:
+        return list(texts)
+    with mpmath.workdps(max(len(text) for text in texts) if texts else 15):
+        return [mpmath.mpf(text) for text in texts]
+
+
+def spaced(low: Number, high: Number, n: int) -> list[str]:
+    """n values from low to high, equally far apart, without rounding where both are decimals or fractions."""
+    try:
+        first, last = Fraction(text_of(low)), Fraction(text_of(high))
+    except ValueError:
+        raise ValueError(f"{low!r} and {high!r} have to be decimals or fractions; give a list of other values") from None
+    return [str(first + (last - first) * k / (n - 1)) for k in range(n)]

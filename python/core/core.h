@@ -15,6 +15,7 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/complex.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
@@ -34,16 +35,12 @@ using namespace nb::literals;
 using Numbers = std::map<std::string, std::string>;
 std::map<std::string, Number> numbers(const Numbers& texts);
 
-// Adds the methods by which a notebook shows an object: the functions NAME and NAME_latex of anholon._display.
+// Adds the method by which a notebook shows an object: a function of that name in anholon._display.
 template <class C>
-void shown(nb::class_<C>& c, const char* name, bool latex = false) {
-  const auto add = [&](const char* method, const std::string& function) {
-    c.def(method, [function](nb::handle self) {
-      return nb::cast<std::string>(nb::module_::import_("anholon._display").attr(function.c_str())(self));
-    });
-  };
-  add("_repr_html_", name);
-  if (latex) add("_repr_latex_", std::string(name) + "_latex");
+void shown(nb::class_<C>& c, const char* name) {
+  c.def("_repr_html_", [function = std::string(name)](nb::handle self) {
+    return nb::cast<std::string>(nb::module_::import_("anholon._display").attr(function.c_str())(self));
+  });
 }
 
 // An error of the library; it becomes an exception of the Python package.
@@ -135,6 +132,7 @@ nb::ndarray<nb::numpy, double, nb::ndim<dimensions>> array(std::vector<double> n
   return {held->data(), shape, owner};
 }
 
+void bind_analysis(nb::module_& m);
 void bind_arrow(nb::module_& m);
 void bind_dynamics(nb::module_& m);
 void bind_results(nb::module_& m);

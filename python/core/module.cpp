@@ -8,4 +8,5 @@ NB_MODULE(_core, m) {
   anholon::python::bind_motions(m);
   anholon::python::bind_sweeps(m);
   anholon::python::bind_dynamics(m);
+  anholon::python::bind_analysis(m);
 }

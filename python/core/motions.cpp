@@ -4,17 +4,6 @@ namespace anholon::python {
 
 namespace {
 
-using MatrixView = nb::ndarray<nb::numpy, const double, nb::ndim<2>>;
-
-// Numbers of `owner`, without a copy.
-MatrixView matrix(const Matrix& a, nb::handle owner) { return MatrixView(a.values.data(), {a.rows, a.columns}, owner); }
-
-// The member of a LinearModel as an array that keeps it alive.
-template <Matrix LinearModel::* member>
-MatrixView matrix_of(nb::handle self) {
-  return matrix(nb::cast<const LinearModel&>(self).*member, self);
-}
-
 void bind_system(nb::module_& m) {
   nb::class_<InitialValue>(m, "InitialValue", "A value of the initial state, and where it comes from.")
       .def_ro("name", &InitialValue::name)
@@ -130,8 +119,8 @@ void bind_run(nb::module_& m) {
             const Run& run = nb::cast<const Run&>(self);
             const std::size_t rows = run.rows();
             if (first + count > run.columns().size()) throw nb::index_error("there are not so many columns");
-            return MatrixView(run.block().data() + first * rows, {rows, count}, self,
-                              {1, static_cast<std::int64_t>(rows)});
+            return nb::ndarray<nb::numpy, const double, nb::ndim<2>>(run.block().data() + first * rows, {rows, count},
+                                                                     self, {1, static_cast<std::int64_t>(rows)});
           },
           "first"_a, "count"_a, "Columns that lie side by side, shape (rows, count), without a copy.")
       .def_prop_ro("has_dense", &Run::has_dense)
@@ -180,33 +169,9 @@ void bind_run(nb::module_& m) {
       "system"_a, "others"_a, "at"_a, "dense"_a, "stop"_a.none(), "progress"_a.none());
 }
 
-void bind_linear(nb::module_& m) {
-  nb::class_<LinearModel> linear(m, "LinearModel",
-                                 "The linear model z' = A z + B u, y = C z + D u of a motion at its initial state.");
-  linear
-      .def_prop_ro(
-          "motion",
-          [](const LinearModel& l) {
-            const char* names[] = {"equilibrium", "steady", "unsteady", "unchecked"};
-            return std::string(names[static_cast<int>(l.motion)]);
-          },
-          "'equilibrium', 'steady', 'unsteady' (A holds for an instant) or 'unchecked'.")
-      .def_ro("why", &LinearModel::why)
-      .def_ro("states", &LinearModel::states, "The independent coordinates and velocities z.")
-      .def_ro("inputs", &LinearModel::inputs)
-      .def_ro("outputs", &LinearModel::outputs)
-      .def_ro("values", &LinearModel::values, "Of z at the point.")
-      .def_prop_ro("A", matrix_of<&LinearModel::A>, "Shape (states, states).")
-      .def_prop_ro("B", matrix_of<&LinearModel::B>, "Shape (states, inputs).")
-      .def_prop_ro("C", matrix_of<&LinearModel::C>, "Shape (outputs, states).")
-      .def_prop_ro("D", matrix_of<&LinearModel::D>, "Shape (outputs, inputs).")
-      .def_ro("eigenvalues", &LinearModel::eigenvalues,
-              "Of A without the coordinates that influence nothing, with multiplicity, 1/s.")
-      .def("__repr__", [](const LinearModel& l) {
-        return "linear model, " + std::to_string(l.states.size()) + " states, " + std::to_string(l.inputs.size()) +
-               " inputs";
-      });
-  shown(linear, "linear_model", true);
+}  // namespace
+
+void bind_motions(nb::module_& m) {
   m.def(
       "symbol",
       [](const std::string& name, const Model* model) {
@@ -214,17 +179,8 @@ void bind_linear(nb::module_& m) {
         return std::pair(std::move(s.latex), std::move(s.mathml));
       },
       "name"_a, "model"_a.none() = nb::none(), "LaTeX and MathML of a name, in the notation of the model.");
-  m.def(
-      "linearize", [](const System& system) { return value_of(unlocked([&] { return linearize(system); })); },
-      "system"_a);
-}
-
-}  // namespace
-
-void bind_motions(nb::module_& m) {
   bind_system(m);
   bind_run(m);
-  bind_linear(m);
 }
 
 }  // namespace anholon::python

@@ -177,7 +177,7 @@ def test_outputs_are_those_of_a_run() -> None:
         f = model.dynamics(minimal=minimal)
         names = [state.name for state in f.states]
         for row, t in enumerate(run.t):
-            full = {name: run[name][row] for name in run.columns}
+            full = {name: run[name][row] for name in run}
             x = [full[n] for n in names] if not minimal else f.state(
                 t, q={c.name: full[c.name] for c in model.coordinates}, qdot={c.name + "'": full[c.name + "'"] for c in model.coordinates}
             )

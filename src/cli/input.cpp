@@ -119,9 +119,13 @@ Options with_form(Options o, const Reader& in) {
   return o;
 }
 
-Outcome ready(const Reader& in, const Formulation& f, const StateChoice& choice, Scenario& s) {
-  if (f.unknowns == Unknowns::variational) must_have_motions(f, mechanics(*in.model));
+void must_have_motions(const Reader& in, const Formulation& f) {
+  if (f.unknowns == Unknowns::variational) anholon::must_have_motions(f, mechanics(*in.model));
   if (f.obstacle != no_obstacle) must_apply(f, mechanics(*in.model));
+}
+
+Outcome ready(const Reader& in, const Formulation& f, const StateChoice& choice, Scenario& s) {
+  must_have_motions(in, f);
   try {
     return make_scenario(in.model, f, choice, s);
   } catch (const Failure& e) {

@@ -38,6 +38,8 @@ Asker asker(const Options& o);
 // Splits "a,b,c" and repeated words alike.
 std::vector<std::string> split(const std::vector<std::string>& words);
 
+// Throws if the form does not apply to the model, or no motion is computed in it.
+void must_have_motions(const Reader& in, const Formulation& form);
 // Makes the scenario of the model in the form asked for; throws UsageError for mistakes of the user.
 Outcome ready(const Reader& in, const Formulation& form, const StateChoice& choice, Scenario& scenario);
 

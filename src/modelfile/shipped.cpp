@@ -61,4 +61,21 @@ SourceText model_text(const std::string& path_or_name, const char* in_source) {
                              : "did you mean the shipped model '" + near + "'?");
 }
 
+SourceText equation_text(const std::string& path_or_name, const char* in_source) {
+  SourceText source{path_or_name, {}};
+  std::string why;
+  if (read_file(path_or_name, source.text, &why)) return source;
+  std::vector<std::string> known;
+  for (const ShippedFile& e : shipped_files(Shipped::equations, in_source)) {
+    known.push_back(e.name);
+    if (e.name != path_or_name && e.name + ".eq" != path_or_name) continue;
+    source.name = e.name + ".eq";
+    if (read_file(e.path, source.text, &why)) return source;
+  }
+  const std::string near = did_you_mean(path_or_name, known);
+  throw Failure({}, "cannot read the equations '" + path_or_name + "': " + why,
+                near.empty() ? "a file with one equation per line, LABEL: left = right"
+                             : "did you mean the shipped equations '" + near + "'?");
+}
+
 }  // namespace anholon

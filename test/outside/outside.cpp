@@ -110,6 +110,27 @@ void sweep(const anholon::System& system) {
   expect(other && other->varied("m")[0] != drawn->varied("m")[0], "another seed draws other values");
 }
 
+void analysis(const anholon::Model& model, const anholon::System& system) {
+  const auto compared = anholon::compare(model, "a: l*theta'' = -9.81*sin(theta)\nb: l*theta'' = 9.81*sin(theta)\n");
+  expect(compared && compared->size() == 2 && (*compared)[0].verdict == anholon::Verdict::proved,
+         "a published equation is proved");
+  expect(compared && (*compared)[1].verdict == anholon::Verdict::refuted && !(*compared)[1].suggestions.empty(),
+         "a misprint is found");
+  const auto wrong = anholon::compare(model, "a: k = 0");
+  expect(!wrong && wrong.error().diagnostics.at(0).line == 1, "a mistake in an equation has its line");
+  const auto state = anholon::evaluate(system, 30);
+  expect(state && state->derivatives.at(0).name == "theta''" && state->derivatives[0].text.size() > 30,
+         "a state is evaluated with 30 digits");
+  const auto rest = anholon::linearize(model, {.equilibrium = true, .digits = 30});
+  expect(rest && rest->motion == anholon::Steadiness::equilibrium && rest->A.texts.size() == 4,
+         "the equilibrium is found, and linearized with 30 digits");
+  const auto stable = anholon::stability(model, "l", {-1, 1, 2}, {.initial = {{"theta", 0}, {"theta'", 0}}});
+  expect(stable && stable->curves.size() == 2 && stable->curves[0].size() == 3 && stable->crossings.size() == 1 &&
+             std::abs(stable->curves[0][1].imag()) > 3,
+         "eigenvalues over a parameter");
+  if (!stable) std::printf("%s", stable.text().c_str());
+}
+
 }  // namespace
 
 int main() {
@@ -140,6 +161,7 @@ int main() {
   const auto linear = anholon::linearize(*rest);
   expect(linear && linear->eigenvalues.size() == 2 && std::abs(std::abs(linear->eigenvalues[0].imag()) - 2) < 1e-12,
          "the pendulum at rest has the frequency 2");
+  analysis(*model, *system);
   std::printf("%d failures\n", failures);
   return failures == 0 ? 0 : 1;
 }

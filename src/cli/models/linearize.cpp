@@ -1,5 +1,3 @@
-#include "linear/linearize.h"
-
 #include <algorithm>
 #include <cstdio>
 
@@ -7,62 +5,15 @@
 #include "cli/input.h"
 #include "cli/models/show.h"
 #include "cli/say.h"
-#include "linear/equilibrium.h"
+#include "linear/study.h"
 
 namespace anholon::cli {
 
 namespace {
 
-constexpr std::size_t kMostValues = 10000;
-constexpr int kWorkingDigits = 36, kGuardDigits = 24;  // 36: two words of 64 bits, with which MPFR is fastest
-
 // The shortest text of the double nearest to x, or more digits if they were asked for.
 std::string text(const Multi& x, int digits) {
   return digits > 16 ? number_text(x, digits) : number_text(to_double(x));
-}
-
-// ---- options ----------------------------------------------------------------------------------------
-
-[[noreturn]] void wrong_range(const Options& o, const std::string& why) {
-  throw UsageError{"error: --vary: " + why + "\nhint: a range NAME=FROM..TO:STEP such as " +
-                   o.vary.substr(0, o.vary.find('=')) + "=0..10:1, or values NAME=0,1,2\n"};
-}
-
-std::optional<ParameterRange> range(const Options& o, const Model& model) {
-  if (o.vary.empty()) return std::nullopt;
-  const std::size_t equals = o.vary.find('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == o.vary.size())
-    throw UsageError{"error: --vary: '" + o.vary +
-                     "' is not of the form NAME=VALUES\nhint: a range such as v=0..10:1, or values v=0,1,2\n"};
-  ParameterRange r;
-  const std::string name = o.vary.substr(0, equals), values = o.vary.substr(equals + 1);
-  const auto it = std::find_if(model.parameters.begin(), model.parameters.end(),
-                               [&](const Parameter& p) { return p.name == name; });
-  if (it == model.parameters.end()) {
-    std::vector<std::string> names;
-    for (const Parameter& p : model.parameters) names.push_back(p.name);
-    const std::string near = did_you_mean(name, names);
-    throw UsageError{"error: --vary: there is no parameter '" + name + "'" +
-                     (near.empty() ? "" : "; did you mean '" + near + "'?") + "\n"};
-  }
-  r.parameter = static_cast<std::size_t>(it - model.parameters.begin());
-  const std::size_t dots = values.find("..");
-  if (dots == std::string::npos) {
-    for (const std::string& v : split({values})) r.values.push_back(exact(v, "--vary"));
-  } else {
-    const std::size_t colon = values.find(':', dots);
-    if (colon == std::string::npos) wrong_range(o, "'" + values + "' has no step");
-    const Rational from = exact(values.substr(0, dots), "--vary"),
-                   to = exact(values.substr(dots + 2, colon - dots - 2), "--vary");
-    const Rational step = exact(values.substr(colon + 1), "--vary");
-    if (step == 0 || (to - from) / step < 0)
-      wrong_range(o, "no step of " + to_string(step) + " leads from " + to_string(from) + " to " + to_string(to));
-    if ((to - from) / step > static_cast<long>(kMostValues))
-      wrong_range(o, "these are more than " + std::to_string(kMostValues) + " values");
-    for (Rational v = from; step > 0 ? v <= to : v >= to; v += step) r.values.push_back(v);
-  }
-  if (r.values.empty()) wrong_range(o, "no value is given");
-  return r;
 }
 
 // ---- output -----------------------------------------------------------------------------------------
@@ -338,32 +289,32 @@ void print_csv(const Scenario& s, const Linearization& l, const std::optional<Pa
 
 int linearize(const Options& o) {
   if (o.json && o.csv) throw UsageError{"error: --json and --csv are two formats\nhint: leave out one of them\n"};
-  Reader in = read(o);
-  if (o.about == "equilibrium") in.model = at_rest(*in.model);
-  const std::optional<ParameterRange> values = range(o, *in.model);
-  Signals signals;
-  in.model = with_signals(*in.model, signals);
-  StateChoice choice = state_choice(o, *in.model);
-  if (o.about == "equilibrium") in.model = searched_from(*in.model, choice);
-  Scenario s;
-  const Outcome start = ready(in, form(o, *in.model), choice, s);
-  form(o, *in.model, Workspace(s).mechanics.get());
-  if (const auto d = not_integrated(*in.model)) {
-    print_diagnostic(*d, in.source);
-    return kBadInput;
-  }
+  const Reader in = read(o);
+  LinearRequest request;
+  if (!o.vary.empty()) request.range = read_range(o.vary, *in.model, "--vary: ");
+  request.form = &form(o, *in.model);
+  must_have_motions(in, *request.form);
+  request.equilibrium = o.about == "equilibrium";
+  request.choice = state_choice(o, *in.model);
+  request.digits = o.digits();
+  const auto study_of = [&] {
+    try {
+      return LinearStudy(in.model, request);
+    } catch (const Failure& e) {
+      if (e.diagnostic.span.line == 0) throw;
+      throw UsageError{print(e.diagnostic, in.source)};
+    }
+  };
+  const LinearStudy study = study_of();
+  const Scenario& s = study.scenario();
   if (!o.show.empty()) return show(o, s);
-  const PrecisionScope scope(std::max(kWorkingDigits, o.digits() + kGuardDigits));
-  Linearization l;
-  if (start.ok())
-    l = linearize(s, choice, values, signals);
-  else
-    l.results.push_back({"", start, {}});
+  const std::optional<ParameterRange>& values = request.range;
+  const PrecisionScope scope(study.working_digits());
+  const Linearization l = study.compute();
+  const Outcome& start = study.start();
   Outcome failed;  // the first outcome that failed
-  for (LinearResult& r : l.results) {
-    if (o.about == "equilibrium") say_no_rest(r.outcome);
+  for (const LinearResult& r : l.results)
     if (failed.ok()) failed = r.outcome;
-  }
   if (o.json)
     hand_out(json(s, l, start.ok() ? values : std::nullopt, o.digits()));
   else if (o.csv)

@@ -1,0 +1,223 @@
+"""compare, evaluate, linearize and stability: the numbers and verdicts of the command line."""
+
+import json
+import pathlib
+from collections.abc import Callable
+from typing import Any
+
+import anholon as an
+import numpy as np
+import pytest
+
+Program = Callable[..., str]
+
+
+def document(program: Program, *words: str) -> Any:
+    return json.loads(program(*words, "--json", "--quiet"))
+
+
+COMPARED = {
+    "disc": "a: m*R^2/4*theta'' = 0\nr: x' + R*phi'*cos(psi) = 0\nb: T_r = T_r",
+    "chaplygin-sleigh": "blade: x'*sin(th) - y'*cos(th) = 0\nwrong: x'*sin(th) + y'*cos(th) = 0\nn: m*(x'' - a*th''*sin(th) + a*th'^2*cos(th)) = -lambda.blade_edge*sin(th)",
+    "rolling-coin": "k: x' = phi'\n",
+    "falling-chain": "e: y'' = 0",
+}
+
+
+@pytest.mark.parametrize("model", COMPARED)
+def test_compare_gives_the_lines_of_the_program(model: str, program: Program, tmp_path: pathlib.Path) -> None:
+    path = tmp_path / "some.eq"
+    path.write_text(COMPARED[model], encoding="utf-8")
+    printed = program("compare", model, str(path), "--json", "--quiet")
+    if not printed:
+        with pytest.raises(an.ModelError):
+            an.load(model).compare(path)
+        return
+    expected = json.loads(printed)["equations"]
+    for found in (an.load(model).compare(path), an.load(model).compare(COMPARED[model])):
+        assert len(found) == len(expected)
+        for line, told in zip(found, expected, strict=True):
+            assert (line.label, line.text, line.verdict) == (told["label"], told["text"], told["verdict"])
+            assert (line.nearest or line.what) == told["what"]
+            assert (line.difference or None, line.detail, line.point or None) == (told["difference"], told["detail"], told["point"])
+            assert [s.reads for s in line.suggestions] == [c["reads"] for c in told["changes"]]
+            for s, c in zip(line.suggestions, told["changes"], strict=True):
+                assert s.proved == c["proved"]
+                assert [(p.wrong, p.right, p.line, p.column, p.place) for p in s.places] == [
+                    (p["from"], p["to"], p["line"], p["column"], p["place"]) for p in c["places"]
+                ]
+
+
+def test_shipped_equations(program: Program) -> None:
+    expected = document(program, "compare", "luo-zhao-example-1-symbolic", "luo-zhao-example-1.restored")["equations"]
+    found = an.load("luo-zhao-example-1-symbolic").compare("luo-zhao-example-1.restored")
+    assert [line.verdict for line in found] == [told["verdict"] for told in expected]
+    assert bool(found) == all(told["verdict"] == "true" for told in expected)
+
+
+def test_a_misprint_is_found_and_shown(disc: an.Model) -> None:
+    sleigh = an.load("chaplygin-sleigh")
+    found = sleigh.compare({"right": "x'*sin(th) = y'*cos(th)", "wrong": "x'*sin(th) = -y'*cos(th)"})
+    assert found["right"] and not found["wrong"] and not found
+    assert found["wrong"].suggestions and "should be" in repr(found["wrong"])
+    assert "✗ false" in found._repr_html_()
+    with pytest.raises(an.ModelError) as caught:
+        sleigh.compare("wrong: x' = yy'")
+    assert caught.value.diagnostics[0].line == 1
+    with pytest.raises(an.ModelError, match="did you mean the shipped equations"):
+        sleigh.compare("luo-zhao-example-1.restord")
+
+
+def same_digits(number: Any, text: str, digits: int) -> bool:
+    """Whether a number of mpmath is the one that a text with so many digits tells; both were rounded to that many."""
+    import mpmath
+
+    return bool(abs(number - mpmath.mpf(text)) <= abs(number) * mpmath.mpf(10) ** -digits)
+
+
+EVALUATED = ["disc", "chaplygin-sleigh", "rattleback", "fourbar", "snakeboard", "luo-zhao-example-1", "constant-jerk", "variable-mass-pendulum", "rocket"]
+
+
+@pytest.mark.parametrize("model", EVALUATED)
+def test_evaluate_gives_the_numbers_of_the_program(model: str, program: Program) -> None:
+    expected = document(program, "evaluate", model)
+    if expected["outcome"] != "finished":
+        with pytest.raises(an.MotionError) as caught:
+            an.load(model).evaluate()
+        assert caught.value.outcome.kind == expected["outcome"]
+        return
+    state = an.load(model).evaluate()
+    assert {**state.q, **state.qdot} == expected["state"]
+    assert state.t == expected["t"] and state.form == expected["form"]
+    assert state.forces and all(values == expected[name] for name, values in state.forces.items())
+    assert state.accelerations == expected["derivatives"]
+    assert state.multipliers == expected["lambda"]
+    assert all(value == expected[name] for name, value in state.energies.items())
+    assert state.mass_matrix.tolist() == expected["mass_matrix"]
+    assert state.reactions == expected["reactions"]
+    assert state.residuals == expected["residuals"]
+
+
+def test_evaluate_with_digits_and_another_state(program: Program, disc: an.Model) -> None:
+    mpmath = pytest.importorskip("mpmath")
+    words = ("evaluate", "disc", "--q", "theta=1.2", "--digits", "40", "--json", "--quiet")
+    expected = json.loads(program(*words), parse_float=str)
+    state = disc.evaluate(initial={"theta": 1.2}, digits=40)
+    with mpmath.workdps(60):
+        for name, value in state.accelerations.items():
+            assert same_digits(value, expected["derivatives"][name], 40)
+        assert same_digits(state.energies["T_r"], expected["T_r"], 40)
+    rough = disc.evaluate(initial={"theta": 1.2}).accelerations["theta''"]
+    assert abs(rough - state.accelerations["theta''"]) < 1e-14 * abs(rough)
+    with pytest.raises(an.MotionError):
+        disc.evaluate(initial={"x'": 1, "phi'": 6, "psi": 0})
+
+
+def numbers(pairs: Any) -> Any:
+    return np.array(pairs, dtype=float).reshape(-1, 2) @ [1, 1j]
+
+
+def check_linear(model: an.LinearModel, told: Any) -> None:
+    assert model.motion == told["motion"] and model.t == told["t"]
+    assert (model.states, model.dependent, model.inputs, model.outputs) == (told["states"], told["dependent"], told["inputs"], told["outputs"])
+    assert (model.cyclic, model.core, model.multiplicities) == (told["cyclic"], told["core"], told["multiplicities"])
+    assert dict(zip(model.states, model.values, strict=True)) == told["state"]
+    for name in "ABCD":
+        ours = getattr(model, name)
+        np.testing.assert_array_equal(ours, np.array(told[name], dtype=float).reshape(ours.shape))
+    np.testing.assert_array_equal(np.array(model.eigenvalues), numbers(told["eigenvalues"]))
+    for mode, expected in zip(model.modes, told["modes"], strict=True):
+        np.testing.assert_array_equal(mode, numbers(expected))
+
+
+@pytest.mark.parametrize("model", ["disc", "whipple", "two-wheeled-pendulum", "rattleback", "chaplygin-sleigh", "double-pendulum-cartesian", "third-order-linear"])
+def test_linearize_gives_the_numbers_of_the_program(model: str, program: Program) -> None:
+    told = document(program, "linearize", model)
+    if told["outcome"] != "finished":
+        with pytest.raises(an.MotionError) as caught:
+            an.load(model).linearize()
+        assert caught.value.outcome.kind == told["outcome"]
+        return
+    check_linear(an.load(model).linearize(), told)
+
+
+@pytest.mark.parametrize("model", ["double-pendulum-cartesian", "variable-mass-pendulum", "rattleback"])
+def test_an_equilibrium_is_found(model: str, program: Program) -> None:
+    told = document(program, "linearize", model, "--about", "equilibrium")
+    if told["outcome"] != "finished":
+        with pytest.raises(an.MotionError) as caught:
+            an.load(model).linearize(about="equilibrium")
+        assert str(caught.value.outcome.message) == told["message"]
+        return
+    check_linear(an.load(model).linearize(about="equilibrium"), told)
+
+
+def test_a_linear_model_about_given_values_with_digits(program: Program) -> None:
+    mpmath = pytest.importorskip("mpmath")
+    bicycle = an.load("whipple").with_(v=5)
+    told = json.loads(program("linearize", "whipple", "--set", "v=5", "--digits", "30", "--json", "--quiet"), parse_float=str)
+    model = bicycle.linearize(digits=30)
+    with mpmath.workdps(60):
+        for row, texts in zip(model.exact("A"), told["A"], strict=True):
+            assert all(same_digits(x, text, 30) for x, text in zip(row, texts, strict=True))
+        for e, (re, im) in zip(model.exact("eigenvalues"), told["eigenvalues"], strict=True):
+            assert same_digits(e.real, re, 30) and same_digits(e.imag, im, 30)
+    with pytest.raises(ValueError, match="digits=30"):
+        bicycle.linearize().exact("A")
+    told = document(program, "linearize", "disc", "--q", "theta=1.2")
+    check_linear(an.load("disc").linearize(initial={"theta": 1.2}), told)
+    with pytest.raises(an.ModelError):
+        bicycle.linearize(about="rest")
+    with pytest.raises(an.ModelError):
+        an.load("double-pendulum-cartesian").linearize(about="equilibrium", initial={"x1'": 1})
+
+
+def test_stability_of_the_bicycle(program: Program) -> None:
+    bicycle = an.load("whipple")
+    told = document(program, "linearize", "whipple", "--vary", "v=0..10:1/4")
+    found = bicycle.stability("v", 0, 10, 41)
+    assert [c.value for c in found.crossings] == [4.292382536341104, 6.024262015388359] == [c["v"] for c in told["crossings"]]
+    assert [(c.frequency, c.eigenvalues, c.destabilizes) for c in found.crossings] == [
+        (c["frequency"], c["eigenvalues"], c["destabilizes"]) for c in told["crossings"]
+    ]
+    assert found.values.tolist() == [v["v"] for v in told["values"]]
+    for model, expected in zip(found.models, told["values"], strict=True):
+        assert model is not None
+        check_linear(model, expected)
+    assert found.stable.tolist() == [4.292382536341104 < v < 6.024262015388359 for v in found.values]
+
+
+def test_curves_go_on_smoothly() -> None:
+    found = an.load("whipple").stability("v", 0, 10, 201)
+    eigenvalues = found.eigenvalues
+    for k, model in enumerate(found.models):
+        assert model is not None
+        by_value = sorted(model.eigenvalues, key=lambda e: (e.real, e.imag))
+        assert sorted(eigenvalues[k].tolist(), key=lambda e: (e.real, e.imag)) == by_value, "each eigenvalue lies on one curve"
+    # Away from the places where a pair becomes real, a curve bends little between neighbours.
+    second = np.abs(np.diff(eigenvalues, 2, axis=0)).max(axis=1)
+    shuffled = np.abs(np.diff(np.sort(eigenvalues, axis=1)[:, ::-1], 2, axis=0)).max(axis=1)
+    assert np.sum(second > 0.5) <= 6
+    assert second.sum() <= shuffled.sum()
+
+
+def test_values_without_a_linear_model_are_told() -> None:
+    pendulum = an.loads("""
+coordinates = ["th"]
+parameters = {l = 1}
+particle = [{name = "bob", mass = "sqrt(l)", position = ["l*sin(th)", "-l*cos(th)", 0]}]
+gravity.field = "-9.81*ey"
+[initial]
+q = {th = 0}
+qdot = {th = 0}
+""")
+    found = pendulum.stability("l", [1, -1, 2])
+    assert [o.ok for o in found.outcomes] == [True, False, True]
+    assert found.models[1] is None and np.isnan(found.eigenvalues[1]).all() and not found.stable[1] and found.stable[0]
+    np.testing.assert_allclose(sorted(found.eigenvalues[0].imag), [-np.sqrt(9.81), np.sqrt(9.81)], rtol=1e-15)
+    with pytest.raises(an.ModelError, match="did you mean 'l'"):
+        pendulum.stability("ll", 0, 1)
+    with pytest.raises(an.ModelError):
+        pendulum.stability("l", 0, 1, 1)
+    with pytest.raises(an.ModelError):
+        pendulum.stability("l", [])

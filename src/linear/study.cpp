@@ -1,0 +1,143 @@
+#include "linear/study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "linear/equilibrium.h"
+#include "modelfile/names/constant.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr std::size_t kMostValues = 10000;
+constexpr int kWorkingDigits = 36, kGuardDigits = 24;  // 36: two words of 64 bits, with which MPFR is fastest
+
+Rational number(const std::string& text, const std::string& called) {
+  try {
+    return read_constant(text).value;
+  } catch (const Failure& f) {
+    const std::string why = f.diagnostic.message.rfind("'" + text, 0) == 0 ? "" : ": " + f.diagnostic.message;
+    throw Failure({}, called + "'" + text + "' is not a number" + why,
+                  "a decimal such as 0.25, 1e-12, a fraction 1/3, pi/2 or a number with a unit, '30 deg'");
+  }
+}
+
+[[noreturn]] void wrong(const std::string& called, const std::string& name, const std::string& why) {
+  throw Failure({}, called + why,
+                "a range NAME=FROM..TO:STEP such as " + name + "=0..10:1, or values " + name + "=0,1,2");
+}
+
+std::vector<Rational> values_of(const std::string& text, const std::string& name, const std::string& called) {
+  std::vector<Rational> values;
+  const std::size_t dots = text.find("..");
+  if (dots == std::string::npos) {
+    for (std::size_t at = 0; at <= text.size();) {
+      const std::size_t comma = std::min(text.find(',', at), text.size());
+      if (comma > at) values.push_back(number(text.substr(at, comma - at), called));
+      at = comma + 1;
+    }
+    if (values.empty()) wrong(called, name, "no value is given");
+    return values;
+  }
+  const std::size_t colon = text.find(':', dots);
+  if (colon == std::string::npos) wrong(called, name, "'" + text + "' has no step");
+  const Rational from = number(text.substr(0, dots), called),
+                 to = number(text.substr(dots + 2, colon - dots - 2), called),
+                 step = number(text.substr(colon + 1), called);
+  if (step == 0 || (to - from) / step < 0)
+    wrong(called, name, "no step of " + to_string(step) + " leads from " + to_string(from) + " to " + to_string(to));
+  if ((to - from) / step > static_cast<long>(kMostValues))
+    wrong(called, name, "these are more than " + std::to_string(kMostValues) + " values");
+  for (Rational v = from; step > 0 ? v <= to : v >= to; v += step) values.push_back(v);
+  return values;
+}
+
+std::vector<std::complex<double>> spectrum(const LinearResult& r) {
+  std::vector<std::complex<double>> list;
+  if (r.outcome.ok())
+    for (const Eigenvalue& e : r.model.spectrum) list.emplace_back(to_double(e.value.re), to_double(e.value.im));
+  return list;
+}
+
+}  // namespace
+
+std::size_t parameter_of(const Model& model, const std::string& name, const std::string& called) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+    if (model.parameters[i].name == name) return i;
+    names.push_back(model.parameters[i].name);
+  }
+  const std::string near = did_you_mean(name, names);
+  throw Failure({}, called + "there is no parameter '" + name + "'" +
+                        (near.empty() ? "" : "; did you mean '" + near + "'?"));
+}
+
+ParameterRange read_range(const std::string& text, const Model& model, const std::string& called) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw Failure({}, called + "'" + text + "' is not of the form NAME=VALUES",
+                  "a range such as v=0..10:1, or values v=0,1,2");
+  const std::string name = text.substr(0, equals);
+  const std::size_t parameter = parameter_of(model, name, called);
+  return {parameter, values_of(text.substr(equals + 1), name, called)};
+}
+
+LinearStudy::LinearStudy(std::shared_ptr<const Model> model, LinearRequest request) : request_(std::move(request)) {
+  if (request_.equilibrium) model = at_rest(*model);
+  model = with_signals(*model, signals_);
+  if (request_.equilibrium) model = searched_from(*model, request_.choice);
+  if (const auto d = not_integrated(*model)) throw Failure(*d);
+  start_ = make_scenario(model, *request_.form, request_.choice, scenario_);
+}
+
+int LinearStudy::working_digits() const { return std::max(kWorkingDigits, request_.digits + kGuardDigits); }
+
+Linearization LinearStudy::compute() const {
+  Linearization l;
+  if (start_.ok())
+    l = linearize(scenario_, request_.choice, request_.range, signals_);
+  else
+    l.results.push_back({"", start_, {}});
+  if (request_.equilibrium)
+    for (LinearResult& r : l.results) say_no_rest(r.outcome);
+  return l;
+}
+
+std::vector<std::vector<std::complex<double>>> curves(const Linearization& l) {
+  using Values = std::vector<std::complex<double>>;
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  std::size_t most = 0;
+  for (const LinearResult& r : l.results) most = std::max(most, r.model.spectrum.size());
+  std::vector<Values> list(most, Values(l.results.size(), {none, none}));
+  Values last, before;  // of each curve, at the value before and at the one before that
+  for (std::size_t k = 0; k < l.results.size(); ++k) {
+    const Values here = spectrum(l.results[k]);
+    if (here.empty()) continue;
+    if (last.empty()) last = here, last.resize(most, {none, none}), before = last;
+    struct Pair {
+      double distance;
+      std::size_t curve, value;
+    };
+    std::vector<Pair> pairs;
+    for (std::size_t c = 0; c < most; ++c)
+      for (std::size_t i = 0; i < here.size(); ++i) {
+        // Where the curve would go straight on.
+        const double distance = std::abs(here[i] - (2.0 * last[c] - before[c]));
+        pairs.push_back({std::isnan(distance) ? std::numeric_limits<double>::infinity() : distance, c, i});
+      }
+    std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+    std::vector<bool> curve_done(most), value_done(here.size());
+    for (const Pair& p : pairs) {
+      if (curve_done[p.curve] || value_done[p.value]) continue;
+      curve_done[p.curve] = value_done[p.value] = true;
+      list[p.curve][k] = here[p.value];
+      before[p.curve] = std::isnan(last[p.curve].real()) ? here[p.value] : last[p.curve];
+      last[p.curve] = here[p.value];
+    }
+  }
+  return list;
+}
+
+}  // namespace anholon

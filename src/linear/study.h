@@ -1,0 +1,47 @@
+// Linear models of a model in one form of its equations: about a state or at rest, at one value of the parameters or over
+// a range of one of them.
+#pragma once
+#include <complex>
+
+#include "linear/linearize.h"
+
+namespace anholon {
+
+struct LinearRequest {
+  const Formulation* form = nullptr;
+  bool equilibrium = false;  // about the state of rest near the positions that are given
+  StateChoice choice;
+  std::optional<ParameterRange> range;
+  int digits = 16;  // of the results
+};
+
+// A range as it is written: "v=0..10:1", or values "v=0,1,2". Throws Failure without a place; `called` begins its message.
+ParameterRange read_range(const std::string& text, const Model& model, const std::string& called);
+// The place of a parameter. Throws Failure without a place.
+std::size_t parameter_of(const Model& model, const std::string& name, const std::string& called);
+
+class LinearStudy {
+ public:
+  // Throws Failure for what this model lacks for numbers. REQUIRES: the form applies.
+  LinearStudy(std::shared_ptr<const Model> model, LinearRequest request);
+  // How the preparation of the initial state ended.
+  const Outcome& start() const { return start_; }
+  const Scenario& scenario() const { return scenario_; }
+  int working_digits() const;
+  // One result if the start failed; its outcome tells why. In the working precision that the caller has set, of
+  // working_digits().
+  Linearization compute() const;
+
+ private:
+  LinearRequest request_;
+  Signals signals_;
+  Scenario scenario_;
+  Outcome start_;
+};
+
+// The eigenvalues of a range as curves: curves[i][k] belongs to the value k, and continues the curve i of the values
+// before. Among the ways to continue all curves it takes the nearest pairs first. NaN where a value has no linear model,
+// or fewer eigenvalues than others.
+std::vector<std::vector<std::complex<double>>> curves(const Linearization& linearization);
+
+}  // namespace anholon
