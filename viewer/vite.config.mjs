@@ -1,4 +1,5 @@
 import { readFileSync } from 'node:fs';
+import { transform } from 'esbuild';
 import { defineConfig } from 'vite';
 import { lean_three } from './tools/lean_three.mjs';
 
@@ -13,15 +14,31 @@ under the MIT License:
 ${mit}
 */`;
 
-export default defineConfig({
-  plugins: [lean_three()],
+// Two programs: the script of a page, and (--mode widget) the module of a notebook's widget, which has its style inside.
+const programs = {
+  production: { entry: 'src/main.ts', name: 'anholon_viewer', formats: ['iife'], fileName: () => 'viewer.js' },
+  widget: { entry: 'src/widget.ts', formats: ['es'], fileName: () => 'widget.js' },
+};
+
+// Vite leaves modules of libraries readable; ours is no library.
+const minified = {
+  name: 'minified',
+  async renderChunk(code) {
+    const small = await transform(code, { minify: true, format: 'esm', target: 'es2020', legalComments: 'none', charset: 'ascii' });
+    return { code: `${banner}\n${small.code}`, map: null };
+  },
+};
+
+export default defineConfig(({ mode }) => ({
+  plugins: [lean_three(), ...(mode === 'widget' ? [minified] : [])],
   define: { 'process.env.NODE_ENV': '"production"' },
   esbuild: { legalComments: 'none', charset: 'ascii' },
   build: {
     target: 'es2020',
     assetsInlineLimit: 10_000_000,
-    lib: { entry: 'src/main.ts', name: 'anholon_viewer', formats: ['iife'], fileName: () => 'viewer.js' },
-    rollupOptions: { output: { assetFileNames: 'viewer.[ext]', banner } },
+    lib: programs[mode],
+    emptyOutDir: mode !== 'widget',
+    rollupOptions: { output: { assetFileNames: 'viewer.[ext]', banner: mode === 'widget' ? '' : banner } },
     reportCompressedSize: false,
   },
-});
+}));

@@ -20,4 +20,11 @@ struct Equations {
 // Errors: the form is not known or does not apply (a diagnostic that lists those that do).
 ANHOLON_API Result<Equations> derive(const Model& model, const DeriveOptions& options = {});
 
+// The name of a coordinate, a derivative, a parameter as a formula: "theta'" is \dot{\theta}.
+struct Symbol {
+  std::string latex, mathml;
+};
+// In the notation of the model, or as names are written without one.
+ANHOLON_API Symbol symbol(const std::string& name, const Model* model = nullptr);
+
 }  // namespace anholon::v1

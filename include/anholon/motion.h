@@ -26,10 +26,11 @@ struct MotionOptions {
 };
 
 struct Column {
-  std::string name;    // "t", "x", "x'", "lambda.rod", "N.x", a state, a monitor
-  std::string kind;    // "coordinates", "velocities", "multipliers", "reactions", …
-  std::string unit;    // empty where the model names none
-  unsigned order = 0;  // of the derivative
+  std::string name;           // "t", "x", "x'", "lambda.rod", "N.x", a state, a monitor
+  std::string kind;           // "coordinates", "velocities", "multipliers", "reactions", …
+  std::string unit;           // empty where the model names none
+  unsigned order = 0;         // of the derivative
+  std::string latex, mathml;  // its symbol in the notation of the model
 };
 
 struct Event {
@@ -87,6 +88,8 @@ class ANHOLON_API Run {
   // The numbers of a column, one for each row, in SI units; empty if there is no column of that name.
   std::span<const double> column(const std::string& name) const;
   std::span<const double> t() const { return column("t"); }
+  // All numbers in one block, column after column: those of columns()[k] begin at k * rows().
+  std::span<const double> block() const;
   // A number as text, with all digits of the run. Returns an empty text if there is no such column or row.
   std::string text(std::size_t row, const std::string& column) const;
   const std::vector<Event>& events() const;

@@ -1,5 +1,5 @@
-// A motion as one page of HTML: equations, proof, plots, animation, trust. It stands by itself: no network, no other
-// files.
+// Pictures of a motion, which stand by themselves: no network, no other files. A page of HTML with equations, proof, plots,
+// animation, trust; the data of its animation and plots; a figure of columns.
 #pragma once
 #include "anholon/motion.h"
 
@@ -12,5 +12,19 @@ struct PageOptions {
 
 // The text of the page. Errors: unknown forms; a run without rows (diagnostics).
 ANHOLON_API Result<std::string> page(const Run& run, const PageOptions& options = {});
+
+// What the viewer of the page reads, as JSON: columns, events, and the bodies as formulas of the columns
+// (viewer/CONTRACT.md). Errors: a run without rows (diagnostics).
+ANHOLON_API Result<std::string> picture_data(const Run& run);
+
+struct FigureOptions {
+  std::vector<std::string> columns = {};  // names or patterns with * and ?; empty: the coordinates
+  std::string x = {};                     // the column they are drawn over; empty: t
+  bool log = false;                       // the vertical axis is logarithmic
+  double width = 16, height = 9;          // cm
+};
+
+// The text of an SVG. Errors: columns that do not exist; a run without rows (diagnostics).
+ANHOLON_API Result<std::string> figure(const Run& run, const FigureOptions& options = {});
 
 }  // namespace anholon::v1

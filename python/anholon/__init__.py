@@ -68,7 +68,7 @@ from .expressions import (
 )
 from .from_sympy import from_sympy
 from .model import Check, Model, load, loads, zoo
-from .run import Page, Run
+from .run import Figure, Page, Run
 from .sweep import Sweep, normal, uniform
 
 __version__: str = version()
@@ -84,6 +84,7 @@ __all__ = [
     "Equation",
     "Equations",
     "Expr",
+    "Figure",
     "Interrupted",
     "LinearModel",
     "Model",

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import html
+import linecache
+import traceback
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -35,8 +37,8 @@ class ModelError(ValueError):
         return self.text
 
     def _render_traceback_(self) -> list[str]:
-        """IPython and Jupyter show this instead of a traceback: the line, a caret and the hint."""
-        return [f"\x1b[31mModelError\x1b[0m: {self.text}"]
+        """IPython and Jupyter show this instead of a traceback: the user's own line that called, then the mistake."""
+        return [*_calling_lines(self), f"\x1b[31mModelError\x1b[0m: {self.text}"]
 
     def _repr_html_(self) -> str:
         return f"<pre>{html.escape(self.text)}</pre>"
@@ -64,6 +66,19 @@ class Interrupted(KeyboardInterrupt):
     def __init__(self, result: Run | Sweep) -> None:
         super().__init__("interrupted; what was computed is in .result")
         self.result = result
+
+
+def _calling_lines(error: BaseException) -> list[str]:
+    """The place in the user's code from which the library was called: the last frame outside of the package and of IPython."""
+    place = None
+    for frame, line in traceback.walk_tb(error.__traceback__):
+        name = frame.f_globals.get("__name__", "")
+        if name.partition(".")[0] not in ("anholon", "IPython", "ipykernel"):
+            place = (frame.f_code.co_filename, line)
+    if place is None:
+        return []
+    code = linecache.getline(*place).strip()
+    return [f"line {place[1]}: \x1b[1m{code}\x1b[0m"] if code else []
 
 
 def error_of(text: str, diagnostics: list[Diagnostic], outcome: Outcome | None) -> Exception:

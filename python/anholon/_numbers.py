@@ -42,6 +42,14 @@ def texts_of(values: Mapping[str, Number] | None) -> dict[str, str]:
     return {name: text_of(value) for name, value in (values or {}).items()}
 
 
+def float_of(text: str | None) -> float | None:
+    """The value of a text that is a decimal or a fraction; None for formulas."""
+    try:
+        return None if text is None else float(Fraction(text))
+    except (ValueError, ZeroDivisionError):
+        return None
+
+
 def list_of(values: Iterable[Number]) -> list[str]:
     """The same for a list or an array."""
     return [text_of(value) for value in values]

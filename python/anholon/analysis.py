@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
-from . import _core
+from . import _core, _display
 from ._numbers import exact_numbers
 
 if TYPE_CHECKING:
@@ -327,6 +327,12 @@ class LinearModel:
     def __repr__(self) -> str:
         listed = ", ".join(f"{e:.6g}" for e in self.eigenvalues)
         return f"<linear model of a motion that is {self.motion}: {len(self.states)} states, {len(self.inputs)} inputs; eigenvalues {listed}>"
+
+    def _repr_html_(self) -> str:
+        return _display.linear_model(self)
+
+    def _repr_latex_(self) -> str:
+        return _display.linear_model_latex(self)
 
 
 class Stability:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import html
 import json
 from typing import Any
 
-from . import _core
+from . import _core, _display
 
 
 class Equations:
@@ -101,10 +100,7 @@ class Proof:
         return "\n".join(f"{_SIGNS[f.verdict]} {f!r}" for f in self.forms)
 
     def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td>{html.escape(f.form)}</td><td>{_SIGNS[f.verdict]} {f.verdict}</td><td>{html.escape(f.detail)}</td></tr>" for f in self.forms
-        )
-        return f"<table><thead><tr><th>form</th><th>against Routh</th><th></th></tr></thead><tbody>{rows}</tbody></table>"
+        return _display.proof(self, _SIGNS)
 
 
 def verify(proof: Proof | str) -> _core.Verification:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import html
+import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from . import _core
+from . import _core, _display
 from ._errors import Interrupted, ModelError, MotionError
-from ._numbers import Number, list_of, spaced, text_of, texts_of
+from ._numbers import Number, float_of, list_of, spaced, text_of, texts_of
+from ._progress import Progress, Shown
 from .analysis import Comparison, LinearModel, PublishedEquations, Stability, State, equation_text
 from .dynamics import Dynamics
 from .equations import Equations, Proof
@@ -189,7 +191,7 @@ class Model:
         most_steps: int | None = None,
         dense: bool = False,
         stop: Callable[[], bool] | None = None,
-        progress: Callable[[float, int], object] | None = None,
+        progress: Progress = None,
         **others: Number | bool,
     ) -> Run:
         """One motion. What happens to it never raises: ``run.outcome`` tells why it stopped and what to do.
@@ -211,7 +213,8 @@ class Model:
             most_steps: the motion ends after so many.
             dense: keeps the polynomials of all steps, so that ``run(t)`` has them; without, it makes the motion once more.
             stop: asked every 20 ms; True ends the motion.
-            progress: told the time and the number of steps every 20 ms.
+            progress: True shows a bar, False none; a function is told the time and the number of steps every 20 ms. By default
+                a bar appears after two seconds in a notebook and at a prompt.
             others: any option of ``anholon simulate`` that changes the motion, with _ for -: ``rigorous=64``.
 
         Raises:
@@ -243,7 +246,9 @@ class Model:
                 raise raised
             return made
 
-        core, raised = _core.simulate(system, words, times, dense, stop, progress)
+        end = float_of(times[-1] if times else words.get("to"))
+        with Shown(progress, self.title, end, start=system.start) as tell:
+            core, raised = _core.simulate(system, words, times, dense, stop, tell)
         run = Run(self, core, core.outcome, again)
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted(run) from None
@@ -411,7 +416,7 @@ class Model:
         form: str = "routh",
         threads: int = 0,
         stop: Callable[[], bool] | None = None,
-        progress: Callable[[float, int], object] | None = None,
+        progress: Progress = None,
     ) -> Sweep:
         """Many motions, on all cores: all combinations of the values, the last name varying fastest.
 
@@ -426,7 +431,7 @@ class Model:
             form: of the equations.
             threads: 0: as many as the machine has. The numbers are the same for any.
             stop: asked every 20 ms; True ends the sweep.
-            progress: told the number of cases done every 20 ms, twice.
+            progress: as in :meth:`simulate`; a function is told the number of cases done, twice.
 
         Raises:
             ModelError: an argument makes no sense.
@@ -436,18 +441,19 @@ class Model:
         values = [(name, [] if isinstance(of, Law) else list_of(of)) for name, of in vary.items()]
         laws = {name: str(of) for name, of in vary.items() if isinstance(of, Law)}
         system = self._system(form, texts_of(initial), ())
-        core, raised = _core.sweep(
-            system,
-            values,
-            laws,
-            cases,
-            seed,
-            None if to is None else text_of(to),
-            None if tolerance is None else text_of(tolerance),
-            threads,
-            stop,
-            progress,
-        )
+        with Shown(progress, self.title, _count(values, laws, cases), unit="cases") as tell:
+            core, raised = _core.sweep(
+                system,
+                values,
+                laws,
+                cases,
+                seed,
+                None if to is None else text_of(to),
+                None if tolerance is None else text_of(tolerance),
+                threads,
+                stop,
+                tell,
+            )
         sweep = Sweep(self, core, list(vary))
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted(sweep) from None
@@ -509,6 +515,13 @@ class Model:
         return f"<table><caption>{html.escape(self.title)}</caption><tbody>{body}</tbody></table>"
 
 
+def _count(values: list[tuple[str, list[str]]], laws: dict[str, str], cases: int | None) -> float | None:
+    """How many cases a sweep has, if that is known before it begins."""
+    if cases is not None:
+        return float(cases)
+    return None if laws else float(math.prod(len(of) for _, of in values))
+
+
 class Check:
     """What kind of system a model is, at its initial state."""
 
@@ -541,6 +554,9 @@ class Check:
         lines += [f"  {c!r}{', redundant' if c.redundant else ''}" for c in self.constraints]
         lines += [f"  {v!r} ({v.origin})" for v in self.initial]
         return "\n".join([*lines, *self.notes])
+
+    def _repr_html_(self) -> str:
+        return _display.check(self)
 
 
 def load(path: str | os.PathLike[str], *, case: str | Sequence[str] = (), set: Mapping[str, Number] | None = None) -> Model:

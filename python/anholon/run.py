@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from . import _arrow, _core
+from . import _arrow, _core, _display, _widget
 from ._errors import MotionError
 
 if TYPE_CHECKING:
@@ -23,7 +23,13 @@ if TYPE_CHECKING:
 
 
 class Page:
-    """A page of HTML that stands by itself. A notebook shows it in a frame."""
+    """A page of HTML that stands by itself. A notebook shows it in a frame.
+
+    Example:
+        >>> import anholon as an
+        >>> an.load("disc").simulate(to=1).page(proof=False)
+        <page, ... kB; a notebook shows it, save(path) writes it>
+    """
 
     def __init__(self, html: str) -> None:
         self.html: str = html
@@ -38,6 +44,33 @@ class Page:
 
     def __repr__(self) -> str:
         return f"<page, {len(self.html) / 1000:.0f} kB; a notebook shows it, save(path) writes it>"
+
+
+class Figure:
+    """A figure as SVG, which a notebook shows. :meth:`Run.plot` makes it where Matplotlib is missing.
+
+    Example:
+        >>> import anholon as an
+        >>> an.load("disc").simulate(to=1).figure("theta").svg[:4]
+        '<svg'
+    """
+
+    def __init__(self, svg: str) -> None:
+        self.svg: str = svg
+
+    def save(self, path: str) -> None:
+        """Writes the SVG to a file."""
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(self.svg)
+
+    def _repr_svg_(self) -> str:
+        return self.svg
+
+    def _repr_html_(self) -> str:
+        return self.svg
+
+    def __repr__(self) -> str:
+        return f"<figure, {len(self.svg) / 1000:.0f} kB of SVG; a notebook shows it, save(path) writes it>"
 
 
 class Run:
@@ -94,6 +127,11 @@ class Run:
         return {name: column.unit for name, column in self._columns.items() if column.unit}
 
     @property
+    def long_names(self) -> dict[str, str]:
+        """What each column is, in words: "rate of theta", "multiplier of rolling.x"."""
+        return {name: _long_name(column) for name, column in self._columns.items()}
+
+    @property
     def t(self) -> Array:
         """The times of the rows, s, shape (rows,)."""
         return self["t"]
@@ -101,12 +139,24 @@ class Run:
     def _of_kind(self, kind: str) -> Array:
         import numpy as np
 
-        names = [name for name, column in self._columns.items() if column.kind == kind]
-        return np.column_stack([self[name] for name in names]) if names else np.empty((len(self), 0))
+        places = [k for k, column in enumerate(self._columns.values()) if column.kind == kind]
+        if not places or self._core is None or len(self) == 0:
+            return np.empty((len(self), len(places)))
+        if places == list(range(places[0], places[-1] + 1)):
+            return self._core.block(places[0], len(places))
+        # Servo constraints may stand between ideal ones, whose multipliers are then not side by side.
+        return np.column_stack([self[list(self._columns)[k]] for k in places])
+
+    @property
+    def values(self) -> Array:
+        """All numbers, shape (rows, columns), a view: column k is ``run.keys()[k]``."""
+        import numpy as np
+
+        return np.empty((0, 0)) if self._core is None or len(self) == 0 else self._core.block(0, len(self._columns))
 
     @property
     def q(self) -> Array:
-        """The coordinates, shape (rows, coordinates), in the order of ``model.coordinates``; put together from the columns."""
+        """The coordinates, shape (rows, coordinates), in the order of ``model.coordinates``: a view, as are the next ones."""
         return self._of_kind("coordinates")
 
     @property
@@ -121,7 +171,7 @@ class Run:
 
     @property
     def lam(self) -> Array:
-        """The multipliers, shape (rows, constraints)."""
+        """The multipliers of the ideal constraints, shape (rows, constraints). A view, unless servo constraints stand among them."""
         return self._of_kind("multipliers")
 
     def exact(self, name: str) -> list[Any]:
@@ -197,11 +247,15 @@ class Run:
         return {name: self[name] for name in self}
 
     def to_pandas(self) -> pandas.DataFrame:
-        """A DataFrame with the columns of the run; ``.attrs["units"]`` has the units. Needs pandas."""
+        """A DataFrame with the columns of the run. Needs pandas.
+
+        ``.attrs`` has "units" and "long_names" by column, and the "title".
+        """
         import pandas
 
         frame = pandas.DataFrame(self.to_dict())
         frame.attrs["units"] = self.units
+        frame.attrs["long_names"] = self.long_names
         frame.attrs["title"] = self.model.title
         return frame
 
@@ -212,12 +266,15 @@ class Run:
         return polars.DataFrame(self)
 
     def to_xarray(self) -> xarray.Dataset:
-        """A Dataset over the dimension t, with units as attributes. Needs xarray."""
+        """A Dataset over the dimension t; the attributes "units" and "long_name" of its variables label plots. Needs xarray."""
         import xarray
 
+        def attributes(column: _core.Column) -> dict[str, str]:
+            return {"long_name": _long_name(column), **({"units": column.unit} if column.unit else {})}
+
         return xarray.Dataset(
-            {name: ("t", self[name], {"units": column.unit} if column.unit else {}) for name, column in self._columns.items() if name != "t"},
-            coords={"t": ("t", self.t, {"units": "s"})},
+            {name: ("t", self[name], attributes(column)) for name, column in self._columns.items() if name != "t"},
+            coords={"t": ("t", self.t, {"units": "s", **attributes(self._columns["t"])})},
             attrs={"title": self.model.title},
         )
 
@@ -260,28 +317,66 @@ class Run:
             page.save(path)
         return page
 
-    def animate(self) -> Page:
-        """The motion as a picture that plays in a notebook: its page, without a proof."""
-        return self.page(proof=False)
+    def animate(self, *, plots: bool = False) -> Any:
+        """The motion as a picture that plays in a notebook.
+
+        Where anywidget is installed it is a widget, which plays in Jupyter, VS Code, Colab and marimo; its ``time`` and
+        ``playing`` can be set. Without anywidget it is the page of the motion in a frame.
+
+        Args:
+            plots: shows plots of all columns below the picture, with the same time.
+
+        Raises:
+            ModelError: there are no rows.
+        """
+        if not _widget.available():
+            return self.page(proof=False)
+        return _widget.widget(self._required().picture_data(), plots=plots)
+
+    def figure(self, *names: str, x: str = "t") -> Figure:
+        """Columns over another one as SVG, by the program's own hand: no other package is needed.
+
+        Args:
+            names: columns to draw, or patterns with * and ?; the coordinates if there are none.
+            x: the column they are drawn over.
+
+        Raises:
+            ModelError: there is no such column, or there are no rows.
+        """
+        return Figure(self._required().figure(list(names), x))
 
     def plot(self, *names: str, x: str = "t", ax: Any = None) -> Any:
-        """Draws columns (all coordinates if none is named) over another one with Matplotlib; returns the axes.
+        """Draws columns (all coordinates if none is named) over another one: Matplotlib's axes, or a :class:`Figure` without Matplotlib.
 
         Args:
             names: columns to draw.
             x: the column they are drawn over.
             ax: axes of Matplotlib; new ones if it is None.
-        """
-        if ax is None:
-            import matplotlib.pyplot as plt
 
-            _, ax = plt.subplots()
+        Raises:
+            KeyError: there is no such column.
+
+        Example:
+            >>> import anholon as an
+            >>> run = an.load("disc").simulate(to=2, every="0.01")
+            >>> axes = run.plot("theta", "phi'", x="t")
+        """
         chosen: Sequence[str] = names or [name for name, column in self._columns.items() if column.kind == "coordinates"]
-        for name in chosen:
-            unit = self.units.get(name)
-            ax.plot(self[x], self[name], label=f"{name} [{unit}]" if unit else name)
-        ax.set_xlabel(f"{x} [{self.units.get(x, 's' if x == 't' else '')}]".replace(" []", ""))
-        ax.legend()
+        columns = [(self[name], self._columns[name]) for name in chosen]
+        if ax is None:
+            try:
+                import matplotlib.pyplot as plt
+            except ImportError:
+                return self.figure(*chosen, x=x)
+            _, ax = plt.subplots()
+        over = self[x]
+        for values, column in columns:
+            ax.plot(over, values, label=_label(column))
+        ax.set_xlabel(_label(self._columns[x]))
+        if len(columns) == 1:
+            ax.set_ylabel(_label(columns[0][1]))
+        else:
+            ax.legend()
         return ax
 
     def __repr__(self) -> str:
@@ -293,17 +388,33 @@ class Run:
         return f"<run of {self.model.title!r}: {self.outcome.kind}{reached}, {len(self)} rows{trusted}>"
 
     def _repr_html_(self) -> str:
-        if self._core is None:
-            return f"<pre>{html.escape(repr(self.outcome))}</pre>"
-        report = self.report
-        lines = [("outcome", repr(self.outcome)), ("rows", f"{len(self)}, {report.steps} steps of order {report.order}, {report.seconds:.3g} s")]
-        if report.trust:
-            lines.append(("digits to trust", ", ".join(f"{trust.kind} {trust.digits}" for trust in report.trust)))
-        elif report.no_trust:
-            lines.append(("digits to trust", f"not estimated: {report.no_trust}"))
-        lines.append(("residuals", f"Newton's law {report.newton:.2g}, constraints {report.constraints:.2g}, power {report.power:.2g}"))
-        lines += [("conserved", f"{w.name}, largest change {w.largest_change:.2g}") for w in report.watched if w.conserved]
-        lines += [("event", repr(event)) for event in self.events[:20]]
-        lines += [("warning", text) for text in report.warnings]
-        rows = "".join(f"<tr><th style='text-align:left'>{html.escape(k)}</th><td style='text-align:left'>{html.escape(v)}</td></tr>" for k, v in lines)
-        return f"<table><caption>{html.escape(self.model.title)}</caption><tbody>{rows}</tbody></table>"
+        return _display.run(self)
+
+
+def _long_name(column: _core.Column) -> str:
+    """What a column is, in words."""
+    base = column.name.rstrip("'")
+    of = base.split(".", 1)[1] if column.kind in ("multipliers", "multiplier rates", "reactions") and "." in base else base
+    words = {
+        "time": "time",
+        "coordinates": f"coordinate {of}",
+        "velocities": f"rate of {of}",
+        "accelerations": f"second derivative of {of}",
+        "multipliers": f"multiplier of {of}",
+        "reactions": f"generalized reaction along {of}",
+        "states": f"state {of}",
+        "inputs": f"input {of}",
+    }
+    return words.get(column.kind, column.name)
+
+
+def _label(column: _core.Column) -> str:
+    """The symbol of a column with its unit, as Matplotlib writes it."""
+    from matplotlib.mathtext import MathTextParser
+
+    unit = f" [{column.unit}]" if column.unit else " [s]" if column.kind == "time" else ""
+    try:
+        MathTextParser("path").parse(f"${column.latex}$")
+    except ValueError:  # LaTeX of the user's that Matplotlib does not read
+        return column.name.replace("$", r"\$") + unit
+    return f"${column.latex}$" + unit

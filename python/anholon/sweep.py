@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from . import _arrow, _core
+from . import _arrow, _core, _display
 from ._numbers import Number, text_of
 
 if TYPE_CHECKING:
@@ -118,6 +118,9 @@ class Sweep(Mapping[str, "Array"]):
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         """The numbers as an Arrow stream of one batch, read where they are."""
         return _arrow.stream(self.to_dict(), {})
+
+    def _repr_html_(self) -> str:
+        return _display.sweep(self, f"sweep of {self.model.title}", self.outcomes)
 
     def __repr__(self) -> str:
         return f"<sweep of {self.model.title!r}: {self.finished} of {self.cases} cases finished; varied: {', '.join(self.varied)}>"

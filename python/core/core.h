@@ -35,6 +35,14 @@ using namespace nb::literals;
 using Numbers = std::map<std::string, std::string>;
 std::map<std::string, Number> numbers(const Numbers& texts);
 
+// Adds the method by which a notebook shows an object: a function of that name in anholon._display.
+template <class C>
+void shown(nb::class_<C>& c, const char* name) {
+  c.def("_repr_html_", [function = std::string(name)](nb::handle self) {
+    return nb::cast<std::string>(nb::module_::import_("anholon._display").attr(function.c_str())(self));
+  });
+}
+
 // An error of the library; it becomes an exception of the Python package.
 struct Trouble {
   Error error;

@@ -54,6 +54,8 @@ void bind_run(nb::module_& m) {
       .def_ro("kind", &Column::kind, "'coordinates', 'velocities', 'multipliers', 'reactions', …")
       .def_ro("unit", &Column::unit, "Empty where the model names none.")
       .def_ro("order", &Column::order, "Of the derivative.")
+      .def_ro("latex", &Column::latex, "Its symbol, in the notation of the model.")
+      .def_ro("mathml", &Column::mathml)
       .def("__repr__", [](const Column& c) { return c.unit.empty() ? c.name : c.name + " [" + c.unit + "]"; });
   nb::class_<Event::Change>(m, "Change", "A value that an event has changed.")
       .def_ro("name", &Event::Change::name)
@@ -82,11 +84,11 @@ void bind_run(nb::module_& m) {
       .def_ro("conserved", &Watched::conserved, "It is known to be an integral of the motion.")
       .def("__repr__",
            [](const Watched& w) { return nb::cast<std::string>(nb::str("{} = {!r}").format(w.name, w.last)); });
-  nb::class_<Report>(
+  nb::class_<Report> report(
       m, "Report",
       "How far a run can be trusted. All residuals are relative to the greatest of their terms along the "
-      "motion.")
-      .def_ro("newton", &Report::newton, "Newton's law by the points themselves, with ideal reactions.")
+      "motion.");
+  report.def_ro("newton", &Report::newton, "Newton's law by the points themselves, with ideal reactions.")
       .def_ro("projected", &Report::projected, "The same without multipliers.")
       .def_ro("constraints", &Report::constraints, "Constraints and their derivatives at the rows.")
       .def_ro("before_projection", &Report::before_projection, "The same before each step is projected.")
@@ -102,6 +104,7 @@ void bind_run(nb::module_& m) {
       .def_ro("watched", &Report::watched)
       .def_ro("warnings", &Report::warnings)
       .def_ro("notes", &Report::notes);
+  shown(report, "report");
   nb::class_<Run>(m, "Run")
       .def_prop_ro("outcome", &Run::outcome)
       .def_prop_ro("rows", &Run::rows)
@@ -110,11 +113,22 @@ void bind_run(nb::module_& m) {
           "column",
           [](nb::handle self, const std::string& name) { return view(nb::cast<const Run&>(self).column(name), self); },
           "name"_a)
+      .def(
+          "block",
+          [](nb::handle self, std::size_t first, std::size_t count) {
+            const Run& run = nb::cast<const Run&>(self);
+            const std::size_t rows = run.rows();
+            if (first + count > run.columns().size()) throw nb::index_error("there are not so many columns");
+            return nb::ndarray<nb::numpy, const double, nb::ndim<2>>(run.block().data() + first * rows, {rows, count},
+                                                                     self, {1, static_cast<std::int64_t>(rows)});
+          },
+          "first"_a, "count"_a, "Columns that lie side by side, shape (rows, count), without a copy.")
       .def_prop_ro("has_dense", &Run::has_dense)
       .def(
           "at",
           [](const Run& run, const std::string& name, const View& times, int order) {
-            return array<1>(run.at(name, {times.data(), times.size()}, order), {times.size()});
+            return array<1>(unlocked([&] { return run.at(name, {times.data(), times.size()}, order); }),
+                            {times.size()});
           },
           "name"_a, "times"_a, "order"_a)
       .def("text", &Run::text, "row"_a, "column"_a)
@@ -126,6 +140,13 @@ void bind_run(nb::module_& m) {
             return value_of(unlocked([&] { return page(run, PageOptions{forms, proof}); }));
           },
           "forms"_a, "proof"_a)
+      .def("picture_data", [](const Run& run) { return value_of(unlocked([&] { return picture_data(run); })); })
+      .def(
+          "figure",
+          [](const Run& run, const std::vector<std::string>& columns, const std::string& x) {
+            return value_of(unlocked([&] { return figure(run, FigureOptions{columns, x}); }));
+          },
+          "columns"_a, "x"_a)
       .def("json", [](const Run& run) { return unlocked([&] { return run.json(); }); })
       .def(
           "write",
@@ -151,6 +172,13 @@ void bind_run(nb::module_& m) {
 }  // namespace
 
 void bind_motions(nb::module_& m) {
+  m.def(
+      "symbol",
+      [](const std::string& name, const Model* model) {
+        Symbol s = symbol(name, model);
+        return std::pair(std::move(s.latex), std::move(s.mathml));
+      },
+      "name"_a, "model"_a.none() = nb::none(), "LaTeX and MathML of a name, in the notation of the model.");
   bind_system(m);
   bind_run(m);
 }

@@ -54,7 +54,8 @@ void bind_results(nb::module_& m) {
       .def("__repr__", [](const Diagnostic& d) {
         return d.file + ":" + std::to_string(d.line) + ":" + std::to_string(d.column) + ": " + d.message;
       });
-  nb::class_<Outcome>(m, "Outcome", "How a computation ended, and what to do if it stopped early.")
+  nb::class_<Outcome> outcome(m, "Outcome", "How a computation ended, and what to do if it stopped early.");
+  outcome
       .def_prop_ro(
           "kind", [](const Outcome& o) { return std::string(name(o.kind)); },
           "'finished', 'singular', 'step_collapse', 'blow_up', 'negative_mass', 'not_a_number', "
@@ -66,6 +67,7 @@ void bind_results(nb::module_& m) {
       .def("__repr__", [](const Outcome& o) {
         return o.ok() ? std::string("finished") : std::string(name(o.kind)) + ": " + o.message + "\nhint: " + o.hint;
       });
+  shown(outcome, "outcome");
 }
 
 void Attendant::look() {

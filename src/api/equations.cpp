@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "api/data.h"
+#include "print/print_names.h"
 #include "report/equations.h"
 #include "setup/eliminate.h"
 
@@ -29,6 +30,20 @@ Result<Equations> derive(const Model& model, const DeriveOptions& options) {
     return Equations{form.name, inner::as_text(list), inner::as_latex(list), inner::as_mathml(list),
                      inner::as_json(list, false)};
   });
+}
+
+Symbol symbol(const std::string& name, const Model* model) {
+  const std::size_t end = name.find_last_not_of('\'') + 1;
+  const auto order = static_cast<unsigned>(name.size() - end);
+  const std::string base = name.substr(0, end);
+  std::string latex = inner::latex_name(base), mathml = inner::mathml_name(base);
+  if (model) {
+    const auto& notation = model->data().model->names.notation;
+    if (const auto chosen = notation.find(base); chosen != notation.end())
+      latex = chosen->second.latex, mathml = chosen->second.mathml;
+  }
+  return {inner::derivative_name(latex, order, inner::Format::latex),
+          inner::derivative_name(mathml, order, inner::Format::mathml)};
 }
 
 }  // namespace anholon::v1

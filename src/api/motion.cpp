@@ -6,6 +6,7 @@
 
 #include "api/run_data.h"
 #include "mechanics/conserved.h"
+#include "report/columns.h"
 #include "result/format.h"
 #include "result/json_run.h"
 #include "simulation/report_json.h"
@@ -19,11 +20,13 @@ namespace {
 // Keeps the rows, and what their columns hold.
 class RowKeeper final : public inner::RowSink {
  public:
-  explicit RowKeeper(Run::Data& data) : data_(data) {}
+  RowKeeper(Run::Data& data, const inner::Model& model) : data_(data), model_(model) {}
   void columns(const std::vector<inner::RunColumn>& columns) override {
     data_.run.table.set_columns(inner::names_of(columns));
     for (const inner::RunColumn& c : columns) {
-      data_.columns.push_back({c.name, inner::name(c.kind), c.unit, c.order});
+      data_.columns.push_back({c.name, inner::name(c.kind), c.unit, c.order,
+                               inner::column_formula(model_, c, inner::Format::latex),
+                               inner::column_formula(model_, c, inner::Format::mathml)});
       if (!c.unit.empty()) data_.run.units[c.name] = c.unit;
     }
   }
@@ -32,6 +35,7 @@ class RowKeeper final : public inner::RowSink {
 
  private:
   Run::Data& data_;
+  const inner::Model& model_;
 };
 
 Report public_report(const inner::SimulationReport& r) {
@@ -125,8 +129,9 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     o.cancelled = asked.cancelled;
     o.progress = asked.progress;
     if (!inner::sets_values(*s.model)) o.conserved = inner::conserved(*s.mechanics);
-    RowKeeper rows(*data);
+    RowKeeper rows(*data, *s.model);
     const inner::SimulationReport r = inner::simulate_in(s, o, rows);
+    data->run.table.values.settle();
     data->outcome = to_public(r.outcome);
     data->report = public_report(r);
     data->report.notes.insert(data->report.notes.begin(), data->notes.begin(), data->notes.end());
@@ -155,8 +160,10 @@ const Report& Run::report() const { return data_->report; }
 std::span<const double> Run::column(const std::string& name) const {
   const inner::RunTable& table = data_->run.table;
   const std::size_t k = table.find(name);
-  return k < table.columns.size() ? std::span<const double>(table.values[k]) : std::span<const double>();
+  return k < table.columns.size() ? table.values[k] : std::span<const double>();
 }
+
+std::span<const double> Run::block() const { return data_->run.table.values.block(); }
 
 std::string Run::text(std::size_t row, const std::string& column) const {
   const inner::RunTable& table = data_->run.table;

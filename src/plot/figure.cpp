@@ -168,7 +168,7 @@ Figure make_figure(const RunFile& run, const FigureOptions& o) {
   std::tie(f.title, f.labels, f.width, f.height, f.equal) = std::tie(o.title, o.labels, o.width, o.height, o.equal);
   f.x_name = table.columns[x];
   f.x_unit = unit(f.x_name);
-  const std::vector<double>& t = table.values[time < table.columns.size() ? time : x];
+  const std::span<const double> t = table.values[time < table.columns.size() ? time : x];
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < table.rows(); ++i)
     if (!(o.from && !(t[i] >= *o.from)) && !(o.to && !(t[i] <= *o.to))) rows.push_back(i);

@@ -100,7 +100,7 @@ class Plots {
         parameters_(parameter_values<double>(model_)), modes_(mode_changes(model_, read_report(run.report))) {}
 
   PlotData make() {
-    data_.t = run_.table.values.empty() ? std::vector<double>{} : run_.table.values[0];
+    if (!run_.table.values.empty()) data_.t = numbers(0);
     data_.rows = data_.t.size();
     given();
     energies();
@@ -119,30 +119,32 @@ class Plots {
     return data_.columns.back();
   }
 
-  std::string math_of(Expr symbol) const { return print(symbol, model_.names, Format::mathml); }
+  std::vector<double> numbers(std::size_t column) const {
+    const std::span<const double> list = run_.table.values[column];
+    return {list.begin(), list.end()};
+  }
 
   // Adds the columns of the run, in its order (the scene refers to them by index).
   void given() {
     const RunTable& t = run_.table;
     std::map<std::string, std::pair<std::string, std::string>> known;  // name -> group, math
-    Graph& g = *model_.graph;
-    for (std::uint32_t a = 0; a < model_.coordinates.size(); ++a)
-      for (std::uint32_t k = 0; k < std::size(kDerivatives); ++k)
-        known[derivative_name(model_.coordinates[a].name, k, Format::text)] = {kDerivatives[k], math_of(g.jet(a, k))};
-    for (std::uint32_t r = 0; r < model_.constraints.size(); ++r)
-      for (std::uint32_t k = 0; k < 3; ++k) {
-        const std::optional<std::size_t> by = model_.constraints[r].by;
-        known[derivative_name(multiplier_name(model_, r), k, Format::text)] = {
-            "multipliers", math_of(by ? g.control(static_cast<std::uint32_t>(*by), k) : g.multiplier(r, k))};
-      }
-    for (const Coordinate& c : model_.coordinates)
-      known["N." + c.name] = {"reactions", "<msub><mi>N</mi><mrow>" + mathml_name(c.name) + "</mrow></msub>"};
-    for (std::uint32_t k = 0; k < model_.states.size(); ++k)
-      known[model_.states[k].name] = {"states", math_of(g.state(k, 0))};
+    const auto knows = [&](const std::string& name, const char* group, ColumnKind kind, std::size_t index, unsigned k) {
+      known[derivative_name(name, k, Format::text)] = {
+          group, column_formula(model_, {name, kind, index, k, ""}, Format::mathml)};
+    };
+    for (std::size_t a = 0; a < model_.coordinates.size(); ++a) {
+      const std::string& name = model_.coordinates[a].name;
+      for (unsigned k = 0; k < std::size(kDerivatives); ++k) knows(name, kDerivatives[k], ColumnKind::coordinate, a, k);
+      knows("N." + name, "reactions", ColumnKind::reaction, a, 0);
+    }
+    for (std::size_t r = 0; r < model_.constraints.size(); ++r)
+      for (unsigned k = 0; k < 3; ++k) knows(multiplier_name(model_, r), "multipliers", ColumnKind::multiplier, r, k);
+    for (std::size_t k = 0; k < model_.states.size(); ++k)
+      knows(model_.states[k].name, "states", ColumnKind::state, k, 0);
     for (std::size_t k = 1; k < t.columns.size(); ++k) {
       const auto it = known.find(t.columns[k]);
-      PlotColumn& c = it == known.end() ? add(t.columns[k], mathml_name(t.columns[k]), "monitors", t.values[k])
-                                        : add(t.columns[k], it->second.second, it->second.first, t.values[k]);
+      PlotColumn& c = it == known.end() ? add(t.columns[k], mathml_name(t.columns[k]), "monitors", numbers(k))
+                                        : add(t.columns[k], it->second.second, it->second.first, numbers(k));
       if (const auto unit = run_.units.find(c.name); unit != run_.units.end()) c.unit = unit->second;
     }
   }
@@ -300,6 +302,37 @@ class Plots {
 };
 
 }  // namespace
+
+std::string column_formula(const Model& model, const RunColumn& column, Format format) {
+  Graph& g = *model.graph;
+  const auto k = static_cast<std::uint32_t>(column.index);
+  const auto symbol = [&](Expr e) { return print(e, model.names, format); };
+  const auto name = [&](const std::string& of) { return format == Format::latex ? latex_name(of) : mathml_name(of); };
+  switch (column.kind) {
+  case ColumnKind::coordinate:
+  case ColumnKind::velocity:
+  case ColumnKind::acceleration:
+  case ColumnKind::higher_derivative:
+    return symbol(g.jet(k, column.order));
+  case ColumnKind::multiplier:
+  case ColumnKind::multiplier_rate:
+  case ColumnKind::input: {
+    const std::optional<std::size_t> by = model.constraints[k].by;
+    return symbol(by ? g.control(static_cast<std::uint32_t>(*by), column.order) : g.multiplier(k, column.order));
+  }
+  case ColumnKind::state:
+    return symbol(g.state(k, 0));
+  case ColumnKind::reaction: {
+    const std::string of = name(model.coordinates[k].name);
+    return format == Format::latex ? "N_{" + of + "}" : "<msub><mi>N</mi><mrow>" + of + "</mrow></msub>";
+  }
+  case ColumnKind::time:
+  case ColumnKind::monitor:
+  case ColumnKind::event_time:
+    break;
+  }
+  return name(column.name);
+}
 
 ColumnOf column_of(const Model& model, const RunTable& table) {
   std::map<std::string, int> places;

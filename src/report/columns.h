@@ -35,6 +35,10 @@ struct PlotData {
   std::map<int, std::vector<double>> frames;
 };
 
+// The formula that stands for a column of a run: its symbol in LaTeX or MathML, in the notation of the model. It may
+// build expressions in the graph of the model.
+std::string column_formula(const Model& model, const RunColumn& column, Format format);
+
 // The index in the table of a symbol of the model: -1 for the time, nullopt if the run does not hold it.
 ColumnOf column_of(const Model& model, const RunTable& table);
 

@@ -24,7 +24,7 @@ std::string RunTable::text(std::size_t row, std::size_t column) const {
 
 void RunTable::set_columns(std::vector<std::string> names) {
   columns = std::move(names);
-  values.assign(columns.size(), {});
+  values.reset(columns.size());
   texts.assign(columns.size(), {});
 }
 
@@ -37,7 +37,7 @@ bool RunTable::add(std::size_t column, std::string_view written) {
     own.resize(values[column].size());
     own.emplace_back(says_all(written, value) ? std::string_view() : written);
   }
-  values[column].push_back(value);
+  values.growing(column).push_back(value);
   return number;
 }
 
@@ -49,7 +49,7 @@ void RunTable::add_row(const Row& row) {
       own.resize(values[k].size());
       own.emplace_back(digits);
     }
-    values[k].push_back(row.values[k]);
+    values.growing(k).push_back(row.values[k]);
   }
 }
 

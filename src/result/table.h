@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "result/number_columns.h"
 #include "result/rows.h"
 
 namespace anholon {
@@ -22,11 +23,11 @@ struct WrittenNumber {
 
 struct RunTable {
   std::vector<std::string> columns;
-  std::vector<std::vector<double>> values;  // one vector per column
+  NumberColumns values;
   std::vector<std::vector<std::string>>
       texts;  // per column: empty, or one text per row, which is empty if the number's own text suffices
 
-  std::size_t rows() const { return values.empty() ? 0 : values[0].size(); }
+  std::size_t rows() const { return values.rows(); }
   // The number in its written form.
   std::string text(std::size_t row, std::size_t column) const;
   void set_columns(std::vector<std::string> names);

@@ -35,8 +35,15 @@ export function mixed(a: string, b: string, part: number): string {
   return `rgb(${p.map((x, k) => Math.round(x + (q[k] - x) * part)).join(', ')})`;
 }
 
+// The element whose custom properties are the colours: the root of a page, or the host of a widget.
+let source: HTMLElement = document.documentElement;
+export function take_colours_from(element: HTMLElement): void {
+  source = element;
+  changed();
+}
+
 function read(): Theme {
-  const style = getComputedStyle(document.documentElement);
+  const style = getComputedStyle(source);
   const get = (name: string, other: string): string => css_rgb(style.getPropertyValue(`--${name}`).trim() || other);
   const t = Object.fromEntries(Object.entries(fallback).map(([k, v]) => [k, get(k, v)]));
   const [r, g, b] = rgb(t.paper);
@@ -57,7 +64,7 @@ function changed(): void {
 
 // Checkboxes and lists take the browser's light or dark look.
 function scheme(): void {
-  const value = theme().dark ? 'dark' : 'light', { style } = document.documentElement;
+  const value = theme().dark ? 'dark' : 'light', { style } = source;
   if (style.getPropertyValue('--v-scheme') !== value) style.setProperty('--v-scheme', value);
 }
 

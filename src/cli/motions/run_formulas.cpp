@@ -38,7 +38,7 @@ void add(RunFile& run, const Reader& in, const std::string& name) {
                      "' needs numbers that the run does not hold\nhint: write it into the model as an [output], and "
                      "simulate anew\n"};
   run.table.columns.push_back(name);
-  run.table.values.push_back(std::move(values));
+  run.table.values.push_back(values);
   run.table.texts.emplace_back();
 }
 

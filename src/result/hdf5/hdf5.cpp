@@ -224,7 +224,7 @@ class Hdf5Reader {
     const Handle set = open_dataset(file_, "rows");
     const std::vector<hsize_t> size = limited(size_of(set), 2);
     if (columns == 0 || size[1] != columns) throw Trouble{"/rows and /columns do not fit together"};
-    for (auto& v : table.values) v.resize(size[0]);
+    for (std::size_t j = 0; j < columns; ++j) table.values.growing(j).resize(size[0]);
     const hsize_t block = std::max<hsize_t>(1, 16 * kChunkNumbers / columns);
     std::vector<double> numbers;
     for (hsize_t i = 0; i < size[0]; i += block) {
@@ -232,7 +232,7 @@ class Hdf5Reader {
       numbers.resize(n * columns);
       transfer(Way::read, set, library().native_double, {i, 0}, {n, columns}, numbers.data());
       for (hsize_t k = 0; k < n; ++k)
-        for (std::size_t j = 0; j < columns; ++j) table.values[j][i + k] = numbers[k * columns + j];
+        for (std::size_t j = 0; j < columns; ++j) table.values.growing(j)[i + k] = numbers[k * columns + j];
     }
     written_digits(size[0]);
   }
