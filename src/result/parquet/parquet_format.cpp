@@ -1,0 +1,175 @@
+// The row of Parquet in the table of formats.
+#include "result/parquet/parquet_format.h"
+
+#include <array>
+
+#include "base/diagnostic.h"
+#include "result/file.h"
+#include "result/format.h"
+
+namespace anholon {
+
+namespace {
+
+using Kind = SweepColumn::Holds;
+
+constexpr const char* kReportNote = "anholon.report";
+
+std::string write_table(const std::string& path, const ParquetTable& table) {
+  return write_whole(path, parquet_bytes(table));
+}
+
+// Numbers whose digits hold more than a double are words.
+ParquetTable table_of(const RunFile& run) {
+  ParquetTable out;
+  const RunTable& t = run.table;
+  for (std::size_t c = 0; c < t.columns.size(); ++c) {
+    if (t.texts[c].empty()) {
+      out.columns.push_back({t.columns[c], t.values[c]});
+      continue;
+    }
+    Words words;
+    for (std::size_t r = 0; r < t.rows(); ++r) words.add(t.text(r, c));
+    out.columns.push_back({t.columns[c], std::move(words)});
+  }
+  if (!run.report.empty()) out.notes.emplace_back(kReportNote, run.report);
+  return out;
+}
+
+RunFile read_run_of_parquet(std::string_view bytes) {
+  const ParquetTable table = read_parquet(bytes);
+  RunFile run;
+  std::vector<std::string> names;
+  for (const ParquetColumn& c : table.columns) names.push_back(c.name);
+  run.table.set_columns(names);
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    if (const auto* numbers = std::get_if<std::vector<double>>(&table.columns[c].values))
+      run.table.values[c] = *numbers;
+    else if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&table.columns[c].values))
+      run.table.values[c].assign(whole->begin(), whole->end());
+    else
+      for (const Words& w = std::get<Words>(table.columns[c].values); const std::uint32_t k : w.rows)
+        run.table.add(c, w.different[k]);
+  }
+  run.report = table.note(kReportNote);
+  return run;
+}
+
+// Keeps the rows until the end: a Parquet file has its columns one after the other.
+class ParquetRunWriter final : public RunWriter {
+ public:
+  explicit ParquetRunWriter(const std::string& path) : path_(path), claim_(path), sink_(run_), error_(claim_.error()) {
+    if (error_.empty()) error_ = obstacle_to_writing(path);
+  }
+  const std::string& error() const override { return error_; }
+  void columns(const std::vector<RunColumn>& columns) override { sink_.columns(columns); }
+  void row(const Row& row) override { sink_.row(row); }
+  void flush() override {}
+  std::string close(const std::string& report) override {
+    if (!error_.empty()) return error_;
+    run_.report = report;
+    return error_ = write_table(path_, table_of(run_));
+  }
+
+ private:
+  std::string path_;
+  WritingClaim claim_;
+  RunFile run_;
+  RunSink sink_;
+  std::string error_;
+};
+
+class ParquetSweepWriter final : public SweepWriter {
+ public:
+  ParquetSweepWriter(const std::string& path, const SweepInfo& info)
+      : path_(path), claim_(path), rows_(info.columns), error_(claim_.error()) {
+    if (error_.empty()) error_ = obstacle_to_writing(path);
+  }
+  const std::string& error() const override { return error_; }
+  void row(std::span<const SweepCell> cells) override { rows_.row(cells); }
+  std::string close(const std::string& report) override {
+    if (!error_.empty()) return error_;
+    ParquetTable table = rows_.take();
+    table.notes.emplace_back(kReportNote, report);
+    return error_ = write_table(path_, table);
+  }
+
+ private:
+  std::string path_;
+  WritingClaim claim_;
+  SweepRows rows_;
+  std::string error_;
+};
+
+}  // namespace
+
+SweepRows::SweepRows(const std::vector<SweepColumn>& columns) {
+  for (const SweepColumn& c : columns) {
+    ParquetColumn column{c.name, {}};
+    if (c.holds == Kind::whole_numbers) column.values = std::vector<std::int64_t>();
+    if (c.holds == Kind::words) column.values = Words();
+    empty_.columns.push_back(std::move(column));
+  }
+  table_ = empty_;
+}
+
+void SweepRows::row(std::span<const SweepCell> cells) {
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    auto& values = table_.columns[k].values;
+    if (auto* numbers = std::get_if<std::vector<double>>(&values))
+      numbers->push_back(cells[k].number);
+    else if (auto* whole = std::get_if<std::vector<std::int64_t>>(&values))
+      whole->push_back(static_cast<std::int64_t>(cells[k].number));
+    else
+      std::get<Words>(values).add(cells[k].word);
+  }
+}
+
+ParquetTable SweepRows::take() {
+  ParquetTable out = std::move(table_);
+  table_ = empty_;
+  return out;
+}
+
+std::vector<SweepColumn> columns_of(const ParquetTable& table) {
+  std::vector<SweepColumn> list;
+  for (const ParquetColumn& c : table.columns)
+    list.push_back({c.name, std::array{Kind::numbers, Kind::whole_numbers, Kind::words}[c.values.index()]});
+  return list;
+}
+
+void give_rows(const ParquetTable& table, const std::vector<SweepColumn>& columns, SweepWriter& to) {
+  if (table.columns.size() != columns.size()) throw Failure({}, "the file has other columns than the sweep");
+  std::vector<SweepCell> cells(columns.size());
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const auto& values = table.columns[k].values;
+      if (const auto* numbers = std::get_if<std::vector<double>>(&values))
+        cells[k].number = (*numbers)[row];
+      else if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&values))
+        cells[k].number = static_cast<double>((*whole)[row]);
+      else if (const Words& w = std::get<Words>(values); true)
+        cells[k].word = w.different[w.rows[row]];
+    }
+    to.row(cells);
+  }
+}
+
+extern const ResultFormat parquet_format;
+const ResultFormat parquet_format = {
+    .name = "Parquet",
+    .endings = {".parquet"},
+    .holds = Holds::report,
+    .streams = false,
+    .recognizes = [](std::string_view beginning) { return beginning.starts_with("PAR1"); },
+    .read_text = read_run_of_parquet,
+    .write = [](const std::string& path, const RunFile& run) { return write_table(path, table_of(run)); },
+    .open = [](const std::string& path, const RunInfo&) -> std::unique_ptr<RunWriter> {
+      return std::make_unique<ParquetRunWriter>(path);
+    },
+    .open_sweep = [](const std::string& path, const SweepInfo& info) -> std::unique_ptr<SweepWriter> {
+      return std::make_unique<ParquetSweepWriter>(path, info);
+    },
+};
+
+}  // namespace anholon
