@@ -8,7 +8,7 @@
 """
 
 from ._core import version
-from ._errors import Interrupted, ModelError, MotionError
+from ._errors import ColumnError, Interrupted, ModelError, MotionError
 from ._numbers import Number
 from .analysis import Comparison, LinearModel, Stability, State
 from .dynamics import Dynamics
@@ -22,6 +22,7 @@ __version__: str = version()
 
 __all__ = [
     "Check",
+    "ColumnError",
     "Comparison",
     "Dynamics",
     "Equations",
