@@ -8,7 +8,7 @@
 """
 
 from ._core import version
-from ._errors import Interrupted, ModelError, MotionError
+from ._errors import ColumnError, Interrupted, ModelError, MotionError
 from ._numbers import Number
 from .analysis import Comparison, LinearModel, Stability, State
 from .builder import Builder, Constraint
@@ -77,6 +77,7 @@ __all__ = [
     "Body",
     "Builder",
     "Check",
+    "ColumnError",
     "Comparison",
     "Condition",
     "Constraint",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import linecache
+import re
 import traceback
 from typing import TYPE_CHECKING
 
@@ -44,11 +45,50 @@ class ModelError(ValueError):
         return f"<pre>{html.escape(self.text)}</pre>"
 
 
+class ColumnError(KeyError):
+    """There is no column of that name in a run; the text names the nearest ones.
+
+    Attributes:
+        name: what was asked for.
+        columns: the names that there are.
+
+    Example:
+        >>> import anholon as an
+        >>> run = an.load("disc").simulate(to=1)
+        >>> try:
+        ...     run["thetadot"]
+        ... except an.ColumnError as error:
+        ...     print(str(error).splitlines()[0])
+        there is no column 'thetadot'; did you mean "theta'" or "theta''"?
+    """
+
+    def __init__(self, name: str, columns: list[str], outcome: Outcome) -> None:
+        import difflib
+
+        self.name, self.columns = name, columns
+        near = difflib.get_close_matches(re.sub(r"_?(dot|d)$", "'", str(name)), columns, 2)
+        asked = "; did you mean " + " or ".join(repr(n) for n in near) + "?" if near else ""
+        there = f"the columns are {', '.join(columns)}" if columns else f"the motion has not begun: {outcome!r}"
+        self.text = f"there is no column {name!r}{asked}\n{there}"
+        super().__init__(self.text)
+
+    def __str__(self) -> str:
+        return self.text
+
+
 class MotionError(RuntimeError):
     """What :meth:`Run.expect` and functions without a run raise where a motion or a computation cannot go on.
 
     Attributes:
         outcome: its kind, message and remedy.
+
+    Example:
+        >>> import anholon as an
+        >>> try:
+        ...     an.load("luo-zhao-example-2").simulate(to=1000).expect()
+        ... except an.MotionError as error:
+        ...     print(error.outcome.kind)
+        negative_mass
     """
 
     def __init__(self, text: str, outcome: Outcome) -> None:
@@ -61,6 +101,16 @@ class Interrupted(KeyboardInterrupt):
 
     Attributes:
         result: the :class:`Run` or :class:`Sweep` as far as it came.
+
+    Example:
+        >>> import anholon as an, signal, threading
+        >>> press = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
+        >>> try:
+        ...     press.start()
+        ...     an.load("disc").simulate(to=1_000_000, at=[1_000_000], error_estimate=False)
+        ... except an.Interrupted as stopped:
+        ...     print(stopped.result.outcome.kind)
+        interrupted
     """
 
     def __init__(self, result: Run | Sweep) -> None:

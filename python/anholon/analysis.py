@@ -72,7 +72,11 @@ class Comparison(Sequence[_core.ComparedEquation]):
         return iter(self.lines)
 
     def __getitem__(self, which: Any) -> Any:
-        """An equation by its label or number."""
+        """An equation by its label or number.
+
+        Raises:
+            KeyError: no equation has this label.
+        """
         if isinstance(which, str):
             for line in self.lines:
                 if line.label == which:

@@ -206,7 +206,7 @@ class Dynamics:
         return np.asarray(self.jac(t, x, u, p, by=by) @ np.asarray(v, dtype=np.float64))
 
     def vjp(self, t: float, x: npt.ArrayLike, w: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x") -> Array:
-        """A covector times the derivatives: w jac(t, x, u, p, by=by)."""
+        """A covector times the derivatives: w jac(t, x, u, p, by=by), shape (states,), (inputs,) or (parameters,)."""
         import numpy as np
 
         return np.asarray(np.asarray(w, dtype=np.float64) @ self.jac(t, x, u, p, by=by))
@@ -270,7 +270,10 @@ class Dynamics:
     def state(self, t: float | None = None, *, q: Mapping[str, float], qdot: Mapping[str, float], z: Mapping[str, float] | None = None) -> Array:
         """x from values of coordinates, velocities ("x'") and states of the model by name; 0 for those left out.
 
-        Velocities that violate the constraints lose what violates them.
+        Velocities that violate the constraints lose what violates them. The shape is (states,), in SI units.
+
+        Raises:
+            KeyError: a name is none of the coordinates, velocities or states.
         """
         import numpy as np
 

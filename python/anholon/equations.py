@@ -33,7 +33,7 @@ class Equations:
 
     @property
     def latex(self) -> str:
-        """LaTeX."""
+        """The equations in LaTeX, as papers take them."""
         return self._core.latex
 
     @property
@@ -108,5 +108,10 @@ def verify(proof: Proof | str) -> _core.Verification:
 
     Raises:
         ModelError: the text is no certificate.
+
+    Example:
+        >>> import anholon as an
+        >>> an.verify(an.load("chaplygin-sleigh").prove("kane").certificate).all_confirmed
+        True
     """
     return _core.verify(proof.certificate if isinstance(proof, Proof) else proof)

@@ -389,6 +389,19 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
     Raises:
         ModelError: something has no counterpart in a model.
         TypeError: the object is none of these.
+
+    Example:
+        >>> import anholon as an, sympy as sm
+        >>> import sympy.physics.mechanics as me
+        >>> x, v = me.dynamicsymbols("x v")
+        >>> m, k = sm.symbols("m k")
+        >>> N, P = me.ReferenceFrame("N"), me.Point("P")
+        >>> P.set_vel(N, v * N.x)
+        >>> kane = me.KanesMethod(N, [x], [v], kd_eqs=[x.diff() - v])
+        >>> _ = kane.kanes_equations([me.Particle("mass", P, m)], [(P, -k * x * N.x)])
+        >>> spring = an.from_sympy(kane, values={m: 1, k: 4}, initial={x: 1})
+        >>> float(abs(spring.simulate(to="pi", at=["pi"])["x"][-1] - 1).round(12))
+        0.0
     """
     made = _Import(method)
     text = made.text(title, values or {}, initial or {})

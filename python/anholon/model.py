@@ -26,6 +26,12 @@ class Model:
 
     Get one from :func:`load`, :func:`loads` or :func:`zoo`. Computations release the interpreter's lock; threads may share
     a model.
+
+    Example:
+        >>> import anholon as an
+        >>> disc = an.load("disc")
+        >>> disc
+        <model 'Disc rolling on a plane': coordinates x, y, psi, theta, phi; 2 constraints>
     """
 
     def __init__(self, core: _core.Model, again: Callable[[dict[str, str], list[str]], _core.Model], given: dict[str, str], cases: list[str]) -> None:
@@ -523,7 +529,14 @@ def _count(values: list[tuple[str, list[str]]], laws: dict[str, str], cases: int
 
 
 class Check:
-    """What kind of system a model is, at its initial state."""
+    """What kind of system a model is, at its initial state.
+
+    Example:
+        >>> import anholon as an
+        >>> check = an.load("disc").check()
+        >>> [constraint.name for constraint in check.constraints]
+        ['rolling.x', 'rolling.y']
+    """
 
     def __init__(self, model: Model, core: _core.System) -> None:
         self.model: Model = model

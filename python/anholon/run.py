@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _arrow, _core, _display, _widget
-from ._errors import MotionError
+from ._errors import ColumnError, MotionError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -97,9 +97,13 @@ class Run:
     # ---- arrays ----
 
     def __getitem__(self, name: str) -> Array:
-        """The numbers of a column, shape (rows,), in SI units: "t", "x", "x'", "lambda.rod", "N.x", a state, a monitor."""
+        """The numbers of a column, shape (rows,), in SI units: "t", "x", "x'", "lambda.rod", "N.x", a state, a monitor.
+
+        Raises:
+            ColumnError: there is no such column; a KeyError that names those that there are.
+        """
         if self._core is None or name not in self._columns:
-            raise KeyError(f"there is no column {name!r}; there are {', '.join(self._columns) or 'none: the motion has not begun'}")
+            raise ColumnError(name, list(self._columns), self.outcome)
         return self._core.column(name)
 
     def __contains__(self, name: object) -> bool:
@@ -175,9 +179,13 @@ class Run:
         return self._of_kind("multipliers")
 
     def exact(self, name: str) -> list[Any]:
-        """The numbers of a column with all digits of the run: of more than 16, ``mpmath.mpf`` if mpmath is there, else texts."""
+        """The numbers of a column with all digits of the run: of more than 16, ``mpmath.mpf`` if mpmath is there, else texts.
+
+        Raises:
+            ColumnError: there is no such column.
+        """
         if self._core is None or name not in self._columns:
-            raise KeyError(name)
+            raise ColumnError(name, list(self._columns), self.outcome)
         texts = [self._core.text(row, name) for row in range(len(self))]
         try:
             import mpmath
@@ -197,6 +205,9 @@ class Run:
 
         Returns:
             An array of the shape of t for each coordinate and each state of the model; NaN outside of the motion.
+
+        Raises:
+            MotionError: the motion has not begun.
 
         Example:
             >>> import anholon as an
@@ -354,7 +365,7 @@ class Run:
             ax: axes of Matplotlib; new ones if it is None.
 
         Raises:
-            KeyError: there is no such column.
+            ColumnError: there is no such column.
 
         Example:
             >>> import anholon as an

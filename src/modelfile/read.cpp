@@ -256,9 +256,17 @@ class Reader {  // its references are used only while it runs
         std::vector<std::string> known;
         for (const Parameter& p : model_.parameters) known.push_back(p.name);
         const std::string near = did_you_mean(name, known);
-        diagnostics_.error({}, "--set: there is no parameter '" + name + "'" +
-                                   (near.empty() ? "" : "; did you mean '" + near + "'?"));
+        diagnostics_.error(
+            {}, "--set: there is no parameter '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+            parameters_known(known));
       }
+  }
+
+  static std::string parameters_known(const std::vector<std::string>& names) {
+    constexpr std::size_t kMost = 24;
+    std::string list;
+    for (std::size_t k = 0; k < names.size() && k < kMost; ++k) list += (k ? ", " : "the parameters are ") + names[k];
+    return list + (names.size() > kMost ? ", …" : "");
   }
 
   void functions(const Item& root) {

@@ -9,6 +9,13 @@ static std::string suggestion(const std::string& name, const std::vector<std::st
   return near.empty() ? "" : "; did you mean '" + near + "'?";
 }
 
+static std::string listed(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 24;
+  std::string list;
+  for (std::size_t k = 0; k < names.size() && k < kMost; ++k) list += (k ? ", " : "") + names[k];
+  return list + (names.size() > kMost ? ", …" : "");
+}
+
 const Formulation& named_form(const std::string& name) {
   if (const Formulation* f = find_formulation(name)) return *f;
   std::vector<std::string> names;
@@ -49,7 +56,8 @@ static std::size_t place(const std::vector<std::string>& names, const std::strin
                          const std::string& called) {
   const auto it = std::find(names.begin(), names.end(), name);
   if (it == names.end())
-    throw Failure({}, called + "there is no " + what + " '" + name + "'" + suggestion(name, names));
+    throw Failure({}, called + "there is no " + what + " '" + name + "'" + suggestion(name, names),
+                  "the " + what + "s are " + listed(names));
   return static_cast<std::size_t>(it - names.begin());
 }
 

@@ -50,7 +50,7 @@ class RowSchedule {
   bool due_at(const W& t) const { return next_ < times_.size() && times_[next_] == t; }
   Due take() {
     const std::size_t k = next_++;
-    return {times_[k], labels_[k]};
+    return {times_[k], k < labels_.size() ? labels_[k] : std::string()};
   }
   // Whether the last row that was taken is that of t.
   bool took(const W& t) const { return next_ > 0 && times_[next_ - 1] == t; }
@@ -68,13 +68,12 @@ class RowSchedule {
       times_.push_back(next);
     }
     if (times_.empty() || times_.back() != end_) times_.push_back(end_);
-    labels_.resize(times_.size());
   }
 
   W start_{0}, end_{0};
   bool forward_ = true, every_step_ = false;
   std::vector<W> times_;
-  std::vector<std::string> labels_;
+  std::vector<std::string> labels_;  // of the first times: those that are asked for one by one
   std::size_t next_ = 0;
   std::optional<W> given_;
 };

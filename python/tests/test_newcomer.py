@@ -1,0 +1,70 @@
+"""Someone new, who has read the README alone: a rolling disc in ten lines, a table, a plot, an animation, and mistakes."""
+
+import pathlib
+from collections.abc import Callable
+
+import anholon as an
+import pytest
+
+TEN_LINES = '''
+disc = an.loads("""
+coordinates = ["x", "y", "psi", "theta", "phi"]
+parameters = {m = 1, R = "50 cm", g = "9.81 m/s^2"}
+frame.lean = "rotz(psi)*rotx(theta)"
+body = [{name = "disc", mass = "m", shape = "disc(R)", center = "x*ex + y*ey + R*lean.y", orientation = "lean*rotz(phi)"}]
+constraint = [{name = "rolling", equation = "vel(disc, x*ex + y*ey) = 0"}]
+gravity.field = "-g*ez"
+""")
+run = disc.simulate(to=5, every=0.01, initial={"theta": 1.3, "psi'": 0.2, "phi'": 6})
+'''
+
+
+@pytest.fixture(scope="module")
+def run() -> an.Run:
+    assert len(TEN_LINES.strip().splitlines()) <= 10
+    names: dict[str, object] = {"an": an}
+    exec(TEN_LINES, names)
+    made = names["run"]
+    assert isinstance(made, an.Run) and made.ok
+    return made
+
+
+def test_a_disc_in_ten_lines(run: an.Run, disc: an.Model) -> None:
+    shipped = disc.simulate(to=5, every=0.01, initial={"theta": 1.3, "psi'": 0.2, "phi'": 6})
+    assert run["theta"].tolist() == shipped["theta"].tolist()
+
+
+def test_a_table_a_plot_an_animation(run: an.Run, tmp_path: pathlib.Path) -> None:
+    pytest.importorskip("pandas")
+    frame = run.to_pandas()
+    assert len(frame) == 501 and frame["theta"].max() < 1.6
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("agg")
+    run.plot("theta", "phi'").figure.savefig(tmp_path / "disc.png")
+    run.page(str(tmp_path / "disc.html"), proof=False)
+    assert hasattr(run.animate(), "_repr_mimebundle_") or hasattr(run.animate(), "_repr_html_")
+
+
+# What a newcomer gets wrong, what is said, and what helps.
+MISTAKES: list[tuple[str, Callable[[an.Model, an.Run], object], type[Exception], tuple[str, ...]]] = [
+    ("a name of a model", lambda disc, run: an.load("disk"), an.ModelError, ("did you mean the shipped model 'disc'",)),
+    ("a name of a parameter", lambda disc, run: disc.with_(mass=2), an.ModelError, ("no parameter 'mass'", "the parameters are m, R, g")),
+    ("a velocity", lambda disc, run: disc.simulate(to=1, initial={"phi_dot": 6}), an.ModelError, ("no coordinate 'phi_dot'", "the coordinates are x, y, psi, theta, phi")),
+    ("a unit", lambda disc, run: disc.simulate(to="10 sec"), an.ModelError, ("'10 sec' is not a number", "30 deg")),
+    ("an option", lambda disc, run: disc.simulate(to=1, tolerence=1e-3), an.ModelError, ("did you mean 'tolerance'?",)),
+    ("a column", lambda disc, run: run["thetadot"], KeyError, ("did you mean \"theta'\"", "the columns are t, x, y")),
+    ("a form", lambda disc, run: disc.prove("kanes"), an.ModelError, ("did you mean 'kane'?",)),
+    ("a format", lambda disc, run: run.save("disc.xlsx"), an.ModelError, (".h5, .csv or .json",)),
+    ("a file", lambda disc, run: an.loads("coordinates = x"), an.ModelError, ("1:15", "^", "quotes")),
+    ("a vector", lambda disc, run: an.loads('coordinates = ["x"]\nparticle = [{name = "p", mass = 1, position = ["x", 0]}]'), an.ModelError, ("^~~", "the third is 0")),
+    ("values that clash", lambda disc, run: disc.simulate(to=1, initial={"x'": 1, "phi'": 6, "psi": 0})["x"], KeyError, ("has not begun", "clash", "hint: leave out one of")),
+    ("a run that never began", lambda disc, run: disc.simulate(to=1, initial={"x'": 1, "phi'": 6, "psi": 0}).expect(), an.MotionError, ("clash", "hint: leave out one of")),
+]
+
+
+@pytest.mark.parametrize(("made", "kind", "said"), [case[1:] for case in MISTAKES], ids=[case[0] for case in MISTAKES])
+def test_mistakes_are_explained(made: Callable[[an.Model, an.Run], object], kind: type[Exception], said: tuple[str, ...], disc: an.Model, run: an.Run) -> None:
+    with pytest.raises(kind) as caught:
+        made(disc, run)
+    for part in said:
+        assert part in str(caught.value)
