@@ -5,7 +5,8 @@
 
 Prints the time of a batch and of one call. SymPy is used as people use it: (a) lambdify of mass_matrix_full and
 forcing_full, then numpy.linalg.solve; (b) lambdify of an explicit right side, simplified, with common subexpressions.
-anholon: the compiled function, and the formulas of the same function as they run in NumPy, which need no compiler.
+anholon: the compiled function; the formulas of the same function as they run in NumPy; and the program of
+`derive --format python`, in all coordinates and velocities with multipliers. The last two need no compiler.
 """
 
 import sys
@@ -72,8 +73,11 @@ def best(f, rounds):
 
 
 def main(states):
-    f = an.load("disc").dynamics()
+    disc = an.load("disc")
+    f = disc.dynamics()
     by_numpy = f.formulas.numpy()
+    program: dict = {}
+    exec(compile(disc.python_code(), "disc.py", "exec"), program)
     method, symbols, values = kane()
     peers = {"lambdify, solve": solved(method, symbols, values), "lambdify, explicit": explicit(method, symbols, values)}
     draw = np.random.default_rng(0)
@@ -86,6 +90,9 @@ def main(states):
     ours = best(lambda: f(0.0, x, out=out), 5), best(lambda: [f(0.0, one, out=buffer) for _ in range(1000)], 5) / 1000
     print(f"{'anholon':20} {states} states {ours[0] * 1e3:8.1f} ms, one call {ours[1] * 1e6:6.2f} us")
     rows = {"anholon, NumPy": (lambda: by_numpy(0.0, x), lambda: by_numpy(0.0, one))}
+    full = program["START"][:, None] * (1 + 0.01 * draw.standard_normal((len(program["START"]), states)))
+    first = full[:, 0].copy()
+    rows["anholon, program"] = (lambda: program["rhs"](0.0, full), lambda: program["rhs"](0.0, first))
     rows |= {name: (lambda peer=peer: peer(*y), lambda peer=peer: peer(*single)) for name, peer in peers.items()}
     for name, (many, alone) in rows.items():
         batch, call = best(many, 3), best(lambda alone=alone: [alone() for _ in range(300)], 3) / 300
