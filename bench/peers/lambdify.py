@@ -1,9 +1,12 @@
 #!/usr/bin/env python3
-"""f(t, x) of the rolling disc: anholon's dynamics() against sympy.lambdify with NumPy, on the same equations by Kane.
+"""f(t, x) of the rolling disc: anholon against sympy.lambdify with NumPy, on the same equations by Kane.
 
     lambdify.py [STATES]      with PYTHONPATH=build/release/python, in an environment with sympy
 
-Prints the time of a batch and of one call, for both.
+Prints the time of a batch and of one call. SymPy is used as people use it: (a) lambdify of mass_matrix_full and
+forcing_full, then numpy.linalg.solve; (b) lambdify of an explicit right side, simplified, with common subexpressions.
+anholon: the compiled function; the formulas of the same function as they run in NumPy; and the program of
+`derive --format python`, in all coordinates and velocities with multipliers. The last two need no compiler.
 """
 
 import sys
@@ -16,6 +19,7 @@ import sympy.physics.mechanics as me
 
 
 def kane():
+    """The method, its states, and values of its parameters."""
     q = me.dynamicsymbols("q1:4")
     u = me.dynamicsymbols("u1:4")
     r, m, g = sm.symbols("r m g")
@@ -32,8 +36,31 @@ def kane():
     body = me.RigidBody("BodyD", center, R, m, (me.inertia(L, m / 4 * r**2, m / 2 * r**2, m / 4 * r**2), center))
     method = me.KanesMethod(N, q, u, kd_eqs=[me.dot(R.ang_vel_in(N) - spin, v) for v in L])
     method.kanes_equations([body], [(center, -m * g * Y.z)])
-    right = method.mass_matrix_full.LUsolve(method.forcing_full).subs({r: 0.5, m: 1, g: 9.81})
-    return sm.lambdify([*q, *u], [sm.simplify(x) for x in right], "numpy", cse=True)
+    return method, [*q, *u], {r: 0.5, m: 1, g: 9.81}
+
+
+def explicit(method, states, values):
+    right = method.mass_matrix_full.LUsolve(method.forcing_full).subs(values)
+    return sm.lambdify(states, [sm.simplify(x) for x in right], "numpy", cse=True)
+
+
+def solved(method, states, values):
+    """mass_matrix_full x' = forcing_full, solved in numbers."""
+    matrix, forcing = (sm.lambdify(states, x.subs(values), "numpy", cse=True) for x in (method.mass_matrix_full, method.forcing_full))
+    n = len(states)
+
+    def f(*y):
+        shape = np.shape(y[0])
+        # Entries that are constants come out as numbers.
+        m, b = np.empty((*shape, n, n)), np.empty((*shape, n))
+        for i, row in enumerate(np.array(matrix(*y), dtype=object) if shape else matrix(*y)):
+            for j, x in enumerate(row):
+                m[..., i, j] = x
+        for i, x in enumerate(np.array(forcing(*y), dtype=object)[:, 0] if shape else forcing(*y)[:, 0]):
+            b[..., i] = x
+        return np.linalg.solve(m, b[..., None])[..., 0]
+
+    return f
 
 
 def best(f, rounds):
@@ -46,16 +73,30 @@ def best(f, rounds):
 
 
 def main(states):
-    f, by_sympy = an.load("disc").dynamics(), kane()
+    disc = an.load("disc")
+    f = disc.dynamics()
+    by_numpy = f.formulas.numpy()
+    program: dict = {}
+    exec(compile(disc.python_code(), "disc.py", "exec"), program)
+    method, symbols, values = kane()
+    peers = {"lambdify, solve": solved(method, symbols, values), "lambdify, explicit": explicit(method, symbols, values)}
     draw = np.random.default_rng(0)
     x = f.start[:, None] * (1 + 0.01 * draw.standard_normal((len(f.start), states)))
     y = draw.uniform(0.3, 0.9, (6, states))
+    few = y[:, :100]
+    np.testing.assert_allclose(np.stack(np.broadcast_arrays(*peers["lambdify, explicit"](*few)), -1), peers["lambdify, solve"](*few), rtol=1e-9)
     out = np.empty_like(x)
-    ours, theirs = best(lambda: f(0.0, x, out), 5), best(lambda: by_sympy(*y), 5)
-    print(f"{states} states: anholon {ours * 1e3:.1f} ms, lambdify {theirs * 1e3:.1f} ms, ratio {theirs / ours:.1f}")
-    one, buffer, few = x[:, 0].copy(), out[:, 0].copy(), y[:, 0].tolist()
-    ours, theirs = best(lambda: [f(0.0, one, buffer) for _ in range(1000)], 5) / 1000, best(lambda: [by_sympy(*few) for _ in range(1000)], 5) / 1000
-    print(f"one call: anholon {ours * 1e6:.2f} us, lambdify {theirs * 1e6:.2f} us")
+    one, buffer, single = x[:, 0].copy(), out[:, 0].copy(), y[:, 0].tolist()
+    ours = best(lambda: f(0.0, x, out=out), 5), best(lambda: [f(0.0, one, out=buffer) for _ in range(1000)], 5) / 1000
+    print(f"{'anholon':20} {states} states {ours[0] * 1e3:8.1f} ms, one call {ours[1] * 1e6:6.2f} us")
+    rows = {"anholon, NumPy": (lambda: by_numpy(0.0, x), lambda: by_numpy(0.0, one))}
+    full = program["START"][:, None] * (1 + 0.01 * draw.standard_normal((len(program["START"]), states)))
+    first = full[:, 0].copy()
+    rows["anholon, program"] = (lambda: program["rhs"](0.0, full), lambda: program["rhs"](0.0, first))
+    rows |= {name: (lambda peer=peer: peer(*y), lambda peer=peer: peer(*single)) for name, peer in peers.items()}
+    for name, (many, alone) in rows.items():
+        batch, call = best(many, 3), best(lambda alone=alone: [alone() for _ in range(300)], 3) / 300
+        print(f"{name:20} {states} states {batch * 1e3:8.1f} ms, one call {call * 1e6:6.2f} us: {batch / ours[0]:6.1f} and {call / ours[1]:5.1f} times ours")
 
 
 if __name__ == "__main__":

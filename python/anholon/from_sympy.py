@@ -3,6 +3,7 @@
 What is read is the mechanical system itself: bodies, velocities, loads and constraints; the equations are then derived anew.
 Generalized speeds are replaced by the rates of the coordinates, and loads become generalized forces. A mass centre whose
 position SymPy does not know (only its velocity was set) gets coordinates of its own, which follow its velocity by constraints.
+A speed without a coordinate (the spin of a wheel) gets one whose rate it is.
 """
 
 from __future__ import annotations
@@ -186,9 +187,22 @@ class _Import:
 
         self.sm = sm
         self.parts = parts = _parts_of(method)
+        self._add_angles(parts)
         self.writer = _Writer(parts)
         self.speeds = self._speeds()
         self.extra: list[tuple[str, Any]] = []  # coordinates of mass centres, and their rates
+
+    @staticmethod
+    def _add_angles(parts: _Parts) -> None:
+        """Coordinates for speeds that no kinematic differential equation knows."""
+        symbols = _mechanics().dynamicsymbols
+        unknown = [u for u in parts.u if not any(e.has(u) for e in parts.kinematic)]
+        if len(unknown) != len(parts.u) - len(parts.q):
+            return
+        for u in unknown:
+            angle = symbols(f"{u.func}_angle")
+            parts.q.append(angle)
+            parts.kinematic.append(angle.diff(symbols._t) - u)
 
     def _speeds(self) -> dict[Any, Any]:
         """Generalized speeds in coordinates and their rates."""
@@ -266,6 +280,34 @@ class _Import:
             names.append(coordinate)
         return names
 
+    def _turn(self, body: Any) -> tuple[Any, Any]:
+        """The rotation of a body's axes against the inertial ones, and its inertia along them.
+
+        A frame that only has an angular velocity is that of a wheel, if the inertia is given along the axes of another
+        frame in which it turns about an axis of symmetry.
+        """
+        frame = self.parts.frame
+        try:
+            return frame.dcm(body.frame), body.central_inertia.to_matrix(body.frame)
+        except ValueError:
+            pass
+        carrier = body.central_inertia.args[0][1].args[0][1]
+        inertia = body.central_inertia.to_matrix(carrier)
+        spin = [self.in_rates(x) for x in body.frame.ang_vel_in(carrier).to_matrix(carrier)]
+        axes = [k for k, x in enumerate(spin) if x != 0]
+        rates = self.writer.rates
+        if len(axes) != 1 or spin[axes[0]] not in rates:
+            raise ModelError(f"the frame of {body.name} has no orientation, and does not turn about one axis of the frame of its inertia")
+        k = axes[0]
+        i, j = (k + 1) % 3, (k + 2) % 3
+        if inertia[i, i] != inertia[j, j] or any(inertia[a, b] != 0 for a in range(3) for b in range(3) if a != b):
+            raise ModelError(f"the frame of {body.name} has no orientation, and its inertia is not symmetric about the axis of its spin")
+        angle = self.writer.q[rates.index(spin[k])]
+        sm = self.sm
+        about = sm.eye(3)
+        about[i, i], about[i, j], about[j, i], about[j, j] = sm.cos(angle), -sm.sin(angle), sm.sin(angle), sm.cos(angle)
+        return frame.dcm(carrier) * about, inertia
+
     def body(self, body: Any) -> str:
         """The entry of a body or particle."""
         Particle = _mechanics().Particle
@@ -280,11 +322,11 @@ class _Import:
             center = json.dumps(self.center(name, point))
             return f"[[particle]]\nname = {json.dumps(name)}\nmass = {json.dumps(self.writer.formula(body.mass))}\nposition = {center}\n"
         name = self.writer.new(str(body.name))
-        rows = body.central_inertia.to_matrix(body.frame).tolist()
+        turn, tensor = self._turn(body)
+        rows = tensor.tolist()
         inertia: Any = [[self.writer.formula(x) for x in row] for row in rows]
         if all(x == 0 for i, row in enumerate(rows) for j, x in enumerate(row) if (i, j) != (2, 2)):
             inertia = inertia[2][2]  # of a body in the plane
-        turn = self.parts.frame.dcm(body.frame)
         turned = [[self.writer.formula(x) for x in row] for row in turn.tolist()]
         rate = turn.diff(self.writer.time) * turn.T
         if not self._vanishes([self.in_rates(rate[2, 1]) - spin[0], self.in_rates(rate[0, 2]) - spin[1], self.in_rates(rate[1, 0]) - spin[2]]):

@@ -45,8 +45,7 @@ def _newton(t, state, p, lead@GIVEN):
 )";
 
 // The functions of NumPy for single numbers, which are several times faster than NumPy's own.
-constexpr const char* kScalars = R"(
-class _One:
+constexpr const char* kScalars = R"(class _One:
     """What NumPy has, for single numbers."""
     pi = math.pi
     abs = abs
@@ -292,7 +291,7 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
     for (std::size_t i = 0; i < matrix.size(); ++i) names.matrix.push_back(name(matrix[i], "a", i));
     for (std::size_t i = 0; i < right.size(); ++i) names.right.push_back(name(-right[i], "b", i));
     const Statements body = writer_.body(es, own);
-    std::string out = "\n_DEFAULTS = DEFAULTS.tolist()\n\n";
+    std::string out = "\n\n_DEFAULTS = DEFAULTS.tolist()\n\n\n";
     out += kScalars;
     if (inputs_) {
       const Statements formulas = writer_.body(m_.input_values, targets(m_.inputs.size()));
@@ -313,7 +312,7 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
     text = put(text, "@BLOCKS", pivots_ ? kBlocks : "    left = range(flat.shape[1])\n");
     text = replaced(text, "@BLOCK_U", inputs_ ? ", _block(u, block, None)" : "");
     if (pivots_)
-      text = "\n\ndef _block(a, block, otherwise=" + std::string("_DEFAULTS") +
+      text = "\ndef _block(a, block, otherwise=" + std::string("_DEFAULTS") +
              "):\n    return otherwise if a is None else a if np.ndim(a) < 2 else np.asarray(a, "
              "dtype=float).reshape(len(a), -1)[:, block]\n" +
              "\n" + text;
