@@ -60,7 +60,7 @@ void motion(const anholon::System& system) {
   expect(run->columns()[2].latex == "\\dot{\\theta}" && anholon::symbol("theta'").latex == "\\dot{\\theta}",
          "a column has a symbol");
   const auto picture = anholon::picture_data(*run);
-  expect(picture && picture->find("\"scene\":{") != std::string::npos, "the viewer gets a scene");
+  expect(picture && picture->find("\"scene\": {") != std::string::npos, "the viewer gets a scene");
   const auto drawn = anholon::figure(*run, {{"theta"}});
   expect(drawn && drawn->find("<svg") == 0, "a figure is an SVG");
   expect(!anholon::figure(*run, {{"tehta"}}), "an unknown column is not drawn");
