@@ -1,5 +1,6 @@
 // The equations of a motion as a function x' = f(t, x, u, p), for integrators and optimizers of others.
 #pragma once
+#include <optional>
 #include <span>
 
 #include "anholon/system.h"
@@ -13,6 +14,12 @@ struct DynamicsOptions {
   // Whether inputs of the model are arguments u: all that can be set, or those named. Else their formulas stand in f.
   bool inputs = false;
   std::vector<std::string> input_names = {};
+  // Instead of all monitors and outputs of the model: some by their names, or formulas in the names of the model, also of
+  // multipliers (lambda.NAME) and reactions (reaction(BODY), a vector). An empty formula: the name is the formula.
+  struct Output {
+    std::string name, formula = {};
+  };
+  std::optional<std::vector<Output>> outputs = {};
 };
 
 struct StateName {
@@ -49,25 +56,27 @@ class ANHOLON_API Dynamics {
     this->rates(t, x, count, rates, Given{});
   }
 
-  // The outputs and the inputs of one state. Inputs are those of the formulas of the model. REQUIRES: the sizes fit.
-  std::vector<double> outputs(double t, const std::vector<double>& x, const Given& given) const;
+  // The outputs of `count` states, in their order: output i of state k at [i * count + k]. REQUIRES: the sizes fit.
+  std::vector<double> outputs(double t, std::span<const double> x, std::size_t count, const Given& given) const;
+  // The inputs of one state by the formulas of the model. REQUIRES: the sizes fit.
   std::vector<double> inputs(double t, const std::vector<double>& x, std::span<const double> p) const;
 
-  // The exact derivatives of the rates, then of the outputs, of one state by x, u and p: number (i, k) at
-  // [i * columns + k]. NaN where the equations have no solution. REQUIRES: the sizes fit.
+  // The exact derivatives of the rates, then of the outputs, of `count` states by x, u and p: number (i, j) of state k at
+  // [(i * columns + j) * count + k]. NaN where the equations have no solution. REQUIRES: the sizes fit.
   struct Jacobian {
     std::size_t rows = 0, columns = 0;
     std::vector<double> values;
   };
-  Jacobian jacobian(double t, const std::vector<double>& x, const Given& given) const;
+  Jacobian jacobian(double t, std::span<const double> x, std::size_t count, const Given& given) const;
 
-  // The linear equations that are solved at one state for accelerations, multipliers and rates of the model's states:
-  // matrix unknowns = right, the matrix row by row. REQUIRES: not minimal; the sizes fit.
+  // The linear equations that are solved at `count` states for accelerations, multipliers and rates of the model's
+  // states: matrix unknowns = right, the matrix row by row, with the numbers of all states one after the other as in a
+  // Jacobian. REQUIRES: not minimal; the sizes fit.
   struct Equations {
     std::vector<std::string> unknowns;
     std::vector<double> matrix, right;
   };
-  Equations equations(double t, const std::vector<double>& x, const Given& given) const;
+  Equations equations(double t, std::span<const double> x, std::size_t count, const Given& given) const;
 
   // The function as source text: a C file with name_rhs and, in CasADi's external interface, name and jac_name; a Python
   // module whose functions take the library for arrays as an argument.

@@ -57,7 +57,8 @@ class ANHOLON_API System {
 ANHOLON_API Result<System> prepare(const Model& model, const PrepareOptions& options = {});
 
 enum class Language : std::uint8_t { c, python };
-// The motion as a program that stands by itself. Errors: constraints of an order that programs do not solve.
+// The motion as a program that stands by itself: right side, equations, hidden constraints, outputs, events and what they
+// set. Errors: formulas that have no text in the language.
 ANHOLON_API Result<std::string> program_text(const System& system, Language language);
 
 }  // namespace anholon::v1

@@ -58,7 +58,8 @@ class Dynamics:
 
     @property
     def outputs(self) -> list[str]:
-        """What y holds: monitors and outputs of the model. In independent velocities those with multipliers are left out."""
+        """What y holds: the outputs that were asked for, or monitors and outputs of the model. In independent velocities
+        those with multipliers are left out."""
         return self._core.outputs
 
     @property
@@ -147,78 +148,111 @@ class Dynamics:
             self._core.rates(t, given, out, some, others)
         return out
 
-    def _one(self, x: npt.ArrayLike, u: Values, p: Values) -> tuple[list[float], list[float], list[float]]:
-        """One state with its inputs and parameters, as lists; empty where the model has them."""
+    def _states(self, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array | None, Array | None, tuple[int, ...]]:
+        """States with their inputs and parameters, and the axes that count them."""
         import numpy as np
 
-        state = np.asarray(x, dtype=np.float64)
-        if state.shape != (self._count,):
-            raise ValueError(f"x has the shape {state.shape}; it has to be that of one state, {(self._count,)}")
-        some = self._values(u, self.inputs, lambda: self.u0, "u")
-        others = self._values(p, self.parameters, lambda: self.p0, "p")
-        return state.tolist(), [] if some is None else some.tolist(), [] if others is None else others.tolist()
+        state = np.ascontiguousarray(x, dtype=np.float64)
+        if state.shape[:1] != (self._count,):
+            raise ValueError(f"x has the shape {state.shape}; its first axis has to be the {self._count} states")
+        some = self._values(u, self.inputs, lambda: self.u0, "u", state.shape[1:])
+        others = self._values(p, self.parameters, lambda: self.p0, "p", state.shape[1:])
+        return state, some, others, state.shape[1:]
 
     def output(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None) -> Array:
-        """The outputs y of one state, shape (outputs,)."""
-        import numpy as np
+        """The outputs y of one state, shape (outputs,), or of many, shape (outputs, …), as ``f(t, x)``.
 
-        return np.array(self._core.outputs_at(t, *self._one(x, u, p)))
+        Example:
+            >>> import anholon as an, numpy as np
+            >>> f = an.load("disc").dynamics(minimal=False, outputs={"N": "reaction(disc).z", "lam": "lambda.rolling.y"})
+            >>> f.outputs, f.output(0, np.tile(f.start[:, None], 100)).shape
+            (['N', 'lam'], (2, 100))
+        """
+        state, some, others, batch = self._states(x, u, p)
+        made: Array = self._core.outputs_at(t, state, some, others)
+        return made.reshape((len(made), *batch))
 
     def input(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
-        """The inputs by the formulas of the model, shape (inputs,): the controller of the file."""
+        """The inputs by the formulas of the model, shape (inputs,): the controller of the file.
+
+        Raises:
+            ValueError: x has not the shape of one state.
+        """
         import numpy as np
 
-        state, _, parameters = self._one(x, None, p)
-        return np.array(self._core.inputs_at(t, state, parameters))
+        state, _, parameters, batch = self._states(x, None, p)
+        if batch:
+            raise ValueError(f"x has the shape {state.shape}; it has to be that of one state, {(self._count,)}")
+        return np.array(self._core.inputs_at(t, state.tolist(), [] if parameters is None else parameters.tolist()))
 
     def jac(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
-        """The exact derivatives of the rates (or outputs) of one state, not differences.
+        """The exact derivatives of the rates (or outputs), not differences, of one state or of many.
 
         Args:
             t: the time, s.
-            x: one state, shape (states,).
+            x: states, shape (states,) or (states, …).
             u: inputs, which are held where the derivatives are by x; those of the formulas of the model if it is None.
             p: parameters; those of the model if it is None.
-            by: "x", "u" or "p": shape (rows, states), (rows, inputs) or (rows, parameters).
+            by: "x", "u" or "p": shape (rows, states, …), (rows, inputs, …) or (rows, parameters, …).
             of: "x'": the rates; "y": the outputs.
+
+        NaN where the equations have no solution. A state has the same bits alone and among others.
 
         Raises:
             ValueError: a shape does not fit, or `by` or `of` is something else.
 
         Example:
-            >>> import anholon as an
+            >>> import anholon as an, numpy as np
             >>> f = an.load("trailers").dynamics(inputs=True)
-            >>> f.jac(0, f.start).shape, f.jac(0, f.start, by="u").shape
-            ((9, 9), (9, 2))
+            >>> f.jac(0, f.start).shape, f.jac(0, np.tile(f.start[:, None], 1000), by="u").shape
+            ((9, 9), (9, 2, 1000))
         """
         if by not in ("x", "u", "p") or of not in ("x'", "y"):
             raise ValueError("by is 'x', 'u' or 'p', and of is \"x'\" or 'y'")
-        whole = self._core.jacobian(t, *self._one(x, u, p))
+        state, some, others, batch = self._states(x, u, p)
+        whole: Array = self._core.jacobian(t, state, some, others)
         rows = whole[: self._count] if of == "x'" else whole[self._count :]
         ends = [0, self._count, self._count + len(self.inputs), whole.shape[1]]
         k = "xup".index(by)
-        return rows[:, ends[k] : ends[k + 1]]
+        chosen = rows[:, ends[k] : ends[k + 1]]
+        return chosen.reshape((*chosen.shape[:2], *batch))
 
-    def jvp(self, t: float, x: npt.ArrayLike, v: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x") -> Array:
-        """The derivatives times a direction: jac(t, x, u, p, by=by) v, shape (states,)."""
+    def jvp(self, t: float, x: npt.ArrayLike, v: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
+        """The derivatives times a direction, jac(…) v: shape (rows, …). v has one direction, or one for each state."""
         import numpy as np
 
-        return np.asarray(self.jac(t, x, u, p, by=by) @ np.asarray(v, dtype=np.float64))
+        jacobian, direction = self._aligned(self.jac(t, x, u, p, by=by, of=of), v, 1)
+        return np.asarray(jacobian @ direction if jacobian.ndim == 2 else np.einsum("ij...,j...->i...", jacobian, direction))
 
-    def vjp(self, t: float, x: npt.ArrayLike, w: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x") -> Array:
-        """A covector times the derivatives: w jac(t, x, u, p, by=by), shape (states,), (inputs,) or (parameters,)."""
+    def vjp(self, t: float, x: npt.ArrayLike, w: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
+        """A covector times the derivatives, w jac(…): shape (columns, …). w is one covector, or one for each state."""
         import numpy as np
 
-        return np.asarray(np.asarray(w, dtype=np.float64) @ self.jac(t, x, u, p, by=by))
+        jacobian, covector = self._aligned(self.jac(t, x, u, p, by=by, of=of), w, 0)
+        return np.asarray(covector @ jacobian if jacobian.ndim == 2 else np.einsum("ij...,i...->j...", jacobian, covector))
+
+    @staticmethod
+    def _aligned(jacobian: Array, vector: npt.ArrayLike, axis: int) -> tuple[Array, Array]:
+        import numpy as np
+
+        array, batch = np.asarray(vector, dtype=np.float64), jacobian.shape[2:]
+        if array.shape[:1] != (jacobian.shape[axis],) or array.shape[1:] not in ((), batch):
+            fits = f"{(jacobian.shape[axis],)}" + (f" or {(jacobian.shape[axis], *batch)}" if batch else "")
+            raise ValueError(f"the vector has the shape {array.shape}; it has to be {fits}")
+        return jacobian, array if array.ndim > 1 else array.reshape(array.shape + (1,) * len(batch))
 
     def _equations(self, t: float, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array]:
         if self.minimal:
             raise ModelError("in independent velocities there is no mass matrix\nhint: dynamics(minimal=False)")
-        _, matrix, right = self._core.equations(t, *self._one(x, u, p))
-        return matrix, right
+        state, some, others, batch = self._states(x, u, p)
+        matrix: Array
+        right: Array
+        _, matrix, right = self._core.equations(t, state, some, others)
+        return matrix.reshape((*matrix.shape[:2], *batch)), right.reshape((len(right), *batch))
 
     def mass_matrix(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
-        """M of  M q'' + bias = Phi^T lambda,  shape (coordinates, coordinates). The model's own formulas give the inputs.
+        """M of  M q'' + bias = Phi^T lambda,  shape (coordinates, coordinates), or (coordinates, coordinates, …) of many
+        states. The model's own formulas give the inputs.
 
         Raises:
             ModelError: the velocities are independent ones; take ``dynamics(minimal=False)``.
@@ -233,12 +267,12 @@ class Dynamics:
         return self._equations(t, x, None, p)[0][:n, :n]
 
     def bias(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None) -> Array:
-        """What remains of  M q'' + bias = Phi^T lambda:  inertia and forces without accelerations, shape (coordinates,)."""
+        """What remains of  M q'' + bias = Phi^T lambda:  inertia and forces without accelerations, shape (coordinates, …)."""
         return -self._equations(t, x, u, p)[1][: len(self.model.coordinates)]
 
     def constraint_jacobian(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
         """Phi, the derivatives of the constraints by the velocities (of holonomic ones by the coordinates), shape
-        (constraints, coordinates)."""
+        (constraints, coordinates, …)."""
         n, states = len(self.model.coordinates), len(self.model.states)
         matrix = self._equations(t, x, None, p)[0]
         return matrix[n : len(matrix) - states, :n]

@@ -15,6 +15,7 @@ from ._progress import Progress, Shown
 from .analysis import Comparison, LinearModel, PublishedEquations, Stability, State, equation_text
 from .dynamics import Dynamics
 from .equations import Equations, Proof
+from .expressions import Expr
 from .run import Run
 from .sweep import Law, Sweep
 
@@ -347,9 +348,9 @@ class Model:
 
         Example:
             >>> import anholon as an
-            >>> bar = an.load("two-wheeled-pendulum").linearize()
-            >>> bar.B.shape == (len(bar.states), len(bar.inputs))
-            True
+            >>> tractor = an.load("trailers").linearize()
+            >>> tractor.inputs, tractor.B.shape[1]
+            (['drive', 'steer'], 2)
 
         Source: dE/dx of the equations and of their derivatives (theory: linear-models).
         """
@@ -472,6 +473,7 @@ class Model:
         *,
         minimal: bool = True,
         inputs: bool | Sequence[str] = False,
+        outputs: Sequence[str] | Mapping[str, str | Expr] | None = None,
         initial: Mapping[str, Number] | None = None,
     ) -> Dynamics:
         """The equations as a compiled function f(t, x, u, p) -> x', for integrators and optimizers of others.
@@ -481,11 +483,14 @@ class Model:
                 them; else in all coordinates and velocities.
             inputs: which inputs of the model are arguments u: all that can be set, those named, or none. The formulas
                 of the others stand in f.
+            outputs: instead of all monitors and outputs of the model: some of them, formulas in its names, or
+                ``{name: formula}``. ``lambda.NAME`` is a multiplier, ``reaction(BODY)`` the force of the constraints;
+                both need ``minimal=False``. A vector gives ``name.x``, ``name.y``, ``name.z``.
             initial: values instead of those of the file, for ``f.start``.
 
         Raises:
             ModelError: the equations are not solved for accelerations alone (constraints of order 2 and more),
-                constraints are redundant, or an input cannot be set from outside.
+                constraints are redundant, an input cannot be set from outside, or an output is not known.
 
         Example:
             >>> import anholon as an, numpy as np
@@ -496,7 +501,12 @@ class Model:
             ((8,), (8, 1000))
         """
         names = [] if isinstance(inputs, bool) else list(inputs)
-        return Dynamics(self, _core.dynamics(self._system("routh", texts_of(initial), ()), minimal, inputs is True, names))
+        chosen: list[tuple[str, str]] | None = None
+        if isinstance(outputs, Mapping):
+            chosen = [(name, str(formula)) for name, formula in outputs.items()]
+        elif outputs is not None:
+            chosen = [(str(name), "") for name in outputs]
+        return Dynamics(self, _core.dynamics(self._system("routh", texts_of(initial), ()), minimal, inputs is True, names, chosen))
 
     def c_code(self, *, initial: Mapping[str, Number] | None = None, form: str = "routh") -> str:
         """The motion's right side as a C program that stands by itself."""

@@ -13,6 +13,13 @@ std::span<const double> span_of(const Some& numbers) {
   return numbers ? std::span(numbers->data(), numbers->size()) : std::span<const double>();
 }
 
+// How many states an array holds, in its last axes.
+std::size_t states_of(const Dynamics& f, const In& x) {
+  const std::size_t states = f.states().size(), count = states == 0 ? 0 : x.size() / states;
+  if (x.size() != states * count) throw nb::value_error("the shape of x does not fit");
+  return count;
+}
+
 // Without the interpreter's lock where that pays.
 void rates(const Dynamics& f, double t, const In& x, const Out& out, const Some& u, const Some& p) {
   constexpr std::size_t kLong = 64;
@@ -45,30 +52,36 @@ void bind_dynamics(nb::module_& m) {
       .def("rates", rates, "t"_a, "x"_a, "out"_a, "u"_a = nb::none(), "p"_a = nb::none())
       .def(
           "outputs_at",
-          [](const Dynamics& f, double t, const Doubles& x, const Doubles& u, const Doubles& p) {
-            return f.outputs(t, x, {u, p});
+          [](const Dynamics& f, double t, const In& x, const Some& u, const Some& p) {
+            const std::size_t count = states_of(f, x), rows = f.outputs().size();
+            return array<2>(unlocked([&] { return f.outputs(t, span_of(x), count, {span_of(u), span_of(p)}); }),
+                            {rows, count});
           },
-          "t"_a, "x"_a, "u"_a, "p"_a)
+          "t"_a, "x"_a, "u"_a.none(), "p"_a.none())
       .def(
           "inputs_at",
           [](const Dynamics& f, double t, const Doubles& x, const Doubles& p) { return f.inputs(t, x, p); }, "t"_a,
           "x"_a, "p"_a)
       .def(
           "jacobian",
-          [](const Dynamics& f, double t, const Doubles& x, const Doubles& u, const Doubles& p) {
-            Dynamics::Jacobian made = unlocked([&] { return f.jacobian(t, x, {u, p}); });
-            return array<2>(std::move(made.values), {made.rows, made.columns});
+          [](const Dynamics& f, double t, const In& x, const Some& u, const Some& p) {
+            const std::size_t count = states_of(f, x);
+            Dynamics::Jacobian made =
+                unlocked([&] { return f.jacobian(t, span_of(x), count, {span_of(u), span_of(p)}); });
+            return array<3>(std::move(made.values), {made.rows, made.columns, count});
           },
-          "t"_a, "x"_a, "u"_a, "p"_a)
+          "t"_a, "x"_a, "u"_a.none(), "p"_a.none())
       .def(
           "equations",
-          [](const Dynamics& f, double t, const Doubles& x, const Doubles& u, const Doubles& p) {
-            Dynamics::Equations made = unlocked([&] { return f.equations(t, x, {u, p}); });
-            const std::size_t n = made.right.size();
-            return std::tuple(made.unknowns, array<2>(std::move(made.matrix), {n, n}),
-                              array<1>(std::move(made.right), {n}));
+          [](const Dynamics& f, double t, const In& x, const Some& u, const Some& p) {
+            const std::size_t count = states_of(f, x);
+            Dynamics::Equations made =
+                unlocked([&] { return f.equations(t, span_of(x), count, {span_of(u), span_of(p)}); });
+            const std::size_t n = made.unknowns.size();
+            return std::tuple(made.unknowns, array<3>(std::move(made.matrix), {n, n, count}),
+                              array<2>(std::move(made.right), {n, count}));
           },
-          "t"_a, "x"_a, "u"_a, "p"_a)
+          "t"_a, "x"_a, "u"_a.none(), "p"_a.none())
       .def(
           "source",
           [](const Dynamics& f, bool casadi, const std::string& name) {
@@ -86,10 +99,16 @@ void bind_dynamics(nb::module_& m) {
           "t"_a, "x"_a);
   m.def(
       "dynamics",
-      [](const System& system, bool minimal, bool inputs, const std::vector<std::string>& names) {
-        return value_of(unlocked([&] { return dynamics(system, DynamicsOptions{minimal, inputs, names}); }));
+      [](const System& system, bool minimal, bool inputs, const std::vector<std::string>& names,
+         const std::optional<std::vector<std::pair<std::string, std::string>>>& outputs) {
+        DynamicsOptions options{minimal, inputs, names, {}};
+        if (outputs) {
+          options.outputs.emplace();
+          for (const auto& [name, formula] : *outputs) options.outputs->push_back({name, formula});
+        }
+        return value_of(unlocked([&] { return dynamics(system, options); }));
       },
-      "system"_a, "minimal"_a, "inputs"_a, "names"_a);
+      "system"_a, "minimal"_a, "inputs"_a, "names"_a, "outputs"_a.none());
 }
 
 }  // namespace anholon::python

@@ -242,3 +242,70 @@ def test_threads_share_a_function() -> None:
 def test_who_has_no_such_function_says_why() -> None:
     with pytest.raises(an.ModelError, match=r"no function x' = f\(t, x\)"):
         an.load("rheonomic-order-3").dynamics()
+
+
+def batch_of(f: an.Dynamics, count: int) -> np.ndarray:
+    return f.start[:, None] * (1 + 0.01 * np.random.default_rng(3).standard_normal((len(f.start), count)))
+
+
+@pytest.mark.parametrize("minimal", [True, False])
+def test_batches_of_derivatives_and_outputs_have_the_bits_of_one_state(minimal: bool) -> None:
+    f = an.load("two-wheeled-pendulum").dynamics(minimal=minimal, inputs=False, outputs=["al", "norm(vel(axle))"])
+    x, p = batch_of(f, 600), f.p0[:, None] * np.linspace(0.9, 1.1, 600)
+    for by in ("x", "p"):
+        for of in ("x'", "y"):
+            many = f.jac(0.1, x, p=p, by=by, of=of)
+            for k in (0, 1, 255, 256, 599):
+                np.testing.assert_array_equal(many[..., k], f.jac(0.1, x[:, k], p=p[:, k], by=by, of=of))
+    y = f.output(0.1, x, p=p)
+    assert y.shape == (2, 600)
+    np.testing.assert_array_equal(y[0], x[3])
+    np.testing.assert_array_equal(y[:, 7], f.output(0.1, x[:, 7], p=p[:, 7]))
+    cube = x.reshape(len(x), 20, 30)
+    np.testing.assert_array_equal(f.jac(0.1, cube).reshape(len(x), len(x), 600), f.jac(0.1, x))
+    v, w = np.arange(1.0, len(x) + 1), np.random.default_rng(1).standard_normal(x.shape)
+    jac = f.jac(0.1, x)
+    np.testing.assert_allclose(f.jvp(0.1, x, v), np.einsum("ijk,j->ik", jac, v), rtol=1e-14)
+    np.testing.assert_allclose(f.jvp(0.1, x, w), np.einsum("ijk,jk->ik", jac, w), rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(f.vjp(0.1, x, w), np.einsum("ijk,ik->jk", jac, w), rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(f.jvp(0.1, x[:, 3], w[:, 3]), f.jvp(0.1, x, w)[:, 3], rtol=1e-13)
+    with pytest.raises(ValueError, match="the vector has the shape"):
+        f.jvp(0.1, x, w[:, :5])
+
+
+def test_batches_of_the_equations() -> None:
+    f = an.load("disc").dynamics(minimal=False)
+    x = batch_of(f, 300)
+    M, h, Phi = f.mass_matrix(0, x), f.bias(0, x), f.constraint_jacobian(0, x)
+    assert (M.shape, h.shape, Phi.shape) == ((5, 5, 300), (5, 300), (2, 5, 300))
+    for k in (0, 299):
+        np.testing.assert_array_equal(M[..., k], f.mass_matrix(0, x[:, k]))
+        np.testing.assert_array_equal(h[..., k], f.bias(0, x[:, k]))
+        np.testing.assert_array_equal(Phi[..., k], f.constraint_jacobian(0, x[:, k]))
+    rates = f(0.0, x)
+    force = np.einsum("ijk,jk->ik", M, rates[5:]) + h
+    lam = np.stack([np.linalg.lstsq(Phi[..., k].T, force[:, k], rcond=None)[0] for k in range(300)], axis=1)
+    np.testing.assert_allclose(np.einsum("ijk,ik->jk", Phi, lam), force, atol=1e-11)
+
+
+def test_reactions_and_multipliers_as_outputs() -> None:
+    model = an.load("disc")
+    f = model.dynamics(minimal=False, outputs={"N": "reaction(disc)", "l": "lambda.rolling.y", "a": "D(theta, 2)"})
+    assert f.outputs == ["N.x", "N.y", "N.z", "l", "a"]
+    state = model.evaluate()
+    y = f.output(0.0, f.start)
+    np.testing.assert_allclose(y[:3], state.reactions["disc"]["force"], rtol=1e-13, atol=1e-13)
+    assert y[3] == pytest.approx(state.multipliers["rolling.y"], rel=1e-13)
+    assert y[4] == pytest.approx(state.accelerations["theta''"], rel=1e-13)
+    h = 1e-6
+    changed = f.start.copy()
+    changed[3] += h
+    assert f.jac(0, f.start, of="y")[3, 3] == pytest.approx((f.output(0, changed)[3] - y[3]) / h, rel=1e-4)
+    assert model.dynamics(outputs=[]).outputs == []
+    trailers = an.load("trailers")
+    assert trailers.dynamics(outputs=trailers.monitors[:1]).outputs == trailers.monitors[:1]
+    for mistake in ({"l": "lambda.rolling.y"}, ["thetaa"], ["lean"]):
+        with pytest.raises(an.ModelError):
+            model.dynamics(outputs=mistake)
+    with pytest.raises(an.ModelError, match="minimal=False"):
+        model.dynamics(outputs=["lambda.rolling.y"])

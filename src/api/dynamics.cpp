@@ -1,16 +1,21 @@
 #include "anholon/dynamics.h"
 
+#include <atomic>
 #include <mutex>
+#include <thread>
 
 #include "api/data.h"
 #include "dynamics/rate_formulas_of.h"
+#include "setup/chosen_outputs.h"
 #include "setup/inputs.h"
 
 namespace anholon::v1 {
 
+constexpr std::size_t kStatesAtOnce = 256;  // that one thread takes, of outputs and derivatives
+
 struct Dynamics::Data {
   System system;
-  inner::Scenario opened;               // with inputs as parameters, if there are inputs
+  inner::Scenario opened;               // with outputs of its own, or with inputs as parameters
   const inner::Scenario* scenario;      // of the system, or the opened one
   std::vector<std::string> inputs;      // names
   std::vector<inner::NodeId> formulas;  // of the inputs
@@ -28,7 +33,7 @@ struct Dynamics::Data {
 
   // A point of one state: its parameters, and what the equations are solved for.
   struct Solved {
-    std::vector<double> parameters, lead;
+    std::vector<double> x, parameters, lead;
     inner::FormulaValues::Point at;
   };
   Solved solved(double t, const std::vector<double>& x, const Given& given, bool with_lead) const {
@@ -37,7 +42,8 @@ struct Dynamics::Data {
     const inner::InputsAndParameters numbers{u, given.p};
     for (const long double p : function->parameters(numbers, 1, 0)) out.parameters.push_back(static_cast<double>(p));
     if (with_lead && !function->minimal()) out.lead = function->leading(t, x, numbers);
-    out.at = {t, x, out.parameters, out.lead};
+    out.x = x;
+    out.at = {t, out.x, out.parameters, out.lead};
     return out;
   }
   // u, by the formulas of the model where none is given.
@@ -45,7 +51,38 @@ struct Dynamics::Data {
     if (!given.u.empty() || inputs.empty()) return {given.u.begin(), given.u.end()};
     std::vector<double> parameters;
     for (const long double p : function->parameters({{}, given.p}, 1, 0)) parameters.push_back(static_cast<double>(p));
-    return values().inputs({t, x, parameters, {}});
+    inner::FormulaValues::Work work;
+    return values().inputs({t, x, parameters, {}}, work);
+  }
+
+  // Calls f(k, solved) with the point of each of `count` states and a Work, on several threads if they are many. A
+  // state's numbers do not depend on the others.
+  template <class F>
+  void for_each_state(double t, std::span<const double> x, std::size_t count, const Given& given, bool with_lead,
+                      const F& f) const {
+    const std::size_t n = states.size(), u = inputs.size(), p = function->free_parameters().size();
+    values();
+    std::atomic<std::size_t> next = 0;
+    const auto work = [&] {
+      inner::FormulaValues::Work own;
+      std::vector<double> state(n), some, parameters;
+      const auto of_state = [&](std::span<const double> all, std::size_t size, std::size_t k, std::vector<double>& to) {
+        if (all.size() <= size) return all;
+        to.resize(size);
+        for (std::size_t i = 0; i < size; ++i) to[i] = all[i * count + k];
+        return std::span<const double>(to);
+      };
+      for (std::size_t from; (from = next.fetch_add(kStatesAtOnce)) < count;)
+        for (std::size_t k = from; k < std::min(count, from + kStatesAtOnce); ++k) {
+          for (std::size_t i = 0; i < n; ++i) state[i] = x[i * count + k];
+          f(k, solved(t, state, {of_state(given.u, u, k, some), of_state(given.p, p, k, parameters)}, with_lead).at,
+            own);
+        }
+    };
+    std::vector<std::jthread> others;
+    const std::size_t threads = std::min<std::size_t>(std::thread::hardware_concurrency(), count / kStatesAtOnce);
+    while (others.size() + 1 < threads) others.emplace_back(work);
+    work();
   }
 
  private:
@@ -60,12 +97,24 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
   const System::Data& of = system.data();
   return guarded(of.model->source, [&]() -> Result<Dynamics> {
     auto data = std::make_shared<Dynamics::Data>(system);
-    if (options.inputs || !options.input_names.empty()) {
-      const inner::InputsAsParameters inputs = inner::inputs_as_parameters(of.scenario, options.input_names);
-      data->inputs = inputs.names, data->formulas = inputs.formulas;
-      if (const inner::Outcome o = make_system(inputs.model, of.scenario.system.form->name, of.choice, data->opened);
+    const std::string form = of.scenario.system.form->name;
+    if (options.outputs) {
+      inner::Diagnostics diagnostics;
+      const auto open = inner::open_model(of.model->source, diagnostics, of.model->overrides, of.model->cases);
+      if (!open) return error_of(diagnostics, of.model->source);
+      std::vector<inner::ChosenOutput> outputs;
+      for (const DynamicsOptions::Output& o : *options.outputs) outputs.push_back({o.name, o.formula});
+      if (const inner::Outcome o = make_system(inner::with_outputs(*open, outputs), form, of.choice, data->opened);
           !o.ok())
         return error_of(o);
+      data->scenario = &data->opened;
+    }
+    if (options.inputs || !options.input_names.empty()) {
+      const inner::InputsAsParameters inputs = inner::inputs_as_parameters(*data->scenario, options.input_names);
+      data->inputs = inputs.names, data->formulas = inputs.formulas;
+      inner::Scenario opened;
+      if (const inner::Outcome o = make_system(inputs.model, form, of.choice, opened); !o.ok()) return error_of(o);
+      data->opened = std::move(opened);
       data->scenario = &data->opened;
     }
     inner::Workspace s(*data->scenario);
@@ -76,6 +125,11 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
                      "simulate integrates them all the same");
     for (const inner::Dynamics::State& state : data->function->states())
       data->states.push_back({state.name, state.meaning});
+    if (options.outputs && !data->values().formulas().left_out.empty())
+      return mistake("the output '" + data->values().formulas().left_out[0] +
+                         "' holds what the equations are not solved for" +
+                         (data->function->minimal() ? ": in independent velocities there are no multipliers" : ""),
+                     data->function->minimal() ? "take all velocities, minimal=False" : "leave it out");
     return Dynamics(data);
   });
 }
@@ -130,18 +184,39 @@ std::vector<double> Dynamics::inputs(double t, const std::vector<double>& x, std
   return data_->given_inputs(t, x, {{}, p});
 }
 
-std::vector<double> Dynamics::outputs(double t, const std::vector<double>& x, const Given& given) const {
-  return data_->values().outputs(data_->solved(t, x, given, true).at);
+std::vector<double> Dynamics::outputs(double t, std::span<const double> x, std::size_t count,
+                                      const Given& given) const {
+  std::vector<double> out(outputs().size() * count);
+  data_->for_each_state(t, x, count, given, true, [&](std::size_t k, const auto& at, auto& work) {
+    const std::vector<double> y = data_->values().outputs(at, work);
+    for (std::size_t i = 0; i < y.size(); ++i) out[i * count + k] = y[i];
+  });
+  return out;
 }
 
-Dynamics::Jacobian Dynamics::jacobian(double t, const std::vector<double>& x, const Given& given) const {
-  auto [rows, columns, values] = data_->values().derivatives(data_->solved(t, x, given, true).at);
-  return {rows, columns, std::move(values)};
+Dynamics::Jacobian Dynamics::jacobian(double t, std::span<const double> x, std::size_t count,
+                                      const Given& given) const {
+  const inner::RateFormulas& f = data_->values().formulas();
+  Jacobian out{f.rates.size() + f.outputs.size(), f.x.size() + f.u.size() + f.p.size(), {}};
+  out.values.resize(out.rows * out.columns * count);
+  data_->for_each_state(t, x, count, given, true, [&](std::size_t k, const auto& at, auto& work) {
+    const std::vector<double> d = data_->values().derivatives(at, work).values;
+    for (std::size_t i = 0; i < d.size(); ++i) out.values[i * count + k] = d[i];
+  });
+  return out;
 }
 
-Dynamics::Equations Dynamics::equations(double t, const std::vector<double>& x, const Given& given) const {
-  auto [matrix, right] = data_->values().equations(data_->solved(t, x, given, false).at);
-  return {data_->values().formulas().lead.names, std::move(matrix), std::move(right)};
+Dynamics::Equations Dynamics::equations(double t, std::span<const double> x, std::size_t count,
+                                        const Given& given) const {
+  const std::vector<std::string>& unknowns = data_->values().formulas().lead.names;
+  const std::size_t n = unknowns.size();
+  Equations out{unknowns, std::vector<double>(n * n * count), std::vector<double>(n * count)};
+  data_->for_each_state(t, x, count, given, false, [&](std::size_t k, const auto& at, auto& work) {
+    const auto [matrix, right] = data_->values().equations(at, work);
+    for (std::size_t i = 0; i < n * n; ++i) out.matrix[i * count + k] = matrix[i];
+    for (std::size_t i = 0; i < n; ++i) out.right[i * count + k] = right[i];
+  });
+  return out;
 }
 
 std::string Dynamics::source(Source kind, const std::string& name) const {

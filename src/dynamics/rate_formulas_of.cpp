@@ -145,6 +145,7 @@ class Builder {
     if (n == 0) return;
     const Column entries = emit::entries(f_.matrix());
     const CompiledFormulas matrix(f_, entries);
+    CompiledFormulas::Work work;
     std::vector<double> parameters(of_.parameters().begin(), of_.parameters().end()), x = f_.start;
     std::vector<SampledEntry> sampled;
     for (std::size_t k = 0; k < entries.size(); ++k)
@@ -155,7 +156,7 @@ class Builder {
     for (std::size_t attempt = 0; attempt < 3 * kSamples && samples < kSamples; ++attempt) {
       for (std::size_t i = 0; i < x.size() && attempt > 0; ++i)
         x[i] = f_.start[i] + kAround * std::sin(static_cast<double>(64 * attempt + i));
-      const std::vector<double> values = matrix.values({f_.t, x, parameters, {}});
+      const std::vector<double> values = matrix.values({f_.t, x, parameters, {}}, work);
       std::size_t next = 0;
       bool good = true;
       for (std::size_t k = 0; k < values.size(); ++k)
@@ -249,8 +250,13 @@ CompiledFormulas::CompiledFormulas(const RateFormulas& f, const Column& es) {
   for (const Input& in : tape_.inputs) inputs_.push_back(places.at(in.symbol));
 }
 
-std::vector<double> CompiledFormulas::values(const FormulaPoint& at) const {
-  Machine<double> machine(tape_, 0, {at.parameters.begin(), at.parameters.end()});
+std::vector<double> CompiledFormulas::values(const FormulaPoint& at, Work& work) const {
+  if (!work.machine ||
+      !std::equal(at.parameters.begin(), at.parameters.end(), work.parameters.begin(), work.parameters.end())) {
+    work.parameters.assign(at.parameters.begin(), at.parameters.end());
+    work.machine.emplace(tape_, 0, work.parameters);
+  }
+  Machine<double>& machine = *work.machine;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const auto [from, index] = inputs_[i];
     machine.series(tape_.inputs[i].slot)[0] = from == From::time    ? at.t
@@ -264,11 +270,13 @@ std::vector<double> CompiledFormulas::values(const FormulaPoint& at) const {
   return out;
 }
 
-std::vector<double> FormulaValues::inputs(const Point& at) const { return inputs_.values(at); }
-std::vector<double> FormulaValues::outputs(const Point& at) const { return outputs_.values(at); }
+std::vector<double> FormulaValues::inputs(const Point& at, Work& work) const { return inputs_.values(at, work.inputs); }
+std::vector<double> FormulaValues::outputs(const Point& at, Work& work) const {
+  return outputs_.values(at, work.outputs);
+}
 
-FormulaValues::Equations FormulaValues::equations(const Point& at) const {
-  Equations out{equations_.values(at), {}};
+FormulaValues::Equations FormulaValues::equations(const Point& at, Work& work) const {
+  Equations out{equations_.values(at, work.equations), {}};
   const auto middle = out.matrix.end() - static_cast<std::ptrdiff_t>(formulas_.lead.size());
   out.right.assign(middle, out.matrix.end());
   out.matrix.erase(middle, out.matrix.end());
@@ -276,10 +284,10 @@ FormulaValues::Equations FormulaValues::equations(const Point& at) const {
 }
 
 // d rates / dx  =  partial  -  d rates / d lead . (d equations / d lead)^-1 . d equations / dx
-FormulaValues::Derivatives FormulaValues::derivatives(const Point& at) const {
+FormulaValues::Derivatives FormulaValues::derivatives(const Point& at, Work& work) const {
   const RateFormulas& f = formulas_;
   const std::size_t n = f.lead.size(), columns = f.x.size() + f.u.size() + f.p.size();
-  const std::vector<double> partials = derivatives_.values(at);
+  const std::vector<double> partials = derivatives_.values(at, work.derivatives);
   Derivatives out{f.rates.size() + f.outputs.size(), columns, {}};
   Matrix<double> of_lead(n, n), others(n, columns), through(out.rows, n);
   out.values.assign(out.rows * columns, 0);

@@ -21,7 +21,13 @@ class CompiledFormulas {
  public:
   CompiledFormulas() = default;
   CompiledFormulas(const RateFormulas& formulas, const Column& es);
-  std::vector<double> values(const FormulaPoint& at) const;
+
+  // A machine of the tape, which one caller after the other may use.
+  struct Work {
+    std::optional<Machine<double>> machine;
+    std::vector<double> parameters;
+  };
+  std::vector<double> values(const FormulaPoint& at, Work& work) const;
 
  private:
   enum class From : std::uint8_t { time, state, lead };
@@ -40,19 +46,23 @@ class FormulaValues {
   const RateFormulas& formulas() const { return formulas_; }
 
   using Point = FormulaPoint;
-  std::vector<double> inputs(const Point& at) const;
-  std::vector<double> outputs(const Point& at) const;
+  // Of one thread: it makes the points after the first one cheaper.
+  struct Work {
+    CompiledFormulas::Work inputs, outputs, equations, derivatives;
+  };
+  std::vector<double> inputs(const Point& at, Work& work) const;
+  std::vector<double> outputs(const Point& at, Work& work) const;
   // matrix lead = right: the matrix row by row. REQUIRES: rates are not explicit; no lead is needed.
   struct Equations {
     std::vector<double> matrix, right;
   };
-  Equations equations(const Point& at) const;
+  Equations equations(const Point& at, Work& work) const;
   // Exact derivatives of rates, then outputs, by x, u and p: row by row. NaN where the equations have no solution.
   struct Derivatives {
     std::size_t rows = 0, columns = 0;
     std::vector<double> values;
   };
-  Derivatives derivatives(const Point& at) const;
+  Derivatives derivatives(const Point& at, Work& work) const;
 
  private:
   struct Partial {

@@ -68,6 +68,13 @@ class CFile {
     jacobian_ = writer_.body(entries(m_.jacobian), targets("out", n * n), true);
     hidden_ = writer_.body(m_.hidden, targets("out", m_.hidden.size()));
     formulas_ = writer_.body(m_.input_values, targets("out", m_.inputs.size()));
+    outputs_ = writer_.body(m_.outputs, targets("out", m_.outputs.size()));
+    Column when;
+    for (const Motion::Event& e : m_.events) {
+      when.push_back(e.when);
+      sets_.push_back(writer_.body(e.values, targets("out", e.values.size())));
+    }
+    events_ = writer_.body(when, targets("out", when.size()));
     const ParameterAssignments parameters = parameter_assignments(m_);
     defaults_ = writer_.body(parameters.free.values, parameters.free.targets);
     derived_ = writer_.body(parameters.derived.values, parameters.derived.targets);
@@ -75,7 +82,7 @@ class CFile {
 
   std::string text() const {
     const std::string program = contents() + declarations() + tables() + parameters() + equations() + c_solver() +
-                                newton() + right_side() + start();
+                                newton() + right_side() + many() + results() + resets() + start();
     // A title may contain a $.
     return "/*\n" + lines(head(system_, structure_, m_, options_), " * ") +
            replaced(program, "$", identifier(options_.name, "motion"));
@@ -86,6 +93,7 @@ class CFile {
   std::string with_inputs(std::string text) const {
     if (!inputs_) return text;
     text = replaced(std::move(text), "const double *p, double *", "const double *p, const double *u, double *");
+    text = replaced(std::move(text), "double *lead, double *p)", "double *lead, double *p, const double *u)");
     return replaced(replaced(replaced(std::move(text), "p, f)", "p, u, f)"), "p, a)", "p, u, a)"), "p, lead)",
                     "p, u, lead)");
   }
@@ -117,11 +125,18 @@ class CFile {
     out += R"( * $_residual      the equations, out of any state and lead
  * $_jacobian      their derivatives by lead
  * $_hidden        the hidden constraints
- * $_leading       solves for lead; on entry lead is where to start (zeros will do if linear)
+ * $_leading       solves for lead; on entry lead is where to start: zeros if linear, $_begin at the start
  * $_rhs           d state / dt, for an integrator
+ * $_rhs_near      the same; lead is where to start, and becomes the solution
+ * $_rhs_many      of many states: number i of state k is state[i*count + k], likewise dstate; nan where there is none
 )";
+    if (!m_.outputs.empty()) out += " * $_outputs       monitors and outputs of the model\n";
+    if (!m_.events.empty())
+      out += " * $_events        formulas that pass zero where an event happens: upward (direction 1), downward (-1) "
+             "or both (0)\n"
+             " * $_reset         what event k sets, in state and p; the motion ends there if $_event_stops[k]\n";
     if (options_.start) out += " * $_start         a time and a state to begin with\n";
-    return out + R"( * $_leading and $_rhs return 0; 1 if the jacobian is singular, 2 if Newton's method
+    return out + R"( * $_leading and $_rhs, _near, _many return 0; 1 if the jacobian is singular, 2 if Newton's method
  * does not converge, 3 if a formula has no value.
  */
 #include <math.h>
@@ -130,20 +145,28 @@ class CFile {
   }
 
   std::string declarations() const {
-    std::string out = "enum { $_UNKNOWNS = " + std::to_string(system_.size()) +
-                      ", $_STATE = " + std::to_string(m_.state.size()) +
-                      ", $_HIDDEN = " + std::to_string(m_.hidden.size()) +
-                      ", $_PARAMETERS = " + std::to_string(m_.parameters.size()) +
-                      (inputs_ ? ", $_INPUTS = " + std::to_string(m_.inputs.size()) : std::string()) + " };\n\n";
+    std::string out =
+        "enum { $_UNKNOWNS = " + std::to_string(system_.size()) + ", $_STATE = " + std::to_string(m_.state.size()) +
+        ", $_HIDDEN = " + std::to_string(m_.hidden.size()) +
+        ", $_PARAMETERS = " + std::to_string(m_.parameters.size()) +
+        ", $_OUTPUTS = " + std::to_string(m_.outputs.size()) + ", $_EVENTS = " + std::to_string(m_.events.size()) +
+        (inputs_ ? ", $_INPUTS = " + std::to_string(m_.inputs.size()) : std::string()) + " };\n\n";
     out += "extern const char *const $_parameter_names[], *const $_state_names[], *const $_lead_names[];\n";
     if (inputs_) out += "extern const char *const $_input_names[];\n";
-    out += "void $_defaults(double *p);\n";
+    out += "extern const double $_begin[];\nvoid $_defaults(double *p);\n";
     if (!m_.derived.empty()) out += "void $_derived(double *p);\n";
     if (inputs_) out += "void $_inputs(double t, const double *state, const double *p, double *out);\n";
     out += "void $_residual" + arguments() + ";\nvoid $_jacobian" + arguments() + ";\n";
     out += "void $_hidden(double t, const double *state, const double *p, double *out);\n";
     out += with_inputs("int $_leading(double t, const double *state, const double *p, double *lead);\n"
-                       "int $_rhs(double t, const double *state, const double *p, double *dstate);\n");
+                       "int $_rhs(double t, const double *state, const double *p, double *dstate);\n"
+                       "int $_rhs_near(double t, const double *state, const double *p, double *lead, double *dstate);\n"
+                       "int $_rhs_many(double t, long count, const double *state, const double *p, double *dstate);\n");
+    if (!m_.outputs.empty()) out += "extern const char *const $_output_names[];\nvoid $_outputs" + arguments() + ";\n";
+    if (!m_.events.empty())
+      out += "extern const char *const $_event_names[];\nextern const int $_event_directions[], $_event_stops[];\n"
+             "void $_events" +
+             arguments() + ";\nvoid $_reset" + reset_arguments() + ";\n";
     if (options_.start) out += "void $_start(double *t, double *state);\n";
     return out;
   }
@@ -154,7 +177,8 @@ class CFile {
     for (const Parameter& p : system_.model->parameters) parameters.push_back(p.name);
     return "\n/* Each ends with a null pointer. */\n" + names_table("$_parameter_names", parameters) +
            names_table("$_state_names", m_.state_names) + names_table("$_lead_names", m_.leading_names) +
-           (inputs_ ? names_table("$_input_names", m_.input_names) : std::string());
+           (inputs_ ? names_table("$_input_names", m_.input_names) : std::string()) +
+           (m_.outputs.empty() ? "" : names_table("$_output_names", m_.output_names)) + event_tables();
   }
 
   std::string parameters() const {
@@ -191,20 +215,101 @@ class CFile {
                m_.linear ? "length > 0.5 * before" : "(length <= 1e-8 * size && length > 0.5 * before)");
   }
 
+  std::string event_tables() const {
+    if (m_.events.empty()) return {};
+    std::vector<std::string> names;
+    std::string directions, stops;
+    for (const Motion::Event& e : m_.events) {
+      const Event& of = system_.model->events[e.index];
+      names.push_back(of.name);
+      directions += (directions.empty() ? "" : ", ") + std::to_string(of.direction);
+      stops += (stops.empty() ? "" : ", ") + std::to_string(of.stop);
+    }
+    return names_table("$_event_names", names) + "const int $_event_directions[] = {" + directions +
+           "};\nconst int $_event_stops[] = {" + stops + "};\n";
+  }
+
   std::string right_side() const {
-    std::string out =
-        with_inputs("\nint $_rhs(double t, const double *state, const double *p, double *dstate)\n{\n") +
-        unused({{"dstate", !m_.state.empty()}}) +
-        with_inputs("  double lead[$_UNKNOWNS] = {0};\n  const int status = $_leading(t, state, p, lead);\n");
+    // Where Newton's method begins.
+    std::string out = "\nconst double $_begin[$_UNKNOWNS + 1] = {";
+    const bool guess = !m_.linear && options_.start && !options_.start->leading.empty();
+    for (std::size_t j = 0; guess && j < system_.size(); ++j) out += number_text(options_.start->leading[j]) + ", ";
+    out += "0};\n";
+    out += with_inputs("\nint $_rhs(double t, const double *state, const double *p, double *dstate)\n{\n"
+                       "  double lead[$_UNKNOWNS];\n  int j;\n"
+                       "  for (j = 0; j < $_UNKNOWNS; ++j) lead[j] = $_begin[j];\n") +
+           (inputs_ ? "  return $_rhs_near(t, state, p, u, lead, dstate);\n}\n"
+                    : "  return $_rhs_near(t, state, p, lead, dstate);\n}\n");
+    out += with_inputs("\nint $_rhs_near(double t, const double *state, const double *p, double *lead, double "
+                       "*dstate)\n{\n") +
+           unused({{"dstate", !m_.state.empty()}}) +
+           with_inputs("  const int status = $_leading(t, state, p, lead);\n");
     for (std::size_t i = 0; i < m_.state.size(); ++i)
       out += "  dstate[" + std::to_string(i) + "] = " + rate_of_state(structure_, m_, i) + ";\n";
     return out + "  return status;\n}\n";
   }
 
+  // Of many states: the solution at one is where to start at the next, if the equations are not linear.
+  std::string many() const {
+    const std::string u = inputs_ ? ", u" : "";
+    return with_inputs(
+               "\nint $_rhs_many(double t, long count, const double *state, const double *p, double *dstate)\n{\n") +
+           R"(  double one[$_STATE + 1], rate[$_STATE + 1], lead[$_UNKNOWNS];
+  int result = 0, i;
+  long k;
+  for (k = 0; k < count; ++k) {
+    int status;
+    for (i = 0; i < $_STATE; ++i) one[i] = state[i*count + k];
+    for (i = 0; i < $_UNKNOWNS; ++i) lead[i] = $_begin[i];
+    status = $_rhs_near(t, one, p)" +
+           u + R"(, lead, rate);
+    if (status && !result) result = status;
+    for (i = 0; i < $_STATE; ++i) dstate[i*count + k] = status ? NAN : rate[i];
+  }
+  return result;
+}
+)";
+  }
+
+  std::string results() const {
+    std::string out;
+    if (!m_.outputs.empty())
+      out += "\nvoid $_outputs" + arguments() + "\n{\n" + before(outputs_) + outputs_.text + "}\n";
+    if (!m_.events.empty()) out += "\nvoid $_events" + arguments() + "\n{\n" + before(events_) + events_.text + "}\n";
+    return out;
+  }
+
+  std::string reset_arguments() const {
+    return with_inputs("(int k, double t, double *state, const double *lead, double *p)");
+  }
+
+  // What events set. All formulas of one event use the values before it.
+  std::string resets() const {
+    if (m_.events.empty()) return {};
+    std::size_t most = 1;
+    for (const Motion::Event& e : m_.events) most = std::max(most, e.values.size());
+    std::string out = "\nvoid $_reset" + reset_arguments() + "\n{\n  double out[" + std::to_string(most) + "];\n" +
+                      unused({{"t", false}, {"state", false}, {"lead", false}, {"p", false}}) +
+                      (inputs_ ? "  (void)u;\n" : "") + "  (void)out;\n  switch (k) {\n";
+    for (std::size_t k = 0; k < m_.events.size(); ++k) {
+      const Motion::Event& e = m_.events[k];
+      if (e.values.empty()) continue;
+      out +=
+          "  case " + std::to_string(k) + ": {\n" +
+          (inputs_ && sets_[k].reads("u") ? "  double own[$_INPUTS];\n  if (!u) $_inputs(t, state, p, own), u = own;\n"
+                                          : "") +
+          sets_[k].text;
+      for (std::size_t i = 0; i < e.targets.size(); ++i)
+        out += "  " + e.targets[i] + " = out[" + std::to_string(i) + "];\n";
+      out += std::string(m_.derived.empty() ? "" : "  $_derived(p);\n") + "  break;\n  }\n";
+    }
+    return out + "  default:\n  break;\n  }\n}\n";
+  }
+
   std::string start() const {
     if (!options_.start) return {};
     std::string out = "\nvoid $_start(double *t, double *state)\n{\n  *t = " + number_text(options_.start->t) + ";\n";
-    const std::vector<double> state = start_state(system_, m_, *options_.start);
+    const std::vector<double> state = start_state(m_, *options_.start);
     for (std::size_t i = 0; i < state.size(); ++i)
       out += "  state[" + std::to_string(i) + "] = " + number_text(state[i]) + ";\n";
     return out + "}\n";
@@ -217,7 +322,8 @@ class CFile {
   LocalNames names_;
   Writer writer_;
   bool inputs_;
-  Statements residual_, jacobian_, hidden_, formulas_, defaults_, derived_;
+  Statements residual_, jacobian_, hidden_, formulas_, defaults_, derived_, outputs_, events_;
+  std::vector<Statements> sets_;  // by event
 };
 
 }  // namespace

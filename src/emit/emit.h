@@ -7,7 +7,9 @@
 // The state is x_j^(k), k < d_j, all of order 0 first; the hidden constraints E_i^(k), k < c_i, are a function of their
 // own, so that an integrator that ignores them can be checked.
 //
-// Inputs are an array u of their own: without one, the formulas of the model give them.
+// Inputs are an array u of their own: without one, the formulas of the model give them. Outputs y and the formulas of
+// events are functions of state and lead; what events set is a function that changes state and parameters (modes are
+// parameters). What holds derivatives beyond lead is left out, and the head of the text says so.
 //
 // A derivative that does not truly occur (structure.h) is set to zero.
 #pragma once
@@ -30,11 +32,12 @@ struct EmitOptions {
   std::string made_by;          // the command line, for the head of the text
   struct Start {
     double t = 0;
-    std::vector<double> q, qd;   // by coordinate
-    std::vector<double> states;  // of the model
+    std::vector<std::vector<double>> values;  // by variable: its derivatives below the leading one
+    std::vector<double> leading;              // where Newton's method begins; empty: at zero
   };
   std::optional<Start> start;  // an initial state
   std::vector<InputFormula> inputs;
+  std::vector<std::pair<std::string, Expr>> outputs;  // names and values
 };
 
 // Both throw Failure for an expression that cannot be written: an unknown function of time, a number beyond double.

@@ -1,5 +1,7 @@
 #include "emit/motion.h"
 
+#include <algorithm>
+
 #include "base/assert.h"
 
 namespace anholon::emit {
@@ -8,13 +10,6 @@ namespace {
 
 std::string times_differentiated(int c) {
   return c == 0 ? "" : c == 1 ? ", differentiated once" : ", differentiated " + std::to_string(c) + " times";
-}
-
-void refuse_events(const Model& model) {
-  for (const Event& e : model.events)
-    if (!e.set.empty())
-      throw Failure(e.span, "a program for a model whose events set something ('" + e.name + "') is not written yet",
-                    "anholon simulate computes its motion");
 }
 
 void refuse_unknown_functions(const System& s) {
@@ -108,6 +103,59 @@ void add_parameters(const Model& model, Motion& m) {
     });
 }
 
+// What formulas of a program may hold: the time, state and lead, parameters and inputs.
+class Known {
+ public:
+  Known(const System& s, const Motion& m) : s_(s), m_(m) {}
+
+  // Without masses and inputs that are formulas; multipliers of redundant constraints are zero.
+  Expr written(Expr e) const {
+    Graph& g = *s_.model->graph;
+    e = put_masses(*s_.model, put_state_rates(*s_.model, e, 2));
+    return substitute({&e, 1}, [&](NodeId id) {
+      const Node& n = g.node(id);
+      if (n.kind == Kind::multiplier && !s_.variable(id)) return g.zero();
+      return Expr{};
+    })[0];
+  }
+
+  bool holds_all_of(Expr e) const {
+    const Graph& g = *s_.model->graph;
+    const std::vector<NodeId> list = symbols({&e, 1});
+    return std::all_of(list.begin(), list.end(), [&](NodeId id) {
+      const Node& n = g.node(id);
+      if (n.kind == Kind::time || n.kind == Kind::parameter) return true;
+      if (n.kind == Kind::control)
+        return n.order == 0 && std::find(m_.inputs.begin(), m_.inputs.end(), n.index) != m_.inputs.end();
+      const auto j = s_.variable(id);
+      return j && static_cast<int>(n.order) <= m_.orders[*j];
+    });
+  }
+
+  // Nullopt if it holds what a program does not know.
+  std::optional<Motion::Event> event(std::size_t k) const {
+    const Event& e = s_.model->events[k];
+    const Graph& g = *s_.model->graph;
+    Motion::Event out{k, written(e.when), {}, {}, false};
+    bool known = holds_all_of(out.when);
+    for (const Assignment& set : e.set) {
+      const Node& n = g.node(set.symbol.id);
+      const auto j = s_.variable(set.symbol.id);
+      if (n.kind != Kind::parameter && (!j || static_cast<int>(n.order) >= m_.orders[*j])) return std::nullopt;
+      out.targets.push_back(n.kind == Kind::parameter ? "p[" + std::to_string(n.index) + "]"
+                                                      : "state[" + std::to_string(m_.place(*j, n.order)) + "]");
+      out.values.push_back(written(set.value));
+      out.moves = out.moves || n.kind == Kind::jet;
+      known = known && holds_all_of(out.values.back());
+    }
+    return known ? std::optional(std::move(out)) : std::nullopt;
+  }
+
+ private:
+  const System& s_;
+  const Motion& m_;
+};
+
 }  // namespace
 
 std::size_t Motion::place(std::size_t variable, unsigned order) const {
@@ -118,13 +166,30 @@ std::size_t Motion::place(std::size_t variable, unsigned order) const {
 }
 
 Motion motion(const System& s, const Structure& structure, const EmitOptions& options) {
-  refuse_events(*s.model);
-  return motion_between_events(s, structure, options.inputs);
+  Motion m = motion_between_events(s, structure, options.inputs);
+  const Known known(s, m);
+  for (const auto& [name, value] : options.outputs) {
+    const Expr e = known.written(value);
+    if (!known.holds_all_of(e)) {
+      m.left_out.push_back("the output " + name);
+      continue;
+    }
+    m.output_names.push_back(name);
+    m.outputs.push_back(e);
+  }
+  for (std::size_t k = 0; k < s.model->events.size(); ++k) {
+    if (auto event = known.event(k))
+      m.events.push_back(*std::move(event));
+    else
+      m.left_out.push_back("the event " + s.model->events[k].name);
+  }
+  return m;
 }
 
 Motion motion_between_events(const System& s, const Structure& structure, std::span<const InputFormula> inputs) {
   refuse_unknown_functions(s);
   Motion m;
+  m.orders = structure.d;
   for (const InputFormula& u : inputs) {
     m.inputs.push_back(u.control);
     m.input_values.push_back(u.value);
@@ -137,13 +202,9 @@ Motion motion_between_events(const System& s, const Structure& structure, std::s
   return m;
 }
 
-std::vector<double> start_state(const System& s, const Motion& m, const EmitOptions::Start& start) {
+std::vector<double> start_state(const Motion& m, const EmitOptions::Start& start) {
   std::vector<double> out;
-  for (const StateEntry& e : m.state)
-    out.push_back(e.variable >= s.mechanical()                 ? start.states[e.variable - s.mechanical()]
-                  : e.variable >= s.coordinates || e.order > 1 ? 0
-                  : e.order == 0                               ? start.q[e.variable]
-                                                               : start.qd[e.variable]);
+  for (const StateEntry& e : m.state) out.push_back(start.values.at(e.variable).at(e.order));
   return out;
 }
 

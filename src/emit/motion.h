@@ -23,18 +23,29 @@ struct Motion {
   Column input_values;               // by their formulas
   Column parameters;                 // values in terms of the independent parameters
   bool linear = true;                // the equations are linear in the leading derivatives
+  std::vector<int> orders;           // of the leading derivatives, by variable
+  Column outputs;
+  struct Event {
+    std::size_t index;  // in the model
+    Expr when;
+    std::vector<std::string> targets;  // "state[3]", "p[0]": what it sets
+    Column values;
+    bool moves = false;  // sets coordinates or velocities
+  };
+  std::vector<Event> events;
+  std::vector<std::string> output_names, left_out;  // left_out: outputs and events that hold derivatives beyond lead
   std::vector<std::string> state_names, leading_names, equation_names, hidden_names, input_names;
 
   // The index of x_j^(k), k < d_j, in the state.
   std::size_t place(std::size_t variable, unsigned order) const;
 };
 
-// Throws Failure for a model whose motion a program cannot compute.
+// Throws Failure for functions without a formula.
 Motion motion(const System& system, const Structure& structure, const EmitOptions& options);
-// The equations between events, of which all models have some. Throws Failure for functions without a formula.
+// The same without outputs and events.
 Motion motion_between_events(const System& system, const Structure& structure, std::span<const InputFormula> inputs);
 
-// The initial state in the order of the state; multipliers begin with zero.
-std::vector<double> start_state(const System& system, const Motion& motion, const EmitOptions::Start& start);
+// The initial state in the order of the state.
+std::vector<double> start_state(const Motion& motion, const EmitOptions::Start& start);
 
 }  // namespace anholon::emit

@@ -225,6 +225,26 @@ std::vector<std::string> head(const System& s, const Structure& structure, const
   if (!m.hidden.empty())
     add("hidden" + count(m.hidden.size()) + ": constraints that the state must satisfy; an integrator lets them drift");
   list(m.hidden_names);
+  if (!m.outputs.empty()) {
+    add("outputs" + count(m.outputs.size()) + ": monitors and outputs of the model");
+    list(m.output_names);
+  }
+  std::vector<std::string> events;
+  bool moves = false;
+  for (const Motion::Event& e : m.events) {
+    const Event& of = model.events[e.index];
+    std::string meaning = of.name + (of.direction > 0 ? ", upward" : of.direction < 0 ? ", downward" : "");
+    for (std::size_t i = 0; i < of.set.size(); ++i)
+      meaning += (i ? ", " : ": sets ") + print(of.set[i].symbol, model.names, Format::text);
+    events.push_back(meaning + (of.stop ? ": the motion ends" : ""));
+    moves = moves || e.moves;
+  }
+  if (!events.empty()) add("events" + count(events.size()) + ": formulas that pass zero where an event happens");
+  list(events);
+  if (moves && !m.hidden.empty())
+    add("After an event that sets coordinates or velocities `hidden` tells how far they are off the constraints: the "
+        "reset does not project them, as a motion of anholon does.");
+  for (const std::string& what : m.left_out) add("Left out is " + what + ", which holds derivatives beyond lead.");
   for (std::size_t r = 0; r < model.constraints.size(); ++r)
     if (std::find(s.constraints.begin(), s.constraints.end(), r) == s.constraints.end())
       add("The constraint " + model.constraints[r].name +

@@ -117,19 +117,4 @@ InputsAsParameters inputs_as_parameters(const Scenario& s, const std::vector<std
   return out;
 }
 
-std::optional<Diagnostic> not_emitted(const Model& model, const Mechanics& m) {
-  if (auto d = not_integrated(model)) return d;
-  const std::vector<ConstraintClass> classes = classify(m);
-  for (std::size_t r = 0; r < model.constraints.size(); ++r) {
-    const Constraint& c = model.constraints[r];
-    if (c.order > 2 || (c.order == 2 && classes[r].kind == "nonlinear"))
-      return Diagnostic{Severity::error, c.span,
-                        "a program is not written yet for the constraint '" + c.name + "' of order " +
-                            std::to_string(c.order) + " (" + classes[r].kind + ")",
-                        "anholon simulate integrates it; programs are written for orders 0 and 1, and 2 where it is "
-                        "linear in the accelerations"};
-  }
-  return std::nullopt;
-}
-
 }  // namespace anholon

@@ -26,8 +26,4 @@ struct InputsAsParameters {
 // All inputs that can be set where `names` has none. Throws Failure for a name that is no input, or one that cannot be set.
 InputsAsParameters inputs_as_parameters(const Scenario& scenario, const std::vector<std::string>& names = {});
 
-// Why the motion of the model cannot be written as a program: programs do not solve for what enters nonlinearly, and do
-// not start from more than positions and velocities. Returns nullopt if it can.
-std::optional<Diagnostic> not_emitted(const Model& model, const Mechanics& mechanics);
-
 }  // namespace anholon

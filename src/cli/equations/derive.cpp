@@ -5,11 +5,10 @@
 #include "cli/input.h"
 #include "cli/models/show.h"
 #include "cli/say.h"
-#include "emit/emit.h"
 #include "report/equations.h"
 #include "result/file.h"
 #include "setup/eliminate.h"
-#include "setup/inputs.h"
+#include "setup/program.h"
 
 namespace anholon::cli {
 
@@ -40,10 +39,10 @@ Elimination pivots_of(const Reader& in, const Mechanics& m, const StateChoice& c
 }
 
 // The motion as a program in C or Python.
-int write_program(const Options& o, const Reader& in, const Mechanics& m, const Formulation& f) {
+int write_program(const Options& o, const Reader& in, const Formulation& f) {
   if (o.json)
     throw UsageError{"error: --format " + o.format + " is not JSON\nhint: leave one of --json and --format out\n"};
-  if (const auto d = not_emitted(*in.model, m)) {
+  if (const auto d = not_integrated(*in.model)) {
     print_diagnostic(*d, in.source);
     return kBadInput;
   }
@@ -54,25 +53,12 @@ int write_program(const Options& o, const Reader& in, const Mechanics& m, const 
     print_outcome(outcome);
     return kStopped;
   }
-  EmitOptions options;
-  options.name = std::filesystem::path(o.model).stem().string();
-  options.made_by =
+  std::string made_by =
       "anholon derive " + o.model + " --format " + o.format + (o.motion.form ? " --form " + *o.motion.form : "");
-  for (const std::string& set : o.set) options.made_by += " --set " + set;
-  options.start = {s.state.t, s.state.q, s.state.qd, s.state.states};
-  // What constraints settle is solved for in wider numbers, as for a motion.
-  Workspace own(s);
-  if (Start<long double> start; initial_state(own, choice, start).ok()) {
-    const long double* x = start.state.data();
-    for (std::size_t a = 0; a < s.system.coordinates; x += s.structure.d[a++]) {
-      if (s.structure.d[a] > 0) options.start->q[a] = static_cast<double>(x[0]);
-      if (s.structure.d[a] > 1) options.start->qd[a] = static_cast<double>(x[1]);
-    }
-  }
+  for (const std::string& set : o.set) made_by += " --set " + set;
   try {
-    OpenSystem open = open_inputs(own);
-    options.inputs = std::move(open.inputs);
-    deliver(o, (o.format == "c" ? emit_c : emit_python)(open.system, s.structure, options));
+    deliver(o, program_text(s, choice, o.format == "c" ? ProgramLanguage::c : ProgramLanguage::python,
+                            std::filesystem::path(o.model).stem().string(), made_by));
   } catch (const Failure& failure) {
     print_diagnostic(failure.diagnostic, in.source);
     return kBadInput;
@@ -118,7 +104,7 @@ int derive(const Options& asked) {
   }
   if (!o.output.empty() && o.output != "-")
     if (const std::string why = obstacle_to_writing(o.output); !why.empty()) throw UsageError{"error: " + why + "\n"};
-  if (program) return write_program(o, in, m, *wanted[0]);
+  if (program) return write_program(o, in, *wanted[0]);
 
   std::vector<Derivation> list;
   Arranger arranger(o.expand);

@@ -86,7 +86,7 @@ TEST(EmitNames, StayApart) {
   const Made m = made("coordinates = [\"x\", \"x_1\", \"w1\", \"int\"]\n[parameters]\nnp = 1\np = 2\n"
                       "[[particle]]\nname = \"a\"\nmass = \"np\"\nposition = [\"x\", \"x_1\", \"w1\"]\n"
                       "[[particle]]\nname = \"b\"\nmass = \"p\"\nposition = [\"int\", \"0\", \"0\"]\n");
-  const emit::LocalNames names(m.system, m.structure, {});
+  const emit::LocalNames names(m.system, m.structure, emit::motion_between_events(m.system, m.structure, {}));
   Graph& g = *m.system.model->graph;
   std::set<std::string> all;
   for (std::size_t j = 0; j < 4; ++j)

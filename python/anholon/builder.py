@@ -1,0 +1,482 @@
+"""Models written in Python."""
+
+from __future__ import annotations
+
+import json
+import linecache
+import re
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Union
+
+from ._errors import ModelError
+from .expressions import Body, Equation, Expr, Place, Rotation, Term, _named, expr, norm, unit
+from .model import Model, loads
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+\Z")
+
+
+@dataclass(frozen=True)
+class _Where:
+    """The line of Python that wrote an element."""
+
+    file: str
+    line: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}"
+
+
+def _caller() -> _Where:
+    """The nearest line outside of this file."""
+    frame = sys._getframe(1)
+    while frame.f_code.co_filename == __file__ and frame.f_back is not None:
+        frame = frame.f_back
+    return _Where(frame.f_code.co_filename, frame.f_lineno)
+
+
+@dataclass
+class _Line:
+    text: str
+    where: _Where | None
+
+
+def _key(name: str) -> str:
+    return name if _BARE.match(name) else json.dumps(name, ensure_ascii=False)
+
+
+def _text(value: object) -> str:
+    """A formula, an equation or a vector by its components as a value of TOML."""
+    if isinstance(value, Equation):
+        return json.dumps(value.text, ensure_ascii=False)
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_text(part) for part in value) + "]"
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_key(str(k))} = {_text(v)}" for k, v in value.items()) + "}"
+    return json.dumps(expr(value).text, ensure_ascii=False)
+
+
+On = Union[Expr, str, "tuple[Any, Any]"]
+"""On what a force acts: a body or particle, at its centre, or ``(body, place)``. Three components are along the body's axes."""
+
+
+class Constraint:
+    """A constraint of a :class:`Builder`."""
+
+    def __init__(self, name: str) -> None:
+        self.name: str = name
+
+    @property
+    def multiplier(self) -> Expr:
+        """Its multiplier, for monitors, outputs and events. Of a vector constraint: ``multiplier.x``."""
+        return _named(f"lambda.{self.name}")
+
+    def __repr__(self) -> str:
+        return f"<constraint {self.name}>"
+
+
+class Builder:
+    """Writes a model in Python expressions; :meth:`model` gives the immutable :class:`Model`, `text` its file.
+
+    Every method adds an element as a section of a model file has it (doc/language.md) and returns its name as an expression.
+    A text is a formula of the model language and stands wherever an expression may. Numbers are exact: an ``int``, a
+    ``Fraction`` or a ``Decimal`` as it is, a ``float`` as the decimal that Python prints.
+
+    Example:
+        >>> import anholon as an
+        >>> b = an.Builder("Chaplygin sleigh")
+        >>> x, y, th = b.coordinates("x y th")
+        >>> m, a, J = b.parameters(m=2, a=0.6, J=0.5)
+        >>> blade = b.frame("blade", an.rotz(th))
+        >>> P = b.point("P", x*an.ex + y*an.ey)
+        >>> sleigh = b.body("sleigh", mass=m, inertia=J, center=P + a*blade.x, orientation=blade)
+        >>> edge = b.constraint("edge", an.dot(P.vel(), blade.y) == 0)
+        >>> b.initial({x: 0, y: 0, th: 0, x.dt: -0.5, th.dt: 1.5})
+        >>> sleigh = b.model()
+        >>> len(sleigh.simulate(to=5, every=1))
+        6
+    """
+
+    def __init__(self, title: str, *, source: str = "") -> None:
+        self.title: str = title
+        self._head: list[_Line] = [_Line(f"title = {json.dumps(title, ensure_ascii=False)}", None)]
+        if source:
+            self._head.append(_Line(f"source = {json.dumps(source, ensure_ascii=False)}", None))
+        self._coordinates: list[str] = []
+        self._coordinates_at: _Where | None = None
+        self._tables: dict[str, list[_Line]] = {}  # sections of names
+        self._lists: list[_Line] = []  # [[body]], [[force]], …
+        self._forces = 0
+
+    # ---- what is written ----
+
+    @property
+    def text(self) -> str:
+        """The model file, which ``anholon check`` reads."""
+        return "\n".join(line.text for line in self._lines()) + "\n"
+
+    def _lines(self) -> list[_Line]:
+        names = ", ".join(json.dumps(name, ensure_ascii=False) for name in self._coordinates)
+        lines = [*self._head, _Line(f"coordinates = [{names}]", self._coordinates_at), _Line("", None)]
+        for section, entries in self._tables.items():
+            lines += [_Line(f"[{section}]", None), *entries, _Line("", None)]
+        return lines + self._lists
+
+    def model(self, *, check: bool = False) -> Model:
+        """The model.
+
+        Args:
+            check: also looks whether the initial state is consistent.
+
+        Raises:
+            ModelError: mistakes, each with the line of Python that wrote the element; ``.diagnostics`` have their places in
+                `text`.
+            MotionError: with `check`, no state satisfies the constraints with the values given.
+
+        Example:
+            >>> import anholon as an
+            >>> b = an.Builder("a bead")
+            >>> x = b.coordinate("x")
+            >>> bead = b.particle("bead", mass="mm", position=x*an.ex)
+            >>> try:
+            ...     b.model()
+            ... except an.ModelError as error:
+            ...     print(str(error).split(":", 2)[2].splitlines()[0])
+             error: unknown name 'mm'
+        """
+        try:
+            made = loads(self.text, name=self.title)
+        except ModelError as error:
+            raise self._told(error) from None
+        if check:
+            made.check()
+        return made
+
+    def _told(self, error: ModelError) -> ModelError:
+        """The same mistakes at the lines of Python that wrote them."""
+        lines, parts = self._lines(), []
+        for d in error.diagnostics:
+            where = lines[d.line - 1].where if 0 < d.line <= len(lines) else None
+            if where is None:
+                parts.append(f"error: {d.message}" + (f"\nhint: {d.hint}" if d.hint else ""))
+                continue
+            python = linecache.getline(where.file, where.line).rstrip()
+            shown = f"\n  {where.line} | {python.strip()}" if python else ""
+            wrote = f"\n  it wrote: {lines[d.line - 1].text}\n            {' ' * max(d.column - 1, 0)}{'^' * max(d.length, 1)}"
+            parts.append(f"{where}: {d.severity.name}: {d.message}{shown}{wrote}" + (f"\nhint: {d.hint}" if d.hint else ""))
+        return ModelError("\n".join(parts), error.diagnostics)
+
+    def _entry(self, section: str, name: str, value: str) -> None:
+        self._tables.setdefault(section, []).append(_Line(f"{_key(name)} = {value}", _caller()))
+
+    def _element(self, section: str, keys: Mapping[str, object]) -> None:
+        where = _caller()
+        self._lists.append(_Line(f"[[{section}]]", where))
+        for name, value in keys.items():
+            if value is not None:
+                self._lists.append(_Line(f"{name} = {_text(value)}", where))
+        self._lists.append(_Line("", None))
+
+    # ---- names ----
+
+    def coordinate(self, name: str) -> Expr:
+        """Adds a coordinate."""
+        self._coordinates.append(name)
+        self._coordinates_at = _caller()
+        return _named(name, "coordinate")
+
+    def coordinates(self, names: str | Iterable[str]) -> tuple[Expr, ...]:
+        """Adds coordinates: ``x, y = b.coordinates("x y")``."""
+        listed = names.replace(",", " ").split() if isinstance(names, str) else list(names)
+        return tuple(self.coordinate(name) for name in listed)
+
+    def dependent(self, *coordinates: Term) -> None:
+        """Coordinates that forms without multipliers eliminate; chosen without."""
+        self._head.append(_Line("dependent = [" + ", ".join(json.dumps(expr(q).text) for q in coordinates) + "]", _caller()))
+
+    def parameter(self, name: str, value: Term, *, unit: str = "", doc: str = "") -> Expr:
+        """Adds a constant: a number, a text with a unit ("8 cm"), or a formula of other parameters."""
+        self._entry("parameters", name, _text({"value": value, **_given(unit=unit, doc=doc)}) if unit or doc else _text(value))
+        return _named(name)
+
+    def parameters(self, **values: Term) -> tuple[Expr, ...]:
+        """Adds constants: ``m, R = b.parameters(m=1, R="8 cm")``."""
+        return tuple(self.parameter(name, value) for name, value in values.items())
+
+    def function(self, name: str, value: Term | None = None, *, arguments: Sequence[str] = ()) -> Expr:
+        """Adds a function of time, or of arguments: then ``an.call(name, …)`` is its value. Without a value it is unknown, and
+        nothing is integrated."""
+        self._entry("functions", f"{name}({', '.join(arguments)})" if arguments else name, "{}" if value is None else _text(value))
+        return _named(name, "coordinate" if not arguments else "vector")
+
+    def define(self, name: str, value: Term) -> Expr:
+        """Gives a formula a name, which equations print. The type of the expression is that of the formula."""
+        self._entry("define", name, _text(value))
+        of = value if isinstance(value, Expr) else expr(value)
+        return type(of)(name, 4, ("name", name, "vector")) if isinstance(of, (Rotation, Place)) else _named(name)
+
+    def frame(self, name: str, rotation: Term) -> Rotation:
+        """Adds a frame, a rotation from the observer's axes."""
+        self._entry("frame", name, _text(rotation))
+        return Rotation(name, 4, ("name", name, "vector"))
+
+    def point(self, name: str, position: Term) -> Place:
+        """Adds a point by its position, a vector or three components."""
+        self._entry("point", name, _text(position))
+        return Place(name, 4, ("name", name, "vector"))
+
+    # ---- what has mass ----
+
+    def body(
+        self,
+        name: str,
+        *,
+        center: Term,
+        mass: Term | None = None,
+        inertia: Any = None,
+        orientation: Term | None = None,
+        angle: Term | None = None,
+        shape: str | None = None,
+        axes: Any = None,
+        expelled_velocity: Term | None = None,
+        exit_point: Term | None = None,
+    ) -> Body:
+        """Adds a body.
+
+        Args:
+            name: also the name of the frame of its axes.
+            center: its mass centre.
+            mass: may depend on time, states, coordinates and velocities.
+            inertia: a number (plane, about z), three moments or a matrix, along the body's axes at the mass centre.
+            orientation: of its axes, or
+            angle: of ``rotz(angle)``.
+            shape: a homogeneous solid, ``"disc(R)"``, instead of an inertia.
+            axes: expert form instead of an inertia: a list of ``{"weight": …, "vector": …}``.
+            expelled_velocity: of matter that leaves or joins, relative to the material point at `exit_point`.
+            exit_point: where it does; three components are along the body's axes.
+        """
+        self._element(
+            "body",
+            {"name": name, "mass": mass, "shape": shape, "inertia": inertia, "center": center, "orientation": orientation, "angle": angle, "axes": axes}
+            | {"expelled_velocity": expelled_velocity, "exit_point": exit_point},
+        )
+        return Body(name, 4, ("name", name, "vector"))
+
+    def particle(self, name: str, *, mass: Term, position: Term, expelled_velocity: Term | None = None) -> Place:
+        """Adds a particle; it is a point."""
+        self._element("particle", {"name": name, "mass": mass, "position": position, "expelled_velocity": expelled_velocity})
+        return Place(name, 4, ("name", name, "vector"))
+
+    # ---- forces ----
+
+    def force(
+        self,
+        on: On | None = None,
+        vector: Term | None = None,
+        *,
+        from_: On | None = None,
+        torque: Term | None = None,
+        tension: Term | None = None,
+        generalized: Mapping[Any, Term] | None = None,
+        name: str | None = None,
+    ) -> None:
+        """Adds a force (`vector`), a torque, or a tension that pulls `on` and `from_` together; `from_` feels the opposite.
+
+        Args:
+            on: a body or particle, or ``(body, place)``.
+            vector: the force.
+            from_: likewise; without it the force acts from outside.
+            torque: a vector.
+            tension: a number, along the line from `on` to `from_`.
+            generalized: instead: ``{coordinate: force}``.
+            name: for reports.
+        """
+        given = None if generalized is None else {expr(q).text: value for q, value in generalized.items()}
+        self._element(
+            "force",
+            {"name": name, "on": _on(on), "from": _on(from_), "vector": vector, "torque": torque, "tension": tension, "generalized": given},
+        )
+
+    def spring(self, on: On, to: On, *, stiffness: Term, length: Term = 0, damping: Term = 0, name: str | None = None) -> None:
+        """Adds a spring with a damper beside it between two bodies, or a body and a point of the observer.
+
+        Args:
+            on: a body or particle, or ``(body, place)`` with a place in the observer's axes.
+            to: likewise, or a :class:`Place` that is no particle.
+            stiffness: N/m.
+            length: at which it does not pull, m.
+            damping: N s/m.
+            name: for reports.
+        """
+        here, there = _place(on), _place(to)
+        distance = norm(here - there)
+        k, c, free = expr(stiffness), expr(damping), expr(length)
+        pull = k * (distance if free.text == "0" else distance - free)
+        if c.text != "0":
+            pull = pull + c * distance.d(1)
+        if isinstance(to, tuple) or self._has_mass(to):
+            self._element("force", {"name": name, "on": _on(on), "from": _on(to), "tension": pull})
+        else:
+            self._element("force", {"name": name, "on": _on(on), "vector": pull * unit(there - here)})
+
+    def _has_mass(self, what: On) -> bool:
+        text = expr(what).text
+        sections = ("[[body]]", "[[particle]]")
+        return any(
+            line.text in sections and self._lists[k + 1].text == f"name = {json.dumps(text, ensure_ascii=False)}" for k, line in enumerate(self._lists)
+        )
+
+    def gravity(self, field: Term, *, gradient: bool = False) -> None:
+        """The acceleration of gravity at the place ``an.here``, on every mass."""
+        self._entry("gravity", "field", _text(field))
+        if gradient:
+            self._entry("gravity", "gradient", "true")
+
+    def potential(self, name: str, energy: Term) -> None:
+        """Adds a potential energy."""
+        self._entry("potential", name, _text(energy))
+
+    def dissipation(self, name: str, power: Term) -> None:
+        """Adds a dissipation function R; its forces are -dR/dq'."""
+        self._entry("dissipation", name, _text(power))
+
+    def table(self, name: str, x: Sequence[Term], y: Sequence[Term], *, fit: str | None = None, outside: str | None = None) -> None:
+        """Adds a function by its values; ``an.call(name, at)`` calls it."""
+        where = _caller()
+        self._lists += [_Line("[[table]]", where), _Line(f"name = {_text(name)}", where)]
+        for key, values in (("x", x), ("y", y)):
+            self._lists.append(_Line(f"{key} = [{', '.join(expr(value).text for value in values)}]", where))
+        self._lists += [_Line(f"{key} = {_text(value)}", where) for key, value in (("fit", fit), ("outside", outside)) if value is not None]
+        self._lists.append(_Line("", None))
+
+    # ---- constraints, control, time ----
+
+    def constraint(self, name: str, equation: Equation | str, *, along: Any = None, by: Any = None) -> Constraint:
+        """Adds a constraint ``a == b`` of numbers or vectors, of any order.
+
+        Args:
+            name: its multiplier is ``lambda.NAME``.
+            equation: ``dot(P.vel(), blade.y) == 0``, or a text.
+            along: of a vector equation: a frame or a list of vectors, along which components are taken.
+            by: the inputs that keep it (servo constraint).
+        """
+        _must_be_equation(equation)
+        inputs = None if by is None else [expr(u).text for u in by] if isinstance(by, (list, tuple)) else expr(by).text
+        directions = along if along is None or isinstance(along, (list, tuple)) else expr(along).text
+        self._element("constraint", {"name": name, "equation": equation, "along": directions, "by": inputs})
+        return Constraint(name)
+
+    def quasi(self, name: str, velocity: Term) -> Expr:
+        """Adds a quasi-velocity."""
+        self._entry("quasi", name, _text(velocity))
+        return _named(name)
+
+    def observer(self, **motion: Term) -> None:
+        """How the observer moves: ``spin`` or ``rotation``, and one of ``origin_acceleration``, ``origin_velocity``,
+        ``origin_velocity_inertial``, ``origin_position_inertial``."""
+        for key, value in motion.items():
+            self._entry("observer", key, _text(value))
+
+    def state(self, name: str, rate: Term, initial: Term = 0) -> Expr:
+        """Adds a number with a rate of its own."""
+        self._entry("state", name, _text({"rate": rate, "initial": initial}))
+        return _named(name, "coordinate")
+
+    def mode(self, name: str, value: Term) -> Expr:
+        """Adds a number that only events change."""
+        self._entry("mode", name, expr(value).text)
+        return _named(name)
+
+    def event(
+        self, name: str, when: Term, *, direction: str | None = None, set: Mapping[Any, Term] | None = None, stop: bool = False
+    ) -> None:
+        """Adds an event where `when` passes zero (``"up"``, ``"down"`` only), which sets modes, states, coordinates and
+        velocities, or ends the motion."""
+        given = None if set is None else {expr(q).text: value for q, value in set.items()}
+        self._element("event", {"name": name, "when": when, "direction": direction, "set": given, "stop": True if stop else None})
+
+    def input(self, name: str, value: Term | None = None) -> Expr:
+        """Adds a control with its formula; without one a constraint keeps it, ``by=``."""
+        self._entry("input", name, "{}" if value is None else _text(value))
+        return _named(name, "coordinate")
+
+    def output(self, name: str, value: Term, *, unit: str = "", doc: str = "", conserved: bool = False) -> None:
+        """Adds a column of runs: a number or a vector, also of multipliers."""
+        more: dict[str, object] = {**_given(unit=unit, doc=doc), **({"conserved": True} if conserved else {})}
+        self._entry("output", name, _text({"value": value, **more}) if more else _text(value))
+
+    def monitor(self, name: str, value: Term) -> None:
+        """Adds a number to watch along the motion."""
+        self._entry("monitor", name, _text(value))
+
+    def initial(
+        self,
+        values: Mapping[Any, Term] | None = None,
+        *,
+        conditions: Iterable[Equation | str] = (),
+        guess: Mapping[Any, Term] | None = None,
+        branch: Mapping[str, str] | None = None,
+        t: Term | None = None,
+    ) -> None:
+        """The initial state: values by coordinate and derivative, ``{x: 1, x.dt: 0}``, and equations that hold there.
+
+        Args:
+            values: numbers or formulas of parameters. What is not given follows from the constraints.
+            conditions: equations, solved together with the constraints.
+            guess: values that are looked for nearby.
+            branch: ``{constraint: "lambda > 0"}`` where there are several solutions.
+            t: the initial time, s.
+        """
+        if t is not None:
+            self._entry("initial", "t", _text(t))
+        for q, value in (values or {}).items():
+            self._entry("initial", expr(q).text, _text(value))
+        listed = list(conditions)
+        for condition in listed:
+            _must_be_equation(condition)
+        if listed:
+            self._entry("initial", "conditions", _text(listed))
+        if guess:
+            self._entry("initial", "guess", _text({expr(q).text: value for q, value in guess.items()}))
+        if branch:
+            self._entry("initial", "branch", _text(branch))
+
+    def simulate(self, **settings: object) -> None:
+        """The settings of [simulate], which :meth:`Model.simulate` uses unless it is told otherwise: ``to=10, every=0.1``."""
+        for key, value in settings.items():
+            self._entry("simulate", key.replace("_", "-"), _text(value) if isinstance(value, (str, bool, list, tuple)) else expr(value).text)
+
+    def __repr__(self) -> str:
+        return f"<builder of {self.title!r}: coordinates {', '.join(self._coordinates) or 'none yet'}>"
+
+
+def _given(**texts: str) -> dict[str, object]:
+    return {key: text for key, text in texts.items() if text}
+
+
+def _must_be_equation(equation: object) -> None:
+    if not isinstance(equation, (Equation, str)):
+        raise TypeError(f"an equation is written a == b, with an expression on one side, or as a text; this is {equation!r}")
+
+
+def _on(what: On | None) -> object:
+    if what is None:
+        return None
+    if isinstance(what, tuple):
+        body, place = what
+        return {"body": expr(body).text, "at": place}
+    return expr(what).text
+
+
+def _place(what: On) -> Expr:
+    if isinstance(what, tuple):
+        body, place = what
+        if isinstance(place, (list, tuple)):
+            return body.center + body(*place)  # type: ignore[no-any-return]
+        return expr(place)
+    return what.center if isinstance(what, Body) else expr(what)

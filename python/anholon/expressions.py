@@ -1,0 +1,550 @@
+"""Formulas of a model as Python expressions, for :class:`Builder`.
+
+An expression knows the text that a model file has for it; that text is what counts. ``x.dt`` is a derivative by time,
+``a == b`` an equation, ``a > b`` a condition. Numbers are exact: an ``int``, a ``Fraction`` and a ``Decimal`` as they are, a
+``float`` as the decimal that Python prints. A text is a formula of the model language and is accepted wherever an
+expression is.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any, Union
+
+from ._numbers import Number, text_of
+
+_SUM, _PRODUCT, _POWER, _ATOM = range(1, 5)
+
+
+class Expr:
+    """A number, vector or rotation. Make one from names of a :class:`Builder`, from numbers and the functions of this module.
+
+    Example:
+        >>> import anholon as an
+        >>> b = an.Builder("a bead")
+        >>> x, y = b.coordinates("x y")
+        >>> print(x.dt**2 / 2 + 0.1 * an.sin(y), x.d(3), x == y**2)
+        x'^2/2 + 0.1*sin(y) D(x, 3) x = y^2
+    """
+
+    __array_ufunc__ = None  # NumPy leaves products with its numbers to this class
+    __slots__ = ("_strength", "_tree", "text")
+
+    def __init__(self, text: str, strength: int = _ATOM, tree: tuple[Any, ...] = ()) -> None:
+        self.text: str = text
+        self._strength = strength
+        self._tree = tree  # what it is made of, for SymPy
+
+    # ---- arithmetic ----
+
+    def __add__(self, other: Term) -> Expr:
+        b = expr(other)
+        if b._tree[:1] == ("neg",) or (b._tree[:1] == ("number",) and b.text.startswith("-")):
+            return self - -b
+        return _Formula(f"{self.text} + {b._inside(_SUM)}", _SUM, ("+", self, b))
+
+    def __radd__(self, other: Term) -> Expr:
+        return expr(other) + self
+
+    def __sub__(self, other: Term) -> Expr:
+        b = expr(other)
+        return _Formula(f"{self.text} - {b._inside(_PRODUCT)}", _SUM, ("-", self, b))
+
+    def __rsub__(self, other: Term) -> Expr:
+        return expr(other) - self
+
+    def __mul__(self, other: Term) -> Expr:
+        b = expr(other)
+        return _Formula(f"{self._inside(_PRODUCT)}*{b._inside(_POWER)}", _PRODUCT, ("*", self, b))
+
+    def __rmul__(self, other: Term) -> Expr:
+        return expr(other) * self
+
+    def __truediv__(self, other: Term) -> Expr:
+        b = expr(other)
+        return _Formula(f"{self._inside(_PRODUCT)}/{b._inside(_POWER)}", _PRODUCT, ("/", self, b))
+
+    def __rtruediv__(self, other: Term) -> Expr:
+        return expr(other) / self
+
+    def __pow__(self, other: Term) -> Expr:
+        b = expr(other)
+        return _Formula(f"{self._inside(_ATOM)}^{b._inside(_ATOM)}", _POWER, ("^", self, b))
+
+    def __rpow__(self, other: Term) -> Expr:
+        return expr(other) ** self
+
+    def __neg__(self) -> Expr:
+        if self._tree[:1] == ("number",) and self.text.startswith("-"):
+            return _Formula(self.text[1:], _PRODUCT if "/" in self.text else _ATOM, ("number", self.text[1:]))
+        if self._tree[:1] == ("neg",):
+            return self._tree[1]  # type: ignore[no-any-return]
+        return _Formula(f"-{self._inside(_PRODUCT)}", _SUM, ("neg", self))
+
+    def __pos__(self) -> Expr:
+        return self
+
+    def __abs__(self) -> Expr:
+        return call("abs", self)
+
+    def __matmul__(self, other: Term) -> Expr:
+        """The scalar product of two vectors, as ``dot``."""
+        return call("dot", self, other)
+
+    def _inside(self, strength: int) -> str:
+        return self.text if self._strength >= strength else f"({self.text})"
+
+    # ---- derivatives, components ----
+
+    @property
+    def dt(self) -> Expr:
+        """The derivative by time."""
+        return self.d(1)
+
+    def d(self, order: int = 1) -> Expr:
+        """The derivative by time of this order, 0 … 20."""
+        if order == 0:
+            return self
+        of, before = (self._tree[1], self._tree[2]) if self._tree[:1] == ("d",) else (self, 0)
+        k = before + order
+        text = of.text + "'" * k if k < 3 and of._strength == _ATOM and of._tree[:1] == ("name",) else f"D({of.text}, {k})"
+        return _Formula(text, _ATOM, ("d", of, k))
+
+    @property
+    def x(self) -> Expr:
+        """The component along ex of a vector; the first axis of a frame."""
+        return self._component("x")
+
+    @property
+    def y(self) -> Expr:
+        """The component along ey of a vector; the second axis of a frame."""
+        return self._component("y")
+
+    @property
+    def z(self) -> Expr:
+        """The component along ez of a vector; the third axis of a frame."""
+        return self._component("z")
+
+    def _component(self, axis: str) -> Expr:
+        return _Formula(f"{self._inside(_ATOM)}.{axis}", _ATOM, ("component", self, axis))
+
+    # ---- equations, conditions ----
+
+    def __eq__(self, other: object) -> Equation:  # type: ignore[override]
+        return Equation(self, expr(other))
+
+    def __ne__(self, other: object) -> bool:
+        return not isinstance(other, Expr) or self.text != other.text
+
+    def __hash__(self) -> int:
+        return hash(self.text)
+
+    def __lt__(self, other: Term) -> Condition:
+        return Condition(f"{self.text} < {expr(other).text}")
+
+    def __le__(self, other: Term) -> Condition:
+        return Condition(f"{self.text} <= {expr(other).text}")
+
+    def __gt__(self, other: Term) -> Condition:
+        return Condition(f"{self.text} > {expr(other).text}")
+
+    def __ge__(self, other: Term) -> Condition:
+        return Condition(f"{self.text} >= {expr(other).text}")
+
+    # ---- as text, for SymPy ----
+
+    def __str__(self) -> str:
+        return self.text
+
+    def __repr__(self) -> str:
+        return self.text
+
+    def _sympy_(self) -> Any:
+        """The expression for SymPy: coordinates and states are dynamicsymbols, other names symbols.
+
+        Raises:
+            TypeError: it is a vector or a rotation, or a function that SymPy does not have.
+        """
+        return _to_sympy(self)
+
+
+class _Formula(Expr):
+    """A number or a vector. As no other class derives from it, Python never turns ``a == b`` round."""
+
+    __slots__ = ()
+
+
+class Rotation(Expr):
+    """A rotation or a frame. ``R.x``, ``R.y``, ``R.z`` are its axes, ``R(a, b, c)`` is a R.x + b R.y + c R.z."""
+
+    __slots__ = ()
+
+    def __call__(self, a: Term, b: Term, c: Term) -> Expr:
+        """The vector with these components along its axes."""
+        if self._tree[:1] != ("name",):
+            return expr(a) * self.x + expr(b) * self.y + expr(c) * self.z
+        components = ", ".join(expr(part).text for part in (a, b, c))
+        return _Formula(f"{self._inside(_ATOM)}({components})", _ATOM, ("vector",))
+
+    def __mul__(self, other: Term) -> Rotation:
+        """Two turns, one after the other, each about the axes where it then is."""
+        product = super().__mul__(other)
+        return Rotation(product.text, product._strength, product._tree)
+
+
+class Place(Expr):
+    """A point or a particle."""
+
+    __slots__ = ()
+
+    def vel(self, seen_from: Term | None = None) -> Expr:
+        """Its velocity relative to the observer, or as seen from a body or ``"inertial"``."""
+        return vel(self) if seen_from is None else vel(self, seen_from)
+
+    def acc(self, seen_from: Term | None = None) -> Expr:
+        """Its acceleration, likewise."""
+        return acc(self) if seen_from is None else call("acc", self, seen_from)
+
+
+class Body(Rotation):
+    """A body: with an orientation also the frame of its axes."""
+
+    __slots__ = ()
+
+    @property
+    def center(self) -> Place:
+        """Its mass centre."""
+        return Place(f"{self.text}.center", _ATOM, ("vector",))
+
+    def vel(self, point: Term) -> Expr:
+        """The velocity of its material point that is at `point` now."""
+        return call("vel", self, point)
+
+    @property
+    def angvel(self) -> Expr:
+        """Its angular velocity relative to the observer."""
+        return call("angvel", self)
+
+    @property
+    def reaction(self) -> Expr:
+        """The force of all constraints on it, for monitors and events."""
+        return call("reaction", self)
+
+
+class Equation:
+    """``a == b``: an equation of numbers or vectors. It is true if both sides are the same text, as in SymPy."""
+
+    __slots__ = ("left", "right")
+
+    def __init__(self, left: Expr, right: Expr) -> None:
+        self.left: Expr = left
+        self.right: Expr = right
+
+    @property
+    def text(self) -> str:
+        """``"a = b"``."""
+        return f"{self.left.text} = {self.right.text}"
+
+    def __bool__(self) -> bool:
+        return self.left.text == self.right.text
+
+    def __repr__(self) -> str:
+        return self.text
+
+    def _sympy_(self) -> Any:
+        return importlib.import_module("sympy").Eq(_to_sympy(self.left), _to_sympy(self.right))
+
+
+class Condition:
+    """``a > b``, for :func:`piecewise`."""
+
+    __slots__ = ("text",)
+
+    def __init__(self, text: str) -> None:
+        self.text: str = text
+
+    def __bool__(self) -> bool:
+        raise TypeError(f"whether {self.text} holds is known along a motion only; write piecewise(({self.text}, value), otherwise)")
+
+    def __repr__(self) -> str:
+        return self.text
+
+
+Term = Union[Expr, Number, Sequence[Any]]
+"""What stands where an expression is wanted: an expression, a number, a text, or three components of a vector."""
+
+
+def expr(term: object) -> Expr:
+    """An expression of a number, a text (a formula of the model language) or the three components of a vector.
+
+    Raises:
+        TypeError: a list has another number of components.
+
+    Example:
+        >>> import anholon as an
+        >>> an.expr("x + 1") * 2, an.expr(0.1), an.expr([1, 0, "h"])
+        ((x + 1)*2, 0.1, ex + h*ez)
+    """
+    if isinstance(term, Expr):
+        return term
+    if isinstance(term, str):
+        return _Formula(term, _ATOM if term.isidentifier() else _SUM, ("text", term))
+    if isinstance(term, (list, tuple)):
+        if len(term) != 3:
+            raise TypeError(f"a vector has three components, not {len(term)}")
+        return vector(*term)
+    if type(term).__module__.startswith("numpy") and getattr(term, "shape", ()) == (3,):
+        return vector(*term.tolist())  # type: ignore[attr-defined]
+    text = text_of(term)  # type: ignore[arg-type]
+    strength = _SUM if text.startswith("-") else _PRODUCT if "/" in text else _ATOM
+    return _Formula(text, strength, ("number", text))
+
+
+def call(function: str, *arguments: object) -> Expr:
+    """A function of the model language: ``call("sin", x)`` is ``sin(x)``. For functions and tables of your model, too."""
+    given = [expr(argument) for argument in arguments]
+    return _Formula(f"{function}({', '.join(a.text for a in given)})", _ATOM, ("call", function, *given))
+
+
+def vector(x: Term, y: Term, z: Term) -> Expr:
+    """The vector x ex + y ey + z ez."""
+    parts = [component * axis for component, axis in zip((expr(x), expr(y), expr(z)), (ex, ey, ez), strict=True) if component.text != "0"]
+    total = None
+    for component, part in zip([c for c in (expr(x), expr(y), expr(z)) if c.text != "0"], parts, strict=True):
+        one = part._tree[2] if component.text == "1" else part
+        total = one if total is None else total + one
+    return _Formula("0", _ATOM, ("vector",)) if total is None else total
+
+
+def _named(name: str, kind: str = "symbol") -> Expr:
+    return _Formula(name, _ATOM, ("name", name, kind))
+
+
+t = _named("t", "time")
+pi = _named("pi", "pi")
+ex, ey, ez = (_named(name, "vector") for name in ("ex", "ey", "ez"))
+here = _named("here", "vector")
+
+
+def sin(a: Term) -> Expr:
+    """The sine of an angle in radians."""
+    return call("sin", a)
+
+
+def cos(a: Term) -> Expr:
+    """The cosine of an angle in radians."""
+    return call("cos", a)
+
+
+def tan(a: Term) -> Expr:
+    """The tangent of an angle in radians."""
+    return call("tan", a)
+
+
+def asin(a: Term) -> Expr:
+    """The arc sine, in radians."""
+    return call("asin", a)
+
+
+def acos(a: Term) -> Expr:
+    """The arc cosine, in radians."""
+    return call("acos", a)
+
+
+def atan(a: Term) -> Expr:
+    """The arc tangent, in radians."""
+    return call("atan", a)
+
+
+def sinh(a: Term) -> Expr:
+    """The hyperbolic sine."""
+    return call("sinh", a)
+
+
+def cosh(a: Term) -> Expr:
+    """The hyperbolic cosine."""
+    return call("cosh", a)
+
+
+def tanh(a: Term) -> Expr:
+    """The hyperbolic tangent."""
+    return call("tanh", a)
+
+
+def asinh(a: Term) -> Expr:
+    """The inverse of the hyperbolic sine."""
+    return call("asinh", a)
+
+
+def acosh(a: Term) -> Expr:
+    """The inverse of the hyperbolic cosine."""
+    return call("acosh", a)
+
+
+def atanh(a: Term) -> Expr:
+    """The inverse of the hyperbolic tangent."""
+    return call("atanh", a)
+
+
+def exp(a: Term) -> Expr:
+    """The exponential function."""
+    return call("exp", a)
+
+
+def log(a: Term) -> Expr:
+    """The natural logarithm."""
+    return call("log", a)
+
+
+def sqrt(a: Term) -> Expr:
+    """The square root."""
+    return call("sqrt", a)
+
+
+def sign(a: Term) -> Expr:
+    """1, -1, and 0 at 0."""
+    return call("sign", a)
+
+
+def atan2(y: Term, x: Term) -> Expr:
+    """The angle of the direction (x, y)."""
+    return call("atan2", y, x)
+
+
+def minimum(a: Term, b: Term) -> Expr:
+    """The smaller one."""
+    return call("min", a, b)
+
+
+def maximum(a: Term, b: Term) -> Expr:
+    """The larger one."""
+    return call("max", a, b)
+
+
+def piecewise(*cases: Any) -> Expr:
+    """``piecewise((condition, value), …, otherwise)``: the value of the first condition that holds.
+
+    Raises:
+        TypeError: the last one is a case, so nothing says what holds otherwise.
+    """
+    if not cases or isinstance(cases[-1], tuple):
+        raise TypeError("piecewise((condition, value), …, otherwise) ends with the value where no condition holds")
+    parts: list[str] = []
+    for condition, value in cases[:-1]:
+        parts += [condition.text if isinstance(condition, Condition) else str(condition), expr(value).text]
+    return _Formula(f"piecewise({', '.join([*parts, expr(cases[-1]).text])})", _ATOM, ("piecewise",))
+
+
+def choose(k: Term, *values: Term) -> Expr:
+    """The k-th value, k rounded."""
+    return call("choose", k, *values)
+
+
+def dot(a: Term, b: Term) -> Expr:
+    """The scalar product; also ``a @ b``."""
+    return call("dot", a, b)
+
+
+def cross(a: Term, b: Term) -> Expr:
+    """The vector product."""
+    return call("cross", a, b)
+
+
+def norm(a: Term) -> Expr:
+    """The length of a vector."""
+    return call("norm", a)
+
+
+def norm2(a: Term) -> Expr:
+    """The square of the length of a vector."""
+    return call("norm2", a)
+
+
+def unit(a: Term) -> Expr:
+    """The vector of length 1 in the direction of a."""
+    return call("unit", a)
+
+
+def _rotation(function: str, *arguments: object) -> Rotation:
+    made = call(function, *arguments)
+    return Rotation(made.text, _ATOM, ("rotation",))
+
+
+def rotx(angle: Term) -> Rotation:
+    """The rotation about x."""
+    return _rotation("rotx", angle)
+
+
+def roty(angle: Term) -> Rotation:
+    """The rotation about y."""
+    return _rotation("roty", angle)
+
+
+def rotz(angle: Term) -> Rotation:
+    """The rotation about z."""
+    return _rotation("rotz", angle)
+
+
+def rot(axis: Term, angle: Term) -> Rotation:
+    """The rotation about a vector of any length but 0."""
+    return _rotation("rot", axis, angle)
+
+
+def quat(e0: Term, e1: Term, e2: Term, e3: Term) -> Rotation:
+    """The rotation of a quaternion, scalar first."""
+    return _rotation("quat", e0, e1, e2, e3)
+
+
+def euler(axes: str, a: Term, b: Term, c: Term) -> Rotation:
+    """Turns about three axes, ``"zxz"``, each about the axis where it then is."""
+    return _rotation("euler", expr(axes), a, b, c)
+
+
+def vel(point: Term, seen_from: Term | None = None) -> Expr:
+    """The velocity of a point relative to the observer, or as seen from a body or ``"inertial"``."""
+    return call("vel", point) if seen_from is None else call("vel", point, seen_from)
+
+
+def acc(point: Term, seen_from: Term | None = None) -> Expr:
+    """The acceleration of a point relative to the observer, or ``"inertial"``."""
+    return call("acc", point) if seen_from is None else call("acc", point, seen_from)
+
+
+def angvel(body: Term, seen_from: Term | None = None) -> Expr:
+    """The angular velocity of a body or frame relative to the observer, or as seen from another one."""
+    return call("angvel", body) if seen_from is None else call("angvel", body, seen_from)
+
+
+def _to_sympy(e: Expr) -> Any:
+    sm = importlib.import_module("sympy")
+    head, *rest = e._tree or ("other",)
+    if head == "number":
+        value = Fraction(rest[0])
+        return sm.Rational(value.numerator, value.denominator)
+    if head == "name":
+        name, kind = rest
+        if kind == "coordinate":
+            return importlib.import_module("sympy.physics.mechanics").dynamicsymbols(name)
+        if kind in ("time", "pi"):
+            return importlib.import_module("sympy.physics.mechanics").dynamicsymbols._t if kind == "time" else sm.pi
+        if kind == "symbol":
+            return sm.Symbol(name)
+    if head == "neg":
+        return -_to_sympy(rest[0])
+    if head in ("+", "-", "*", "/", "^"):
+        a, b = (_to_sympy(part) for part in rest)
+        return a + b if head == "+" else a - b if head == "-" else a * b if head == "*" else a / b if head == "/" else a**b
+    if head == "d":
+        of, order = _to_sympy(rest[0]), rest[1]
+        return of.diff(importlib.import_module("sympy.physics.mechanics").dynamicsymbols._t, order)
+    if head == "call":
+        names = {"abs": "Abs", "min": "Min", "max": "Max"}
+        name = str(rest[0])
+        if name in _NUMBERS:
+            return getattr(sm, names.get(name, name))(*(_to_sympy(part) for part in rest[1:]))
+    raise TypeError(f"{e.text} has no counterpart in SymPy: it is a vector, a rotation, a text, or a function that SymPy does not have")
+
+
+_NUMBERS = {"sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "sqrt", "abs", "sign", "atan2", "min", "max"}

@@ -1,0 +1,26 @@
+// Gauss's elimination of the equations for the leading derivatives, statement by statement, in an order of pivots that
+// suits the initial state.
+#pragma once
+#include <optional>
+
+#include "emit/motion.h"
+
+namespace anholon::emit {
+
+// Row and column of each pivot, in order.
+using Pivots = std::vector<std::pair<std::size_t, std::size_t>>;
+
+// An order with few statements whose multipliers stay small at the start and around it (Markowitz). Returns nullopt if
+// the equations are not linear in the leading derivatives, or have no such order.
+std::optional<Pivots> pivots_at_start(const System& system, const Motion& motion, const EmitOptions::Start& start);
+
+// The names of the entries of matrix and right side, row by row; those that vanish are empty.
+struct EliminationNames {
+  std::vector<std::string> matrix, right;
+  std::string prefix;  // of further names
+};
+
+// Python: overwrites the entries by the solution; `lead` is the list of it, `suits` whether no multiplier is large.
+std::string python_elimination(const Pivots& pivots, const EliminationNames& names);
+
+}  // namespace anholon::emit

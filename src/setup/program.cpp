@@ -1,0 +1,44 @@
+#include "setup/program.h"
+
+#include "setup/inputs.h"
+
+namespace anholon {
+
+namespace {
+
+// By variable, as programs want it. What constraints settle is solved for in wider numbers, as for a motion.
+EmitOptions::Start start_for_program(Workspace& s, const StateChoice& choice) {
+  Start<double> start;
+  if (Start<long double> wide; initial_state(s, choice, wide).ok()) {
+    start.t = static_cast<double>(wide.t);
+    start.state.assign(wide.state.begin(), wide.state.end());
+    start.leading.assign(wide.leading.begin(), wide.leading.end());
+  } else {
+    start = start_of(s);
+  }
+  EmitOptions::Start out{start.t, {}, start.leading};
+  auto next = start.state.begin();
+  for (std::size_t j = 0; j < s.system.size(); ++j) {
+    const auto end = next + s.structure.d[j];
+    out.values.emplace_back(next, end);
+    next = end;
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string program_text(const Scenario& scenario, const StateChoice& choice, ProgramLanguage language,
+                         const std::string& name, const std::string& made_by) {
+  Workspace own(scenario);
+  EmitOptions options;
+  options.name = name;
+  options.made_by = made_by;
+  options.start = start_for_program(own, choice);
+  for (const Monitor& m : own.model->monitors) options.outputs.emplace_back(m.name, m.value);
+  OpenSystem open = open_inputs(own);
+  options.inputs = std::move(open.inputs);
+  return (language == ProgramLanguage::c ? emit_c : emit_python)(open.system, own.structure, options);
+}
+
+}  // namespace anholon
