@@ -26,6 +26,8 @@ assert run.report.steps > 20_000
 mapped = open("/proc/self/maps").read()
 assert "anholon-compiler.so" in mapped, "machine code was not made"
 assert "/usr/lib" not in "".join(line for line in mapped.splitlines() if "flint" in line or "gmp" in line), "a library of the system is used"
+from anholon import _widget
+assert "render" in _widget.module(), "the viewer is missing"
 print(an.version(), run)
 """
 

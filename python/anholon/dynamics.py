@@ -173,7 +173,11 @@ class Dynamics:
         return made.reshape((len(made), *batch))
 
     def input(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
-        """The inputs by the formulas of the model, shape (inputs,): the controller of the file."""
+        """The inputs by the formulas of the model, shape (inputs,): the controller of the file.
+
+        Raises:
+            ValueError: x has not the shape of one state.
+        """
         import numpy as np
 
         state, _, parameters, batch = self._states(x, None, p)

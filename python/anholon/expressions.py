@@ -182,6 +182,7 @@ class Rotation(Expr):
     __slots__ = ()
 
     def __call__(self, a: Term, b: Term, c: Term) -> Expr:
+        """The vector with these components along its axes."""
         if self._tree[:1] != ("name",):
             return expr(a) * self.x + expr(b) * self.y + expr(c) * self.z
         components = ", ".join(expr(part).text for part in (a, b, c))
@@ -278,6 +279,9 @@ Term = Union[Expr, Number, Sequence[Any]]
 def expr(term: object) -> Expr:
     """An expression of a number, a text (a formula of the model language) or the three components of a vector.
 
+    Raises:
+        TypeError: a list has another number of components.
+
     Example:
         >>> import anholon as an
         >>> an.expr("x + 1") * 2, an.expr(0.1), an.expr([1, 0, "h"])
@@ -325,54 +329,67 @@ here = _named("here", "vector")
 
 
 def sin(a: Term) -> Expr:
+    """The sine of an angle in radians."""
     return call("sin", a)
 
 
 def cos(a: Term) -> Expr:
+    """The cosine of an angle in radians."""
     return call("cos", a)
 
 
 def tan(a: Term) -> Expr:
+    """The tangent of an angle in radians."""
     return call("tan", a)
 
 
 def asin(a: Term) -> Expr:
+    """The arc sine, in radians."""
     return call("asin", a)
 
 
 def acos(a: Term) -> Expr:
+    """The arc cosine, in radians."""
     return call("acos", a)
 
 
 def atan(a: Term) -> Expr:
+    """The arc tangent, in radians."""
     return call("atan", a)
 
 
 def sinh(a: Term) -> Expr:
+    """The hyperbolic sine."""
     return call("sinh", a)
 
 
 def cosh(a: Term) -> Expr:
+    """The hyperbolic cosine."""
     return call("cosh", a)
 
 
 def tanh(a: Term) -> Expr:
+    """The hyperbolic tangent."""
     return call("tanh", a)
 
 
 def asinh(a: Term) -> Expr:
+    """The inverse of the hyperbolic sine."""
     return call("asinh", a)
 
 
 def acosh(a: Term) -> Expr:
+    """The inverse of the hyperbolic cosine."""
     return call("acosh", a)
 
 
 def atanh(a: Term) -> Expr:
+    """The inverse of the hyperbolic tangent."""
     return call("atanh", a)
 
 
 def exp(a: Term) -> Expr:
+    """The exponential function."""
     return call("exp", a)
 
 
@@ -382,6 +399,7 @@ def log(a: Term) -> Expr:
 
 
 def sqrt(a: Term) -> Expr:
+    """The square root."""
     return call("sqrt", a)
 
 
@@ -406,7 +424,11 @@ def maximum(a: Term, b: Term) -> Expr:
 
 
 def piecewise(*cases: Any) -> Expr:
-    """``piecewise((condition, value), …, otherwise)``: the value of the first condition that holds."""
+    """``piecewise((condition, value), …, otherwise)``: the value of the first condition that holds.
+
+    Raises:
+        TypeError: the last one is a case, so nothing says what holds otherwise.
+    """
     if not cases or isinstance(cases[-1], tuple):
         raise TypeError("piecewise((condition, value), …, otherwise) ends with the value where no condition holds")
     parts: list[str] = []
@@ -436,7 +458,7 @@ def norm(a: Term) -> Expr:
 
 
 def norm2(a: Term) -> Expr:
-    """Its square."""
+    """The square of the length of a vector."""
     return call("norm2", a)
 
 

@@ -405,13 +405,15 @@ class Run:
 def _long_name(column: _core.Column) -> str:
     """What a column is, in words."""
     base = column.name.rstrip("'")
-    of = base.split(".", 1)[1] if column.kind in ("multipliers", "multiplier rates", "reactions") and "." in base else base
+    of = base.split(".", 1)[1] if column.kind in ("multipliers", "rates of multipliers", "reactions") and "." in base else base
     words = {
         "time": "time",
         "coordinates": f"coordinate {of}",
         "velocities": f"rate of {of}",
         "accelerations": f"second derivative of {of}",
+        "higher derivatives": f"derivative of order {column.order} of {of}",
         "multipliers": f"multiplier of {of}",
+        "rates of multipliers": f"derivative of order {column.order} of the multiplier of {of}",
         "reactions": f"generalized reaction along {of}",
         "states": f"state {of}",
         "inputs": f"input {of}",

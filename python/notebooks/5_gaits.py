@@ -13,7 +13,7 @@ text = an.load("snakeboard").text
 # The rider's upper body swings with the torque A1 sin(wf t); the trucks are steered with the same rhythm, earlier by an angle `ahead`.
 text = text.replace("A2*cos(wf*t)", "A2*sin(wf*t + ahead)").replace("A1 = 0.5", "ahead = 0\nA1 = 0.5")
 board = an.loads(text)
-rest = {"th": 0, "ps": 0, "ph": "0.01", "th'": 0, "ps'": 0, "ph'": 0}
+rest: dict[str, an.Number] = {"th": 0, "ps": 0, "ph": "0.01", "th'": 0, "ps'": 0, "ph'": 0}
 board
 
 # %% [markdown]

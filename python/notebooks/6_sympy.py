@@ -5,6 +5,8 @@
 # not the equations, and derives these anew. Afterwards the rates go back to SymPy as expressions. Here it is the rolling disc of SymPy's documentation.
 
 # %%
+from typing import Any
+
 import anholon as an
 import numpy as np
 import sympy as sm
@@ -41,13 +43,14 @@ print(model.text)
 
 # %%
 speeds = [q1.diff(), q2.diff(), q3.diff()]
-rates = kane.kindiffdict()
+rates: dict[Any, Any] = kane.kindiffdict()
 state = {q1: 0.3, q2: 0.2, q3: 0.1, u1: 0.4, u2: -0.7, u3: 0.5}
 qdot = {v: float(rates[v].subs(state)) for v in speeds}
-udot = kane.mass_matrix.subs(values).subs(state).LUsolve(kane.forcing.subs(values).subs({q.diff(): qdot[q.diff()] for q in (q1, q2, q3)}).subs(state))
-accelerations = [sm.diff(rates[v], me.dynamicsymbols._t) for v in speeds]
+matrix, forcing = (sm.Matrix(part).subs(values).subs({v: qdot[v] for v in speeds}).subs(state) for part in (kane.mass_matrix, kane.forcing))
+udot = matrix.LUsolve(forcing)
+accelerations = [rates[v].diff(sm.Symbol("t")) for v in speeds]
 dots = {u.diff(): a for u, a in zip((u1, u2, u3), udot, strict=True)}
-by_sympy = [float(a.subs(dots).subs({q.diff(): qdot[q.diff()] for q in (q1, q2, q3)}).subs(state)) for a in accelerations]
+by_sympy = [float(a.subs(dots).subs({v: qdot[v] for v in speeds}).subs(state)) for a in accelerations]
 
 # %%
 initial = {"q1": 0.3, "q2": 0.2, "q3": 0.1, "q1'": qdot[speeds[0]], "q2'": qdot[speeds[1]], "q3'": qdot[speeds[2]]}

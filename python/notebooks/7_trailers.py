@@ -69,7 +69,7 @@ problem.minimize(h * (ca.sumsqr(U[0, :]) / 100 + ca.sumsqr(U[1, :])))
 problem.set_initial(X, np.linspace(start, end, N + 1).T)
 problem.solver("ipopt", {"print_time": False}, {"print_level": 0, "sb": "yes", "tol": 1e-10})
 solution = problem.solve()
-controls, states = solution.value(U), solution.value(X)
+controls, states = np.asarray(solution.value(U)), np.asarray(solution.value(X))
 solution.stats()["iter_count"]
 
 # %% [markdown]

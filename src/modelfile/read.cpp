@@ -264,8 +264,9 @@ class Reader {  // its references are used only while it runs
 
   static std::string parameters_known(const std::vector<std::string>& names) {
     constexpr std::size_t kMost = 24;
-    std::string list;
-    for (std::size_t k = 0; k < names.size() && k < kMost; ++k) list += (k ? ", " : "the parameters are ") + names[k];
+    if (names.empty()) return "the model has no parameters";
+    std::string list = names.size() == 1 ? "the parameter is " : "the parameters are ";
+    for (std::size_t k = 0; k < names.size() && k < kMost; ++k) list += (k ? ", " : "") + names[k];
     return list + (names.size() > kMost ? ", …" : "");
   }
 

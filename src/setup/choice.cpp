@@ -57,7 +57,7 @@ static std::size_t place(const std::vector<std::string>& names, const std::strin
   const auto it = std::find(names.begin(), names.end(), name);
   if (it == names.end())
     throw Failure({}, called + "there is no " + what + " '" + name + "'" + suggestion(name, names),
-                  "the " + what + "s are " + listed(names));
+                  "the " + what + (names.size() == 1 ? " is " : "s are ") + listed(names));
   return static_cast<std::size_t>(it - names.begin());
 }
 

@@ -54,6 +54,16 @@ void motion(const anholon::System& system) {
   expect(run->rows() == 9 && run->t().back() == 2, "its rows are those that were asked for");
   expect(std::abs(run->column("theta").back() - 0.1 * std::cos(4.0)) < 1e-3, "theta = 0.1 cos 2t, nearly");
   expect(run->column("no such").empty(), "an unknown column is empty");
+  expect(run->block().size() == run->columns().size() * run->rows() &&
+             run->block().data() + run->rows() == run->column("theta").data(),
+         "the columns lie side by side");
+  expect(run->columns()[2].latex == "\\dot{\\theta}" && anholon::symbol("theta'").latex == "\\dot{\\theta}",
+         "a column has a symbol");
+  const auto picture = anholon::picture_data(*run);
+  expect(picture && picture->find("\"scene\": {") != std::string::npos, "the viewer gets a scene");
+  const auto drawn = anholon::figure(*run, {{"theta"}});
+  expect(drawn && drawn->find("<svg") == 0, "a figure is an SVG");
+  expect(!anholon::figure(*run, {{"tehta"}}), "an unknown column is not drawn");
   expect(run->report().newton < 1e-12, "Newton's law holds");
   expect(!run->report().trust.empty() && run->report().trust[0].digits > 8, "digits can be trusted");
   std::size_t asked = 0;
