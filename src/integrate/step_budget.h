@@ -24,8 +24,10 @@ struct StepPace {
 inline bool out_of_reach(const StepSettings& settings, std::size_t steps, const StepPace& pace) {
   constexpr std::size_t kStepsToJudge = 1000;
   if (steps < kStepsToJudge) return false;
+  const double most = static_cast<double>(settings.most_steps - steps);
+  if (std::abs(pace.left) <= pace.step * most) return false;
   const double mean = std::abs(pace.passed) / static_cast<double>(steps);
-  return std::abs(pace.left) > std::max(mean, pace.step) * static_cast<double>(settings.most_steps - steps);
+  return std::abs(pace.left) > std::max(mean, pace.step) * most;
 }
 
 inline Outcome end_out_of_reach(const StepSettings& settings, double step) {

@@ -307,6 +307,9 @@ Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* ti
     end = to;
   }
   aside_.resize(numbers * static_cast<std::size_t>(lanes_));
+  if (lanes_ == 1)
+    for (const LowOrders& low : low_orders_)
+      for (std::uint32_t k = 0; k < low.count; ++k) low_numbers_.push_back(low.at + k);
   for (const std::uint32_t x : p.x) unknowns_.push_back(last_series(x));
   for (const Place& q : p.quadratures) quadratures_.push_back(last_series(q.at));
 }

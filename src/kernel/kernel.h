@@ -274,12 +274,14 @@ class Kernel {
     std::uint32_t at, count;
   };
   std::vector<LowOrders> low_orders_;
+  std::vector<std::uint32_t> low_numbers_;  // the same, number by number, for one lane
   // A series of the last expansion: its place, and how many of its first numbers are at which place of `aside_` after
   // `start_next`.
   struct LastSeries {
     std::uint32_t at, count, aside;
   };
   LastSeries last_series(std::uint32_t at) const;
+  void keep_low_orders();
   double last(const LastSeries& series, std::uint32_t k, int lane) const {
     if (shows_last_ || k >= series.count) return number(series.at + k, lane);
     return aside_[(series.aside + k) * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)];

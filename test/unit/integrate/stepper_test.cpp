@@ -294,6 +294,125 @@ TEST(ByKernel, AStepperStartsAnewWithoutATrace) {
   }
 }
 
+// A step of one kernel by its parts, as lanes make it, without the way that ordinary steps take.
+struct InParts {
+  explicit InParts(const Motion& motion)
+      : start(motion.start<long double>()), steps(motion.stepping, motion.parameters_in<double>(),
+                                                  motion.parameters_in<long double>(), Accelerated::settings(0)),
+        kernel(std::make_shared<Kernel>(KernelPlan::make(std::make_shared<const Program>(motion.stepping),
+                                                         steps.order() - 1, motion.parameters_in<long double>(), 0,
+                                                         {start.begin(), start.end()}))) {
+    kernel->set_parameters(0, motion.parameters_in<long double>());
+    steps.accelerate(kernel, 0);
+  }
+  Outcome step(long double end) {
+    if (!steps.begin_step()) return steps.trouble();
+    if (steps.steps() > 0) kernel->begin();  // the first expansion was made at the start
+    if (!steps.aim(end)) return steps.trouble();
+    EndOfStep there = EndOfStep::elsewhere;
+    while (there == EndOfStep::elsewhere) {
+      kernel->advance();
+      kernel->start_next();
+      there = steps.look_at_end(end);
+    }
+    return there == EndOfStep::good && steps.finish_step() ? Outcome{} : steps.trouble();
+  }
+  State start;
+  Stepper<double> steps;
+  std::shared_ptr<Kernel> kernel;
+};
+
+void expect_equal(const Stepper<double>& a, const Stepper<double>& b, const std::string& where) {
+  EXPECT_EQ(a.time(), b.time()) << where;
+  EXPECT_EQ(a.before(), b.before()) << where;
+  EXPECT_EQ(a.state(), b.state()) << where;
+  EXPECT_EQ(a.leading(), b.leading()) << where;
+  EXPECT_EQ(a.integrals(), b.integrals()) << where;
+  EXPECT_EQ(a.steps(), b.steps()) << where;
+  EXPECT_EQ(a.expansions(), b.expansions()) << where;
+  EXPECT_EQ(a.expansions_by_kernel(), b.expansions_by_kernel()) << where;
+  EXPECT_EQ(a.worst_constraint(), b.worst_constraint()) << where;
+  const StepperState<double> x = a.begun(), y = b.begun();
+  EXPECT_EQ(x.motion.t, y.motion.t) << where;
+  EXPECT_EQ(x.motion.state, y.motion.state) << where;
+  EXPECT_EQ(x.motion.carry, y.motion.carry) << where;
+  EXPECT_EQ(x.motion.leading, y.motion.leading) << where;
+  EXPECT_EQ(x.motion.record.steps, y.motion.record.steps) << where;
+  EXPECT_EQ(x.motion.record.last_step, y.motion.record.last_step) << where;
+  EXPECT_EQ(x.motion.record.worst_constraint, y.motion.record.worst_constraint) << where;
+}
+
+// A wall that its series do not show from afar, so that ends of steps are refused, and motions without any such thing.
+const char* const kWall =
+    "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n[[force]]\nname = "
+    "\"f\"\non = \"p\"\nvector = \"(-x - 20*tanh(30*(x - 2)))*ex\"\n[initial]\nx = -3\n\"x'\" = 0\n";
+
+TEST(ByKernel, OrdinaryStepsHaveTheBitsOfTheirParts) {
+  std::vector<std::string> texts = {kWall};
+  for (const char* name : kModels) texts.push_back(test::shipped_text(name));
+  for (const std::string& text : texts)
+    for (const long double end : {40.0L, -40.0L}) {
+      const Motion motion(text);
+      Accelerated once(motion);
+      InParts parts(motion);
+      ASSERT_TRUE(once.steps.accelerated());
+      Outcome a = once.steps.start(0, once.start), b = parts.steps.start(0, parts.start);
+      for (int k = 0; k < 600 && a.ok() && once.steps.time() != end; ++k) {
+        a = once.steps.step(end), b = parts.step(end);
+        once.steps.round_state(), parts.steps.round_state();
+        EXPECT_EQ(a.kind, b.kind) << text << " step " << k;
+        if (k % 37 == 0 || !a.ok()) expect_equal(once.steps, parts.steps, text + " step " + std::to_string(k));
+      }
+      expect_equal(once.steps, parts.steps, text);
+    }
+}
+
+TEST(ByKernel, AStretchHasTheBitsOfItsSteps) {
+  for (const char* name : kModels) {
+    const Motion motion(test::shipped_text(name));
+    Accelerated single(motion), together(motion);
+    ASSERT_TRUE(single.steps.start(0, single.start).ok());
+    ASSERT_TRUE(together.steps.start(0, together.start).ok());
+    const long double end = 10, until = 4.5L;
+    std::vector<long double> times;
+    std::size_t longest = 0;
+    Stretch<long double> stretch;
+    for (int k = 0; single.steps.time() != end; ++k) {
+      stretch.restart();
+      stretch.most = static_cast<std::size_t>(1 + k % 13);
+      stretch.until = together.steps.time() < until ? &until : nullptr;
+      ASSERT_TRUE(together.steps.steps(end, stretch).ok());
+      together.steps.round_state();
+      ASSERT_FALSE(stretch.times.empty());
+      EXPECT_LE(stretch.times.size(), stretch.most);
+      longest = std::max(longest, stretch.times.size());
+      for (std::size_t i = 0; i < stretch.times.size(); ++i) {
+        ASSERT_TRUE(single.steps.step(end).ok());
+        single.steps.round_state();
+        EXPECT_EQ(single.steps.time(), stretch.times[i]) << name;
+        if (i + 1 < stretch.times.size() && stretch.until) EXPECT_LT(stretch.times[i], until) << name;
+      }
+      expect_equal(single.steps, together.steps, name);
+    }
+    EXPECT_GT(longest, 1U) << name;
+  }
+}
+
+// x = -cos t: a stretch ends with the first step that begins where x has left its value.
+TEST(ByKernel, AStretchEndsWhereAnUnknownLeavesItsValue) {
+  const Motion motion(line("-x", "x = -1"));
+  Accelerated a(motion, 12);
+  ASSERT_TRUE(a.steps.start(0, a.start).ok());
+  const std::array<Kept, 1> kept = {{{0, -1}}};
+  Stretch<long double> stretch;
+  stretch.most = 1000, stretch.kept = kept, stretch.margin = 1.5;
+  ASSERT_TRUE(a.steps.steps(100, stretch).ok());
+  const auto at = [](long double t) { return -std::cos(static_cast<double>(t)); };
+  ASSERT_GE(stretch.times.size(), 2U);
+  for (std::size_t i = 0; i + 2 < stretch.times.size(); ++i) EXPECT_LT(at(stretch.times[i]) + 1, 1.5);
+  EXPECT_GE(at(a.steps.before()) + 1, 1.5);
+}
+
 // ---- what cannot be integrated has a name
 // -----------------------------------------------------------------------------------
 
