@@ -52,12 +52,13 @@ void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double
                            std::optional<double> spent) {
   // Seconds: what is observed before, what the compiler takes to be loaded, and for each step of a stage; it works on
   // another core if there is one.
-  constexpr double kObserved = 0.004, kLoaded = 0.1, kEachStep = 0.002;
+  constexpr double kObserved = 0.001, kLoaded = 0.1, kEachStep = 0.002;
   constexpr std::size_t kSometimes = 64;
   if (!first_) first_ = {.at = at};
-  if (!plan || compilation_.plan == plan || plan->code(lanes) || (lanes == 1 && ++asked_ % kSometimes != 0) ||
+  if (!plan || compilation_.plan == plan || plan->code(lanes) || (lanes == 1 && ++asked_ < kSometimes) ||
       (compilation_.done && !*compilation_.done))
     return;
+  asked_ = 0;
   const double elapsed =
       spent ? *spent : std::chrono::duration<double>(std::chrono::steady_clock::now() - first_->when).count();
   const double compilation = kLoaded + kEachStep * static_cast<double>(plan->plan().stage.size());

@@ -23,6 +23,8 @@ class CodeForLongRuns {
   // request, if these are not all that have passed.
   void step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes = 1,
             std::optional<double> spent = {});
+  // So many steps followed the last request, which stands for one of them.
+  void count(std::size_t steps) { asked_ += steps > 1 ? steps - 1 : 0; }
 
  private:
   struct Compilation {
@@ -38,7 +40,7 @@ class CodeForLongRuns {
     double at;
   };
   std::optional<First> first_;  // when it was asked first, and where
-  std::size_t asked_ = 0;
+  std::size_t asked_ = 0;       // since the clock was read
 };
 
 // Whether compilations are on their way that nobody asks for any more. exit() waits for them; a program that has

@@ -58,8 +58,13 @@ class Motion {
   Outcome resume(const StateChoice& choice, const SavedRun& from);
   // The solution at a place that was foretold (integrate/stepper.h), in `point()`.
   Outcome settle_at(const Start<W>& place);
-  // One step towards `end`, with another elimination where this one fails or its pivots have become small.
-  Outcome step(const W& end);
+  // A stretch of steps towards `end`, or one, with another elimination where this one fails or its pivots have become
+  // small.
+  Outcome steps(const W& end, Stretch<W>& stretch);
+  Outcome step(const W& end) {
+    Stretch<W> one;
+    return steps(end, one);
+  }
   // The solution anywhere in the last step, with the orders beyond where there are any.
   Outcome at(const W& t);
   const Expansion<W>& point() const { return leg_->point; }
@@ -103,6 +108,7 @@ class Motion {
     std::shared_ptr<const KernelPlan> plan;  // of the stepper's kernel, if it has one
     std::shared_ptr<const KernelPlan> unmapped_plan;
     Writing writing = Writing::derived;
+    std::vector<Representation> at_once;    // among which that was chosen without effort
     std::unique_ptr<OutputTape<W>> pivots;  // of the elimination, where there are any
   };
 
@@ -127,6 +133,10 @@ class Motion {
   const Expansion<W>& present();
   InitialState<double> here();
   void accelerate(Leg& leg) const;
+  ToRepresent to_represent(const Leg& leg, std::shared_ptr<const KernelPlan> derived) const;
+  const Representation& best(const std::vector<Representation>& list) const {
+    return settings_.multipliers ? cheapest_unmapped(list) : cheapest(list);
+  }
   void write_anew();
   std::unique_ptr<Leg> same_leg() const;
   std::unique_ptr<Leg> derived_at(const InitialState<double>& here) const;
