@@ -47,6 +47,8 @@ class Motion {
     given_ = GivenPlans{first.leg_->plan, first.leg_->unmapped_plan, first.leg_->writing};
     effort_ = first.effort_;
   }
+  // The motion will be computed once more, with somewhat shorter steps.
+  void expect_second_run() { code_.expect(kBothRuns); }
   // From the consistent state; on request from one that differs from it by some round-offs.
   void start_in_other_digits(bool other) { other_digits_ = other; }
   Outcome start(const StateChoice& choice);
@@ -144,6 +146,8 @@ class Motion {
   std::size_t levels() const {
     return 2 + static_cast<std::size_t>(s_.routh ? std::max(0, largest_order(s_, s_.structure.d) - 1) : 0);
   }
+
+  static constexpr double kBothRuns = 2.25;
 
   Workspace& s_;
   std::unique_ptr<const Workspace> base_;  // as `s_` was when the motion was made, where legs may be derived from it

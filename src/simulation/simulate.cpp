@@ -93,6 +93,7 @@ class Run {
   Outcome begin() {
     if (Outcome o = course_.start(o_.state); !o.ok()) return o;
     schedule_ = RowSchedule<W>(o_, course_.time());
+    if (o_.estimate != ErrorEstimate::never) motion().expect_second_run();
     prepare_rows();
     if (course_.at(schedule_.start()).ok()) watch_.start(course_.point());
     if (Outcome o = motion().within_bounds(); !o.ok()) return o;
