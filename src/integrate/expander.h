@@ -97,11 +97,9 @@ class GuardedExpander {
     if (awaits_kernel_) kernel_->expand();
   }
   bool end_by_kernel(MotionTrack<double>& track);
-  // Whether the kernel is to make the next expansion, too, with nothing in the way: no lane beside it, no measurement
-  // due. The expansion that is awaited of it is such that nothing asks for a closer look; else nothing is changed.
-  bool goes_on_with_kernel(const StepRecord<double>& record) const {
-    return kernel() && kernel()->may_be_ordinary() && kernel_serves(record);
-  }
+  // Whether an expansion is awaited of the kernel that has made the one before. As end_by_kernel(), where nothing in it
+  // asks for a closer look; else false, and nothing is changed.
+  bool goes_on_with_kernel() const { return awaits_kernel_ && kernel() && kernel()->may_be_ordinary(); }
   bool end_at_once(MotionTrack<double>& track);
   Outcome prepare(MotionTrack<double>& track, const std::vector<W>& guess, const std::vector<int>& sides);
   Outcome solve(MotionTrack<double>& track, const std::vector<W>& guess) {

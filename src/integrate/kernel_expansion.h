@@ -32,8 +32,8 @@ class KernelExpansion {
   // or small enough for another measure of J, or coefficients are no numbers. `follows`: the expansion before was
   // made here, too.
   bool serves(StepRecord<double>& record, bool measure, bool follows);
-  // Whether the lane holds the motion, alone, and no root in it has to be looked at.
-  bool may_be_ordinary() const { return holds_ && alone() && roots_.empty(); }
+  // Whether the lane holds the motion, and no root in it has to be looked at.
+  bool may_be_ordinary() const { return holds_ && roots_.empty(); }
   // As serves(), where nothing asks for a closer look; else false, and nothing is changed.
   bool serves_at_once(StepRecord<double>& record, bool measure);
   // Whether no function hides in a step over h what its series do not show.

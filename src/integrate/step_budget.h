@@ -6,13 +6,17 @@
 
 namespace anholon {
 
+// Another step may not be made: the caller has cancelled it, or the step limit is reached.
+inline Outcome interrupted(bool cancelled) {
+  return cancelled ? Outcome{OutcomeKind::interrupted, "interrupted", "what was computed is kept"}
+                   : Outcome{OutcomeKind::interrupted, "the step limit is reached",
+                             "allow more steps, or loosen the tolerance"};
+}
+
 // Not ok if another step may not be made after so many.
 inline Outcome may_step(const StepSettings& settings, std::size_t steps) {
-  if (settings.cancelled && settings.cancelled())
-    return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
-  if (steps >= settings.most_steps)
-    return {OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"};
-  return {};
+  const bool cancelled = settings.cancelled && settings.cancelled();
+  return cancelled || steps >= settings.most_steps ? interrupted(cancelled) : Outcome{};
 }
 
 // The span of time that the steps made have passed, the length of the next one, the span that is left.

@@ -21,6 +21,7 @@ struct StepSettings {
   std::size_t integrals =
       0;  // so many of the first quadratures are integrated to the tolerance; the others as the motion's steps have it
   bool other_rounding = false;  // of a kernel's coefficients (Rounding::other)
+  bool ordinary_steps = true;   // are not looked at closely
   bool multipliers = false;     // their series are asked for (Stepper::dense): by kernels in the motion's unknowns
 };
 

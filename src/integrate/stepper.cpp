@@ -32,15 +32,11 @@ Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, co
 
 template <Number N>
 bool Stepper<N>::make_step(const W& end) {
-  const Tried tried = try_ordinary_step(end);
-  if (tried == Tried::made) return true;
-  if (tried == Tried::nothing) {
-    if (!begin_step()) return false;
-    expander_.expand_kernel();
-  }
-  if (tried != Tried::arrives && !aim(end)) return false;
+  if (!begin_step()) return false;
+  expander_.expand_kernel();
+  if (!aim(end)) return false;
   if (KernelExpansion* kernel = expander_.kernel()) {
-    EndOfStep there = tried == Tried::arrives ? look_at_end(end) : EndOfStep::elsewhere;
+    EndOfStep there = EndOfStep::elsewhere;
     while (there == EndOfStep::elsewhere) {
       kernel->advance();
       there = look_at_end(end);
@@ -48,46 +44,6 @@ bool Stepper<N>::make_step(const W& end) {
     if (there == EndOfStep::failed) return false;
   }
   return finish_step();
-}
-
-// The parts of a step in one, as they are for a kernel that has no other lanes where nothing is in the way. Whatever
-// asks for a closer look gets it from the parts themselves, from there on.
-template <Number N>
-typename Stepper<N>::Tried Stepper<N>::try_ordinary_step(const W& end) {
-  if constexpr (std::same_as<N, double>) {
-    MotionState<N>& m = track_.now;
-    if (phase_ != Phase::advanced || !expander_.goes_on_with_kernel(m.record) || guard_.singular_ahead() ||
-        !end_.idle() || !fired_.empty() || !events_.empty() || m.record.steps >= settings_.most_steps ||
-        (settings_.cancelled && settings_.cancelled()))
-      return Tried::nothing;
-    begin_expansion();
-    end_.begin();
-    expander_.expand_kernel();
-    if (!expander_.end_at_once(track_)) return Tried::expands;
-    ++expansions_;
-    phase_ = Phase::expanded;
-    KernelExpansion& kernel = *expander_.kernel();
-    horizon_ = kernel.reach();
-    limit_by_quadratures();
-
-    const W left = end - m.t;
-    if (!(horizon_ > std::abs(to_double(m.t)) * kShortStep) || !(horizon_ < abs(left)) || out_of_reach(horizon_, left))
-      return Tried::expands;
-    const W to = static_cast<double>(left > 0 ? m.t + horizon_ : m.t - horizon_), h = to - m.t;
-    const double length = to_double(h);
-    if (!kernel.hides_nothing_over(length)) return Tried::expands;
-    kernel.send(length, to_double(to));
-    kernel.advance();
-    if (!end_.passes(kernel.defect(), length) || kernel.blows_up()) {
-      aim_at(to);
-      phase_ = Phase::aimed;
-      return Tried::arrives;
-    }
-    finish_at(to);
-    return Tried::made;
-  }
-  (void)end;
-  return Tried::nothing;
 }
 
 template <Number N>
@@ -116,7 +72,9 @@ bool Stepper<N>::stays(const Stretch<W>& stretch) const {
 
 template <Number N>
 bool Stepper<N>::begin_step() {
-  if (Outcome o = may_step(settings_, record().steps); !o.ok()) return fail(std::move(o));
+  if (const bool cancelled = settings_.cancelled && settings_.cancelled();
+      cancelled || record().steps >= settings_.most_steps)
+    return fail(interrupted(cancelled));
   if (phase_ != Phase::expanded) begin_expansion();
   end_.begin();
   return true;
@@ -124,9 +82,12 @@ bool Stepper<N>::begin_step() {
 
 template <Number N>
 bool Stepper<N>::aim(const W& end) {
-  if (phase_ == Phase::begun && !end_expansion()) return false;
-  ANHOLON_ASSERT(phase_ == Phase::expanded);
-  if (!aim_freely(end) && !aim_with_care(end)) return false;
+  ordinary_ = aim_ordinarily(end);
+  if (!ordinary_) {
+    if (phase_ == Phase::begun && !end_expansion()) return false;
+    ANHOLON_ASSERT(phase_ == Phase::expanded);
+    if (!aim_freely(end) && !aim_with_care(end)) return false;
+  }
   phase_ = Phase::aimed;
   return true;
 }
@@ -137,6 +98,12 @@ EndOfStep Stepper<N>::look_at_end(const W& end) {
   ANHOLON_ASSERT(phase_ == Phase::aimed);
   KernelExpansion* kernel = expander_.kernel();
   if (!kernel) return EndOfStep::good;
+  if (ordinary_) {
+    if (end_.passes(N(kernel->defect()), convert<N>(W(ordinary_end_ - time()))) && !kernel->blows_up())
+      return EndOfStep::good;
+    ordinary_ = false;
+    aim_at(ordinary_end_);
+  }
   switch (end_.look(*kernel, time(), horizon_)) {
   case LookAtEnd::good:
     return EndOfStep::good;
@@ -158,6 +125,10 @@ EndOfStep Stepper<N>::look_at_end(const W& end) {
 template <Number N>
 bool Stepper<N>::finish_step() {
   ANHOLON_ASSERT(phase_ == Phase::aimed);
+  if (ordinary_) {
+    finish_at(ordinary_end_);
+    return true;
+  }
   if (!expander_.advance(track_, end_.time() - time())) {
     note_length(end_.time());
     return fail({OutcomeKind::blow_up, "the motion grows without bound",
@@ -351,7 +322,37 @@ Outcome Stepper<N>::look_back() {
 
 // ---- the end of the step --------------------------------------------------------------------------------------------
 
-// An ordinary step of a kernel, of the length that the series allow. False if there may be something in the way.
+// A step as most are, after one of the same kernel: nothing asks for a closer look at the expansion, at the way to where
+// its series reach, nor (look_at_end) there. Then nothing else is asked, and all else is as it was; whatever asks gets
+// its look by the other functions, from there on.
+template <Number N>
+bool Stepper<N>::aim_ordinarily(const W& end) {
+  if constexpr (std::same_as<N, double>) {
+    if (phase_ != Phase::begun || !settings_.ordinary_steps || !expander_.goes_on_with_kernel() ||
+        guard_.singular_ahead() || !end_.idle() || !fired_.empty() || !events_.empty() ||
+        !expander_.end_at_once(track_))
+      return false;
+    ++expansions_;
+    phase_ = Phase::expanded;
+    KernelExpansion& kernel = *expander_.kernel();
+    horizon_ = kernel.reach();
+    limit_by_quadratures();
+    const W left = end - time();
+    if (!(horizon_ > std::abs(to_double(time())) * kShortStep) || !(horizon_ < abs(left)) ||
+        out_of_reach(horizon_, left))
+      return false;
+    ordinary_end_ = static_cast<double>(left > 0 ? time() + horizon_ : time() - horizon_);
+    const double length = to_double(W(ordinary_end_ - time()));
+    if (!kernel.hides_nothing_over(length)) return false;
+    kernel.send(length, to_double(ordinary_end_));
+    return true;
+  } else {
+    (void)end;
+    return false;
+  }
+}
+
+// A step of a kernel, of the length that the series allow. False if there may be something in the way.
 template <Number N>
 bool Stepper<N>::aim_freely(const W& end) {
   const KernelExpansion* kernel = expander_.kernel();

@@ -132,14 +132,6 @@ class Stepper {
     advanced,  // the step is made; the expansion where it began is that of the dense output
   };
 
-  // How far a step has come that was tried as an ordinary one.
-  enum class Tried : std::uint8_t {
-    nothing,  // it is not begun
-    expands,  // its end is to be chosen with care
-    arrives,  // the kernel is at its end, which is to be looked at with care
-    made,
-  };
-  Tried try_ordinary_step(const W& end);
   bool make_step(const W& end);
   bool stays(const Stretch<W>& stretch) const;
   Outcome expand();
@@ -158,6 +150,7 @@ class Stepper {
   void note_length(const W& to);
   void finish_at(const W& to);
 
+  bool aim_ordinarily(const W& end);
   bool aim_freely(const W& end);
   void aim_at(const W& to);
   bool aim_with_care(const W& end);
@@ -181,6 +174,8 @@ class Stepper {
   Phase phase_ = Phase::placed;
   MotionTrack<N> track_;
   W started_{0}, before_{0};
+  bool ordinary_ = false;  // the step that is aimed: it ends there
+  W ordinary_end_{0};
   Expander<N> expander_;
   std::optional<OneSidedStart<N>> one_sided_;  // if the present expansion ends with the leading derivatives
   std::size_t expansions_ = 0;

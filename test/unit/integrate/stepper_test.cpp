@@ -202,16 +202,17 @@ TEST(Stepper, ConstraintsHoldToRoundOffAlongTheWay) {
 
 // Where a kernel makes all expansions that it can.
 struct Accelerated {
-  explicit Accelerated(const Motion& motion, int order = 0)
-      : start(motion.start<long double>()),
-        steps(motion.stepping, motion.parameters_in<double>(), motion.parameters_in<long double>(), settings(order)) {
+  explicit Accelerated(const Motion& motion, int order = 0, bool ordinary = true)
+      : start(motion.start<long double>()), steps(motion.stepping, motion.parameters_in<double>(),
+                                                  motion.parameters_in<long double>(), settings(order, ordinary)) {
     steps.accelerate(KernelPlan::make(std::make_shared<const Program>(motion.stepping), steps.order() - 1,
                                       motion.parameters_in<long double>(), 0, {start.begin(), start.end()}));
   }
-  static StepSettings settings(int order) {
+  static StepSettings settings(int order, bool ordinary) {
     StepSettings s;
     s.order = order;
     s.measure = false;
+    s.ordinary_steps = ordinary;
     return s;
   }
   Outcome go(long double end) {
@@ -294,34 +295,6 @@ TEST(ByKernel, AStepperStartsAnewWithoutATrace) {
   }
 }
 
-// A step of one kernel by its parts, as lanes make it, without the way that ordinary steps take.
-struct InParts {
-  explicit InParts(const Motion& motion)
-      : start(motion.start<long double>()), steps(motion.stepping, motion.parameters_in<double>(),
-                                                  motion.parameters_in<long double>(), Accelerated::settings(0)),
-        kernel(std::make_shared<Kernel>(KernelPlan::make(std::make_shared<const Program>(motion.stepping),
-                                                         steps.order() - 1, motion.parameters_in<long double>(), 0,
-                                                         {start.begin(), start.end()}))) {
-    kernel->set_parameters(0, motion.parameters_in<long double>());
-    steps.accelerate(kernel, 0);
-  }
-  Outcome step(long double end) {
-    if (!steps.begin_step()) return steps.trouble();
-    if (steps.steps() > 0) kernel->begin();  // the first expansion was made at the start
-    if (!steps.aim(end)) return steps.trouble();
-    EndOfStep there = EndOfStep::elsewhere;
-    while (there == EndOfStep::elsewhere) {
-      kernel->advance();
-      kernel->start_next();
-      there = steps.look_at_end(end);
-    }
-    return there == EndOfStep::good && steps.finish_step() ? Outcome{} : steps.trouble();
-  }
-  State start;
-  Stepper<double> steps;
-  std::shared_ptr<Kernel> kernel;
-};
-
 void expect_equal(const Stepper<double>& a, const Stepper<double>& b, const std::string& where) {
   EXPECT_EQ(a.time(), b.time()) << where;
   EXPECT_EQ(a.before(), b.before()) << where;
@@ -347,23 +320,22 @@ const char* const kWall =
     "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n[[force]]\nname = "
     "\"f\"\non = \"p\"\nvector = \"(-x - 20*tanh(30*(x - 2)))*ex\"\n[initial]\nx = -3\n\"x'\" = 0\n";
 
-TEST(ByKernel, OrdinaryStepsHaveTheBitsOfTheirParts) {
+TEST(ByKernel, OrdinaryStepsHaveTheBitsOfThoseLookedAtClosely) {
   std::vector<std::string> texts = {kWall};
   for (const char* name : kModels) texts.push_back(test::shipped_text(name));
   for (const std::string& text : texts)
     for (const long double end : {40.0L, -40.0L}) {
       const Motion motion(text);
-      Accelerated once(motion);
-      InParts parts(motion);
-      ASSERT_TRUE(once.steps.accelerated());
-      Outcome a = once.steps.start(0, once.start), b = parts.steps.start(0, parts.start);
-      for (int k = 0; k < 600 && a.ok() && once.steps.time() != end; ++k) {
-        a = once.steps.step(end), b = parts.step(end);
-        once.steps.round_state(), parts.steps.round_state();
+      Accelerated ordinary(motion), closely(motion, 0, false);
+      ASSERT_TRUE(ordinary.steps.accelerated());
+      Outcome a = ordinary.steps.start(0, ordinary.start), b = closely.steps.start(0, closely.start);
+      for (int k = 0; k < 600 && a.ok() && ordinary.steps.time() != end; ++k) {
+        a = ordinary.steps.step(end), b = closely.steps.step(end);
+        ordinary.steps.round_state(), closely.steps.round_state();
         EXPECT_EQ(a.kind, b.kind) << text << " step " << k;
-        if (k % 37 == 0 || !a.ok()) expect_equal(once.steps, parts.steps, text + " step " + std::to_string(k));
+        if (k % 37 == 0 || !a.ok()) expect_equal(ordinary.steps, closely.steps, text + " step " + std::to_string(k));
       }
-      expect_equal(once.steps, parts.steps, text);
+      expect_equal(ordinary.steps, closely.steps, text);
     }
 }
 
