@@ -33,7 +33,7 @@ typename EndCheck<N>::Next EndCheck<N>::seen(const N& rate) {
   if (settled_) return Next::good;
   if (near_ < 0) {
     rate_ = rate;
-    if (rate * abs(length_) <= allowed_) return go_on();
+    if (passes(rate, length_)) return go_on();
     if (noise_ < N(0)) {
       near_ = 0;
       return Next::look;

@@ -18,6 +18,8 @@ template <Number N>
 class EndCheck {
  public:
   explicit EndCheck(double log_tolerance);
+  // Whether the first look at the end of a step over h, which finds that rate, is enough: nothing is on the way.
+  bool passes(const N& rate, const N& h) const { return rate * abs(h) <= allowed_; }
   // A try of another length, with looks at these points on the way.
   void begin(const N& length, const std::vector<N>& on_the_way);
   // Where the next look is to be; the last one is at the end.

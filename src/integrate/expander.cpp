@@ -123,6 +123,14 @@ bool GuardedExpander::end_by_kernel(MotionTrack<double>& track) {
   return true;
 }
 
+bool GuardedExpander::end_at_once(MotionTrack<double>& track) {
+  if (!kernel_->serves_at_once(track.now.record, measure_)) return false;
+  awaits_kernel_ = false;
+  point_.known = Point::Known::nothing;
+  ++by_kernel_;
+  return true;
+}
+
 Outcome GuardedExpander::prepare(MotionTrack<double>& track, const std::vector<W>& guess,
                                  const std::vector<int>& sides) {
   note_reference(track, series(), sides);

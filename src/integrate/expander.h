@@ -97,6 +97,10 @@ class GuardedExpander {
     if (awaits_kernel_) kernel_->expand();
   }
   bool end_by_kernel(MotionTrack<double>& track);
+  // Whether an expansion is awaited of the kernel that has made the one before. As end_by_kernel(), where nothing in it
+  // asks for a closer look; else false, and nothing is changed.
+  bool goes_on_with_kernel() const { return awaits_kernel_ && kernel() && kernel()->may_be_ordinary(); }
+  bool end_at_once(MotionTrack<double>& track);
   Outcome prepare(MotionTrack<double>& track, const std::vector<W>& guess, const std::vector<int>& sides);
   Outcome solve(MotionTrack<double>& track, const std::vector<W>& guess) {
     return reference_.solve(track.now, guess, point_.solution);

@@ -66,6 +66,28 @@ bool KernelExpansion::serves(StepRecord<double>& record, bool measure, bool foll
   return true;
 }
 
+bool KernelExpansion::serves_at_once(StepRecord<double>& record, bool measure) {
+  const Pivots pivots = kernel_->pivots(lane_);
+  if (may_have_vanished(pivots_, pivots) || !(pivots.health > least_health_) ||
+      (measure && pivots.health < record.least_health * kPivotDropToRecheck) || !kernel_->reaches(lane_))
+    return false;
+  suspected_ = false;
+  pivots_ = pivots;
+  const double drift = kernel_->drift(lane_);
+  if (record.worst_constraint < W(drift)) record.worst_constraint = W(drift);
+  return true;
+}
+
+bool KernelExpansion::hides_nothing_over(double h) const {
+  const Plan& plan = kernel_->plan().plan();
+  if (plan.hiding.empty()) return true;
+  kernel_->show_last();
+  return std::all_of(plan.hiding.begin(), plan.hiding.end(), [&](const Plan::HidingSlot& slot) {
+    return hides_nothing(slot.function, kernel_->whole_series(slot.argument, lane_),
+                         static_cast<std::size_t>(kernel_->lanes()), order_ - 1, h);
+  });
+}
+
 void KernelExpansion::show_roots(double horizon, Expansion<double>& series) {
   may_touch_zero_ = false;
   std::vector<double> c;
@@ -190,8 +212,7 @@ bool KernelExpansion::follow(MotionTrack<double>& track, const W& h) {
   MotionState<double>& m = track.now;
   if (mapped()) holds_ = true;  // whoever has taken the state back has left it as it was
   if (holds_) {
-    // So that a NaN is one, too.
-    if (kernel_->largest(lane_) < kBlowUp) return true;
+    if (!blows_up()) return true;
     take_back(track, true);
     m.state = base(track.begun().at.motion.t);
     m.leading = leading();

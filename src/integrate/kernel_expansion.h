@@ -32,6 +32,12 @@ class KernelExpansion {
   // or small enough for another measure of J, or coefficients are no numbers. `follows`: the expansion before was
   // made here, too.
   bool serves(StepRecord<double>& record, bool measure, bool follows);
+  // Whether the lane holds the motion, and no root in it has to be looked at.
+  bool may_be_ordinary() const { return holds_ && roots_.empty(); }
+  // As serves(), where nothing asks for a closer look; else false, and nothing is changed.
+  bool serves_at_once(StepRecord<double>& record, bool measure);
+  // Whether no function hides in a step over h what its series do not show.
+  bool hides_nothing_over(double h) const;
   // Whether J may have been singular since the last expansion, by the pivots.
   bool suspected() const { return suspected_; }
   void forget_suspicion() { suspected_ = false; }
@@ -76,6 +82,8 @@ class KernelExpansion {
     kernel_->advance();
     kernel_->start_next();
   }
+  // Whether the state is one that grows without bound, or none, where the kernel was sent.
+  bool blows_up() const { return !(kernel_->largest(lane_) < kBlowUp); }
   // The kernel has gone on by h; the motion goes with it. False if it grows beyond kBlowUp: then it is where the
   // expansion was made.
   bool follow(MotionTrack<double>& track, const W& h);

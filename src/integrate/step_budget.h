@@ -6,13 +6,17 @@
 
 namespace anholon {
 
+// Another step may not be made: the caller has cancelled it, or the step limit is reached.
+inline Outcome interrupted(bool cancelled) {
+  return cancelled ? Outcome{OutcomeKind::interrupted, "interrupted", "what was computed is kept"}
+                   : Outcome{OutcomeKind::interrupted, "the step limit is reached",
+                             "allow more steps, or loosen the tolerance"};
+}
+
 // Not ok if another step may not be made after so many.
 inline Outcome may_step(const StepSettings& settings, std::size_t steps) {
-  if (settings.cancelled && settings.cancelled())
-    return {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
-  if (steps >= settings.most_steps)
-    return {OutcomeKind::interrupted, "the step limit is reached", "allow more steps, or loosen the tolerance"};
-  return {};
+  const bool cancelled = settings.cancelled && settings.cancelled();
+  return cancelled || steps >= settings.most_steps ? interrupted(cancelled) : Outcome{};
 }
 
 // The span of time that the steps made have passed, the length of the next one, the span that is left.
@@ -24,8 +28,10 @@ struct StepPace {
 inline bool out_of_reach(const StepSettings& settings, std::size_t steps, const StepPace& pace) {
   constexpr std::size_t kStepsToJudge = 1000;
   if (steps < kStepsToJudge) return false;
+  const double most = static_cast<double>(settings.most_steps - steps);
+  if (std::abs(pace.left) <= pace.step * most) return false;
   const double mean = std::abs(pace.passed) / static_cast<double>(steps);
-  return std::abs(pace.left) > std::max(mean, pace.step) * static_cast<double>(settings.most_steps - steps);
+  return std::abs(pace.left) > std::max(mean, pace.step) * most;
 }
 
 inline Outcome end_out_of_reach(const StepSettings& settings, double step) {

@@ -21,6 +21,7 @@ struct StepSettings {
   std::size_t integrals =
       0;  // so many of the first quadratures are integrated to the tolerance; the others as the motion's steps have it
   bool other_rounding = false;  // of a kernel's coefficients (Rounding::other)
+  bool ordinary_steps = true;   // are not looked at closely
   bool multipliers = false;     // their series are asked for (Stepper::dense): by kernels in the motion's unknowns
 };
 
@@ -50,12 +51,18 @@ struct UnknownSeries {
 template <Number N>
 N step_size(std::span<const UnknownSeries<N>> x, int order, double shrink);
 
+// A tolerance by its natural logarithm; its value is 0 where no double holds it.
+struct Tolerance {
+  Tolerance(double log_tolerance) : logarithm(log_tolerance), value(std::exp(log_tolerance)) {}
+  double logarithm, value;
+};
+
 // An integral along the motion carries no error on, but it is to be as good as the motion. A power is a product: where
 // the motion is smooth everywhere (an oscillator) its series converges much more slowly. Returns `h`, or less: the last
 // two terms of the integral over the step stay below the tolerance, in relation to the first three, to the integral so
 // far and to 1. `coefficient`: of the quadrature, orders 0..order-1.
 template <Number N, std::invocable<int> Coefficient>
-N limited_by_quadrature(const N& horizon, int order, double log_tolerance, double integral,
+N limited_by_quadrature(const N& horizon, int order, const Tolerance& tolerance, double integral,
                         const Coefficient& coefficient) {
   const double h = to_double(horizon);
   const auto size = [&](int k) { return std::abs(to_double(coefficient(k))); };
@@ -65,7 +72,7 @@ N limited_by_quadrature(const N& horizon, int order, double log_tolerance, doubl
   const double whole = std::max(1.0, std::abs(integral)),
                tail = power * std::max(size(order - 1) * h / order, size(order - 2) / (order - 1));
   const double first = h * std::max({size(0), size(1) * h / 2, size(2) * h * h / 3});
-  if (tail <= std::exp(log_tolerance) * std::max(whole, first)) return horizon;
+  if (tail <= tolerance.value * std::max(whole, first)) return horizon;
   // Closely; what leaves the range of double has a logarithm.
   constexpr double kNothing = -1e300;
   const double log_h = to_double(N(log(horizon)));
@@ -73,7 +80,7 @@ N limited_by_quadrature(const N& horizon, int order, double log_tolerance, doubl
     const N c = abs(coefficient(k));
     return c > N(0) ? to_double(N(log(c))) + (k + 1) * log_h - std::log(k + 1) : kNothing;
   };
-  const double excess = std::max(term(order - 1), term(order - 2)) - log_tolerance -
+  const double excess = std::max(term(order - 1), term(order - 2)) - tolerance.logarithm -
                         std::max({std::log(whole), term(0), term(1), term(2)});
   return excess > 0 ? N(horizon * N(std::exp(-excess / order))) : horizon;
 }

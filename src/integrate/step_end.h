@@ -36,6 +36,9 @@ class StepEnd {
   Outcome shorten(PresentStep<N>& step, const EventWatch<N>& events, W& h, const W& whole);
   // Whether an ordinary step may follow, which nothing cuts short.
   bool free_of_kinks() const { return short_kinks_ == 0; }
+  // Whether the next step may be made without this class: nothing is left to be looked at of the one before.
+  bool idle() const { return short_kinks_ == 0 && limit_ == W(0); }
+  bool passes(const N& rate, const N& h) const { return check_.passes(rate, h); }
   // The step has no kink; its end is looked at. Or it begins at one.
   void set_free(const W& h);
   void set_one_sided();

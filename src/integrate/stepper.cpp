@@ -13,6 +13,8 @@ namespace {
 
 // Steps smaller than this many round-offs of the time are a collapse.
 constexpr int kCollapsedRoundoffs = 16;
+// Nearer to that, in relation to the time, no step is an ordinary one.
+constexpr double kShortStep = 2 * kCollapsedRoundoffs * 0x1p-53;
 
 }  // namespace
 
@@ -21,32 +23,58 @@ Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, co
                     const StepSettings& settings)
     : program_(&program), settings_(settings),
       order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)),
-      expander_(program, parameters, wide_parameters, settings, order_), look_(program, parameters), guard_(program),
-      end_(program, settings.log_tolerance, order_) {
+      tolerance_(settings.log_tolerance), expander_(program, parameters, wide_parameters, settings, order_),
+      look_(program, parameters), guard_(program), end_(program, settings.log_tolerance, order_) {
   end_.set_slots(program.tape.main_end);
 }
 
 // ---- one step -------------------------------------------------------------------------------------------------------
 
 template <Number N>
-Outcome Stepper<N>::step(const W& end) {
-  if (!begin_step()) return trouble();
+bool Stepper<N>::make_step(const W& end) {
+  if (!begin_step()) return false;
   expander_.expand_kernel();
-  if (!aim(end)) return trouble();
+  if (!aim(end)) return false;
   if (KernelExpansion* kernel = expander_.kernel()) {
     EndOfStep there = EndOfStep::elsewhere;
     while (there == EndOfStep::elsewhere) {
       kernel->advance();
       there = look_at_end(end);
     }
-    if (there == EndOfStep::failed) return trouble();
+    if (there == EndOfStep::failed) return false;
   }
-  return finish_step() ? Outcome{} : trouble();
+  return finish_step();
+}
+
+template <Number N>
+Outcome Stepper<N>::steps(const W& end, Stretch<W>& stretch) {
+  const std::size_t kinks = end_.kinks();
+  const bool forward = end > time();
+  for (;;) {
+    if (!make_step(end)) return trouble();
+    stretch.times.push_back(time());
+    if (stretch.times.size() >= stretch.most || time() == end || !fired_.empty() || end_.kinks() != kinks ||
+        (stretch.until && (forward ? !(time() < *stretch.until) : !(time() > *stretch.until))) || !stays(stretch))
+      return {};
+    if (!integrals().empty())
+      if (const W size = abs(integrals()[0]); size > stretch.greatest_integral) stretch.greatest_integral = size;
+    round_state();
+  }
+}
+
+// Whether the last step began where the unknowns have nearly the values that the caller knows.
+template <Number N>
+bool Stepper<N>::stays(const Stretch<W>& stretch) const {
+  for (const auto& [unknown, value] : stretch.kept)
+    if (!(std::abs(to_double(expander_.coefficient(unknown, 0)) - value) < stretch.margin)) return false;
+  return true;
 }
 
 template <Number N>
 bool Stepper<N>::begin_step() {
-  if (Outcome o = may_step(settings_, record().steps); !o.ok()) return fail(std::move(o));
+  if (const bool cancelled = settings_.cancelled && settings_.cancelled();
+      cancelled || record().steps >= settings_.most_steps)
+    return fail(interrupted(cancelled));
   if (phase_ != Phase::expanded) begin_expansion();
   end_.begin();
   return true;
@@ -54,9 +82,12 @@ bool Stepper<N>::begin_step() {
 
 template <Number N>
 bool Stepper<N>::aim(const W& end) {
-  if (phase_ == Phase::begun && !end_expansion()) return false;
-  ANHOLON_ASSERT(phase_ == Phase::expanded);
-  if (!aim_freely(end) && !aim_with_care(end)) return false;
+  ordinary_ = aim_ordinarily(end);
+  if (!ordinary_) {
+    if (phase_ == Phase::begun && !end_expansion()) return false;
+    ANHOLON_ASSERT(phase_ == Phase::expanded);
+    if (!aim_freely(end) && !aim_with_care(end)) return false;
+  }
   phase_ = Phase::aimed;
   return true;
 }
@@ -67,6 +98,12 @@ EndOfStep Stepper<N>::look_at_end(const W& end) {
   ANHOLON_ASSERT(phase_ == Phase::aimed);
   KernelExpansion* kernel = expander_.kernel();
   if (!kernel) return EndOfStep::good;
+  if (ordinary_) {
+    if (end_.passes(N(kernel->defect()), convert<N>(W(ordinary_end_ - time()))) && !kernel->blows_up())
+      return EndOfStep::good;
+    ordinary_ = false;
+    aim_at(ordinary_end_);
+  }
   switch (end_.look(*kernel, time(), horizon_)) {
   case LookAtEnd::good:
     return EndOfStep::good;
@@ -88,23 +125,40 @@ EndOfStep Stepper<N>::look_at_end(const W& end) {
 template <Number N>
 bool Stepper<N>::finish_step() {
   ANHOLON_ASSERT(phase_ == Phase::aimed);
-  MotionState<N>& m = track_.now;
-  const W h = end_.time() - m.t;
-  m.record.last_step = abs(h);
-  m.record.sigma_before = guard_.sigma();
-  if (!expander_.advance(track_, h))
+  if (ordinary_) {
+    finish_at(ordinary_end_);
+    return true;
+  }
+  if (!expander_.advance(track_, end_.time() - time())) {
+    note_length(end_.time());
     return fail({OutcomeKind::blow_up, "the motion grows without bound",
                  "look at the last good state: a velocity or position diverges"});
-  for (std::size_t i = 0; i < m.integrals.size(); ++i)
-    add_compensated(m.integrals[i], m.integral_carry[i], expander_.integral(i, h));
-  before_ = m.t;
-  m.t = end_.time();
-  phase_ = Phase::advanced;
+  }
+  finish_at(end_.time());
   end_.finish();
-  ++m.record.steps;
   // Others in the kernel go on while this one has arrived.
   if (end_.arrives()) leave_kernel();
   return true;
+}
+
+template <Number N>
+void Stepper<N>::note_length(const W& to) {
+  record().last_step = abs(W(to - time()));
+  record().sigma_before = guard_.sigma();
+}
+
+// The state is there.
+template <Number N>
+void Stepper<N>::finish_at(const W& to) {
+  MotionState<N>& m = track_.now;
+  note_length(to);
+  const W h = to - m.t;
+  for (std::size_t i = 0; i < m.integrals.size(); ++i)
+    add_compensated(m.integrals[i], m.integral_carry[i], expander_.integral(i, h));
+  before_ = m.t;
+  m.t = to;
+  phase_ = Phase::advanced;
+  ++m.record.steps;
 }
 
 // Where the next expansion is made already, its polynomial is what is left, not that of the last step.
@@ -181,7 +235,7 @@ void Stepper<N>::limit_by_quadratures() {
   const std::vector<W>& integrals = track_.now.integrals;
   for (std::size_t i = 0; i < std::min(settings_.integrals, integrals.size()); ++i)
     if (!expander_.constant_quadrature(i))
-      horizon_ = limited_by_quadrature(horizon_, order_, settings_.log_tolerance, to_double(integrals[i]),
+      horizon_ = limited_by_quadrature(horizon_, order_, tolerance_, to_double(integrals[i]),
                                        [&](int k) -> N { return expander_.quadrature(i, k); });
 }
 
@@ -268,21 +322,54 @@ Outcome Stepper<N>::look_back() {
 
 // ---- the end of the step --------------------------------------------------------------------------------------------
 
-// An ordinary step of a kernel, of the length that the series allow. False if there may be something in the way.
+// A step as most are, after one of the same kernel: nothing asks for a closer look at the expansion, at the way to where
+// its series reach, nor (look_at_end) there. Then nothing else is asked, and all else is as it was; whatever asks gets
+// its look by the other functions, from there on.
+template <Number N>
+bool Stepper<N>::aim_ordinarily(const W& end) {
+  if constexpr (std::same_as<N, double>) {
+    if (phase_ != Phase::begun || !settings_.ordinary_steps || !expander_.goes_on_with_kernel() ||
+        guard_.singular_ahead() || !end_.idle() || !fired_.empty() || !events_.empty() ||
+        !expander_.end_at_once(track_))
+      return false;
+    ++expansions_;
+    phase_ = Phase::expanded;
+    KernelExpansion& kernel = *expander_.kernel();
+    horizon_ = kernel.reach();
+    limit_by_quadratures();
+    const W left = end - time();
+    if (!(horizon_ > std::abs(to_double(time())) * kShortStep) || !(horizon_ < abs(left)) ||
+        out_of_reach(horizon_, left))
+      return false;
+    ordinary_end_ = static_cast<double>(left > 0 ? time() + horizon_ : time() - horizon_);
+    const double length = to_double(W(ordinary_end_ - time()));
+    if (!kernel.hides_nothing_over(length)) return false;
+    kernel.send(length, to_double(ordinary_end_));
+    return true;
+  } else {
+    (void)end;
+    return false;
+  }
+}
+
+// A step of a kernel, of the length that the series allow. False if there may be something in the way.
 template <Number N>
 bool Stepper<N>::aim_freely(const W& end) {
   const KernelExpansion* kernel = expander_.kernel();
   if (!kernel || kernel->suspected() || guard_.singular_ahead() || kernel->may_touch_zero() || !end_.free_of_kinks() ||
-      !fired_.empty() || !events_.empty() ||
-      !(to_double(horizon()) > std::abs(to_double(time())) * (2 * kCollapsedRoundoffs * unit_roundoff<double>())))
+      !fired_.empty() || !events_.empty() || !(to_double(horizon()) > std::abs(to_double(time())) * kShortStep))
     return false;
   const W left = end - time(), h = horizon();
   if (!(h < abs(left)) || out_of_reach(h, left)) return false;
-  const W to = convert<W>(convert<N>(W(left > W(0) ? time() + h : time() - h)));
+  aim_at(convert<W>(convert<N>(W(left > W(0) ? time() + h : time() - h))));
+  return true;
+}
+
+template <Number N>
+void Stepper<N>::aim_at(const W& to) {
   end_.set_free(to - time());
   PresentStep<N> step = present();
   end_.aim(step, to, false);
-  return true;
 }
 
 template <Number N>

@@ -12,6 +12,7 @@
 #include "integrate/one_sided_start.h"
 #include "integrate/regularity.h"
 #include "integrate/step_end.h"
+#include "integrate/stretch.h"
 
 namespace anholon {
 
@@ -53,7 +54,10 @@ class Stepper {
   void watch(std::vector<WatchedSeries> series);
 
   // One step towards `end`, at most up to it.
-  Outcome step(const W& end);
+  Outcome step(const W& end) { return make_step(end) ? Outcome{} : trouble(); }
+  // A stretch of steps: one at least. It also ends with a step after which the caller has something to do: that fired
+  // an event, or met a kink. Between its steps the state is rounded (round_state).
+  Outcome steps(const W& end, Stretch<W>& stretch);
   // Its parts, for steppers in the lanes of one kernel: after `begin_step` of all of them the kernel is to be expanded,
   // after `aim` of all it is to advance and to start the next expansion, again as long as one of them then asks for
   // another end (`look_at_end`), and nothing else may happen to it in between. Where one fails, `trouble` is what there
@@ -128,6 +132,8 @@ class Stepper {
     advanced,  // the step is made; the expansion where it began is that of the dense output
   };
 
+  bool make_step(const W& end);
+  bool stays(const Stretch<W>& stretch) const;
   Outcome expand();
   void begin_expansion();
   bool end_expansion();
@@ -141,7 +147,12 @@ class Stepper {
   void expand_again(const StepperState<N>& last);
   Outcome look_back();
 
+  void note_length(const W& to);
+  void finish_at(const W& to);
+
+  bool aim_ordinarily(const W& end);
   bool aim_freely(const W& end);
+  void aim_at(const W& to);
   bool aim_with_care(const W& end);
   bool aim_one_sided(const W& left);
   bool shorten_at_singular_point(W& h, const W& floor);
@@ -159,9 +170,12 @@ class Stepper {
   const Program* program_;
   StepSettings settings_;
   int order_;
+  Tolerance tolerance_;
   Phase phase_ = Phase::placed;
   MotionTrack<N> track_;
   W started_{0}, before_{0};
+  bool ordinary_ = false;  // the step that is aimed: it ends there
+  W ordinary_end_{0};
   Expander<N> expander_;
   std::optional<OneSidedStart<N>> one_sided_;  // if the present expansion ends with the leading derivatives
   std::size_t expansions_ = 0;

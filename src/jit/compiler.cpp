@@ -61,20 +61,32 @@ std::string build_of(const void* address) {
 
 // Names all inputs of the code: this module, of which LLVM is a part, the machine, the plan. Returns false if the build
 // has no ID; stored code is then not used.
-bool name(const KernelTables& tables, int lanes, int several_sines, const Builder& builder, Key& key) {
+bool name(const KernelTables& tables, int lanes, CodeEffort effort, int several_sines, const Builder& builder,
+          Key& key) {
   static const std::string ours = build_of(&anholon_compiler);
   if (ours.empty()) return false;
   Writer w;
   w.add(ours);
   w.add(builder.getTargetTriple().str()), w.add(builder.getCPU()), w.add(builder.getFeatures().getString());
   w.add(std::to_string(lanes)), w.add(std::to_string(several_sines));
+  w.add(std::string(effort == CodeEffort::quick ? "quick" : "full"));
   w.add(tables);
   key = w.key();
   return true;
 }
 
-std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lanes, int several_sines, Builder& builder,
-                                             std::string& message) {
+// The selection of instructions takes more than half of the time, most of it for patterns that the emitter leaves
+// none of: it is asked not to look for them.
+void select_quickly(llvm::Module& module) {
+  for (llvm::Function& f : module) {
+    if (f.isDeclaration()) continue;
+    f.addFnAttr(llvm::Attribute::OptimizeNone);
+    f.addFnAttr(llvm::Attribute::NoInline);
+  }
+}
+
+std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lanes, CodeEffort effort,
+                                             int several_sines, Builder& builder, std::string& message) {
   auto target = builder.createTargetMachine();
   if (!target) return message = text_of(target.takeError()), nullptr;
   llvm::LLVMContext context;
@@ -82,6 +94,7 @@ std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lan
   module.setDataLayout((*target)->createDataLayout());
   module.setTargetTriple((*target)->getTargetTriple().str());
   Emitter(tables, module, lanes, several_sines).run();
+  if (effort == CodeEffort::quick) select_quickly(module);
   llvm::SmallVector<char, 0> bytes;
   llvm::raw_svector_ostream out(bytes);
   llvm::legacy::PassManager passes;
@@ -138,16 +151,21 @@ Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, 
   return made;
 }
 
-void compile(const KernelTables& tables, int lanes, const CalledFunctions& called, const std::string& cache, Code& code,
-             std::string& message) {
+void set_option(const char* name, const char* value) {
+  const auto& options = llvm::cl::getRegisteredOptions();
+  if (const auto o = options.find(name); o != options.end()) o->second->addOccurrence(1, o->first(), value);
+}
+
+void compile(const KernelTables& tables, int lanes, CodeEffort effort, const CalledFunctions& called,
+             const std::string& cache, Code& code, std::string& message) {
   static std::once_flag once;
   std::call_once(once, [] {
     llvm::InitializeNativeTarget();
     llvm::InitializeNativeTargetAsmPrinter();
     // The emitter fixes the order of operations; passes that reorder them would examine every pair of loads and stores.
-    const auto& options = llvm::cl::getRegisteredOptions();
-    if (const auto o = options.find("enable-misched"); o != options.end())
-      o->second->addOccurrence(1, o->first(), "false");
+    set_option("enable-misched", "false");
+    // In code that is made quickly every instruction would be selected by itself, and the code be slower.
+    set_option("fast-isel", "false");
   });
   auto builder = Builder::detectHost();
   if (!builder) return void(message = text_of(builder.takeError()));
@@ -158,22 +176,30 @@ void compile(const KernelTables& tables, int lanes, const CalledFunctions& calle
   // Called functions may be anywhere and are reached by stubs; constants are beside the code and are operands.
   builder->setCodeModel(llvm::CodeModel::Small);
 
+  // Better code than asked for is taken if it is there.
   Key key;
-  const Store store(!cache.empty() && name(tables, lanes, called.several, *builder, key) ? cache : std::string());
-  if (auto kept = store.read(key)) {
-    std::string why;
-    code = linked(std::move(kept), *builder, Emitter::levels(tables), called, why);
-    if (code.values) return;
+  Store store{std::string()};
+  for (const CodeEffort e : {CodeEffort::full, effort}) {
+    if (cache.empty() || !name(tables, lanes, e, called.several, *builder, key)) break;
+    store = Store(cache);
+    if (auto kept = store.read(key)) {
+      std::string why;
+      code = linked(std::move(kept), *builder, Emitter::levels(tables), called, why);
+      code.effort = e;
+      if (code.values) return;
+    }
+    if (effort == e) break;
   }
   std::unique_ptr<llvm::MemoryBuffer> object;
   try {
-    object = compiled(tables, lanes, called.several, *builder, message);
+    object = compiled(tables, lanes, effort, called.several, *builder, message);
   } catch (const std::exception& error) {
     message = error.what();  // the tables are used instead
   }
   if (!object) return;
   store.write(key, *object);
   code = linked(std::move(object), *builder, Emitter::levels(tables), called, message);
+  code.effort = effort;
 }
 
 }  // namespace

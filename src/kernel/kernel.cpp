@@ -244,7 +244,7 @@ double KernelPlan::cost() const {
   return company_ == Company::alone ? work() + kWaiting * waits_ * (plan_.stages + 1) : work();
 }
 
-std::string KernelPlan::compile(const std::string& cache, int lanes) const {
+std::string KernelPlan::compile(const std::string& cache, int lanes, CodeEffort effort) const {
   const CompilerModule* module = compiler();
   if (!module) return "there is no compiler beside the program";
   const SparseLu& e = elimination_;
@@ -257,18 +257,19 @@ std::string KernelPlan::compile(const std::string& cache, int lanes) const {
       if (s.act == Act::lookup) return "tables are looked up";
   Compiled& made = lanes == 1 ? one_ : several_;
   const std::lock_guard lock(made.making);
-  if (this->code(lanes)) return {};
+  if (const Code* known = this->code(lanes); known && known->effort >= effort) return {};
   Code code;
   std::string message;
   const Tier& tier = tiers().back();
   module->compile(
-      tables_, lanes,
+      tables_, lanes, effort,
       {power_of, function_of, lanes == 1 ? tier.sines_of_one : tier.sines_of_all, tier.sines_of_all, tier.lanes}, cache,
       code, message);
   if (!code.values) return message;
-  made.code = std::move(code);
+  Code& place = code.effort == CodeEffort::full ? made.full : made.quick;
+  place = std::move(code);
   made.lanes = lanes;
-  made.ready.store(&made.code, std::memory_order_release);
+  made.ready.store(&place, std::memory_order_release);
   return {};
 }
 
@@ -307,6 +308,9 @@ Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* ti
     end = to;
   }
   aside_.resize(numbers * static_cast<std::size_t>(lanes_));
+  if (lanes_ == 1)
+    for (const LowOrders& low : low_orders_)
+      for (std::uint32_t k = 0; k < low.count; ++k) low_numbers_.push_back(low.at + k);
   for (const std::uint32_t x : p.x) unknowns_.push_back(last_series(x));
   for (const Place& q : p.quadratures) quadratures_.push_back(last_series(q.at));
 }

@@ -47,9 +47,9 @@ class KernelPlan {
   int waits() const { return waits_; }
   int levels() const { return levels_; }  // of hidden constraints
   // Makes machine code for one lane, or for this number of lanes, with the same bits; kernels use it from their next
-  // expansion on. Each code is made at most once, from any thread. Returns the reason if there is no code, else an
-  // empty string.
-  std::string compile(const std::string& cache, int lanes = 1) const;
+  // expansion on. Each code is made at most once for each effort, from any thread. Returns the reason if there is no
+  // code, else an empty string.
+  std::string compile(const std::string& cache, int lanes = 1, CodeEffort effort = CodeEffort::full) const;
   const Code* code(int lanes = 1) const {
     const Compiled& c = lanes == 1 ? one_ : several_;
     const Code* ready = c.ready.load(std::memory_order_acquire);
@@ -84,7 +84,7 @@ class KernelPlan {
   Company company_;
   struct Compiled {
     std::mutex making;
-    Code code;
+    Code quick, full;
     int lanes = 1;
     std::atomic<const Code*> ready{nullptr};
   };
@@ -274,12 +274,14 @@ class Kernel {
     std::uint32_t at, count;
   };
   std::vector<LowOrders> low_orders_;
+  std::vector<std::uint32_t> low_numbers_;  // the same, number by number, for one lane
   // A series of the last expansion: its place, and how many of its first numbers are at which place of `aside_` after
   // `start_next`.
   struct LastSeries {
     std::uint32_t at, count, aside;
   };
   LastSeries last_series(std::uint32_t at) const;
+  void keep_low_orders();
   double last(const LastSeries& series, std::uint32_t k, int lane) const {
     if (shows_last_ || k >= series.count) return number(series.at + k, lane);
     return aside_[(series.aside + k) * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)];

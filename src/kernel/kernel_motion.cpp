@@ -27,11 +27,20 @@ void Kernel::place(int lane, const std::vector<long double>& state, const std::v
   gone_on_ = true;
 }
 
+// Whether two doubles are what their sum in long double is taken apart to: the larger one is the rounded sum, and the
+// other one a multiple of the last digit of a long double beside it. Surely, as doubles tell it.
+static bool is_rounded_sum(double high, double low) {
+  constexpr double kLastDigits = 1.5 * 0x1p-11;
+  const double grid = std::bit_cast<double>(std::bit_cast<std::uint64_t>(high) & 0x7ff0000000000000ULL) * kLastDigits;
+  return high + low == high && (low + grid) - grid == low && std::bit_cast<std::uint64_t>(low) != 1ULL << 63;
+}
+
 void Kernel::round_state(int lane) {
   if (!gone_on_) return;
   bool same = true;
   for (std::uint32_t i = 0; i < plan_->tables().state_size; ++i) {
     double &high = number(next_ + i, lane), &low = number(next_ + plan_->tables().state_size + i, lane);
+    if (is_rounded_sum(high, low)) continue;
     const long double sum = static_cast<long double>(high) + low;
     const double rounded = static_cast<double>(sum), rest = static_cast<double>(sum - rounded);
     same = same && rounded == high && std::bit_cast<std::uint64_t>(rest) == std::bit_cast<std::uint64_t>(low);
@@ -84,10 +93,18 @@ void Kernel::start(const Code* code) {
   moved_ = solve(code, true);
 }
 
-void Kernel::start_next() {
+// A call for each of a few numbers would take longer than to copy them.
+void Kernel::keep_low_orders() {
   double* to = aside_.data();
   const std::size_t lanes = static_cast<std::size_t>(lanes_);
-  for (const LowOrders& low : low_orders_) to = std::copy_n(slot(low.at), low.count * lanes, to);
+  if (lanes_ == 1)
+    for (const std::uint32_t at : low_numbers_) *to++ = arena_[at];
+  else
+    for (const LowOrders& low : low_orders_) to = std::copy_n(slot(low.at), low.count * lanes, to);
+}
+
+void Kernel::start_next() {
+  keep_low_orders();
   start(code());
   arithmetic_->compare(slot(next_));
   started_ = true;

@@ -77,6 +77,10 @@ class Matrix {
       auto row = short_rows_.begin(), column = short_columns_.begin();
       while (looked < order_.candidates && (row != short_rows_.end() || column != short_columns_.end())) {
         if (best_.found && best_.cost == 0 && best_.exact) break;
+        // An entry that was not considered is in a row and in a column that are no shorter than these.
+        if (best_.found && (row == short_rows_.end() || column == short_columns_.end() ||
+                            least_cost(row->first, column->first) > best_.cost))
+          break;
         if (column == short_columns_.end() || (row != short_rows_.end() && row->first <= column->first)) {
           const std::uint32_t i = (row++)->second;
           for (const auto& [j, e] : rows_[i]) consider(i, j, e);
@@ -118,10 +122,16 @@ class Matrix {
     return std::abs(entries_[e].value[k]) * row_scale_[i][k] * column_scale_[j][k];
   }
 
+  static std::size_t least_cost(std::size_t row, std::size_t column) {
+    return (std::max<std::size_t>(row, 1) - 1) * (std::max<std::size_t>(column, 1) - 1);
+  }
+
   void consider(std::uint32_t i, std::uint32_t j, std::uint32_t e) {
     const std::size_t cost = (rows_[i].size() - 1) * (columns_[j].size() - 1);
     const bool exact = entries_[e].exact && std::abs(entries_[e].value[0]) == 1;
     if (best_.found && (cost > best_.cost || (cost == best_.cost && best_.exact && !exact))) return;
+    const bool ties = best_.found && cost == best_.cost && exact == best_.exact;
+    if (ties && order_.tie != Order::Tie::largest && !wins(i, j, 0)) return;
     double size = 1;
     const Values& largest = largest_in_row(i);
     for (std::size_t k = 0; k < samples_; ++k) {
@@ -130,7 +140,7 @@ class Matrix {
       if (one_sign_ && entries_[e].value[k] * entries_[e].value[0] < 0) return;
       size = std::min(size, here / most);
     }
-    if (best_.found && cost == best_.cost && exact == best_.exact && !wins(i, j, size)) return;
+    if (ties && !wins(i, j, size)) return;
     best_ = {true, exact, cost, size, i, j, e};
   }
 

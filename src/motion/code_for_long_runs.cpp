@@ -52,20 +52,40 @@ void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double
                            std::optional<double> spent) {
   // Seconds: what is observed before, what the compiler takes to be loaded, and for each step of a stage; it works on
   // another core if there is one.
-  constexpr double kObserved = 0.004, kLoaded = 0.1, kEachStep = 0.002;
+  constexpr double kObserved = 0.001, kLoaded = 0.1, kEachStep = 0.002, kLoadedSoon = 0.02, kEachStepSoon = 0.0015;
+  // By so much the better code is faster at least, if it is.
+  constexpr double kBetter = 0.05;
   constexpr std::size_t kSometimes = 64;
   if (!first_) first_ = {.at = at};
-  if (!plan || compilation_.plan == plan || plan->code(lanes) || (lanes == 1 && ++asked_ % kSometimes != 0) ||
+  const bool known = compilation_.plan == plan;
+  if (!plan || (known && compilation_.effort == CodeEffort::full) || (lanes == 1 && ++asked_ < kSometimes) ||
       (compilation_.done && !*compilation_.done))
     return;
-  const double elapsed =
-      spent ? *spent : std::chrono::duration<double>(std::chrono::steady_clock::now() - first_->when).count();
-  const double compilation = kLoaded + kEachStep * static_cast<double>(plan->plan().stage.size());
-  if (elapsed < kObserved || !(elapsed * std::abs(end - at) > compilation * std::abs(at - first_->at))) return;
+  asked_ = 0;
+  const Code* code = plan->code(lanes);
+  const double stage = static_cast<double>(plan->plan().stage.size());
+  const auto left = [&](const First& since, std::optional<double> seconds) {
+    const double elapsed =
+        seconds ? *seconds : std::chrono::duration<double>(std::chrono::steady_clock::now() - since.when).count();
+    const double done = std::abs(at - since.at);
+    return elapsed < kObserved ? 0 : elapsed / done * (std::abs(end - at) * times_ + done * (times_ - 1));
+  };
+  if (!code) {
+    const bool quick = lanes == 1;
+    const double takes = quick ? kLoadedSoon + kEachStepSoon * stage : kLoaded + kEachStep * stage;
+    if (!known && left(*first_, spent) > takes) begin(plan, lanes, quick ? CodeEffort::quick : CodeEffort::full);
+  } else if (code->effort == CodeEffort::quick) {
+    if (!since_quick_) since_quick_ = {.at = at};
+    if (left(*since_quick_, {}) * kBetter > kEachStep * stage) begin(plan, lanes, CodeEffort::full);
+  }
+}
+
+void CodeForLongRuns::begin(const std::shared_ptr<const KernelPlan>& plan, int lanes, CodeEffort effort) {
   leave();
+  since_quick_.reset();
   const auto ready = std::make_shared<std::atomic<bool>>(false);
-  compilation_ = {plan, ready, std::thread([plan, lanes, ready] {
-                    plan->compile(code_cache(), lanes);
+  compilation_ = {plan, effort, ready, std::thread([plan, lanes, effort, ready] {
+                    plan->compile(code_cache(), lanes, effort);
                     *ready = true;
                   })};
 }

@@ -20,25 +20,33 @@ class CodeForLongRuns {
 
   // Asked at every step, by one thread at a time: begins a compilation for this plan if what is left to do takes longer
   // than that. `at`: how far the work has come on its way to `end`; `spent`: the seconds that it took since the first
-  // request, if these are not all that have passed.
+  // request, if these are not all that have passed. One lane gets code that is made quickly at first.
   void step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes = 1,
             std::optional<double> spent = {});
+  // What is left takes so many times as long, as the motion is computed once more.
+  void expect(double times) { times_ = times; }
+  // So many steps followed the last request, which stands for one of them.
+  void count(std::size_t steps) { asked_ += steps > 1 ? steps - 1 : 0; }
 
  private:
   struct Compilation {
     std::shared_ptr<const KernelPlan> plan;
+    CodeEffort effort = CodeEffort::full;
     std::shared_ptr<std::atomic<bool>> done;
     std::thread thread;
   };
   void leave();
+  void begin(const std::shared_ptr<const KernelPlan>& plan, int lanes, CodeEffort effort);
 
   Compilation compilation_;
   struct First {
     std::chrono::steady_clock::time_point when = std::chrono::steady_clock::now();
     double at;
   };
-  std::optional<First> first_;  // when it was asked first, and where
-  std::size_t asked_ = 0;
+  // When it was asked first, and where; the same since there is code that was made quickly.
+  std::optional<First> first_, since_quick_;
+  std::size_t asked_ = 0;  // since the clock was read
+  double times_ = 1;
 };
 
 // Whether compilations are on their way that nobody asks for any more. exit() waits for them; a program that has

@@ -63,27 +63,35 @@ MethodCourse::MethodCourse(Workspace& s, const StepSettings& settings, Method as
   if (is_free(asked, settings)) choice_.emplace(steppers_, motion_, settings.log_tolerance);
 }
 
-Outcome MethodCourse::step(const W& end) {
+Outcome MethodCourse::steps(const W& end, Stretch<W>& stretch) {
   if (choice_ && report_.last == Method::taylor)
     if (std::optional<MethodChoice::Turn> to = choice_->leave_taylor(end)) turn(*std::move(to));
   if (report_.last != Method::taylor && taylor_for_ == 0)
-    if (const std::optional<Outcome> o = step_by_other(end)) return *o;
-  return step_by_taylor(end);
+    if (const std::optional<Outcome> o = step_by_other(end)) {
+      if (o->ok()) stretch.times.push_back(time());
+      return *o;
+    }
+  return steps_by_taylor(end, stretch);
 }
 
-Outcome MethodCourse::step_by_taylor(const W& end) {
+Outcome MethodCourse::steps_by_taylor(const W& end, Stretch<W>& stretch) {
   by_other_ = false;
-  const Outcome o = motion_.step(end);
+  if (taylor_for_ > 0)
+    stretch.limit(1);
+  else if (choice_)
+    stretch.limit(choice_->stays_with_taylor(end, stretch.most));
+  const std::size_t known = stretch.times.size();
+  const Outcome o = motion_.steps(end, stretch);
+  if (choice_)
+    for (std::size_t i = known; i < stretch.times.size(); ++i) choice_->note_step(stretch.times[i]);
   // Steps so short that the end is out of reach may be those of a stiff motion.
   if (o.kind == OutcomeKind::interrupted && choice_ && report_.last == Method::taylor &&
       !(settings_.cancelled && settings_.cancelled()))
     if (std::optional<MethodChoice::Turn> to = choice_->leave_for_bdf(end)) {
       turn(*std::move(to));
-      return step(end);
+      return steps(end, stretch);
     }
-  if (!o.ok()) return o;
-  if (taylor_for_ > 0) --taylor_for_;
-  if (choice_) choice_->note_step();
+  if (o.ok() && taylor_for_ > 0) --taylor_for_;
   return o;
 }
 

@@ -35,7 +35,8 @@ class TaylorCourse {
       : motion_(scenario, settings, quadratures, stages), asked_(asked) {}
 
   Outcome start(const StateChoice& choice) { return motion_.start(choice); }
-  Outcome step(const W& end) { return motion_.step(end); }
+  // A stretch of steps.
+  Outcome steps(const W& end, Stretch<W>& stretch) { return motion_.steps(end, stretch); }
   // The solution anywhere in the last step.
   Outcome at(const W& t) { return motion_.at(t); }
   const Expansion<W>& point() const { return motion_.point(); }
@@ -76,7 +77,7 @@ class MethodCourse {
                int stages);
 
   Outcome start(const StateChoice& choice) { return motion_.start(choice); }
-  Outcome step(const W& end);
+  Outcome steps(const W& end, Stretch<W>& stretch);
   Outcome at(const W& t) { return by_other_ ? other_->at(t) : motion_.at(t); }
   const Expansion<W>& point() const { return by_other_ ? other_->point() : motion_.point(); }
   const Expansion<W>& begun() const { return by_other_ ? other_->begun() : motion_.stepper().point(); }
@@ -104,7 +105,7 @@ class MethodCourse {
 
  private:
   const LeastRegular<double>& least_regular() const;
-  Outcome step_by_taylor(const W& end);
+  Outcome steps_by_taylor(const W& end, Stretch<W>& stretch);
   std::optional<Outcome> step_by_other(const W& end);
   Outcome go_on_from(const MotionPoint& p);
   std::optional<Outcome> help_from(const MotionPoint& p, std::size_t steps);

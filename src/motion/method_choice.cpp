@@ -20,10 +20,10 @@ constexpr double kEarly = 0.25, kFar = 0.05;
 
 }  // namespace
 
-void MethodChoice::note_step() {
+void MethodChoice::note_step(long double t) {
   if (times_.size() > 2 * kManySteps)
     times_.erase(times_.begin(), times_.end() - static_cast<std::ptrdiff_t>(kManySteps + 1));
-  times_.push_back(motion_.stepper().time());
+  times_.push_back(t);
 }
 
 std::optional<MethodChoice::Turn> MethodChoice::leave_taylor(long double end) {
@@ -47,6 +47,23 @@ std::optional<MethodChoice::Turn> MethodChoice::leave_taylor(long double end) {
   }
   if (steps >= next_stiff_ && far(kManySteps, 1)) return leave_for_bdf(end);
   return std::nullopt;
+}
+
+// Trials begin after fixed numbers of steps. Where the end is too near for one by a tenth, it stays so: the pace of the
+// last steps loses no more than the steps that are forgotten of it.
+std::size_t MethodChoice::stays_with_taylor(long double end, std::size_t most) const {
+  constexpr long double kSurely = 0.9L;
+  const Stepper<double>& taylor = motion_.stepper();
+  const std::size_t steps = taylor.steps(), known = times_.size();
+  if (taylor.kinks() >= next_kinks_) return 1;
+  most = std::min(most, kManySteps / 2);
+  if (log_tolerance_ >= kLoose && steps <= kFewSteps) most = std::min(most, kFewSteps + 1 - steps);
+  if (steps < next_stiff_) return std::min(most, next_stiff_ - steps);
+  if (known <= kManySteps) return std::min(most, kManySteps + 1 - known);
+  const long double passed = times_[known - 1] - times_[known - 1 - kManySteps + most],
+                    pace = std::abs(passed) / static_cast<long double>(static_cast<double>(kManySteps));
+  return std::abs(end - taylor.time()) < kSurely * pace * static_cast<long double>(static_cast<double>(steps)) ? most
+                                                                                                               : 1;
 }
 
 std::optional<MethodChoice::Turn> MethodChoice::leave_for_bdf(long double end) {

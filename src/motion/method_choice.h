@@ -18,12 +18,15 @@ class MethodChoice {
   MethodChoice(StateSteppers& steppers, const Motion<double>& motion, double log_tolerance)
       : steppers_(steppers), motion_(motion), log_tolerance_(log_tolerance) {}
 
-  // Taylor has made a step.
-  void note_step();
+  // Taylor has made a step to t.
+  void note_step(long double t);
   // Whether another method goes on towards `end` in place of Taylor; nullopt if Taylor does.
   std::optional<Turn> leave_taylor(long double end);
   // The same for BDF alone.
   std::optional<Turn> leave_for_bdf(long double end);
+  // After nullopt: for how many steps the answer is known to be the same, at least one, at most `most`, as long as they
+  // meet no kink.
+  std::size_t stays_with_taylor(long double end, std::size_t most) const;
   // Another method has taken over where Taylor's motion is.
   void begin_other();
   // Whether the other method has cost more than Taylor would, over its last steps.

@@ -62,23 +62,35 @@ void Motion<N>::accelerate(Leg& leg) const {
       leg.plan = given_->plan, leg.unmapped_plan = given_->unmapped_plan, leg.writing = given_->writing;
       return;
     }
-    std::vector<double> state;
-    for (const W& x : start_.state) state.push_back(to_double(x));
-    const double t = to_double(start_.t);
-    const auto derived =
-        KernelPlan::make(std::make_shared<const Program>(leg.program), leg.stepper.order() - 1, parameters_, t, state);
+    const auto derived = KernelPlan::make(std::make_shared<const Program>(leg.program), leg.stepper.order() - 1,
+                                          parameters_, to_double(start_.t), {start_.state.begin(), start_.state.end()});
     leg.stepper.accelerate(derived);
     if (!leg.stepper.accelerated()) return;
-    const std::vector<Representation> list = representations(
-        {derived, leg.structure, leg.quadratures, parameters_, t, state, workspace(leg).mechanics.get()}, effort_);
-    const Representation& best = settings_.multipliers ? cheapest_unmapped(list) : cheapest(list);
-    if (best.plan != derived) leg.stepper.accelerate(best.plan);
-    leg.plan = best.plan;
+    const std::vector<Representation> list = representations(to_represent(leg, derived), effort_);
+    const Representation& taken = best(list);
+    if (taken.plan != derived) leg.stepper.accelerate(taken.plan);
+    leg.plan = taken.plan;
     leg.unmapped_plan = cheapest_unmapped(list).plan;
-    leg.writing = best.writing;
+    leg.writing = taken.writing;
+    if (effort_ == WritingEffort::at_once) leg.at_once = list;
   } else {
     (void)leg;
   }
+}
+
+template <Number N>
+ToRepresent Motion<N>::to_represent(const Leg& leg, std::shared_ptr<const KernelPlan> derived) const {
+  std::vector<double> state;
+  for (const W& x : start_.state) state.push_back(to_double(x));
+  ToRepresent e{std::move(derived),
+                leg.structure,
+                leg.quadratures,
+                {},
+                to_double(start_.t),
+                std::move(state),
+                workspace(leg).mechanics.get()};
+  if constexpr (std::same_as<N, double>) e.parameters = parameters_;
+  return e;
 }
 
 // The effort depends on the steps made alone, so that a run that goes on makes the same. Where coordinates are
@@ -89,6 +101,11 @@ void Motion<N>::write_anew() {
   if (effort <= effort_ || leg_->pivots || !leg_->stepper.accelerated()) return;
   effort_ = effort;
   given_.reset();
+  // What was found without effort is the same as before.
+  if (std::vector<Representation> list = leg_->at_once; !list.empty()) {
+    add_representations(to_represent(*leg_, list.front().plan), effort, list);
+    if (best(list).writing == leg_->writing) return;
+  }
   auto next = same_leg();
   accelerate(*next);
   if (next->writing == leg_->writing || !next->stepper.take_over(leg_->stepper).ok()) return;
@@ -102,14 +119,18 @@ static bool can_go_on(OutcomeKind kind) {
          kind == OutcomeKind::no_convergence;
 }
 
+// What is done between steps needs no step by step: the pivots of an elimination do, and the equations are written
+// anew after fixed numbers of steps.
 template <Number N>
-Outcome Motion<N>::step(const W& end) {
+Outcome Motion<N>::steps(const W& end, Stretch<W>& stretch) {
   if (stepped_ && leg_->pivots && pivot_is_small(present())) eliminate_again();
   if (stepped_) write_anew();
+  stretch.limit(leg_->pivots ? 1 : steps_with_effort(leg_->stepper.steps()));
   code_.step(leg_->plan, to_double(leg_->stepper.time()), to_double(end));
   const Mark before{choices_.size(), chosen_};
-  const std::size_t expansions = leg_->stepper.expansions();
-  Outcome o = leg_->stepper.step(end);
+  const std::size_t expansions = leg_->stepper.expansions(), steps = leg_->stepper.steps();
+  Outcome o = leg_->stepper.steps(end, stretch);
+  code_.count(leg_->stepper.steps() - steps);
   if (leg_->stepper.expansions() != expansions) mark_ = before, begun_parameters_ = parameters_;
   // Near a zero of a pivot the form of the equations fails, not the motion: another elimination goes on.
   if (!o.ok() && leg_->pivots && can_go_on(o.kind) && eliminate_again()) o = leg_->stepper.step(end);

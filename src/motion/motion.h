@@ -47,6 +47,8 @@ class Motion {
     given_ = GivenPlans{first.leg_->plan, first.leg_->unmapped_plan, first.leg_->writing};
     effort_ = first.effort_;
   }
+  // The motion will be computed once more, with somewhat shorter steps.
+  void expect_second_run() { code_.expect(kBothRuns); }
   // From the consistent state; on request from one that differs from it by some round-offs.
   void start_in_other_digits(bool other) { other_digits_ = other; }
   Outcome start(const StateChoice& choice);
@@ -58,8 +60,13 @@ class Motion {
   Outcome resume(const StateChoice& choice, const SavedRun& from);
   // The solution at a place that was foretold (integrate/stepper.h), in `point()`.
   Outcome settle_at(const Start<W>& place);
-  // One step towards `end`, with another elimination where this one fails or its pivots have become small.
-  Outcome step(const W& end);
+  // A stretch of steps towards `end`, or one, with another elimination where this one fails or its pivots have become
+  // small.
+  Outcome steps(const W& end, Stretch<W>& stretch);
+  Outcome step(const W& end) {
+    Stretch<W> one;
+    return steps(end, one);
+  }
   // The solution anywhere in the last step, with the orders beyond where there are any.
   Outcome at(const W& t);
   const Expansion<W>& point() const { return leg_->point; }
@@ -103,6 +110,7 @@ class Motion {
     std::shared_ptr<const KernelPlan> plan;  // of the stepper's kernel, if it has one
     std::shared_ptr<const KernelPlan> unmapped_plan;
     Writing writing = Writing::derived;
+    std::vector<Representation> at_once;    // among which that was chosen without effort
     std::unique_ptr<OutputTape<W>> pivots;  // of the elimination, where there are any
   };
 
@@ -127,6 +135,10 @@ class Motion {
   const Expansion<W>& present();
   InitialState<double> here();
   void accelerate(Leg& leg) const;
+  ToRepresent to_represent(const Leg& leg, std::shared_ptr<const KernelPlan> derived) const;
+  const Representation& best(const std::vector<Representation>& list) const {
+    return settings_.multipliers ? cheapest_unmapped(list) : cheapest(list);
+  }
   void write_anew();
   std::unique_ptr<Leg> same_leg() const;
   std::unique_ptr<Leg> derived_at(const InitialState<double>& here) const;
@@ -134,6 +146,8 @@ class Motion {
   std::size_t levels() const {
     return 2 + static_cast<std::size_t>(s_.routh ? std::max(0, largest_order(s_, s_.structure.d) - 1) : 0);
   }
+
+  static constexpr double kBothRuns = 2.25;
 
   Workspace& s_;
   std::unique_ptr<const Workspace> base_;  // as `s_` was when the motion was made, where legs may be derived from it

@@ -152,6 +152,22 @@ std::optional<Representation> in_quasi_velocities(const ToRepresent& e) {
   return found;
 }
 
+// The stepper follows roots of even powers by the slots of the derived tape.
+bool followed_by_slots(const KernelPlan& plan) { return !plan.plan().roots_of_even_powers.empty(); }
+
+bool large(const KernelPlan& derived) { return derived.program().unknowns() > kMostUnknowns; }
+
+// Where few unknowns ask for refined solutions, J has rounded something away, and no writing is as good as another.
+// The condition of a long chain asks for them in any writing, sooner or later.
+void add(const ToRepresent& e, Writing writing, std::shared_ptr<const Program> p, std::vector<Representation>& list) {
+  if (!p) return;
+  const KernelPlan& first = *e.derived;
+  auto plan = KernelPlan::make(std::move(p), first.plan().stages, e.parameters, e.t, e.state, first.company());
+  if (plan && (large(first) || plan->tables().refine == first.tables().refine) && !followed_by_slots(*plan) &&
+      difference(e, e.derived, plan) < kAgree)
+    list.push_back({writing, std::move(plan), {}});
+}
+
 }  // namespace
 
 const char* name(Writing writing) {
@@ -174,29 +190,25 @@ const char* name(Writing writing) {
 
 std::vector<Representation> representations(const ToRepresent& e, WritingEffort effort) {
   std::vector<Representation> list{{Writing::derived, e.derived, {}}};
-  const auto& first = e.derived;
-  const Program& derived = first->program();
-  // The stepper follows such roots by the slots of the derived tape.
-  if (!first->plan().roots_of_even_powers.empty()) return list;
-  // Where few unknowns ask for refined solutions, J has rounded something away, and no writing is as good as another.
-  // The condition of a long chain asks for them in any writing, sooner or later.
-  const bool large = derived.unknowns() > kMostUnknowns;
-  const auto add = [&](Writing writing, std::shared_ptr<const Program> p) {
-    auto plan = p ? KernelPlan::make(std::move(p), first->plan().stages, e.parameters, e.t, e.state, first->company())
-                  : nullptr;
-    if (plan && (large || plan->tables().refine == first->tables().refine) &&
-        plan->plan().roots_of_even_powers.empty() && difference(e, first, plan) < kAgree)
-      list.push_back({writing, std::move(plan), {}});
-  };
-  if (!first->tables().refine || (large && derived.unknowns() <= kMostRefined)) add(Writing::rates, left_to_series(e));
-  if (!first->tables().refine)
+  const KernelPlan& first = *e.derived;
+  const Program& derived = first.program();
+  if (followed_by_slots(first)) return list;
+  if (!first.tables().refine || (large(first) && derived.unknowns() <= kMostRefined))
+    add(e, Writing::rates, left_to_series(e), list);
+  if (!first.tables().refine)
     if (auto quasi = in_quasi_velocities(e)) list.push_back(std::move(*quasi));
-  if (large) return list;
-  add(Writing::paired, std::make_shared<const Program>(program(*derived.system, e.structure, e.quadratures, true)));
-  if (first->tables().refine) return list;
-  if (effort >= WritingEffort::long_motion) add(Writing::expanded, rewritten(e, Writing::expanded));
-  if (effort >= WritingEffort::very_long_motion) add(Writing::arranged, rewritten(e, Writing::arranged));
+  if (large(first)) return list;
+  add(e, Writing::paired, std::make_shared<const Program>(program(*derived.system, e.structure, e.quadratures, true)),
+      list);
+  add_representations(e, effort, list);
   return list;
+}
+
+void add_representations(const ToRepresent& e, WritingEffort effort, std::vector<Representation>& list) {
+  const KernelPlan& first = *e.derived;
+  if (followed_by_slots(first) || large(first) || first.tables().refine) return;
+  if (effort >= WritingEffort::long_motion) add(e, Writing::expanded, rewritten(e, Writing::expanded), list);
+  if (effort >= WritingEffort::very_long_motion) add(e, Writing::arranged, rewritten(e, Writing::arranged), list);
 }
 
 std::size_t steps_before(WritingEffort effort) {
@@ -216,6 +228,13 @@ WritingEffort effort_after(std::size_t steps) {
   for (const WritingEffort e : kWritingEfforts)
     if (steps >= steps_before(e)) most = e;
   return most;
+}
+
+std::size_t steps_with_effort(std::size_t steps) {
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  for (const WritingEffort e : kWritingEfforts)
+    if (steps_before(e) > steps) least = std::min(least, steps_before(e) - steps);
+  return least;
 }
 
 const Representation& cheapest(const std::vector<Representation>& list) {

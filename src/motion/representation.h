@@ -30,9 +30,9 @@ struct ToRepresent {
   std::shared_ptr<const KernelPlan> derived;
   const Structure& structure;
   std::span<const Expr> quadratures;
-  const std::vector<long double>& parameters;
+  std::vector<long double> parameters;
   double t;
-  const std::vector<double>& state;
+  std::vector<double> state;
   const Mechanics* mechanics = nullptr;  // what the equations were derived from
 };
 
@@ -47,11 +47,15 @@ inline constexpr WritingEffort kWritingEfforts[] = {WritingEffort::at_once, Writ
 // After how many steps a motion makes it: about as long as the steps took by then.
 std::size_t steps_before(WritingEffort effort);
 WritingEffort effort_after(std::size_t steps);
+// How many steps more it lasts after so many.
+std::size_t steps_with_effort(std::size_t steps);
 
 // All that can be had with that effort, the derived one first. Where solutions have to be refined, equations that are
 // written out would lose the digits that refinement saves: there, and where a kernel has to know the slots of the
 // derived tape, others are left out.
 std::vector<Representation> representations(const ToRepresent& equations, WritingEffort effort);
+// Adds to those that can be had at once what more effort finds.
+void add_representations(const ToRepresent& equations, WritingEffort effort, std::vector<Representation>& list);
 // The first of the cheapest.
 const Representation& cheapest(const std::vector<Representation>& list);
 // … of those in the motion's own unknowns.

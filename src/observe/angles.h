@@ -5,6 +5,7 @@
 // Angles of joints are none of these: neither those that lie in a plane always, nor those of which some turn another
 // body with inertia.
 #pragma once
+#include "integrate/stretch.h"
 #include "setup/scenario.h"
 
 namespace anholon {
@@ -34,6 +35,16 @@ class AngleWatch {
     outputs_->evaluate_at([&](const Node& n, NodeId) { return n.kind == Kind::time ? t : coordinate(n.index); });
     note(t);
   }
+  // What it looks at next is far: as long as no coordinate of `stretch` leaves its value. Else after each step.
+  template <class W>
+  void keep_in(Stretch<W>& stretch) {
+    if (!outputs_) return;
+    if (looked_.empty() || !(margin_ > 0)) return stretch.limit(1);
+    kept_.clear();
+    for (std::size_t i = 0; i < coordinates_.size(); ++i) kept_.push_back({coordinates_[i], looked_[i]});
+    stretch.kept = kept_;
+    stretch.margin = margin_;
+  }
   void set_parameters(const std::vector<double>& parameters) {
     if (outputs_) outputs_->set_parameters(parameters);
     margin_ = 0;
@@ -57,6 +68,7 @@ class AngleWatch {
   bool by_coordinates_ = true;                 // on nothing else
   std::vector<double> looked_;                 // their values when the measures were evaluated last
   double margin_ = 0;
+  std::vector<Kept> kept_;  // the same for a stretch of steps
 };
 
 }  // namespace anholon

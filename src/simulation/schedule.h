@@ -47,6 +47,8 @@ class RowSchedule {
 
   // Whether a row is due at a time up to `stop`, or at t itself.
   bool due(const W& stop) const { return next_ < times_.size() && reaches(stop, times_[next_]); }
+  // The time of the next row; null if there is none.
+  const W* next() const { return next_ < times_.size() ? &times_[next_] : nullptr; }
   bool due_at(const W& t) const { return next_ < times_.size() && times_[next_] == t; }
   Due take() {
     const std::size_t k = next_++;

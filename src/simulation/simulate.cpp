@@ -93,6 +93,7 @@ class Run {
   Outcome begin() {
     if (Outcome o = course_.start(o_.state); !o.ok()) return o;
     schedule_ = RowSchedule<W>(o_, course_.time());
+    if (o_.estimate != ErrorEstimate::never) motion().expect_second_run();
     prepare_rows();
     if (course_.at(schedule_.start()).ok()) watch_.start(course_.point());
     if (Outcome o = motion().within_bounds(); !o.ok()) return o;
@@ -191,10 +192,26 @@ class Run {
     if (!report_.outcome.ok()) stopped();
   }
 
-  // One step, with its rows and events; returns false if it ends the motion before its end.
+  // What is due after the next step, or after several.
+  void limit_stretch() {
+    stretch_.restart();
+    const bool each = schedule_.every_step() || o_.dense || defect_ || watch_.any_redundant() ||
+                      masses_vary<N>(*s_.model, motion().stepper());
+    stretch_.most = each ? 1 : pace_.steps();
+    stretch_.until = schedule_.next();
+    angles_.keep_in(stretch_);
+  }
+
+  // A stretch of steps, with what is due after them: rows and events; returns false if it ends the motion before its
+  // end.
   bool step() {
     watch_.turn_over(course_.integrals()[0]);
-    if (Outcome o = course_.step(schedule_.end()); !o.ok()) {
+    limit_stretch();
+    Outcome o = course_.steps(schedule_.end(), stretch_);
+    watch_.turn_over(stretch_.greatest_integral);
+    // Before its last step there is nothing to do.
+    for (std::size_t i = 0; i + (o.ok() ? 1 : 0) < stretch_.times.size(); ++i) rows_.step(stretch_.times[i]);
+    if (!o.ok()) {
       report_.outcome = std::move(o);
       return false;
     }
@@ -433,6 +450,8 @@ class Run {
   Judge<N> judge_;
   SupportWatch supports_;
   EventPaces<W> paces_;
+  Stretch<W> stretch_;
+  StretchPace pace_;
   std::optional<Defect> defect_;
   std::optional<W> reached_;  // the time at which the motion ended before its end
   SimulationReport report_;

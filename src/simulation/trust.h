@@ -14,6 +14,14 @@ struct MassLimit {
   std::size_t mass = 0;  // which one, of the model
 };
 
+// Whether a mass may pass zero in a step.
+template <Number N>
+bool masses_vary(const Model& model, const Stepper<N>& stepper) {
+  for (std::size_t i = 0; i < model.masses.size(); ++i)
+    if (!model.masses[i].weight && !stepper.constant_quadrature(1 + i)) return true;
+  return false;
+}
+
 template <Number N>
 MassLimit<Wider<N>> masses_positive_until(const Model& model, const Course<N>& course) {
   using W = Wider<N>;

@@ -146,23 +146,28 @@ class Compiler {
       }
       if (list.size() > 1) products.push_back({id, std::move(list)});
     }
-    if (products.size() <= kMostProducts)
+    // In how many products each pair occurs: counted anew for those that a pair was taken out of.
+    std::map<Pair, std::size_t> count;
+    const auto tell = [&count](const std::vector<std::uint64_t>& list, bool more) {
+      std::set<Pair> seen;
+      for (std::size_t i = 0; i < list.size(); ++i)
+        for (std::size_t j = i + 1; j < list.size(); ++j)
+          if (const Pair pair{list[i], list[j]}; seen.insert(pair).second) more ? ++count[pair] : --count[pair];
+    };
+    if (products.size() <= kMostProducts) {
+      for (auto& [id, list] : products) {
+        std::sort(list.begin(), list.end());
+        tell(list, true);
+      }
       for (;;) {
-        std::map<Pair, std::size_t> count;
-        for (auto& [id, list] : products) {
-          std::sort(list.begin(), list.end());
-          std::set<Pair> seen;
-          for (std::size_t i = 0; i < list.size(); ++i)
-            for (std::size_t j = i + 1; j < list.size(); ++j)
-              if (seen.insert({list[i], list[j]}).second) ++count[{list[i], list[j]}];
-        }
         const auto best = std::max_element(count.begin(), count.end(),
                                            [](const auto& x, const auto& y) { return x.second < y.second; });
         if (best == count.end() || best->second < 2) break;
         const Pair pair = best->first;
         const std::uint64_t made = kPair + pairs_.size();
         pairs_.push_back(pair);
-        for (auto& [id, list] : products)
+        for (auto& [id, list] : products) {
+          bool changed = false;
           for (;;) {
             const auto first = std::find(list.begin(), list.end(), pair.first);
             if (first == list.end()) break;
@@ -171,10 +176,17 @@ class Compiler {
             if (second == list.end()) break;
             const std::size_t i = static_cast<std::size_t>(first - list.begin()),
                               j = static_cast<std::size_t>(second - list.begin());
+            if (!changed) tell(list, false);
+            changed = true;
             list[i] = made;
             list.erase(list.begin() + static_cast<std::ptrdiff_t>(j));
           }
+          if (!changed) continue;
+          std::sort(list.begin(), list.end());
+          tell(list, true);
+        }
       }
+    }
     for (auto& [id, list] : products) factors_[id] = std::move(list);
   }
 

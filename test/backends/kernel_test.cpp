@@ -310,13 +310,16 @@ TEST_P(CompiledKernelOf, HasTheSameBits) {
   ASSERT_EQ(r.why, "");
   const auto plain = r.plan(), compiled = r.plan();
   ASSERT_TRUE(plain && compiled);
-  const std::string why = compiled->compile({});
-  ASSERT_EQ(why, compiler() ? "" : "there is no compiler beside the program");
-  ASSERT_EQ(compiled->code() != nullptr, compiler() != nullptr);
   Kernel a(plain), b(compiled);
   for (Kernel* k : {&a, &b}) k->set_parameters(0, r.parameters);
   std::vector<double> state = Reference::narrow(r.start.state);
-  for (const double shift : {0.0, 1e-3}) {
+  // What is made quickly is replaced by what is made with effort, not the other way round.
+  for (const auto& [effort, shift] :
+       {std::pair(CodeEffort::quick, 0.0), std::pair(CodeEffort::full, 1e-3), std::pair(CodeEffort::quick, 1e-3)}) {
+    const std::string why = compiled->compile({}, 1, effort);
+    ASSERT_EQ(why, compiler() ? "" : "there is no compiler beside the program");
+    ASSERT_EQ(compiled->code() != nullptr, compiler() != nullptr);
+    if (compiler()) EXPECT_EQ(compiled->code()->effort, shift == 0 ? CodeEffort::quick : CodeEffort::full);
     for (double& x : state) x += shift;
     for (Kernel* k : {&a, &b}) {
       k->load(0, static_cast<double>(r.start.t) + shift, state, Reference::narrow(r.start.leading));
@@ -335,11 +338,12 @@ TEST_P(CompiledKernelOf, HasTheSameBits) {
 TEST_P(CompiledKernelOf, MovesWithTheSameBits) {
   const Reference r(GetParam());
   ASSERT_EQ(r.why, "");
-  for (const int lanes : {1, tiers().back().lanes}) {
+  for (const auto& [lanes, effort] : {std::pair(1, CodeEffort::quick), std::pair(1, CodeEffort::full),
+                                      std::pair(tiers().back().lanes, CodeEffort::full)}) {
     if (lanes > 1 && kLongest.contains(GetParam()) && !std::getenv("ANHOLON_LONG")) continue;
     const auto plain = r.plan(), compiled = r.plan();
     ASSERT_TRUE(plain && compiled);
-    ASSERT_EQ(compiled->compile({}, lanes), compiler() ? "" : "there is no compiler beside the program");
+    ASSERT_EQ(compiled->compile({}, lanes, effort), compiler() ? "" : "there is no compiler beside the program");
     Kernel a(plain, lanes), b(compiled, lanes);
     int comparison = 0;
     walk(r, {&a, &b}, [&] {

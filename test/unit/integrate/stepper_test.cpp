@@ -202,16 +202,17 @@ TEST(Stepper, ConstraintsHoldToRoundOffAlongTheWay) {
 
 // Where a kernel makes all expansions that it can.
 struct Accelerated {
-  explicit Accelerated(const Motion& motion, int order = 0)
-      : start(motion.start<long double>()),
-        steps(motion.stepping, motion.parameters_in<double>(), motion.parameters_in<long double>(), settings(order)) {
+  explicit Accelerated(const Motion& motion, int order = 0, bool ordinary = true)
+      : start(motion.start<long double>()), steps(motion.stepping, motion.parameters_in<double>(),
+                                                  motion.parameters_in<long double>(), settings(order, ordinary)) {
     steps.accelerate(KernelPlan::make(std::make_shared<const Program>(motion.stepping), steps.order() - 1,
                                       motion.parameters_in<long double>(), 0, {start.begin(), start.end()}));
   }
-  static StepSettings settings(int order) {
+  static StepSettings settings(int order, bool ordinary) {
     StepSettings s;
     s.order = order;
     s.measure = false;
+    s.ordinary_steps = ordinary;
     return s;
   }
   Outcome go(long double end) {
@@ -292,6 +293,96 @@ TEST(ByKernel, AStepperStartsAnewWithoutATrace) {
     EXPECT_EQ(once.steps.steps(), again.steps.steps()) << name;
     EXPECT_EQ(once.steps.begun().motion.state, again.steps.begun().motion.state) << name;
   }
+}
+
+void expect_equal(const Stepper<double>& a, const Stepper<double>& b, const std::string& where) {
+  EXPECT_EQ(a.time(), b.time()) << where;
+  EXPECT_EQ(a.before(), b.before()) << where;
+  EXPECT_EQ(a.state(), b.state()) << where;
+  EXPECT_EQ(a.leading(), b.leading()) << where;
+  EXPECT_EQ(a.integrals(), b.integrals()) << where;
+  EXPECT_EQ(a.steps(), b.steps()) << where;
+  EXPECT_EQ(a.expansions(), b.expansions()) << where;
+  EXPECT_EQ(a.expansions_by_kernel(), b.expansions_by_kernel()) << where;
+  EXPECT_EQ(a.worst_constraint(), b.worst_constraint()) << where;
+  const StepperState<double> x = a.begun(), y = b.begun();
+  EXPECT_EQ(x.motion.t, y.motion.t) << where;
+  EXPECT_EQ(x.motion.state, y.motion.state) << where;
+  EXPECT_EQ(x.motion.carry, y.motion.carry) << where;
+  EXPECT_EQ(x.motion.leading, y.motion.leading) << where;
+  EXPECT_EQ(x.motion.record.steps, y.motion.record.steps) << where;
+  EXPECT_EQ(x.motion.record.last_step, y.motion.record.last_step) << where;
+  EXPECT_EQ(x.motion.record.worst_constraint, y.motion.record.worst_constraint) << where;
+}
+
+// A wall that its series do not show from afar, so that ends of steps are refused, and motions without any such thing.
+const char* const kWall =
+    "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n[[force]]\nname = "
+    "\"f\"\non = \"p\"\nvector = \"(-x - 20*tanh(30*(x - 2)))*ex\"\n[initial]\nx = -3\n\"x'\" = 0\n";
+
+TEST(ByKernel, OrdinaryStepsHaveTheBitsOfThoseLookedAtClosely) {
+  std::vector<std::string> texts = {kWall};
+  for (const char* name : kModels) texts.push_back(test::shipped_text(name));
+  for (const std::string& text : texts)
+    for (const long double end : {40.0L, -40.0L}) {
+      const Motion motion(text);
+      Accelerated ordinary(motion), closely(motion, 0, false);
+      ASSERT_TRUE(ordinary.steps.accelerated());
+      Outcome a = ordinary.steps.start(0, ordinary.start), b = closely.steps.start(0, closely.start);
+      for (int k = 0; k < 600 && a.ok() && ordinary.steps.time() != end; ++k) {
+        a = ordinary.steps.step(end), b = closely.steps.step(end);
+        ordinary.steps.round_state(), closely.steps.round_state();
+        EXPECT_EQ(a.kind, b.kind) << text << " step " << k;
+        if (k % 37 == 0 || !a.ok()) expect_equal(ordinary.steps, closely.steps, text + " step " + std::to_string(k));
+      }
+      expect_equal(ordinary.steps, closely.steps, text);
+    }
+}
+
+TEST(ByKernel, AStretchHasTheBitsOfItsSteps) {
+  for (const char* name : kModels) {
+    const Motion motion(test::shipped_text(name));
+    Accelerated single(motion), together(motion);
+    ASSERT_TRUE(single.steps.start(0, single.start).ok());
+    ASSERT_TRUE(together.steps.start(0, together.start).ok());
+    const long double end = 10, until = 4.5L;
+    std::vector<long double> times;
+    std::size_t longest = 0;
+    Stretch<long double> stretch;
+    for (int k = 0; single.steps.time() != end; ++k) {
+      stretch.restart();
+      stretch.most = static_cast<std::size_t>(1 + k % 13);
+      stretch.until = together.steps.time() < until ? &until : nullptr;
+      ASSERT_TRUE(together.steps.steps(end, stretch).ok());
+      together.steps.round_state();
+      ASSERT_FALSE(stretch.times.empty());
+      EXPECT_LE(stretch.times.size(), stretch.most);
+      longest = std::max(longest, stretch.times.size());
+      for (std::size_t i = 0; i < stretch.times.size(); ++i) {
+        ASSERT_TRUE(single.steps.step(end).ok());
+        single.steps.round_state();
+        EXPECT_EQ(single.steps.time(), stretch.times[i]) << name;
+        if (i + 1 < stretch.times.size() && stretch.until) EXPECT_LT(stretch.times[i], until) << name;
+      }
+      expect_equal(single.steps, together.steps, name);
+    }
+    EXPECT_GT(longest, 1U) << name;
+  }
+}
+
+// x = -cos t: a stretch ends with the first step that begins where x has left its value.
+TEST(ByKernel, AStretchEndsWhereAnUnknownLeavesItsValue) {
+  const Motion motion(line("-x", "x = -1"));
+  Accelerated a(motion, 12);
+  ASSERT_TRUE(a.steps.start(0, a.start).ok());
+  const std::array<Kept, 1> kept = {{{0, -1}}};
+  Stretch<long double> stretch;
+  stretch.most = 1000, stretch.kept = kept, stretch.margin = 1.5;
+  ASSERT_TRUE(a.steps.steps(100, stretch).ok());
+  const auto at = [](long double t) { return -std::cos(static_cast<double>(t)); };
+  ASSERT_GE(stretch.times.size(), 2U);
+  for (std::size_t i = 0; i + 2 < stretch.times.size(); ++i) EXPECT_LT(at(stretch.times[i]) + 1, 1.5);
+  EXPECT_GE(at(a.steps.before()) + 1, 1.5);
 }
 
 // ---- what cannot be integrated has a name

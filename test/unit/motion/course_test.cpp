@@ -286,5 +286,56 @@ TEST(Course, ShippedModelsStayTaylors) {
   }
 }
 
+// A stretch of steps takes the same course as its steps one by one: trials of other methods begin after the same steps.
+TEST(Course, AStretchTakesTheCourseOfItsSteps) {
+  struct Run {
+    MethodReport report;
+    std::vector<long double> times, state;
+  };
+  const auto run = [](const std::string& text, double log_tolerance, long double end, std::size_t most) {
+    Scenario s;
+    if (const Outcome o = make_scenario(test::model_of(text), *find_formulation("routh"), {}, s); !o.ok())
+      throw std::runtime_error(o.message);
+    Workspace w(s);
+    StepSettings settings;
+    settings.log_tolerance = log_tolerance;
+    Course<double> course(w, settings, Method::automatic, {}, 1);
+    Outcome o = course.start({});
+    Run r;
+    Stretch<long double> stretch;
+    while (o.ok() && !(course.time() == end)) {
+      stretch.restart();
+      stretch.most = most;
+      o = course.steps(end, stretch);
+      r.times.insert(r.times.end(), stretch.times.begin(), stretch.times.end());
+    }
+    EXPECT_TRUE(o.ok()) << o.message;
+    r.report = course.report();
+    r.state = course.taylor().stepper().state();
+    return r;
+  };
+  struct Case {
+    std::string text;
+    double log_tolerance;
+    long double end;
+  };
+  std::size_t turns = 0, trials = 0;
+  for (const Case& c :
+       {Case{kStiff, std::log(1e-7), 3}, Case{test::shipped_text("zoo/disc"), std::log(1e-4), 30},
+        Case{test::shipped_text("zoo/disc"), std::log(1e-10), 1500}, Case{kTable, std::log(1e-9), 60}}) {
+    const Run one = run(c.text, c.log_tolerance, c.end, 1), many = run(c.text, c.log_tolerance, c.end, 64);
+    EXPECT_EQ(one.times, many.times);
+    EXPECT_EQ(one.state, many.state);
+    EXPECT_EQ(one.report.trials, many.report.trials);
+    EXPECT_EQ(one.report.steps, many.report.steps);
+    EXPECT_EQ(one.report.taylor_steps, many.report.taylor_steps);
+    ASSERT_EQ(one.report.turns.size(), many.report.turns.size());
+    for (std::size_t i = 0; i < one.report.turns.size(); ++i) EXPECT_EQ(one.report.turns[i].t, many.report.turns[i].t);
+    turns += one.report.turns.size(), trials += one.report.trials;
+  }
+  EXPECT_GT(turns, 0U) << "no motion of these has turned to another method";
+  EXPECT_GT(trials, 2U);
+}
+
 }  // namespace
 }  // namespace anholon::course_test

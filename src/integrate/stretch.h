@@ -1,0 +1,62 @@
+// Several steps that a caller asks for at once: what ends them, and what is known of each of them afterwards. Whoever
+// has something to do after every step asks for one step; who has nothing to do for a while says so here, and the
+// steps follow each other in one loop.
+#pragma once
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "numeric/number.h"
+
+namespace anholon {
+
+// An unknown that has to stay near a value.
+struct Kept {
+  std::size_t unknown;
+  double value;
+};
+
+template <Number W>
+struct Stretch {
+  // The stretch ends after so many steps, and with the first step that comes to `until`; none: the end of the motion.
+  std::size_t most = 1;
+  const W* until = nullptr;
+  // It ends with a step that begins where one of these is `margin` or more away.
+  std::span<const Kept> kept = {};
+  double margin = 0;
+
+  // The times where its steps end; the greatest absolute value of the first integral where they begin.
+  std::vector<W> times = {};
+  W greatest_integral{0};
+
+  void restart() {
+    times.clear();
+    greatest_integral = W(0);
+  }
+  void limit(std::size_t steps) {
+    if (steps < most) most = steps;
+  }
+};
+
+// How many steps are asked for at once, so that whoever waits for a motion (to stop it, for its rows, its progress, a
+// saved run) is asked often enough. That has no influence on the steps.
+class StretchPace {
+ public:
+  std::size_t steps() {
+    constexpr std::size_t kMost = 64;
+    constexpr std::chrono::microseconds kShort(500), kLong(5000);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - asked_ < kShort) steps_ = std::min(kMost, 2 * steps_);
+    if (now - asked_ > kLong) steps_ = 1;
+    asked_ = now;
+    return steps_;
+  }
+
+ private:
+  std::size_t steps_ = 1;
+  std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace anholon
