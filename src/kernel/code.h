@@ -8,7 +8,8 @@
 
 namespace anholon {
 
-// The parts of one expansion, and of motions (arithmetic.h); each takes the arena. The code exists as long as `keeper`.
+// The parts of one expansion, and of motions (arithmetic.h); each takes the arena. Of a long plan there is `extend`
+// alone. The code exists as long as `keeper`.
 struct Code {
   using Part = void (*)(double*);
   Part values = nullptr, factor = nullptr, lead = nullptr, extend = nullptr, measure = nullptr,
