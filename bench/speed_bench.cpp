@@ -103,7 +103,7 @@ const std::shared_ptr<const KernelPlan>& plan_of(Ready& r, double tolerance, con
              .plan;
   r.plan_made = watch.seconds();
   watch = {};
-  plan->compile({});
+  if (const std::string why = plan->compile({}); !why.empty()) std::cerr << why << "\n";
   r.compiled = watch.seconds();
   return plan;
 }

@@ -1,6 +1,8 @@
 // The module behind kernel/code.h: LLVM IR from the Emitter, machine code from ORC, stored on disk between runs.
+#include <atomic>
 #include <cmath>
 #include <mutex>
+#include <thread>
 
 #include <elf.h>
 #include <link.h>
@@ -61,14 +63,14 @@ std::string build_of(const void* address) {
 
 // Names all inputs of the code: this module, of which LLVM is a part, the machine, the plan. Returns false if the build
 // has no ID; stored code is then not used.
-bool name(const KernelTables& tables, int lanes, CodeEffort effort, int several_sines, const Builder& builder,
-          Key& key) {
+bool name(const KernelTables& tables, int lanes, CodeEffort effort, int several_sines, std::size_t part,
+          const Builder& builder, Key& key) {
   static const std::string ours = build_of(&anholon_compiler);
   if (ours.empty()) return false;
   Writer w;
   w.add(ours);
   w.add(builder.getTargetTriple().str()), w.add(builder.getCPU()), w.add(builder.getFeatures().getString());
-  w.add(std::to_string(lanes)), w.add(std::to_string(several_sines));
+  w.add(std::to_string(lanes)), w.add(std::to_string(several_sines)), w.add(std::to_string(part));
   w.add(std::string(effort == CodeEffort::quick ? "quick" : "full"));
   w.add(tables);
   key = w.key();
@@ -86,14 +88,15 @@ void select_quickly(llvm::Module& module) {
 }
 
 std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lanes, CodeEffort effort,
-                                             int several_sines, Builder& builder, std::string& message) {
+                                             int several_sines, std::size_t part, Builder builder,
+                                             std::string& message) {
   auto target = builder.createTargetMachine();
   if (!target) return message = text_of(target.takeError()), nullptr;
   llvm::LLVMContext context;
   llvm::Module module("kernel", context);
   module.setDataLayout((*target)->createDataLayout());
   module.setTargetTriple((*target)->getTargetTriple().str());
-  Emitter(tables, module, lanes, several_sines).run();
+  Emitter(tables, module, lanes, several_sines, part).run();
   if (effort == CodeEffort::quick) select_quickly(module);
   llvm::SmallVector<char, 0> bytes;
   llvm::raw_svector_ostream out(bytes);
@@ -104,8 +107,33 @@ std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lan
   return llvm::MemoryBuffer::getMemBufferCopy(llvm::StringRef(bytes.data(), bytes.size()), "kernel");
 }
 
-Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, int levels,
-            const CalledFunctions& called, std::string& message) {
+using Objects = std::vector<std::unique_ptr<llvm::MemoryBuffer>>;
+
+// The modules of a long plan are compiled by as many threads as the machine has. Returns nothing on failure.
+Objects compiled_all(const KernelTables& tables, int lanes, CodeEffort effort, int several_sines,
+                     const Builder& builder, std::string& message) {
+  const std::size_t count = Emitter::parts(tables);
+  Objects objects(count);
+  std::vector<std::string> messages(count);
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t part = next++; part < count; part = next++) try {
+        objects[part] = compiled(tables, lanes, effort, several_sines, part, builder, messages[part]);
+      } catch (const std::exception& error) {
+        messages[part] = error.what();  // the tables are used instead
+      }
+  };
+  std::vector<std::thread> others;
+  for (std::size_t i = 1; i < std::min<std::size_t>(count, std::thread::hardware_concurrency()); ++i)
+    others.emplace_back(work);
+  work();
+  for (std::thread& t : others) t.join();
+  for (std::size_t part = 0; part < count; ++part)
+    if (!objects[part]) return message = messages[part], Objects{};
+  return objects;
+}
+
+Code linked(Objects objects, const Builder& builder, int levels, const CalledFunctions& called, std::string& message) {
   // No platform is set: there are no initializers to run, and the general platform compiles a module of its own.
   auto jit = llvm::orc::LLJITBuilder()
                  .setJITTargetMachineBuilder(builder)
@@ -126,7 +154,8 @@ Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, 
   add("atan2", static_cast<double (*)(double, double)>(&std::atan2));
   if (auto error = (*jit)->getMainJITDylib().define(llvm::orc::absoluteSymbols(std::move(symbols))))
     return message = text_of(std::move(error)), Code{};
-  if (auto error = (*jit)->addObjectFile(std::move(object))) return message = text_of(std::move(error)), Code{};
+  for (auto& object : objects)
+    if (auto error = (*jit)->addObjectFile(std::move(object))) return message = text_of(std::move(error)), Code{};
   const auto find = [&](const std::string& part, auto& function) {
     auto symbol = (*jit)->lookup(part);
     if (symbol)
@@ -135,17 +164,19 @@ Code linked(std::unique_ptr<llvm::MemoryBuffer> object, const Builder& builder, 
       message = text_of(symbol.takeError());
   };
   Code made;
-  find("values", made.values);
-  find("factor", made.factor);
-  find("lead", made.lead);
   find("extend", made.extend);
-  find("measure", made.measure);
-  find("advance", made.advance);
-  find("begin", made.begin);
-  find("go_on", made.go_on);
-  made.level.resize(static_cast<std::size_t>(levels));
-  for (int level = 1; level <= levels; ++level)
-    find(Emitter::level_name(level), made.level[static_cast<std::size_t>(level - 1)]);
+  if (objects.size() == 1) {
+    find("values", made.values);
+    find("factor", made.factor);
+    find("lead", made.lead);
+    find("measure", made.measure);
+    find("advance", made.advance);
+    find("begin", made.begin);
+    find("go_on", made.go_on);
+    made.level.resize(static_cast<std::size_t>(levels));
+    for (int level = 1; level <= levels; ++level)
+      find(Emitter::level_name(level), made.level[static_cast<std::size_t>(level - 1)]);
+  }
   if (!message.empty()) return {};
   made.keeper = std::shared_ptr<void>(jit->release(), [](void* p) { delete static_cast<llvm::orc::LLJIT*>(p); });
   return made;
@@ -176,29 +207,36 @@ void compile(const KernelTables& tables, int lanes, CodeEffort effort, const Cal
   // Called functions may be anywhere and are reached by stubs; constants are beside the code and are operands.
   builder->setCodeModel(llvm::CodeModel::Small);
 
-  // Better code than asked for is taken if it is there.
-  Key key;
-  Store store{std::string()};
+  // The code of a long plan is made once. Better code than asked for is taken if it is there.
+  const std::size_t parts = Emitter::parts(tables);
+  if (parts > 1) effort = CodeEffort::full;
+  std::vector<Key> keys(parts);
+  const auto named = [&](CodeEffort e) {
+    bool all = !cache.empty();
+    for (std::size_t part = 0; part < parts && all; ++part)
+      all = name(tables, lanes, e, called.several, part, *builder, keys[part]);
+    return all;
+  };
+  Objects objects;
   for (const CodeEffort e : {CodeEffort::full, effort}) {
-    if (cache.empty() || !name(tables, lanes, e, called.several, *builder, key)) break;
-    store = Store(cache);
-    if (auto kept = store.read(key)) {
+    if (!named(e)) break;
+    const Store store(cache);
+    objects.clear();
+    for (const Key& key : keys)
+      if (auto kept = store.read(key)) objects.push_back(std::move(kept));
+    if (objects.size() == parts) {
       std::string why;
-      code = linked(std::move(kept), *builder, Emitter::levels(tables), called, why);
+      code = linked(std::move(objects), *builder, Emitter::levels(tables), called, why);
       code.effort = e;
-      if (code.values) return;
+      if (code.extend) return;
     }
     if (effort == e) break;
   }
-  std::unique_ptr<llvm::MemoryBuffer> object;
-  try {
-    object = compiled(tables, lanes, effort, called.several, *builder, message);
-  } catch (const std::exception& error) {
-    message = error.what();  // the tables are used instead
-  }
-  if (!object) return;
-  store.write(key, *object);
-  code = linked(std::move(object), *builder, Emitter::levels(tables), called, message);
+  const Store store(named(effort) ? cache : std::string());
+  objects = compiled_all(tables, lanes, effort, called.several, *builder, message);
+  if (objects.empty()) return;
+  for (std::size_t part = 0; part < parts; ++part) store.write(keys[part], *objects[part]);
+  code = linked(std::move(objects), *builder, Emitter::levels(tables), called, message);
   code.effort = effort;
 }
 

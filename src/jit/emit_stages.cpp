@@ -54,20 +54,20 @@ Emitter::over_known(std::uint8_t lead, const std::vector<Value*>& sums,
 }
 
 // For the four orders of a block at once: the sum over j of a_j b_(p-j) with both known before the block.
-void Emitter::known_before(const Convolution* group, std::size_t count) {
+void Emitter::known_before(std::uint8_t lead, const std::vector<InLanes>& group) {
   auto* four = llvm::FixedVectorType::get(b_.getDoubleTy(), kBlock);
-  const std::uint8_t l = group[0].lead;
+  const std::size_t count = group.size();
   Value* zero = llvm::ConstantAggregateZero::get(four);
   std::vector<Value*> sums(count, zero);
-  const auto b_at = [&](std::uint32_t b, Value* j) {  // b_(K-j) .. b_(K-j+3), K = k0 + lead
-    Value* base = b_.CreateInBoundsGEP(b_.getDoubleTy(), address(std::int64_t{b} + l, true), b_.CreateNeg(j));
+  const auto b_at = [&](Value* b, Value* j) {  // b_(K-j) .. b_(K-j+3), K = k0 + lead
+    Value* base = b_.CreateInBoundsGEP(b_.getDoubleTy(), b, b_.CreateNeg(j));
     return b_.CreateAlignedLoad(four, base, llvm::Align(8));
   };
-  const auto a_at = [&](std::uint32_t a, Value* j) {
-    Value* at = b_.CreateInBoundsGEP(b_.getDoubleTy(), address(a, false), j);
+  const auto a_at = [&](Value* a, Value* j) {
+    Value* at = b_.CreateInBoundsGEP(b_.getDoubleTy(), a, j);
     return b_.CreateVectorSplat(kBlock, b_.CreateAlignedLoad(b_.getDoubleTy(), at, llvm::Align(8)));
   };
-  sums = over_known(l, sums, [&](Value* j, const std::vector<Value*>& so_far) {
+  sums = over_known(lead, sums, [&](Value* j, const std::vector<Value*>& so_far) {
     std::vector<Value*> r;
     for (std::size_t k = 0; k < count; ++k) r.push_back(fma(a_at(group[k].a, j), b_at(group[k].b, j), so_far[k]));
     return r;
@@ -80,8 +80,7 @@ void Emitter::known_before(const Convolution* group, std::size_t count) {
       Value* b = b_.CreateShuffleVector(b_at(group[k].b, b_.getInt64(static_cast<std::uint64_t>(j))), zero, mask);
       sums[k] = fma(a_at(group[k].a, b_.getInt64(static_cast<std::uint64_t>(j))), b, sums[k]);
     }
-  for (std::size_t k = 0; k < count; ++k)
-    b_.CreateAlignedStore(sums[k], own(place_of_sum(group[k], 0, false)), llvm::Align(32));
+  for (std::size_t k = 0; k < count; ++k) b_.CreateAlignedStore(sums[k], group[k].sums, llvm::Align(32));
 }
 
 // As above if every order is a vector of lanes: b_(K-j) .. b_(K-j+3) move by one with j.
@@ -129,21 +128,18 @@ void Emitter::known_before_in_lanes(llvm::Type* lane, std::uint8_t lead, const s
 
 void Emitter::bulk() {
   const std::vector<Convolution>& all = memory_->alone();
-  if (lanes_ == 1) {
-    for_runs(all, kSideBySide, [&](std::size_t from, std::size_t to) { known_before(&all[from], to - from); });
-    pack_histories();
-    return;
-  }
-  for_runs(all, kSideBySideInLanes, [&](std::size_t from, std::size_t to) {
+  for_runs(all, lanes_ == 1 ? kSideBySide : kSideBySideInLanes, [&](std::size_t from, std::size_t to) {
     std::vector<InLanes> group;
     for (std::size_t i = from; i < to; ++i)
       group.push_back({address(all[i].a, false), address(std::int64_t{all[i].b} + all[i].lead, true),
                        own(place_of_sum(all[i], 0, false))});
-    known_before_in_lanes(lane_, all[from].lead, group);
+    lanes_ == 1 ? known_before(all[from].lead, group) : known_before_in_lanes(lane_, all[from].lead, group);
   });
+  if (lanes_ == 1) pack_histories();
 }
 
 std::uint32_t Emitter::place_of_sum(const Convolution& c, int order, bool new_of_a) const {
+  if (!listed_at_.empty()) return listed_at_.at(c) + static_cast<std::uint32_t>(order + kBlock * new_of_a);
   const PackedMemory::Sums& sums = memory_->sums(c);
   return sums.at + sums.step * static_cast<std::uint32_t>(order + kBlock * new_of_a);
 }
@@ -268,14 +264,23 @@ void Emitter::stages_in_parts(const std::vector<Step>& steps, bool solved) {
 
 void Emitter::extend() {
   begin("extend");
-  stages(p_.stage, true);
-  if (!p_.after.empty()) {
-    stage_ = 0;
-    forget();
-    for (const Step& s : p_.after) value(s);
-    stages(p_.after, false);
+  if (k_.sums != 0) {
+    if (part_ != 0) function_->setLinkage(llvm::Function::PrivateLinkage);
+    stages_in_pieces();
+    if (part_ == 0) extend_after();
+    return end();
   }
+  stages(p_.stage, true);
+  extend_after();
   end();
+}
+
+void Emitter::extend_after() {
+  if (p_.after.empty()) return;
+  stage_ = 0;
+  forget();
+  for (const Step& s : p_.after) value(s);
+  stages(p_.after, false);
 }
 
 }  // namespace anholon::jit

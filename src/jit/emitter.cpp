@@ -11,13 +11,14 @@ namespace {
 constexpr double kLongElimination = 100;
 }  // namespace
 
-Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes, int several_sines)
-    : StageCode(tables, module, lanes), several_sines_(several_sines), asked_(p_.rows, false) {
+Emitter::Emitter(const KernelTables& tables, llvm::Module& module, int lanes, int several_sines, std::size_t part)
+    : StageCode(tables, module, lanes), several_sines_(several_sines), part_(part), asked_(p_.rows, false) {
   for (std::size_t j = 0; j < p_.x.size(); ++j) asked_[j] = true;
   for (const Completion& c : p_.completions) asked_[c.column] = true;
 }
 
 void Emitter::run() {
+  if (k_.sums != 0) return extend();
   const SparseLu& e = *k_.elimination;
   if (k_.refine || (e.influences.empty() ? e.work() > kLongElimination : lanes_ > 1 && !e.own.empty())) substitution();
   values();
@@ -45,17 +46,20 @@ llvm::Function* Emitter::begin_part(const std::string& name) {
   return function_;
 }
 
+void Emitter::complete_unknown(std::size_t j, Value* solved, bool start) {
+  Value* change = p_.d[j] > 0 ? over_rising(solved, p_.d[j]) : solved;
+  put({p_.x[j], true}, p_.d[j], start ? b_.CreateFAdd(get({p_.x[j], true}, p_.d[j]), change) : change);
+}
+
+void Emitter::complete_slot(const Completion& c, Value* solved, bool start) {
+  Value* change = c.lead > 0 ? over_rising(solved, c.lead) : solved;
+  put(c.out, c.lead, start || !c.fresh ? b_.CreateFAdd(get(c.out, c.lead), change) : change);
+}
+
 void Emitter::complete() {
   const bool start = !relative_ && stage_ == 0;
-  for (std::size_t j = 0; j < p_.x.size(); ++j) {
-    Value* change = p_.d[j] > 0 ? over_rising(solution_[j], p_.d[j]) : solution_[j];
-    put({p_.x[j], true}, p_.d[j], start ? b_.CreateFAdd(get({p_.x[j], true}, p_.d[j]), change) : change);
-  }
-  for (const Completion& c : p_.completions) {
-    Value* change = solution_[c.column];
-    if (c.lead > 0) change = over_rising(change, c.lead);
-    put(c.out, c.lead, start || !c.fresh ? b_.CreateFAdd(get(c.out, c.lead), change) : change);
-  }
+  for (std::size_t j = 0; j < p_.x.size(); ++j) complete_unknown(j, solution_[j], start);
+  for (const Completion& c : p_.completions) complete_slot(c, solution_[c.column], start);
   for (const Step& s : p_.weigh_again) {
     if (start && s.lead == 0) continue;  // the weight of order 0 is zero
     coefficient(s);

@@ -32,7 +32,9 @@ void for_runs(const List& list, std::size_t most, const Body& body) {
 class Emitter : StageCode {
  public:
   // `several_sines`: the number of angles that anholon_several_sines takes.
-  Emitter(const KernelTables& tables, llvm::Module& module, int lanes, int several_sines);
+  // The code of a long plan is in several modules, of which this one has number `part`.
+  Emitter(const KernelTables& tables, llvm::Module& module, int lanes, int several_sines, std::size_t part = 0);
+  static std::size_t parts(const KernelTables& tables) { return tables.sums != 0 ? kParts : 1; }
   // Emits the parts of kernel/code.h: "values", "factor", "lead" (residual and completion of stage 0), "extend",
   // "measure", "advance", "begin", "go_on", and "level1", …: the solution for the residuals of hidden constraints.
   void run();
@@ -47,6 +49,31 @@ class Emitter : StageCode {
   struct InLanes {
     Value *a, *b, *sums;
   };
+
+  // Pieces of long plans (emit_pieces.cpp).
+  static constexpr std::size_t kParts = 8;
+  struct Run {
+    std::uint8_t lead;
+    std::size_t from, to;  // histories
+  };
+  struct Piece {
+    llvm::Function* code;
+    std::vector<Run> histories;  // that it needs
+  };
+  void stages_in_pieces();
+  void find_crossing_numbers();
+  std::vector<std::vector<Run>> list_histories();
+  Piece piece(const std::string& name, const std::function<void()>& body);
+  std::vector<Piece> pieces_of_steps();
+  void pieces_of_solution(std::vector<Piece>& out);
+  void pieces_of_substitution(std::vector<Piece>& out, std::int64_t solution, bool all_sides);
+  void pieces_of_residual(std::vector<Piece>& out);
+  void pieces_of_completion(std::vector<Piece>& out);
+  llvm::Function* loop_over_histories(const std::string& name,
+                                      const std::function<void(const std::vector<InLanes>&)>& body);
+  llvm::Function* histories_known(std::uint8_t lead);
+  llvm::Function* histories_of_first(std::uint8_t lead, int stage);
+  llvm::Function* histories_of_place(std::uint8_t lead, int place);
 
   // Begins a function of the arena and of `places` places in it; `answers`: it returns a value.
   void begin(const char* name, unsigned places = 0, bool answers = false);
@@ -70,6 +97,7 @@ class Emitter : StageCode {
   void advance();
   std::vector<Value*> increments();
   void extend();
+  void extend_after();
   // Emits all stages from 1 on of a list, in blocks.
   void stages(const std::vector<Step>& steps, bool solved);
   void stages_in_line(const std::vector<Step>& steps, bool solved);
@@ -79,7 +107,7 @@ class Emitter : StageCode {
   void over_blocks(const std::function<void(Value* k0)>& before, const std::function<void(Value* k0, int i)>& body);
   void bulk();
   llvm::AllocaInst* scratch_memory();
-  void known_before(const Convolution* group, std::size_t count);
+  void known_before(std::uint8_t lead, const std::vector<InLanes>& group);
   void known_before_in_lanes(llvm::Type* lane, std::uint8_t lead, const std::vector<InLanes>& group);
   void pack_histories();
   void pack_stage();
@@ -109,6 +137,8 @@ class Emitter : StageCode {
   void substitute(bool all_sides = false);
   void substitution();
   void complete();
+  void complete_unknown(std::size_t j, Value* solved, bool start);
+  void complete_slot(const Completion& c, Value* solved, bool start);
 
   void begin_motion();
   void judge(const std::vector<Value*>& lu);
@@ -122,7 +152,12 @@ class Emitter : StageCode {
   std::uint32_t place_of_sum(const Convolution& c, int order, bool new_of_a) const;
 
   const int several_sines_;
-  std::vector<bool> asked_;  // columns of the solution
+  const std::size_t part_;
+  std::size_t made_ = 0;                            // pieces
+  std::vector<Convolution> listed_;                 // histories of long plans
+  std::map<Convolution, std::uint32_t> listed_at_;  // places of their sums
+  llvm::GlobalVariable* places_ = nullptr;          // of their factors
+  std::vector<bool> asked_;                         // columns of the solution
   llvm::Function *substitution_ = nullptr, *advance_ = nullptr;
   std::optional<PackedMemory> memory_;  // places in the scratch memory
   Value *scratch_ = nullptr, *sines_ = nullptr;

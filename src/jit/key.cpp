@@ -136,11 +136,12 @@ void Writer::add(const KernelTables& tables) {
   // Knots are omitted: models with tables are not compiled. The places of motions to read and write are arguments of
   // the code.
   [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, inverse, rhs, side, solution, refined,
-                                entries, step, weights, increments, motions, projected, margin, inverse_pivots, found,
-                                size, state_size, judged, refine, factorial, inverse_factorial, order, rising, orders] =
-      tables;
+                                entries, step, weights, increments, sums, motions, projected, margin, inverse_pivots,
+                                found, size, state_size, judged, refine, factorial, inverse_factorial, order, rising,
+                                orders] = tables;
   all(*plan, *elimination, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, weights, increments,
-      margin, inverse_pivots, found, state_size, judged, refine, factorial, inverse_factorial, order, rising, orders);
+      sums, margin, inverse_pivots, found, state_size, judged, refine, factorial, inverse_factorial, order, rising,
+      orders);
 }
 
 }  // namespace anholon::jit

@@ -35,8 +35,8 @@ void StageCode::put(const Place& place, int lead, Value* v) {
       before = made;
     }
   }
-  // Beyond stage 0 the value is not needed again.
-  else if (!relative_ && stage_ <= 0)
+  // Beyond stage 0 the value is not needed again, except in other functions.
+  else if ((!relative_ && stage_ <= 0) || crossing_.count(place.at) != 0)
     store(v, place.at);
 }
 

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 
 #include <llvm/IR/ValueHandle.h>
 
@@ -48,6 +49,7 @@ class StageCode : public ArenaCode {
   std::map<std::pair<std::uint32_t, int>, Value*> known_;       // values by place and order
   std::map<Convolution, std::pair<Value*, Value*>> histories_;  // of the present stage
   std::unordered_map<Value*, Origin> origins_;
+  std::unordered_set<std::uint32_t> crossing_;  // numbers of a stage that another function reads
   // Loads and stores of all parts, by series.
   std::vector<std::pair<std::uint32_t, llvm::WeakVH>> reads_, puts_;
 

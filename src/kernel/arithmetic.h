@@ -44,6 +44,12 @@ struct Findings {
   static constexpr std::uint32_t kCount = 9;
 };
 
+// Machine code of a long plan is in pieces of at most this many steps of a stage; histories (sweep.h: convolution) are
+// summed in loops over this many at once, and each has room for the sums of a block of orders and for as many of new
+// coefficients.
+inline constexpr std::size_t kStepsOfPiece = 200, kHistoriesAtOnce = 4;
+inline constexpr std::uint32_t kSumsOfHistory = 2 * kBlock;
+
 // Tables that are not changed after their construction; the kernels of all threads share them.
 struct KernelTables {
   const Plan* plan = nullptr;
@@ -55,6 +61,8 @@ struct KernelTables {
   // Places in the arena.
   std::uint32_t lu = 0, reciprocal = 0, inverse = 0, rhs = 0, side = 0, solution = 0, refined = 0, entries = 0,
                 step = 0, weights = 0, increments = 0;
+  // Of a long plan, whose machine code is in pieces (jit/emit_pieces.cpp): the sums of its histories; else 0.
+  std::uint32_t sums = 0;
   // States of motions: x_j^(k), k < d_j, as sums of two doubles, first all larger parts, then first guesses of
   // x_j^(d_j). Three places take turns: the start of the next expansion, of the present one, of the one before.
   // `projected`, without guesses: the present state after projection.

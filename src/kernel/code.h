@@ -12,7 +12,8 @@ namespace anholon {
 // Machine code that is made in half the time, or better code: a sixth faster at most. The bits are the same.
 enum class CodeEffort : std::uint8_t { quick, full };
 
-// The parts of one expansion, and of motions (arithmetic.h); each takes the arena. The code exists as long as `keeper`.
+// The parts of one expansion, and of motions (arithmetic.h); each takes the arena. Of a long plan there is `extend`
+// alone. The code exists as long as `keeper`.
 struct Code {
   using Part = void (*)(double*);
   Part values = nullptr, factor = nullptr, lead = nullptr, extend = nullptr, measure = nullptr,

@@ -19,9 +19,11 @@ constexpr double kAround = 3.3;
 // An operation that waits for the previous one costs as much as this number of others: measured on small systems and
 // chains.
 constexpr double kWaiting = 5;
-// The limits of steps of a stage and of operations of the elimination: beyond them the compilation would take more than
-// some five seconds.
+// The limits of steps of a stage and of operations of the elimination: beyond them machine code is made in pieces, for
+// one lane; the compilation as a whole would take more than some five seconds.
 constexpr std::size_t kMostCompiled = 1000, kMostEliminated = 12000;
+// The limits for code in pieces; it takes some two milliseconds a link of a chain.
+constexpr std::size_t kMostInPieces = 100'000, kMostEliminatedInPieces = 1'000'000;
 // The inverse of J replaces an elimination if it has at most this number of entries: it has more operations, but they
 // do not wait for each other. It is tried first for all that a stage needs, then for the unknowns alone.
 constexpr std::size_t kMostInfluences = 64;
@@ -30,6 +32,19 @@ constexpr std::size_t kMostInfluencesOfUnknowns = 48 * 48, kMostInLanes = 100;
 // motions by a factor of two at most, mostly not at all (chains of 8 to 64 links, whose solutions it changes by 8 to
 // 360 round-offs: bench/RESULTS.md).
 constexpr double kRefined = 512 * 0x1p-53;
+
+// The most histories that the pieces of a long plan sum: for each lead in a piece, a multiple of those at once.
+std::uint32_t histories_in_pieces(const Plan& p) {
+  std::size_t count = 0;
+  for (const Step& s : p.stage) {
+    if (s.act == Act::power || s.act == Act::sine_cosine || s.act == Act::arctan2) count += 2;
+    if (s.act == Act::multiply || s.act == Act::square || s.act == Act::divide || s.act == Act::square_root ||
+        s.act == Act::function)
+      ++count;
+  }
+  const std::size_t pieces = p.stage.size() / kStepsOfPiece + 1, leads = static_cast<std::size_t>(p.largest_lead) + 1;
+  return static_cast<std::uint32_t>(count + pieces * leads * (kHistoriesAtOnce - 1));
+}
 
 // Numbers in [-1, 1) from a counter (a step of splitmix64).
 double scattered(std::uint64_t i) {
@@ -129,7 +144,16 @@ void KernelPlan::lay_out() {
   for (std::uint32_t* place :
        {&f.health, &f.determinant, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest, &f.defect})
     *place = take(1);
+  at = even(at);
+  tables_.sums = is_long() ? take(kSumsOfHistory * histories_in_pieces(plan_)) : 0;
   tables_.size = even(at);
+}
+
+bool KernelPlan::is_long() const {
+  const std::size_t substitution = elimination_.forward.size() + elimination_.terms.size();
+  return company_ == Company::alone && elimination_.influences.empty() &&
+         (plan_.stage.size() > kMostCompiled ||
+          elimination_.update_list.size() + substitution * (tables_.refine ? 3 : 1) > kMostEliminated);
 }
 
 std::shared_ptr<const KernelPlan> KernelPlan::make(std::shared_ptr<const Program> program, int stages,
@@ -249,8 +273,11 @@ std::string KernelPlan::compile(const std::string& cache, int lanes, CodeEffort 
   if (!module) return "there is no compiler beside the program";
   const SparseLu& e = elimination_;
   const std::size_t substitution = e.forward.size() + e.terms.size();
-  if (plan_.stage.size() + plan_.after.size() > kMostCompiled ||
-      e.update_list.size() + substitution * (tables_.refine ? 3 : 1) > kMostEliminated)
+  const std::size_t solved = substitution * (tables_.refine ? 3 : 1);
+  const bool in_pieces = lanes == 1 && tables_.sums != 0 && plan_.after.size() <= kMostCompiled &&
+                         plan_.stage.size() <= kMostInPieces && solved <= kMostEliminatedInPieces;
+  if (!in_pieces &&
+      (plan_.stage.size() + plan_.after.size() > kMostCompiled || e.update_list.size() + solved > kMostEliminated))
     return "it is too large to be compiled in a short time";
   for (const std::vector<Step>* list : {&plan_.point, &plan_.after})
     for (const Step& s : *list)
@@ -258,6 +285,7 @@ std::string KernelPlan::compile(const std::string& cache, int lanes, CodeEffort 
   Compiled& made = lanes == 1 ? one_ : several_;
   const std::lock_guard lock(made.making);
   if (const Code* known = this->code(lanes); known && known->effort >= effort) return {};
+  if (lanes == 1 && code_of_stages()) return {};
   Code code;
   std::string message;
   const Tier& tier = tiers().back();
@@ -265,7 +293,7 @@ std::string KernelPlan::compile(const std::string& cache, int lanes, CodeEffort 
       tables_, lanes, effort,
       {power_of, function_of, lanes == 1 ? tier.sines_of_one : tier.sines_of_all, tier.sines_of_all, tier.lanes}, cache,
       code, message);
-  if (!code.values) return message;
+  if (!code.extend) return message;
   Code& place = code.effort == CodeEffort::full ? made.full : made.quick;
   place = std::move(code);
   made.lanes = lanes;
@@ -374,6 +402,7 @@ bool Kernel::solve(const Code* code, bool projected) {
 }
 
 void Kernel::extend(const Code* code) {
+  if (!code && lanes_ == 1) code = plan_->code_of_stages();
   if (code)
     code->extend(arena_);
   else

@@ -53,7 +53,12 @@ class KernelPlan {
   const Code* code(int lanes = 1) const {
     const Compiled& c = lanes == 1 ? one_ : several_;
     const Code* ready = c.ready.load(std::memory_order_acquire);
-    return ready && c.lanes == lanes ? ready : nullptr;
+    return ready && ready->values && c.lanes == lanes ? ready : nullptr;
+  }
+  // The code of a long plan, which only extends: tables do the rest, which is done once per expansion.
+  const Code* code_of_stages() const {
+    const Code* ready = one_.ready.load(std::memory_order_acquire);
+    return ready && !ready->values ? ready : nullptr;
   }
   // The cost of one expansion, and its number of operations. For a motion alone, the cost includes the operations of a
   // stage that wait for one another (latency.h).
@@ -74,6 +79,8 @@ class KernelPlan {
   Sampled choose_pivots(const std::vector<long double>& parameters, double t, const std::vector<double>& state);
   void solve_by(const Sampled& sampled);
   void lay_out();
+  // Whether the machine code is made in pieces.
+  bool is_long() const;
 
   std::shared_ptr<const Program> program_;
   std::shared_ptr<const StateMap> map_;

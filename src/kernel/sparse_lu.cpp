@@ -25,6 +25,58 @@ constexpr Order kUsual{6, Order::Tie::largest};
 constexpr std::size_t kMuchFill = 5, kLarge = 1000;
 constexpr int kAll = 2 * static_cast<int>(kLarge);
 constexpr Order kOthers[] = {{kAll, Order::Tie::first_row}, {kAll, Order::Tie::last_column}};
+// Larger matrices are numbered along the mechanism first (numbers_along), and pivots are taken from one end of it: in
+// the usual order the fill of a long chain grows faster than the chain, as pivots are chosen all over it. If more is
+// filled in per row than this, the usual order is tried as well.
+constexpr Order kAlong{3, Order::Tie::first_row};
+constexpr std::size_t kMuchFillAlong = 30;
+
+// The numbers of rows and columns.
+struct Numbers {
+  std::vector<std::uint32_t> row, column;
+};
+
+// Numbers by the distance from one end (reverse Cuthill-McKee on the graph of rows and columns): entries are near the
+// diagonal then.
+Numbers numbers_along(std::uint32_t n, std::span<const SampledEntry> entries) {
+  std::vector<std::vector<std::uint32_t>> near(2 * std::size_t{n});  // rows, then columns
+  for (const SampledEntry& e : entries) near[e.row].push_back(n + e.column), near[n + e.column].push_back(e.row);
+  for (auto& list : near)
+    std::sort(list.begin(), list.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return std::pair(near[a].size(), a) < std::pair(near[b].size(), b);
+    });
+  // Adds all that is connected with a node to `order`; returns the one that is farthest.
+  std::vector<bool> seen(near.size(), false);
+  const auto spread = [&](std::uint32_t start, std::vector<std::uint32_t>& order) {
+    std::size_t next = order.size();
+    order.push_back(start);
+    seen[start] = true;
+    for (; next < order.size(); ++next)
+      for (const std::uint32_t other : near[order[next]])
+        if (!seen[other]) seen[other] = true, order.push_back(other);
+    return order.back();
+  };
+  std::vector<std::uint32_t> order;
+  for (std::uint32_t node = 0; node < near.size(); ++node) {
+    if (seen[node]) continue;
+    constexpr int kRounds = 4;
+    std::uint32_t end = node;
+    for (int round = 0; round < kRounds; ++round) {
+      std::vector<std::uint32_t> connected;
+      end = spread(end, connected);
+      for (const std::uint32_t other : connected) seen[other] = false;
+    }
+    spread(end, order);
+  }
+  Numbers out{std::vector<std::uint32_t>(n), std::vector<std::uint32_t>(n)};
+  std::uint32_t row = 0, column = 0;
+  for (auto node = order.rbegin(); node != order.rend(); ++node)
+    if (*node < n)
+      out.row[*node] = row++;
+    else
+      out.column[*node - n] = column++;
+  return out;
+}
 
 using Values = std::array<double, kSamples>;
 
@@ -34,15 +86,15 @@ class Matrix {
       : n_(n), samples_(samples), order_(order), out_(out), rows_(n), columns_(n), largest_(n) {}
 
   void add(const SampledEntry& e) {
-    const auto [it, fresh] = rows_[e.row].try_emplace(e.column, static_cast<std::uint32_t>(entries_.size()));
+    const auto [at, fresh] = entry(rows_[e.row], e.column, entries_.size());
     if (fresh) {
       entries_.push_back({e.value, e.exact});
-      columns_[e.column].insert(e.row);
+      insert(columns_[e.column], e.row);
     } else {
-      for (std::size_t k = 0; k < samples_; ++k) entries_[it->second].value[k] += e.value[k];
-      entries_[it->second].exact = false;
+      for (std::size_t k = 0; k < samples_; ++k) entries_[at].value[k] += e.value[k];
+      entries_[at].exact = false;
     }
-    out_.place.push_back(it->second);
+    out_.place.push_back(at);
   }
 
   // Scales by powers of 2, so that large entries are significant ones.
@@ -86,7 +138,7 @@ class Matrix {
           for (const auto& [j, e] : rows_[i]) consider(i, j, e);
         } else {
           const std::uint32_t j = (column++)->second;
-          for (std::uint32_t i : columns_[j]) consider(i, j, rows_[i].at(j));
+          for (std::uint32_t i : columns_[j]) consider(i, j, find(rows_[i], j)->second);
         }
         if (best_.found) ++looked;
       }
@@ -104,13 +156,37 @@ class Matrix {
     return true;
   }
 
-  const std::vector<std::map<std::uint32_t, std::uint32_t>>& upper() const { return upper_; }
+  // The remaining rows of the pivots.
+  std::vector<std::map<std::uint32_t, std::uint32_t>> upper() const {
+    std::vector<std::map<std::uint32_t, std::uint32_t>> out;
+    for (const Row& row : upper_) out.emplace_back(row.begin(), row.end());
+    return out;
+  }
 
  private:
   struct Entry {
     Values value;
     bool exact;
   };
+  // Columns with their entries, in order; rows of a column, in order. They are short.
+  using Row = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  using Column = std::vector<std::uint32_t>;
+  static Row::iterator find(Row& row, std::uint32_t j) {
+    return std::lower_bound(row.begin(), row.end(), std::pair(j, 0U));
+  }
+  // The entry of a column, which is added with this number if there is none; and whether it was added.
+  static std::pair<std::uint32_t, bool> entry(Row& row, std::uint32_t j, std::size_t number) {
+    const auto at = find(row, j);
+    if (at != row.end() && at->first == j) return {at->second, false};
+    row.insert(at, {j, static_cast<std::uint32_t>(number)});
+    return {static_cast<std::uint32_t>(number), true};
+  }
+  static void insert(Column& column, std::uint32_t i) {
+    column.insert(std::lower_bound(column.begin(), column.end(), i), i);
+  }
+  static void erase(Column& column, std::uint32_t i) {
+    column.erase(std::lower_bound(column.begin(), column.end(), i));
+  }
   struct Best {
     bool found = false, exact = false;
     std::size_t cost = 0;
@@ -188,33 +264,33 @@ class Matrix {
     p.first_update = static_cast<std::uint32_t>(out_.update_list.size());
     short_rows_.erase({rows_[i].size(), i});
     short_columns_.erase({columns_[j].size(), j});
-    std::map<std::uint32_t, std::uint32_t> top = std::move(rows_[i]);
-    top.erase(j);
+    Row top = std::move(rows_[i]);
+    top.erase(find(top, j));
     for (const auto& [other, e] : top) {
       const std::size_t from = columns_[other].size();
-      columns_[other].erase(i);
+      erase(columns_[other], i);
       resize_column(other, from);
     }
-    columns_[j].erase(i);
+    erase(columns_[j], i);
     for (std::uint32_t r : columns_[j]) {
       const std::size_t from = rows_[r].size();
-      const std::uint32_t l = rows_[r].at(j);
-      rows_[r].erase(j);
+      const auto place = find(rows_[r], j);
+      const std::uint32_t l = place->second;
+      rows_[r].erase(place);
       largest_[r].reset();
       out_.scaled_entries.push_back(l);
       for (std::size_t k = 0; k < samples_; ++k) entries_[l].value[k] /= p.value[k];
       for (const auto& [other, u] : top) {
-        const auto [it, fresh] = rows_[r].try_emplace(other, static_cast<std::uint32_t>(entries_.size()));
+        const auto [at, fresh] = entry(rows_[r], other, entries_.size());
         if (fresh) {
           entries_.push_back({});
           const std::size_t column_from = columns_[other].size();
-          columns_[other].insert(r);
+          insert(columns_[other], r);
           resize_column(other, column_from);
         }
-        for (std::size_t k = 0; k < samples_; ++k)
-          entries_[it->second].value[k] -= entries_[l].value[k] * entries_[u].value[k];
-        entries_[it->second].exact = false;
-        out_.update_list.push_back({it->second, l, u});
+        for (std::size_t k = 0; k < samples_; ++k) entries_[at].value[k] -= entries_[l].value[k] * entries_[u].value[k];
+        entries_[at].exact = false;
+        out_.update_list.push_back({at, l, u});
       }
       out_.forward.push_back({r, l, i});
       resize_row(r, from);
@@ -231,8 +307,8 @@ class Matrix {
   const Order order_;
   SparseLu& out_;
   std::vector<Entry> entries_;
-  std::vector<std::map<std::uint32_t, std::uint32_t>> rows_, upper_;
-  std::vector<std::set<std::uint32_t>> columns_;
+  std::vector<Row> rows_, upper_;
+  std::vector<Column> columns_;
   std::vector<Values> row_scale_, column_scale_;
   std::vector<std::optional<Values>> largest_;  // of a row in its present state, scaled
   std::set<std::pair<std::size_t, std::uint32_t>> short_rows_, short_columns_;
@@ -255,9 +331,35 @@ SparseElimination eliminate_in(const Order& order, std::uint32_t rows, std::span
 
 }  // namespace
 
+// Eliminates in the order along the mechanism.
+static SparseElimination eliminate_along(std::uint32_t rows, std::span<const SampledEntry> entries,
+                                         std::size_t samples) {
+  const Numbers numbers = numbers_along(rows, entries);
+  std::vector<SampledEntry> numbered(entries.begin(), entries.end());
+  for (SampledEntry& e : numbered) e.row = numbers.row[e.row], e.column = numbers.column[e.column];
+  SparseElimination out = eliminate_in(kAlong, rows, numbered, samples);
+  std::vector<std::uint32_t> row(rows), column(rows);
+  for (std::uint32_t i = 0; i < rows; ++i) row[numbers.row[i]] = i, column[numbers.column[i]] = i;
+  for (SparseLu::Pivot& p : out.lu.pivots) p.row = row[p.row], p.column = column[p.column];
+  for (SparseLu::Forward& f : out.lu.forward) f.to = row[f.to], f.from = row[f.from];
+  for (auto& upper : out.upper) {
+    std::map<std::uint32_t, std::uint32_t> renamed;
+    for (const auto& [j, entry] : upper) renamed[column[j]] = entry;
+    upper = std::move(renamed);
+  }
+  return out;
+}
+
 SparseElimination eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples) {
+  if (rows > kLarge) {
+    SparseElimination along = eliminate_along(rows, entries, samples);
+    if (!along.lu.pivots.empty() && operations(along) <= kMuchFillAlong * rows) return along;
+    SparseElimination usual = eliminate_in(kUsual, rows, entries, samples);
+    return along.lu.pivots.empty() || (!usual.lu.pivots.empty() && operations(usual) < operations(along)) ? usual
+                                                                                                          : along;
+  }
   SparseElimination best = eliminate_in(kUsual, rows, entries, samples);
-  if (rows <= kLarge && operations(best) > kMuchFill * rows)
+  if (operations(best) > kMuchFill * rows)
     for (const Order& order : kOthers)
       if (SparseElimination e = eliminate_in(order, rows, entries, samples);
           !e.lu.pivots.empty() && operations(e) < operations(best))

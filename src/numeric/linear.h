@@ -39,24 +39,11 @@ class Lu {
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j)
         if (N v = abs(a(i, j)); v > row_scale_[i]) row_scale_[i] = v;
-    for (std::size_t k = 0; k < n; ++k) {
-      std::size_t pivot = n;
-      N best(0);
-      for (std::size_t i = k; i < n; ++i) {
-        const N& scale = row_scale_[order_[i]];
-        if (!(scale > N(0))) return false;
-        if (N v = abs(lu_(order_[i], k)) / scale; v > best) best = v, pivot = i;
-      }
-      if (pivot == n || !is_finite(best)) return false;
-      std::swap(order_[k], order_[pivot]);
-      const N* top = &lu_(order_[k], 0);
-      for (std::size_t i = k + 1; i < n; ++i) {
-        N* row = &lu_(order_[i], 0);
-        if (row[k] == N(0)) continue;
-        row[k] /= top[k];
-        const N factor = -row[k];
-        for (std::size_t j = k + 1; j < n; ++j) addmul(row[j], factor, top[j]);
-      }
+    for (std::size_t first = 0; first < n; first += kPanel) {
+      const std::size_t end = std::min(first + kPanel, n);
+      for (std::size_t k = first; k < end; ++k)
+        if (!eliminate_in_panel(k, end)) return false;
+      update_beyond_panel(first, end);
     }
     return true;
   }
@@ -134,6 +121,57 @@ class Lu {
   }
 
  private:
+  // Columns are eliminated in panels; the columns after a panel are updated for all its pivots at once, tile by tile,
+  // which reads memory once instead of once for each pivot. Every entry gets its updates in the order of the pivots, so
+  // the bits do not depend on these numbers.
+  static constexpr std::size_t kPanel = 32, kTile = 32, kAtOnce = 4;
+
+  // Chooses pivot k and updates the columns before `end`. Returns false if there is no pivot.
+  bool eliminate_in_panel(std::size_t k, std::size_t end) {
+    const std::size_t n = order_.size();
+    std::size_t pivot = n;
+    N best(0);
+    for (std::size_t i = k; i < n; ++i) {
+      const N& scale = row_scale_[order_[i]];
+      if (!(scale > N(0))) return false;
+      if (N v = abs(lu_(order_[i], k)) / scale; v > best) best = v, pivot = i;
+    }
+    if (pivot == n || !is_finite(best)) return false;
+    std::swap(order_[k], order_[pivot]);
+    const N* top = &lu_(order_[k], 0);
+    for (std::size_t i = k + 1; i < n; ++i) {
+      N* row = &lu_(order_[i], 0);
+      if (row[k] == N(0)) continue;
+      row[k] /= top[k];
+      const N factor = -row[k];
+      for (std::size_t j = k + 1; j < end; ++j) addmul(row[j], factor, top[j]);
+    }
+    return true;
+  }
+
+  void update_beyond_panel(std::size_t first, std::size_t end) {
+    const std::size_t n = order_.size();
+    for (std::size_t tile = end; tile < n; tile += kTile)
+      for (std::size_t i = first + 1; i < n; ++i) {
+        N* const row = &lu_(order_[i], 0);
+        const std::size_t last = std::min(i, end), tile_end = std::min(tile + kTile, n);
+        std::size_t j = tile;
+        for (; j + kAtOnce <= tile_end; j += kAtOnce) {
+          N a = row[j], b = row[j + 1], c = row[j + 2], d = row[j + 3];
+          for (std::size_t k = first; k < last; ++k) {
+            if (row[k] == N(0)) continue;
+            const N factor = -row[k];
+            const N* const top = &lu_(order_[k], j);
+            addmul(a, factor, top[0]), addmul(b, factor, top[1]), addmul(c, factor, top[2]), addmul(d, factor, top[3]);
+          }
+          row[j] = a, row[j + 1] = b, row[j + 2] = c, row[j + 3] = d;
+        }
+        for (; j < tile_end; ++j)
+          for (std::size_t k = first; k < last; ++k)
+            if (!(row[k] == N(0))) addmul(row[j], N(-row[k]), lu_(order_[k], j));
+      }
+  }
+
   Matrix<N> original_, lu_;
   std::vector<std::size_t> order_;
   std::vector<N> row_scale_;

@@ -4,26 +4,46 @@
 
 namespace anholon {
 
+namespace {
+constexpr std::size_t kColumns = 16;  // at a time
+}  // namespace
+
 template <Number N>
 Sensitivity<N>::Sensitivity(const Program& program)
-    : program_(&program), tangent_(program.tangent_rows, program.unknowns()), partials_(program.tainted.size()),
-      delta_(program.tape.main_end, N(0)) {}
+    : program_(&program), tangent_(program.tangent_rows, std::min(kColumns, program.unknowns())),
+      zero_(program.tangent_rows), partials_(program.tainted.size()), delta_(program.tape.main_end, N(0)) {}
 
 template <Number N>
 void Sensitivity<N>::jacobian(const Machine<N>& machine, Matrix<N>& all) {
   const Program& p = *program_;
+  for (std::size_t k = 0; k < p.tainted.size(); ++k)
+    if (p.tape.code[p.tainted[k].slot].op != Op::linear) partials_[k] = machine.partials(p.tainted[k].slot);
+  for (std::size_t from = 0; from < p.unknowns(); from += kColumns)
+    columns(machine, from, std::min(kColumns, p.unknowns() - from), all);
+}
+
+// The derivatives with respect to the unknowns [first, first + count).
+template <Number N>
+void Sensitivity<N>::columns(const Machine<N>& machine, std::size_t first, std::size_t count, Matrix<N>& all) {
+  const Program& p = *program_;
   const Tape& tape = p.tape;
-  const std::size_t n = p.unknowns();
   std::fill(tangent_.data.begin(), tangent_.data.end(), N(0));
+  std::fill(zero_.begin(), zero_.end(), true);
   for (const ProgramInput& in : p.inputs)
-    if (in.leading) tangent_(p.tangent_row[in.slot], in.variable) = N(1);
+    if (in.leading && in.variable >= first && in.variable < first + count) {
+      tangent_(p.tangent_row[in.slot], in.variable - first) = N(1);
+      zero_[p.tangent_row[in.slot]] = false;
+    }
   for (std::size_t k = 0; k < p.tainted.size(); ++k) {
     const TaintedSlot& t = p.tainted[k];
     const Instruction& in = tape.code[t.slot];
     N* row = &tangent_(t.row, 0);
     const auto add = [&](std::uint32_t slot, const N& factor) {
-      const N* from = &tangent_(p.tangent_row[slot], 0);
-      for (std::size_t j = 0; j < n; ++j) addmul(row[j], factor, from[j]);
+      const std::uint32_t other = p.tangent_row[slot];
+      if (zero_[other] && is_finite(factor)) return;
+      zero_[t.row] = false;
+      const N* from = &tangent_(other, 0);
+      for (std::size_t j = 0; j < count; ++j) addmul(row[j], factor, from[j]);
     };
     if (in.op == Op::linear) {
       for (std::uint32_t i = in.first; i < in.first + in.count; ++i) {
@@ -33,18 +53,18 @@ void Sensitivity<N>::jacobian(const Machine<N>& machine, Matrix<N>& all) {
       }
       continue;
     }
-    partials_[k] = machine.partials(t.slot);
     if (in.op == Op::select) {
       // The other branch is not evaluated; it may have no value.
-      if (const bool first = partials_[k].a > N(0); first ? t.a : t.b) add(first ? in.a : in.b, N(1));
+      if (const bool first_branch = partials_[k].a > N(0); first_branch ? t.a : t.b)
+        add(first_branch ? in.a : in.b, N(1));
       continue;
     }
     if (t.a) add(in.a, partials_[k].a);
     if (t.b) add(in.b, partials_[k].b);
   }
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < p.unknowns(); ++i) {
     const std::uint32_t row = p.tangent_row[tape.roots[i]];
-    for (std::size_t j = 0; j < n; ++j) all(i, j) = row == Program::kUntainted ? N(0) : tangent_(row, j);
+    for (std::size_t j = 0; j < count; ++j) all(i, first + j) = row == Program::kUntainted ? N(0) : tangent_(row, j);
   }
 }
 

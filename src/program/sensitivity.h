@@ -39,10 +39,14 @@ class Sensitivity {
   }
 
  private:
+  void columns(const Machine<N>& machine, std::size_t from, std::size_t count, Matrix<N>& j);
   void add_to_tainted(int stage, Machine<N>& machine);
 
   const Program* program_;
-  Matrix<N> tangent_;  // a row of derivatives for each slot that depends on leading derivatives
+  // A row for each slot that depends on leading derivatives: its derivatives with respect to a few unknowns at a time,
+  // as all would take slots times unknowns of memory.
+  Matrix<N> tangent_;
+  std::vector<bool> zero_;  // the rows without an entry
   std::vector<typename Machine<N>::Partials> partials_;
   std::vector<N> delta_;  // the change of each slot
 };

@@ -43,8 +43,8 @@ class Probe {
     machine_.evaluate();
     partials_.clear();
     for (std::uint32_t s = 0; s < tape_.code.size(); ++s) partials_.push_back(machine_.partials(s));
-    // A few columns at a time: all columns would take slots times inputs of memory.
-    constexpr std::size_t kColumns = 64;
+    // A few columns at a time: all columns would take slots times inputs of memory, and these stay in the caches.
+    constexpr std::size_t kColumns = 8;
     for (std::size_t from = 0; from < tape_.inputs.size(); from += kColumns)
       if (!columns(from, std::min(kColumns, tape_.inputs.size() - from), largest)) return false;
     return true;
@@ -52,14 +52,17 @@ class Probe {
 
  private:
   // The derivatives with respect to the inputs [from, from + cols).
-  bool columns(std::size_t from, std::size_t cols, std::vector<std::vector<double>>& largest) const {
-    Matrix<double> tangent(tape_.code.size(), cols), terms(tape_.code.size(), cols);
+  bool columns(std::size_t from, std::size_t cols, std::vector<std::vector<double>>& largest) {
+    const std::size_t size = tape_.code.size() * cols;
+    tangent_.assign(size, 0.0), terms_.assign(size, 0.0), zero_.assign(tape_.code.size(), true);
     std::size_t next_input = 0;
     for (std::uint32_t s = 0; s < tape_.code.size(); ++s) {
       const Instruction& in = tape_.code[s];
-      double *row = &tangent.data[s * cols], *row_terms = &terms.data[s * cols];
+      double *row = &tangent_[s * cols], *row_terms = &terms_[s * cols];
       const auto add = [&](std::uint32_t operand, double factor) {
-        const double *below = &tangent.data[operand * cols], *below_terms = &terms.data[operand * cols];
+        if (zero_[operand] && std::isfinite(factor)) return;
+        zero_[s] = false;
+        const double *below = &tangent_[operand * cols], *below_terms = &terms_[operand * cols];
         for (std::size_t k = 0; k < cols; ++k) {
           row[k] += factor * below[k];
           row_terms[k] += std::abs(factor) * below_terms[k];
@@ -75,12 +78,15 @@ class Probe {
       // A derivative that occurs in either branch occurs.
       case Op::select:
         for (const std::uint32_t operand : {in.a, in.b}) {
-          const double* below = &tangent.data[operand * cols];
+          const double* below = &tangent_[operand * cols];
           if (std::all_of(below, below + cols, [](double v) { return std::isfinite(v); })) add(operand, 1);
         }
         break;
       case Op::input:
-        if (next_input >= from && next_input < from + cols) row[next_input - from] = row_terms[next_input - from] = 1;
+        if (next_input >= from && next_input < from + cols) {
+          row[next_input - from] = row_terms[next_input - from] = 1;
+          zero_[s] = false;
+        }
         ++next_input;
         break;
       case Op::linear:
@@ -105,7 +111,7 @@ class Probe {
     }
     for (std::size_t i = 0; i < tape_.roots.size(); ++i)
       for (std::size_t k = 0; k < cols; ++k) {
-        const double v = std::abs(tangent(tape_.roots[i], k)), all = terms(tape_.roots[i], k);
+        const double v = std::abs(tangent_[tape_.roots[i] * cols + k]), all = terms_[tape_.roots[i] * cols + k];
         if (!std::isfinite(v)) return false;
         if (v > kNoDependence * all) largest[i][from + k] = std::max(largest[i][from + k], v);
       }
@@ -115,6 +121,8 @@ class Probe {
   const Tape& tape_;
   Machine<double> machine_;
   std::vector<Machine<double>::Partials> partials_;
+  std::vector<double> tangent_, terms_;  // of each slot, for the present columns
+  std::vector<bool> zero_;               // the slots without an entry there
   const System& system_;
 };
 
@@ -260,6 +268,14 @@ Outcome analyse(const System& s, const std::vector<double>& parameters, const Pr
 
 void drop_absent(System& s, const Structure& t) {
   Graph& g = *s.model->graph;
+  // Most systems have no such derivative.
+  const int most = t.largest_c();
+  const std::vector<NodeId> all = symbols(s.equations);
+  if (std::none_of(all.begin(), all.end(), [&](NodeId id) {
+        const auto j = s.variable(id);
+        return j && static_cast<int>(g.node(id).order) + most > t.d[*j];
+      }))
+    return;
   for (std::size_t i = 0; i < s.size(); ++i)
     s.equations[i] = substitute({&s.equations[i], 1}, [&](NodeId id) {
       const auto j = s.variable(id);

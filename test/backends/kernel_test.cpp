@@ -538,16 +538,17 @@ TEST(Kernels, InvertForManyUnknowns) {
   }
 }
 
-// Up to 64 links what is filled in grows with them: the recursion of articulated bodies.
+// What is filled in grows with the links: the recursion of articulated bodies.
 TEST(Kernels, EliminateChainsLinkByLink) {
   const std::string chain = test::shipped_text("zoo/chain");
-  for (const std::size_t links : {8, 16, 32, 64}) {
+  for (const std::size_t links : {8, 16, 32, 64, 150, 300}) {
     const Reference r(test::model_of(test::replaced(chain, "n = 4", "n = " + std::to_string(links))));
     ASSERT_EQ(r.why, "");
     const auto plan = cheapest(r.representations(r.plan(), WritingEffort::very_long_motion)).plan;
     ASSERT_TRUE(plan);
-    EXPECT_LT(plan->elimination().update_list.size(), 50 * links);
-    EXPECT_LT(plan->elimination().forward.size() + plan->elimination().terms.size(), 30 * links);
+    const bool is_long = links > 64;
+    EXPECT_LT(plan->elimination().update_list.size(), (is_long ? 200 : 50) * links);
+    EXPECT_LT(plan->elimination().forward.size() + plan->elimination().terms.size(), (is_long ? 50 : 30) * links);
   }
 }
 

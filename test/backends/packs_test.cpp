@@ -150,6 +150,25 @@ TEST(Packs, ChangeNoBit) {
     }
 }
 
+// Plans whose code is in pieces: orders that fill no block, one block, several; with refined solutions and without.
+TEST(Pieces, ChangeNoBit) {
+  const std::string text = test::shipped_text("zoo/chain");
+  int all = 0, refined = 0;
+  for (const auto& [links, stages] : {std::pair(90, 3), {90, 4}, {90, 7}, {100, 12}, {130, 19}, {450, 6}}) {
+    const Motion m(test::model_of(test::replaced(text, "n = 4", "n = " + std::to_string(links))), stages);
+    ASSERT_TRUE(m.plan) << links;
+    EXPECT_NE(m.plan->tables().sums, 0U) << links;
+    refined += m.plan->tables().refine;
+    ++all;
+    expect_same_bits(m, std::to_string(links) + " links");
+    if (test::compiler_expected()) {
+      EXPECT_TRUE(!m.plan->code() && m.plan->code_of_stages()) << links;
+    }
+  }
+  EXPECT_GT(refined, 0);
+  EXPECT_LT(refined, all);
+}
+
 TEST(Packs, ChangeNoBitOfRandomSystems) {
   const std::uint64_t wanted = std::getenv("ANHOLON_LONG") ? 60 : 6;
   std::uint64_t compared = 0;
