@@ -329,7 +329,7 @@ class SharperRun {
   struct {
     WaitingRows* rows = nullptr;  // null if rows are made by the reference
     std::unique_ptr<WaitingRows> own;
-    std::optional<RowBlock> block;
+    std::optional<WaitingBlock> block;
     std::vector<Foretold> foretold;
   } waiting_;
   std::vector<EventMoment<W>> met_;

@@ -59,6 +59,15 @@ Outcome KernelRows::settle() {
   return std::exchange(trouble_, {});
 }
 
+std::optional<Warning> KernelRows::warning() const {
+  const auto found = check_.found();
+  if (!found) return std::nullopt;
+  return Warning{"the rows differ from the state solved for again in wider numbers: " + found->column + " by " +
+                     number_text(found->difference, 3) +
+                     " of the largest number of its kind at t = " + number_text(found->t, 6),
+                 "trust the columns of this kind no further; please report the model, as this is a bug of anholon"};
+}
+
 void KernelRows::tell_steps(Block& block) {
   for (; block.told < block.steps.size() && block.steps[block.told].rows <= block.taken; ++block.told)
     takers_.writer.step(block.steps[block.told].t);

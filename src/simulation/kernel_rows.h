@@ -51,12 +51,12 @@ class KernelRows {
   // For the estimate of the error, after settle().
   WaitingRows& waiting() { return *waiting_; }
   // Of numbers of the kernel that are not those of the reference; after settle().
-  std::optional<Warning> warning() const { return check_.warning(); }
+  std::optional<Warning> warning() const;
 
  private:
   struct Block {
     explicit Block(std::size_t room) : rows(room) {}
-    RowBlock rows;
+    WaitingBlock rows;
     std::vector<char> judged;  // of each row
     struct StepEnd {
       double t;

@@ -51,12 +51,9 @@ void RowCheck::compare(double t, std::size_t column, double written, long double
   if (!(difference <= worst_.difference)) worst_ = {difference, t, column};
 }
 
-std::optional<Warning> RowCheck::warning() const {
+std::optional<RowDifference> RowCheck::found() const {
   if (worst_.difference <= kNotRoundoff) return std::nullopt;
-  return Warning{"the rows differ from the state solved for again in wider numbers: " + columns_[worst_.column].name +
-                     " by " + number_text(worst_.difference, 3) +
-                     " of the largest number of its kind at t = " + number_text(worst_.t, 6),
-                 "trust the columns of this kind no further; please report the model, as this is a bug of anholon"};
+  return RowDifference{columns_[worst_.column].name, worst_.difference, worst_.t};
 }
 
 }  // namespace anholon

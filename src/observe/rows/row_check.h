@@ -8,10 +8,14 @@
 #include <map>
 #include <optional>
 
-#include "observe/report.h"
 #include "observe/rows/row_values.h"
 
 namespace anholon {
+
+struct RowDifference {
+  std::string column;
+  double difference = 0, t = 0;  // in relation to the measure of the column; when it was met
+};
 
 class RowCheck {
  public:
@@ -29,7 +33,7 @@ class RowCheck {
     }
   }
   // The largest difference, if it is no round-off.
-  std::optional<Warning> warning() const;
+  std::optional<RowDifference> found() const;
 
  private:
   void learn(const std::vector<long double>& solved);

@@ -2,7 +2,7 @@
 
 namespace anholon {
 
-void RowBlock::add(const Motion<double>& motion, long double t, const std::string& label) {
+void WaitingBlock::add(const Motion<double>& motion, long double t, const std::string& label) {
   if (count_ == 0) since_ = std::chrono::steady_clock::now();
   Waiting& row = rows_[count_];
   row.place.t = t;
@@ -54,9 +54,9 @@ WaitingRows::WaitingRows(const Scenario& s, RowExpressions expressions, std::uni
 
 // States in unknowns of the motion's kernel are converted first. Rows of another plan, which a motion that writes its
 // equations anew leaves behind, are converted by themselves.
-void WaitingRows::compute(RowBlock& block, std::size_t first, std::size_t count) {
+void WaitingRows::compute(WaitingBlock& block, std::size_t first, std::size_t count) {
   for (std::size_t from = 0; from < count;) {
-    RowBlock::Waiting& row = block[first + from];
+    WaitingBlock::Waiting& row = block[first + from];
     std::size_t to = from + 1;
     if (!row.own.empty()) {
       while (to < count && !block[first + to].own.empty() && block[first + to].plan == row.plan) ++to;
@@ -69,13 +69,13 @@ void WaitingRows::compute(RowBlock& block, std::size_t first, std::size_t count)
   kernel_->compute();
 }
 
-void WaitingRows::convert(RowBlock::Waiting* rows, std::size_t count) {
+void WaitingRows::convert(WaitingBlock::Waiting* rows, std::size_t count) {
   if (mapped_ != rows->plan) {
     mapped_ = rows->plan;
     readers_.emplace(*mapped_->map(), parameters_, static_cast<int>(lanes()));
   }
   for (std::size_t lane = 0; lane < lanes(); ++lane) {
-    const RowBlock::Waiting& row = rows[std::min(lane, count - 1)];
+    const WaitingBlock::Waiting& row = rows[std::min(lane, count - 1)];
     readers_->load(static_cast<int>(lane), row.place.t, row.own);
   }
   readers_->convert();

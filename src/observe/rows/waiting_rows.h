@@ -12,7 +12,7 @@
 namespace anholon {
 
 // Rows that wait together, in the order of time.
-class RowBlock {
+class WaitingBlock {
  public:
   struct Waiting {
     RowPlace place;                          // without the state, if that is in unknowns of the motion's kernel
@@ -21,7 +21,7 @@ class RowBlock {
     std::string label;                       // the time as it is to be written; empty for its number
   };
 
-  explicit RowBlock(std::size_t room) : rows_(room) {}
+  explicit WaitingBlock(std::size_t room) : rows_(room) {}
 
   // Adds a time of the last step.
   void add(const Motion<double>& motion, long double t, const std::string& label);
@@ -73,11 +73,11 @@ class WaitingRows {
 
    private:
     friend class WaitingRows;
-    Computed(const WaitingRows& rows, const RowBlock::Waiting& row, std::size_t lane)
+    Computed(const WaitingRows& rows, const WaitingBlock::Waiting& row, std::size_t lane)
         : rows_(rows), row_(row), lane_(lane) {}
     double output(std::size_t i) const { return rows_.kernel_->output(i, lane_); }
     const WaitingRows& rows_;
-    const RowBlock::Waiting& row_;
+    const WaitingBlock::Waiting& row_;
     std::size_t lane_;
   };
 
@@ -85,7 +85,7 @@ class WaitingRows {
   // Computes the rows of a block and hands them to take(computed), one after the other, until that returns false. None
   // waits afterwards.
   template <class F>
-  void compute(RowBlock& block, F take) {
+  void compute(WaitingBlock& block, F take) {
     for (std::size_t first = 0; first < block.size(); first += lanes()) {
       const std::size_t count = std::min(lanes(), block.size() - first);
       compute(block, first, count);
@@ -98,8 +98,8 @@ class WaitingRows {
  private:
   WaitingRows(const Scenario& scenario, RowExpressions expressions, std::unique_ptr<RowKernel> kernel,
               const std::vector<long double>& parameters);
-  void compute(RowBlock& block, std::size_t first, std::size_t count);
-  void convert(RowBlock::Waiting* rows, std::size_t count);
+  void compute(WaitingBlock& block, std::size_t first, std::size_t count);
+  void convert(WaitingBlock::Waiting* rows, std::size_t count);
   const RowExpressions::Sum& sum(std::size_t k) const {
     const std::size_t monitors = expressions_.monitors.size();
     return k < monitors ? expressions_.monitors[k] : expressions_.further[k - monitors];
