@@ -16,8 +16,9 @@ struct Rows {
     s.emplace(prepared);
     other.emplace(prepared);
     power = anholon::power(*s->mechanics);
-    motion.emplace(*s, StepSettings{.log_tolerance = natural_logarithm(Rational(1, 1'000'000'000'000)), .integrals = 1},
-                   watched_quadratures(*s, power), 0);
+    StepSettings settings;
+    settings.integrals = 1;
+    motion.emplace(*s, settings, watched_quadratures(*s, power), 0);
     EXPECT_TRUE(motion->start({}).ok());
     if (wrong) {
       std::size_t g = 0;
