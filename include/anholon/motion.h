@@ -77,6 +77,7 @@ struct Report {
   std::string no_trust;
   std::vector<Watched> watched;
   std::vector<std::string> warnings, notes;
+  std::size_t rows_looked_at = 0;  // at which the residuals were computed; a long run's report looks at ever fewer rows
 };
 
 // Immutable and cheap to copy; spans live as long as any copy does.

@@ -103,7 +103,9 @@ void bind_run(nb::module_& m) {
       .def_ro("no_trust", &Report::no_trust)
       .def_ro("watched", &Report::watched)
       .def_ro("warnings", &Report::warnings)
-      .def_ro("notes", &Report::notes);
+      .def_ro("notes", &Report::notes)
+      .def_ro("rows_looked_at", &Report::rows_looked_at,
+              "At so many rows the residuals were computed; the report of a long run looks at ever fewer.");
   shown(report, "report");
   nb::class_<Run>(m, "Run")
       .def_prop_ro("outcome", &Run::outcome)

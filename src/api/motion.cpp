@@ -53,6 +53,7 @@ Report public_report(const inner::SimulationReport& r) {
           {w.name, w.first.value, w.last.value, w.least.value, w.greatest.value, w.largest_change, conserved});
   for (const inner::Warning& w : r.warnings) p.warnings.push_back(w.message + "; " + w.hint);
   p.notes = r.notes;
+  p.rows_looked_at = r.rows_looked_at;
   return p;
 }
 

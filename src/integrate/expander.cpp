@@ -177,4 +177,14 @@ void GuardedExpander::state_at(const MotionTrack<double>& track, const W& h, std
   reference_state_at(reference_, point_.solution, h, state, leading);
 }
 
+void GuardedExpander::own_state_at(const MotionTrack<double>& track, const W& h, std::vector<W>& state,
+                                   std::vector<W>& own, std::vector<W>& leading) const {
+  const bool mapped = kernel() && kernel()->mapped();
+  (mapped ? state : own).clear();
+  if (mapped)
+    kernel()->own_state_at(h, own, leading);
+  else
+    state_at(track, h, state, leading);
+}
+
 }  // namespace anholon

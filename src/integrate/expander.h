@@ -141,6 +141,9 @@ class GuardedExpander {
   }
   const Expansion<W>& point(const MotionTrack<double>& track, bool values) const;
   void state_at(const MotionTrack<double>& track, const W& h, std::vector<W>& state, std::vector<W>& leading) const;
+  // As state_at(), but a state in unknowns of the kernel comes as `own`, and one of the other two stays empty.
+  void own_state_at(const MotionTrack<double>& track, const W& h, std::vector<W>& state, std::vector<W>& own,
+                    std::vector<W>& leading) const;
 
  private:
   bool kernel_serves(const StepRecord<double>& record) const;

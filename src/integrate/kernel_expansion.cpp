@@ -203,6 +203,18 @@ void KernelExpansion::state_at(const W& begun, const W& h, std::vector<W>& state
   leading = this->leading();
 }
 
+void KernelExpansion::own_state_at(const W& h, std::vector<W>& own, std::vector<W>& leading) const {
+  kernel_->set_step(lane_, static_cast<double>(h));
+  kernel_->change_over_step();
+  kernel_->fetch_base(lane_, own);
+  advanced(h, own, own, leading);
+  leading.resize(program_->unknowns());
+  for (std::size_t j = 0; j < leading.size(); ++j) {
+    const auto in_kernel = own_unknown(j);
+    leading[j] = in_kernel ? W(kernel_->derivative(*in_kernel, program_->d[j], lane_)) : W(0);
+  }
+}
+
 void KernelExpansion::send(double h, double t) {
   kernel_->set_step(lane_, h);
   kernel_->set_time(lane_, t);

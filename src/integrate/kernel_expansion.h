@@ -69,6 +69,8 @@ class KernelExpansion {
   std::vector<W> leading() const;
   std::vector<W> base(const W& begun) const;  // the state where it was made
   void state_at(const W& begun, const W& h, std::vector<W>& state, std::vector<W>& leading) const;
+  // The same in the kernel's own unknowns; `leading`: of the motion.
+  void own_state_at(const W& h, std::vector<W>& own, std::vector<W>& leading) const;
   // Points within the step where a function may do what its series do not show.
   std::vector<double> hidden_points(double h) const;
 

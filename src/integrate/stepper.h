@@ -93,6 +93,13 @@ class Stepper {
   void foretell(const W& t, std::vector<W>& state, std::vector<W>& leading) const {
     expander_.state_at(track_, t - before_, state, leading);
   }
+  // As above. If a kernel with unknowns of its own has made the step, `own` gets the state in these, and `state` stays
+  // empty; else `own` stays empty.
+  void foretell(const W& t, std::vector<W>& state, std::vector<W>& own, std::vector<W>& leading) const
+    requires std::same_as<N, double>
+  {
+    expander_.own_state_at(track_, t - before_, state, own, leading);
+  }
   // The dense output in the numbers of the expansion, for a rough measure. Kernels in unknowns of their own know no
   // multipliers.
   N coefficient(std::size_t j, int k) const { return expander_.coefficient(j, k); }

@@ -60,4 +60,19 @@ void StateReader::motion(long double t, const Numbers& own, Numbers& state) {
   for (std::size_t i = 0; i < map_->states_; ++i) state[2 * n + i] = own[n + i];
 }
 
+void StateReaders::load(int lane, long double t, const Numbers& own) {
+  ANHOLON_ASSERT(own.size() == map_->own_size());
+  using From = StateMap::From;
+  for (const StateMap::Input& in : map_->of_motion_)
+    machine_.set(in.slot, lane,
+                 in.from == From::time ? t : own[in.from == From::other ? map_->coordinates_ + in.index : in.index]);
+}
+
+void StateReaders::motion(int lane, const Numbers& own, Numbers& state) const {
+  const std::size_t n = map_->coordinates_;
+  state.resize(2 * n + map_->states_);
+  for (std::size_t a = 0; a < n; ++a) state[2 * a] = own[a], state[2 * a + 1] = machine_.value(a, lane);
+  for (std::size_t i = 0; i < map_->states_; ++i) state[2 * n + i] = own[n + i];
+}
+
 }  // namespace anholon

@@ -4,6 +4,7 @@
 #pragma once
 #include <optional>
 
+#include "kernel/pairs.h"
 #include "lowering/quasi_velocities.h"
 #include "tape/tape.h"
 
@@ -24,6 +25,7 @@ class StateMap {
 
  private:
   friend class StateReader;
+  friend class StateReaders;
   enum class From : std::uint8_t { time, coordinate, velocity, other };
   struct Input {
     From from;
@@ -50,6 +52,23 @@ class StateReader {
  private:
   const StateMap* map_;
   Machine<long double> to_own_, to_motion_;
+};
+
+// The same for several motions side by side, from the kernel's state to the motion's, in pairs of doubles.
+class StateReaders {
+ public:
+  using Numbers = StateReader::Numbers;
+  StateReaders(const StateMap& map, const Numbers& parameters, int lanes)
+      : map_(&map), machine_(map.to_motion_, parameters, lanes) {}
+  // Puts a state into a lane; every lane needs one before convert().
+  void load(int lane, long double t, const Numbers& own);
+  void convert() { machine_.evaluate(); }
+  // The state of a lane; `own` as it was put in.
+  void motion(int lane, const Numbers& own, Numbers& state) const;
+
+ private:
+  const StateMap* map_;
+  PairMachine machine_;
 };
 
 }  // namespace anholon

@@ -149,18 +149,6 @@ Outcome Motion<N>::at(const W& t) {
   return stages_ > 0 ? leg_->point.extend() : Outcome{};
 }
 
-template <Number N>
-Outcome Motion<N>::settle_at(const Start<W>& place) {
-  Expansion<W>& point = leg_->point;
-  point.load(place.t, place.state, place.leading);
-  Outcome o = point.prepare();
-  if (o.ok()) o = point.project();
-  if (o.ok()) o = point.solve();
-  if (o.ok() && stages_ > 0) o = point.extend();
-  if (!o.ok()) o.message += " at t = " + number_text(to_double(place.t), 12);
-  return o;
-}
-
 // Keeps an eye on what the elimination divides by.
 template <Number N>
 void Motion<N>::watch_pivots(Leg& leg) const {

@@ -31,6 +31,19 @@ struct Occurrence {
   W correction{0};              // by which constraints made what was set consistent, the largest
 };
 
+// The solution at a place that was foretold (integrate/stepper.h), in `point`; `beyond`: with its orders beyond the
+// leading derivatives.
+template <Number W>
+Outcome settle_at(Expansion<W>& point, const Start<W>& place, bool beyond) {
+  point.load(place.t, place.state, place.leading);
+  Outcome o = point.prepare();
+  if (o.ok()) o = point.project();
+  if (o.ok()) o = point.solve();
+  if (o.ok() && beyond) o = point.extend();
+  if (!o.ok()) o.message += " at t = " + number_text(to_double(place.t), 12);
+  return o;
+}
+
 // N: the numbers of the Taylor coefficients; W: those of the state and of everything written.
 template <Number N>
 class Motion {
@@ -59,7 +72,7 @@ class Motion {
   void save(SavedRun& to) const;
   Outcome resume(const StateChoice& choice, const SavedRun& from);
   // The solution at a place that was foretold (integrate/stepper.h), in `point()`.
-  Outcome settle_at(const Start<W>& place);
+  Outcome settle_at(const Start<W>& place) { return anholon::settle_at(leg_->point, place, stages_ > 0); }
   // A stretch of steps towards `end`, or one, with another elimination where this one fails or its pivots have become
   // small.
   Outcome steps(const W& end, Stretch<W>& stretch);

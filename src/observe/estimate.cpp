@@ -47,6 +47,7 @@ class SharperRun {
           waiting_.own = WaitingRows::make(s_, {}, orders_of_rows(s_), motion_.parameters(), motion_.start_state(),
                                            to_double(end_));
         if (!waiting_.rows) waiting_.rows = waiting_.own.get();
+        if (waiting_.rows) waiting_.block.emplace(waiting_.rows->lanes());
       }
     const Outcome o = follow();
     const Outcome last = compare_waiting();
@@ -211,9 +212,9 @@ class SharperRun {
     const W t = times_[i];
     if constexpr (std::same_as<M, double>)
       if (waiting_.rows && motion_.stepper().steps() > 0 && !motion_.stepper().one_sided()) {
-        waiting_.rows->add(motion_.stepper(), t, {});
+        waiting_.block->add(motion_, t, {});
         waiting_.foretold.push_back({i, leading_of_polynomials(t), inside_step(t) ? to_double(last_step()) : 0});
-        return waiting_.rows->full() ? compare_waiting() : Outcome{};
+        return waiting_.block->full() ? compare_waiting() : Outcome{};
       }
     const Outcome at = motion_.at(t);
     if (at.ok()) compare_with_point({i, leading_of_polynomials(t), inside_step(t) ? to_double(last_step()) : 0});
@@ -233,7 +234,7 @@ class SharperRun {
     if constexpr (std::same_as<M, double>)
       if (waiting_.rows) {
         std::size_t next = 0;
-        waiting_.rows->compute([&](const WaitingRows::Computed& row) {
+        waiting_.rows->compute(*waiting_.block, [&](const WaitingRows::Computed& row) {
           const Foretold& foretold = waiting_.foretold[next++];
           if (row.good())
             compare(foretold, row, row);
@@ -331,6 +332,7 @@ class SharperRun {
   struct {
     WaitingRows* rows = nullptr;  // null if rows are made by the reference
     std::unique_ptr<WaitingRows> own;
+    std::optional<WaitingBlock> block;
     std::vector<Foretold> foretold;
   } waiting_;
   std::vector<EventMoment<W>> met_;

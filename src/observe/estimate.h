@@ -28,6 +28,7 @@ class SampledRows {
   // In the order of time; others are left out.
   void add(const W& t, const std::vector<W>& values, std::size_t resets, const std::string& label = {});
   void clear() { *this = {}; }
+  bool empty() const { return !last_; }
   // The first, the last and those between.
   std::vector<SampledRow<W>> take();
 

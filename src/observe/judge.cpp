@@ -19,11 +19,25 @@ void Judge<N>::row(const W& t, const std::string& label, const std::vector<W>& n
     beside_->comparison.see(difference(s_, to_double(t), numbers,
                                        row_values(s_, highest(course), course.point(), beside_->outputs),
                                        beside_->outputs));
-  } else if (wanted(course)) {
-    run_.rows.add(label.empty() ? convert<W>(convert<N>(t)) : t, numbers, resets_, label);
   } else {
-    run_.rows.clear();
+    keep(t, label, numbers, wanted(course));
   }
+}
+
+template <Number N>
+void Judge<N>::row(const W& t, const std::string& label, const std::vector<double>& numbers, bool counts) {
+  std::vector<W> wide;
+  if (counts)
+    for (const double x : numbers) wide.push_back(W(x));
+  keep(t, label, wide, counts);
+}
+
+template <Number N>
+void Judge<N>::keep(const W& t, const std::string& label, const std::vector<W>& numbers, bool counts) {
+  if (counts)
+    run_.rows.add(label.empty() ? convert<W>(convert<N>(t)) : t, numbers, resets_, label);
+  else if (!run_.rows.empty())
+    run_.rows.clear();
 }
 
 template <Number N>

@@ -20,6 +20,13 @@ class Judge {
   void look_beside(const Course<N>& course);
   // A row, at the time that is written, after so many steps of the course.
   void row(const W& t, const std::string& label, const std::vector<W>& numbers, const Course<N>& course);
+  // The same of a row in doubles. `counts`: the run was short enough for an estimate (wanted) when it came to the row.
+  void row(const W& t, const std::string& label, const std::vector<double>& numbers, bool counts);
+  // Whether an estimate is made if the run ends here.
+  bool wanted(const Course<N>& course) const {
+    return o_.estimate == ErrorEstimate::always ||
+           (o_.estimate == ErrorEstimate::short_runs && course.steps() <= kShortRun);
+  }
   // What fired at one moment.
   void events(const std::vector<Occurrence<W>>& occurrences);
   // Fills `error`, or `no_error`, of a run that has ended. `quadratures`: what was integrated along it; `waiting`: what
@@ -28,10 +35,7 @@ class Judge {
                 SimulationReport& report);
 
  private:
-  bool wanted(const Course<N>& course) const {
-    return o_.estimate == ErrorEstimate::always ||
-           (o_.estimate == ErrorEstimate::short_runs && course.steps() <= kShortRun);
-  }
+  void keep(const W& t, const std::string& label, const std::vector<W>& numbers, bool counts);
   int highest(const Course<N>& course) const { return largest_order(s_, course.taylor().program().d); }
 
   Workspace& s_;

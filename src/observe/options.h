@@ -39,6 +39,8 @@ struct SimulationOptions {
   std::vector<std::string> at_text;     // the times as written, to be printed as given
   std::function<void(double t, std::size_t steps)> progress;
   std::function<bool()> cancelled;
+  // Asked after each row, by the thread that writes it; true ends the motion, as its rows have no place.
+  std::function<bool()> rows_lost;
   std::function<void(const StepPolynomials&)> dense;  // told of every step of Taylor's method
   std::function<void(const std::string&)> note;       // told of the notes of the report as soon as there is one
   std::size_t most_steps = 50'000'000;

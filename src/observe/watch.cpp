@@ -134,14 +134,18 @@ Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report) {
 template <Number W>
 void Watch<W>::newton(const NewtonResidual<W>& c, SimulationReport& report) {
   forces_ = std::max(forces_, c.largest);
-  const auto made_of = [&] {
-    W most(0);
-    for (std::size_t i = 0; i < 3 * s_.system.coordinates + 1; ++i)
-      if (const W& v = outputs_.made_of(i); i != s_.system.coordinates && v > most) most = v;  // N, E, G
-    return most;
-  };
+  const auto made_of = [&] { return made_of_forces(); };
   report.newton = std::max(report.newton, to_double(relative_miss(c.newton, forces_, made_of)));
   report.projected = std::max(report.projected, to_double(relative_miss(c.projected, forces_, made_of)));
+}
+
+// Of N, E and G.
+template <Number W>
+W Watch<W>::made_of_forces() const {
+  W most(0);
+  for (std::size_t i = 0; i < 3 * s_.system.coordinates + 1; ++i)
+    if (const W& v = outputs_.made_of(i); i != s_.system.coordinates && v > most) most = v;
+  return most;
 }
 
 template <Number W>

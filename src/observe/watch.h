@@ -77,6 +77,10 @@ class Watch {
   const W& multiplier(std::size_t constraint) const { return multipliers_[constraint]; }
   const W& reaction(std::size_t coordinate) const { return outputs_[coordinate]; }
   const W& monitor(std::size_t i) const { return tracks_[i].last; }
+  // There: the numbers that a monitor is made of (numeric/relative.h); what the terms of Newton's law are made of, in
+  // relation to the greatest of these so far.
+  double made_of_monitor(std::size_t i) const { return to_double(outputs_.made_of(first_monitor_ + i)); }
+  double cancellation() const { return forces_ > W(0) ? to_double(W(made_of_forces() / forces_)) : 1; }
 
   // The first and the last point: the energy balance goes from one to the other, between which the work is integrated.
   void start(const Expansion<W>& point);
@@ -90,6 +94,7 @@ class Watch {
  private:
   Column expressions(const Power& power, const std::vector<Conserved>& conserved);
   void track();
+  W made_of_forces() const;
   void constraints(const Expansion<W>& point, const Matrix<W>& phi, SimulationReport& report) const;
   void newton(const NewtonResidual<W>& c, SimulationReport& report);
   W energy() const { return outputs_[s_.system.coordinates]; }

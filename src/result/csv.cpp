@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include <unistd.h>
 
@@ -148,45 +149,56 @@ bool write_table(std::FILE* file, const RunTable& table) {
 
 RunFile read_csv(std::string_view text) { return CsvReader(text).read(); }
 
+// Lines that are written together.
+static constexpr std::size_t kTogether = 1u << 16;
+
 CsvLines::~CsvLines() { flush(); }
+
+// Room after the lines that wait.
+char* CsvLines::room(std::size_t more) {
+  if (waiting_.size() - used_ < more) waiting_.resize(used_ + more + kTogether);
+  return waiting_.data() + used_;
+}
+
+void CsvLines::append(std::string_view text) {
+  std::memcpy(room(text.size()), text.data(), text.size());
+  used_ += text.size();
+}
 
 void CsvLines::header(const std::vector<std::string>& names) {
   if (!open()) return;
-  waiting_ += header_line(names);
+  append(header_line(names));
   end_line();
   flush();
 }
 
 void CsvLines::row(const Row& row) {
   if (!open()) return;
-  for (std::size_t k = 0; k < row.values.size(); ++k) {
-    if (k > 0) waiting_ += ',';
-    append_number(waiting_, row, k);
-  }
+  char* const begin = room(room_for(row));
+  used_ += static_cast<std::size_t>(write_numbers(begin, row) - begin);
   end_line();
 }
 
 void CsvLines::cells(const std::vector<std::string>& texts) {
   if (!open()) return;
   for (const std::string& text : texts) {
-    if (&text != texts.data()) waiting_ += ',';
-    waiting_ += text;
+    if (&text != texts.data()) append(",");
+    append(text);
   }
   end_line();
 }
 
 void CsvLines::end_line() {
-  waiting_ += '\n';
-  constexpr std::size_t kTogether = 1u << 16;
-  if (waiting_.size() >= kTogether || std::chrono::steady_clock::now() >= next_) flush();
+  append("\n");
+  if (used_ >= kTogether || std::chrono::steady_clock::now() >= next_) flush();
 }
 
 void CsvLines::flush() {
   constexpr auto kPause = std::chrono::milliseconds(500);
   if (!file_.stream()) return;
-  file_.write(waiting_);
+  file_.write({waiting_.data(), used_});
   file_.flush();
-  waiting_.clear();
+  used_ = 0;
   next_ = std::chrono::steady_clock::now();
   if (!::isatty(::fileno(file_.stream()))) next_ += kPause;
 }

@@ -35,9 +35,12 @@ class CsvLines {
  private:
   bool open() const { return file_.stream() && error().empty(); }
   void end_line();
+  void append(std::string_view text);
+  char* room(std::size_t more);
 
   GrowingFile file_;
-  std::string waiting_;
+  std::string waiting_;  // the first used_ characters; the others are room
+  std::size_t used_ = 0;
   std::chrono::steady_clock::time_point next_{};
 };
 

@@ -88,6 +88,13 @@ WritingClaim::~WritingClaim() {
   if (socket_ >= 0) ::close(socket_);
 }
 
+void start_writing(const std::string& path) {
+  const int fd = ::open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC);
+  if (fd < 0) return;
+  ::sync_file_range(fd, 0, 0, SYNC_FILE_RANGE_WRITE);
+  ::close(fd);
+}
+
 GrowingFile::GrowingFile(const std::string& path)
     : shown_(path.empty() || path == "-" ? "the output" : path), target_(target_of_link(path)),
       claim_(path.empty() || path == "-" || is_other_kind(path) ? std::string() : path) {
@@ -120,13 +127,18 @@ void GrowingFile::fail(int why) {
   if (error_.empty()) error_ = cannot_write(shown_, why);
 }
 
-void GrowingFile::write(const std::string& text) {
+void GrowingFile::write(std::string_view text) {
   begun_ = true;
+  unwritten_ += text.size();
   if (file_ && error_.empty() && std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail(errno);
 }
 
 void GrowingFile::flush() {
+  constexpr std::size_t kMuch = 4u << 20;
   if (file_ && error_.empty() && std::fflush(file_) != 0) fail(errno);
+  if (unwritten_ < kMuch || !file_ || beside_.empty()) return;
+  ::sync_file_range(::fileno(file_), 0, 0, SYNC_FILE_RANGE_WRITE);
+  unwritten_ = 0;
 }
 
 std::string GrowingFile::close() {

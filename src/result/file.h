@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace anholon {
 
@@ -37,7 +38,7 @@ class GrowingFile {
   GrowingFile& operator=(const GrowingFile&) = delete;
 
   std::FILE* stream() const { return file_; }
-  void write(const std::string& text);
+  void write(std::string_view text);
   // After this call, all text written so far is in the file, whatever happens to the program.
   void flush();
   // Returns an empty string, or the reason of a failure; the text written then stays in NAME.part.
@@ -52,9 +53,14 @@ class GrowingFile {
   void fail(int why);
   std::string shown_, target_, beside_, error_;
   bool begun_ = false, closed_ = false;
+  std::size_t unwritten_ = 0;  // bytes since the disk was last asked for
   WritingClaim claim_;
   std::FILE* file_ = nullptr;
 };
+
+// Asks the system to write to the disk what a file has in memory, and does not wait: the sync at the end then has less
+// to wait for.
+void start_writing(const std::string& path);
 
 // The target of a link; other names are returned unchanged.
 std::string target_of_link(const std::string& path);

@@ -1,5 +1,6 @@
 #include "result/json_run.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "base/diagnostic.h"
@@ -8,6 +9,7 @@
 #include "numeric/number.h"
 #include "result/file.h"
 #include "result/format.h"
+#include "result/shortest.h"
 
 namespace anholon {
 
@@ -233,19 +235,57 @@ class JsonReader {
   RunFile run_;
 };
 
-// Columns and rows, in the form that they have within the JSON of `simulate`.
-std::string json_rows(const RunTable& table) {
-  JsonWriter j;
-  j.open_object().key("columns").open_array();
-  for (const std::string& n : table.columns) j.string(n);
-  j.close().key("rows").open_array();
-  for (std::size_t i = 0; i < table.rows(); ++i) {
-    j.open_array();
-    for (std::size_t c = 0; c < table.columns.size(); ++c) j.number(json_number(table.text(i, c)));
-    j.close();
+// Appends the number in JSON's syntax.
+void append_json_number(std::string& to, const RunTable& table, std::size_t row, std::size_t column) {
+  const bool has_text =
+      column < table.texts.size() && row < table.texts[column].size() && !table.texts[column][row].empty();
+  const double value = table.values[column][row];
+  if (has_text) {
+    const std::string number = json_number(table.text(row, column));
+    to += number.find('n') == std::string::npos ? number : "null";
+  } else if (std::isfinite(value)) {
+    char text[kShortestRoom];
+    to.append(text, write_shortest(text, value));
+  } else {
+    to += "null";
   }
-  j.close().close();
-  return j.text().substr(1, j.text().size() - 3);
+}
+
+// Hands columns and rows piece by piece to write(text), in the form that they have within the JSON of `simulate`.
+template <class F>
+void write_json_rows(const RunTable& table, F write) {
+  constexpr std::size_t kPiece = 1u << 20;
+  JsonWriter head;
+  head.open_object().key("columns").open_array();
+  for (const std::string& n : table.columns) head.string(n);
+  head.close().key("rows");
+  std::string piece = head.text().substr(1) + "[";
+  for (std::size_t i = 0; i < table.rows(); ++i) {
+    piece += i == 0 ? "[" : ", [";
+    for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      if (c > 0) piece += ", ";
+      append_json_number(piece, table, i, c);
+    }
+    piece += ']';
+    if (piece.size() >= kPiece) write(piece), piece.clear();
+  }
+  write(piece += ']');
+}
+
+// Hands the whole file piece by piece to write(text).
+template <class F>
+void write_json_run(const RunFile& run, F write) {
+  const std::string& report = run.report;
+  if (report.size() < 2) {
+    write("{");
+    write_json_rows(run.table, write);
+    return write("\n}\n");
+  }
+  // At the place where `simulate` writes them: after the model and the form.
+  const std::size_t found = report.find("\n  \"residuals\":"), place = found == std::string::npos ? 1 : found;
+  write(report.substr(0, place));
+  write_json_rows(run.table, write);
+  write("," + report.substr(place) + "\n");
 }
 
 // Keeps the rows until the report is there.
@@ -259,7 +299,7 @@ class JsonRunWriter final : public RunWriter {
   void flush() override {}
   std::string close(const std::string& report) override {
     run_.report = report;
-    file_.write(json_run(run_));
+    write_json_run(run_, [&](const std::string& piece) { file_.write(piece); });
     return file_.close();
   }
 
@@ -309,12 +349,9 @@ bool looks_like_json(std::string_view beginning) {
 RunFile read_json_run(std::string_view text) { return JsonReader(text).read(); }
 
 std::string json_run(const RunFile& run) {
-  const std::string& report = run.report;
-  if (report.size() < 2) return "{" + json_rows(run.table) + "\n}\n";
-  // At the place where `simulate` writes them: after the model and the form.
-  const std::size_t place = report.find("\n  \"residuals\":");
-  if (place == std::string::npos) return "{" + json_rows(run.table) + "," + report.substr(1) + "\n";
-  return report.substr(0, place) + json_rows(run.table) + "," + report.substr(place) + "\n";
+  std::string text;
+  write_json_run(run, [&](const std::string& piece) { text += piece; });
+  return text;
 }
 
 extern const ResultFormat json_format;
@@ -328,9 +365,13 @@ const ResultFormat json_format = {
     .read_text = read_json_run,
     .write =
         [](const std::string& path, const RunFile& run) {
-          const std::string text = json_run(run);
-          return write_stream(
-              path, [&](std::FILE* file) { return std::fwrite(text.data(), 1, text.size(), file) == text.size(); });
+          return write_stream(path, [&](std::FILE* file) {
+            bool written = true;
+            write_json_run(run, [&](const std::string& piece) {
+              written = written && std::fwrite(piece.data(), 1, piece.size(), file) == piece.size();
+            });
+            return written;
+          });
         },
     .open = [](const std::string& path, const RunInfo& info) -> std::unique_ptr<RunWriter> {
       return std::make_unique<JsonRunWriter>(path, info);

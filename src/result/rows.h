@@ -17,6 +17,10 @@ struct Row {
 };
 // Appends the number of column k in its written form.
 void append_number(std::string& to, const Row& row, std::size_t k);
+// Writes the numbers with a comma between two of them to `to`, which has room for `room_for(row)` characters; returns
+// the end of the text.
+std::size_t room_for(const Row& row);
+char* write_numbers(char* to, const Row& row);
 
 class RowSink {
  public:

@@ -133,13 +133,27 @@ struct ValueAt {
   }
 };
 
-// Expressions evaluated at a point of the motion.
+// Expressions evaluated at a point of the motion. evaluate() reads no graph, so that one thread may evaluate while
+// another builds expressions.
 template <Number N>
 class OutputTape {
  public:
   OutputTape(Workspace& s, const Column& es, const std::vector<N>& parameters)
-      : system_(s.system), tape_(compile(put(s, es))), machine_(tape_, 0, parameters) {}
-  void evaluate(const Expansion<N>& point) { evaluate_at(ValueAt<N>{system_, point}); }
+      : system_(s.system), tape_(compile(put(s, es))), machine_(tape_, 0, parameters) {
+    for (const Input& in : tape_.inputs) {
+      const Node& n = s.model->graph->node(in.symbol);
+      places_.push_back({n.kind == Kind::time, system_.variable(in.symbol), n.order, in.slot});
+    }
+  }
+  // As evaluate_at(ValueAt) does.
+  void evaluate(const Expansion<N>& point) {
+    for (const InputPlace& in : places_)
+      machine_.series(in.slot)[0] = in.time       ? point.time()
+                                    : in.variable ? point.derivative(*in.variable, in.order)
+                                                  : N(0);
+    machine_.evaluate();
+    sizes_.clear();
+  }
   // As above with the rule of tape/bind.h.
   template <class Rule>
   void evaluate_at(const Rule& rule) {
@@ -166,9 +180,16 @@ class OutputTape {
   }
 
  private:
+  struct InputPlace {
+    bool time;
+    std::optional<std::size_t> variable;  // the unknown; nullopt for the multiplier of a redundant constraint
+    int order;                            // of its derivative
+    std::uint32_t slot;
+  };
   const System& system_;
   Tape tape_;
   Machine<N> machine_;
+  std::vector<InputPlace> places_;  // of the inputs
   mutable std::vector<N> sizes_;
 };
 

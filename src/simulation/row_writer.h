@@ -28,6 +28,17 @@ class RowWriter {
     sink_.row({values_, texts_});
     ++rows_;
   }
+  // The same of numbers in doubles.
+  void row(const W& t, const std::string& label, const std::vector<double>& numbers)
+    requires std::same_as<N, double>
+  {
+    values_.assign(1, to_double(t));
+    values_.insert(values_.end(), numbers.begin(), numbers.end());
+    texts_.clear();
+    if (!label.empty()) texts_.assign(1, label);
+    sink_.row({values_, texts_});
+    ++rows_;
+  }
   void step(const W& end) {
     sink_.step(to_double(end));
     ++steps_;

@@ -1,14 +1,11 @@
 #include "simulation/simulate.h"
 
 #include <algorithm>
-#include <bit>
+#include <atomic>
 #include <chrono>
 
-#include "observe/judge.h"
-#include "observe/rows/waiting_rows.h"
-#include "observe/supports.h"
 #include "simulation/event_paces.h"
-#include "simulation/row_writer.h"
+#include "simulation/kernel_rows.h"
 #include "simulation/schedule.h"
 #include "simulation/shown_motion.h"
 #include "simulation/trust.h"
@@ -29,13 +26,6 @@ Method method(const SimulationOptions& o) {
   return o.method == Method::automatic && (o.save || o.resume || o.rigorous || o.integrator != Method::taylor)
              ? Method::taylor
              : o.method;
-}
-
-// Rows at which the residual report looks: the first ones, then ever fewer, so that they are not what takes the time of
-// a run.
-bool looked_at(std::size_t row) {
-  constexpr std::size_t kFirst = 128;
-  return row % std::bit_ceil(row / kFirst + 1) == 0;
 }
 
 Column monitored(const Model& model) {
@@ -105,7 +95,7 @@ class Run {
   // Another integrator, whose motion is then the one that is written.
   void show_second() {
     if (o_.integrator == Method::taylor) return;
-    waiting_.reset();
+    kernel_rows_.reset();
     if constexpr (std::same_as<N, double>)
       shown_.show(std::make_unique<SecondMotion>(
           s_, o_.state, watched_quadratures(s_, power_)[0],
@@ -126,6 +116,7 @@ class Run {
   // Stores the state from which a run goes on with the same bits.
   void save() {
     settle_rows();
+    turn_over();
     SavedRun to;
     motion().save(to);
     watch_.save(to);
@@ -186,6 +177,7 @@ class Run {
       pause = std::min(kLonger * pause, o_.save_seconds);
     }
     settle_rows();
+    turn_over();
     if (report_.outcome.ok() && course_.steps() > 0 && shown_.at(course_.time()).ok())
       watch_.end(shown_.point(), shown_.work(), report_);
     if (o_.save) save();
@@ -205,10 +197,10 @@ class Run {
   // A stretch of steps, with what is due after them: rows and events; returns false if it ends the motion before its
   // end.
   bool step() {
-    watch_.turn_over(course_.integrals()[0]);
+    work_ = std::max(work_, W(abs(course_.integrals()[0])));
     limit_stretch();
     Outcome o = course_.steps(schedule_.end(), stretch_);
-    watch_.turn_over(stretch_.greatest_integral);
+    work_ = std::max(work_, W(stretch_.greatest_integral));
     // Before its last step there is nothing to do.
     for (std::size_t i = 0; i + (o.ok() ? 1 : 0) < stretch_.times.size(); ++i) rows_.step(stretch_.times[i]);
     if (!o.ok()) {
@@ -223,8 +215,7 @@ class Run {
     if (defect_) defect_->step(dense_step(motion().stepper(), masses.t));
     if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
     rows_until(masses.t);
-    if (waiting_ && waiting_->late()) settle_rows();
-    rows_.step(masses.t);
+    step_of_rows(masses.t);
     if (report_.outcome.ok() && !(masses.t == course_.time())) {
       report_.outcome = negative_mass(*s_.model, masses.mass, to_double(masses.t));
       reached_ = masses.t;
@@ -316,57 +307,37 @@ class Run {
   // Rows of Taylor's steps may be computed side by side.
   void prepare_rows() {
     if constexpr (std::same_as<N, double>)
-      if (motion().stepper().accelerated())
-        waiting_ = WaitingRows::make(s_, o_.conserved, stages_, motion().parameters(), motion().start_state(),
-                                     to_double(schedule_.end()));
+      kernel_rows_ = KernelRows::make(s_, o_, motion(), stages_, to_double(schedule_.end()),
+                                      {watch_, judge_, supports_, rows_, report_});
   }
 
   void row_in_step(const W& t, const std::string& label) {
     if constexpr (std::same_as<N, double>)
-      if (waiting_ && course_.by_taylor() && !motion().stepper().one_sided()) {
-        waiting_->add(motion().stepper(), t, label);
-        if (waiting_->full()) compute_rows();
+      if (kernel_rows_ && course_.by_taylor() && !motion().stepper().one_sided()) {
+        kernel_rows_->add(motion(), t, label, judge_.wanted(course_));
+        if (kernel_rows_->failed()) settle_rows();
         return;
       }
     settle_rows();
     if (report_.outcome.ok()) row(t, label);
   }
 
-  // Computes the rows that wait. What has ended the motion stands, unless one of them has no solution.
+  // The end of a step, after its rows.
+  void step_of_rows(const W& end) {
+    if (!kernel_rows_) return rows_.step(end);
+    kernel_rows_->step(to_double(end));
+    kernel_rows_->look_at_the_time();
+    if (kernel_rows_->failed()) settle_rows();
+  }
+
+  // Waits for the rows that are under way. What has ended the motion stands, unless one of them has no solution.
   void settle_rows() {
-    Outcome why = std::exchange(report_.outcome, {});
-    compute_rows();
-    if (report_.outcome.ok()) report_.outcome = std::move(why);
+    if (!kernel_rows_) return;
+    if (Outcome o = kernel_rows_->settle(); !o.ok()) report_.outcome = std::move(o);
   }
 
-  void compute_rows() {
-    if constexpr (std::same_as<N, double>)
-      if (waiting_)
-        waiting_->compute([&](const WaitingRows::Computed& row) {
-          computed(row);
-          return report_.outcome.ok();
-        });
-  }
-
-  // The reference looks at a row that was computed side by side with others, if it is one of those that are looked at,
-  // and makes it if it has to.
-  void computed(const WaitingRows::Computed& row) {
-    const RowPlace& place = row.place();
-    const bool good = row.good();
-    if (!good || looked_at(rows_.rows())) {
-      report_.outcome = motion().settle_at(place);
-      if (report_.outcome.ok()) report_.outcome = see(motion().point());
-      if (!report_.outcome.ok()) return;
-    } else {
-      watch_.track([&](std::size_t k) { return row.sum(k); }, [&](std::size_t k) { return row.terms(k); });
-    }
-    if (good)
-      row_values(s_, highest(), row, row, numbers_);
-    else
-      row_values(s_, highest(), motion().point(), watch_, numbers_);
-    write_row(place.t, row.label(),
-              [&](std::size_t r) { return good ? row.multiplier(r) : to_double(watch_.multiplier(r)); });
-  }
+  // The watch may be in use beside the motion; it hears of the work so far when it is not.
+  void turn_over() { watch_.turn_over(work_); }
 
   void row(const typename RowSchedule<W>::Due& due) { row(due.t, due.label); }
 
@@ -390,6 +361,7 @@ class Run {
     supports_.see(to_double(t), multiplier);
     rows_.row(t, label, numbers_);
     ++report_.rows;
+    if (o_.rows_lost) o_.rows_lost();
   }
 
   // ---- the report --------------------------------------------------------------------------------
@@ -412,7 +384,10 @@ class Run {
     for (const std::string& text : supports_.notes()) note(text);
     const std::vector<Warning> more = warnings<N>(s_, course_, watch_, angles_);
     report_.warnings.insert(report_.warnings.end(), more.begin(), more.end());
-    judge_.estimate(course_, watched_quadratures(s_, power_), waiting_.get(), report_);
+    if (kernel_rows_)
+      if (const auto warning = kernel_rows_->warning()) report_.warnings.push_back(*warning);
+    judge_.estimate(course_, watched_quadratures(s_, power_), kernel_rows_ ? &kernel_rows_->waiting() : nullptr,
+                    report_);
   }
 
   void report_watched() {
@@ -442,8 +417,7 @@ class Run {
   Course<N> course_;
   ShownMotion<N> shown_;
   RowSchedule<W> schedule_;
-  std::unique_ptr<WaitingRows> waiting_;  // null if rows are made by the reference
-  std::vector<W> numbers_;                // of a row
+  std::vector<W> numbers_;  // of a row
   RowWriter<N> rows_;
   Watch<W> watch_;
   AngleWatch angles_;
@@ -454,7 +428,9 @@ class Run {
   StretchPace pace_;
   std::optional<Defect> defect_;
   std::optional<W> reached_;  // the time at which the motion ended before its end
+  W work_{0};                 // the greatest so far, where a step began
   SimulationReport report_;
+  std::unique_ptr<KernelRows> kernel_rows_;  // null if rows are made by the reference; the last: uses the others
 };
 
 }  // namespace
@@ -468,6 +444,12 @@ SimulationReport simulate_in(Workspace& s, const SimulationOptions& options, Row
   const auto start = std::chrono::steady_clock::now();
   SimulationOptions o = options;
   for (Conserved& c : o.conserved) for_each_expression(c, [&](Expr& e) { e = s.graph().own(e); });
+  // Rows that cannot be written end the motion, whichever thread finds that.
+  std::atomic<bool> lost = false;
+  if (options.rows_lost) {
+    o.rows_lost = [&] { return lost = lost || options.rows_lost(); };
+    o.cancelled = [&] { return lost || (options.cancelled && options.cancelled()); };
+  }
   SimulationReport r;
   switch (o.precision) {
   case Precision::real:

@@ -181,8 +181,7 @@ class Writer {
         rows.flush();
         saver_(saved);
       };
-    // Rows that cannot be written end the motion.
-    options_.cancelled = [&rows] { return stop_requested() || !rows.error().empty(); };
+    options_.rows_lost = [&rows] { return !rows.error().empty(); };
     w.report = run(s_, options_, rows, told_);
   }
 

@@ -1,4 +1,5 @@
 // AVX2 and FMA, four lanes.
+#include "kernel/tiers/pairs_run.h"
 #include "kernel/tiers/sweep.h"
 
 namespace anholon {
@@ -10,5 +11,9 @@ static std::unique_ptr<Arithmetic> make(const KernelTables& tables, double* aren
 }
 
 const Tier tier_avx2{"avx2", 4, make, Sines<1>::at, Sines<4>::at};
+
+void run_pairs_avx2(const PairProgram& program, double* numbers, const std::function<void(std::uint32_t)>& other) {
+  PairRun<4>::run(program, numbers, other);
+}
 
 }  // namespace anholon

@@ -1,4 +1,5 @@
 // AVX-512, eight lanes.
+#include "kernel/tiers/pairs_run.h"
 #include "kernel/tiers/sweep.h"
 
 namespace anholon {
@@ -10,5 +11,9 @@ static std::unique_ptr<Arithmetic> make(const KernelTables& tables, double* aren
 }
 
 const Tier tier_avx512{"avx512", 8, make, Sines<1>::at, Sines<8>::at};
+
+void run_pairs_avx512(const PairProgram& program, double* numbers, const std::function<void(std::uint32_t)>& other) {
+  PairRun<8>::run(program, numbers, other);
+}
 
 }  // namespace anholon

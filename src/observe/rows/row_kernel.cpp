@@ -3,8 +3,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "base/assert.h"
-
 namespace anholon {
 
 std::unique_ptr<RowKernel> RowKernel::make(Workspace& s, const Column& outputs, int stages,
@@ -28,15 +26,16 @@ RowKernel::RowKernel(std::shared_ptr<const KernelPlan> plan, bool with_series,
   for (int lane = 0; lane < kernel_.lanes(); ++lane) kernel_.set_parameters(lane, parameters);
 }
 
-void RowKernel::compute(std::span<const RowPlace> places) {
-  ANHOLON_ASSERT(!places.empty() && places.size() <= lanes());
-  code_.step(plan_, static_cast<double>(places.front().t), end_, kernel_.lanes(), spent_);
+void RowKernel::place(std::size_t lane, const RowPlace& place) {
+  const double t = static_cast<double>(place.t);
+  if (lane == 0) at_ = t;
+  kernel_.place(static_cast<int>(lane), place.state, place.leading);
+  kernel_.set_time(static_cast<int>(lane), t);
+}
+
+void RowKernel::compute() {
+  code_.step(plan_, at_, end_, kernel_.lanes(), spent_);
   const auto begun = std::chrono::steady_clock::now();
-  for (std::size_t lane = 0; lane < lanes(); ++lane) {
-    const RowPlace& p = places[std::min(lane, places.size() - 1)];
-    kernel_.place(static_cast<int>(lane), p.state, p.leading);
-    kernel_.set_time(static_cast<int>(lane), static_cast<double>(p.t));
-  }
   if (with_series_)
     kernel_.begin();
   else

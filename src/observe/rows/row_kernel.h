@@ -24,8 +24,9 @@ class RowKernel {
                                          const std::vector<long double>& parameters, const RowPlace& here, double end);
 
   std::size_t lanes() const { return static_cast<std::size_t>(kernel_.lanes()); }
-  // Puts the places into the lanes, at most `lanes()` of them, and computes.
-  void compute(std::span<const RowPlace> places);
+  // Puts a place into a lane; every lane needs one before compute().
+  void place(std::size_t lane, const RowPlace& place);
+  void compute();
 
   // Whether the pivots of a lane are large enough for its numbers to be trusted; else the reference has to make the row.
   bool good(std::size_t lane) const;
@@ -42,7 +43,7 @@ class RowKernel {
   bool with_series_;  // beyond the leading derivatives
   std::shared_ptr<const KernelPlan> plan_;
   Kernel kernel_;
-  double end_, spent_ = 0;  // the end of the motion; seconds
+  double end_, spent_ = 0, at_ = 0;  // the end of the motion; seconds; the time in the first lane
   CodeForLongRuns code_;
 };
 

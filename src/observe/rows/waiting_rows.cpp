@@ -2,6 +2,16 @@
 
 namespace anholon {
 
+void WaitingBlock::add(const Motion<double>& motion, long double t, const std::string& label) {
+  if (count_ == 0) since_ = std::chrono::steady_clock::now();
+  Waiting& row = rows_[count_];
+  row.place.t = t;
+  motion.stepper().foretell(t, row.place.state, row.own, row.place.leading);
+  if (!row.own.empty() && row.plan != motion.plan()) row.plan = motion.plan();
+  row.label = label;
+  ++count_;
+}
+
 std::unique_ptr<WaitingRows> WaitingRows::make(Workspace& s, const std::vector<Conserved>& conserved, int stages,
                                                const std::vector<long double>& parameters, const RowPlace& start,
                                                double end) {
@@ -9,23 +19,77 @@ std::unique_ptr<WaitingRows> WaitingRows::make(Workspace& s, const std::vector<C
   for (const Conserved& c : conserved) terms.insert(terms.end(), c.terms.begin(), c.terms.end());
   RowExpressions expressions(s, terms);
   auto kernel = RowKernel::make(s, expressions.all, stages, parameters, start, end);
-  return kernel ? std::unique_ptr<WaitingRows>(new WaitingRows(s, std::move(expressions), std::move(kernel))) : nullptr;
+  if (!kernel) return nullptr;
+  return std::unique_ptr<WaitingRows>(new WaitingRows(s, std::move(expressions), std::move(kernel), parameters));
 }
 
-WaitingRows::WaitingRows(const Scenario& s, RowExpressions expressions, std::unique_ptr<RowKernel> kernel)
-    : expressions_(std::move(expressions)), kernel_(std::move(kernel)), multipliers_(s.model->constraints.size()),
-      places_(kernel_->lanes()), labels_(places_.size()) {
+// Finds the sources of the numbers by asking row_values() for them at a point that answers with the number of the
+// question.
+WaitingRows::WaitingRows(const Scenario& s, RowExpressions expressions, std::unique_ptr<RowKernel> kernel,
+                         const std::vector<long double>& parameters)
+    : expressions_(std::move(expressions)), kernel_(std::move(kernel)), parameters_(parameters),
+      multipliers_(s.model->constraints.size()) {
   for (std::size_t i = 0; i < s.system.constraints.size(); ++i)
     multipliers_[s.system.constraints[i]] = s.system.coordinates + i;
+  struct Asked {
+    const WaitingRows& rows;
+    mutable std::vector<Source> sources = {Source{Source::From::zero}};
+    double note(Source source) const {
+      sources.push_back(source);
+      return static_cast<double>(sources.size() - 1);
+    }
+    double derivative(std::size_t j, int k) const { return note({Source::From::derivative, j, k}); }
+    double multiplier(std::size_t constraint) const {
+      const auto& j = rows.multipliers_[constraint];
+      return j ? derivative(*j, 0) : 0;
+    }
+    double reaction(std::size_t coordinate) const { return note({Source::From::output, coordinate}); }
+    double monitor(std::size_t i) const { return note({Source::From::output, rows.expressions_.monitors[i].at}); }
+  };
+  const Asked asked{*this};
+  std::vector<double> questions;
+  row_values(s, largest_order(s, s.structure.d), asked, asked, questions);
+  for (const double q : questions) sources_.push_back(asked.sources[static_cast<std::size_t>(q)]);
 }
 
-void WaitingRows::add(const Stepper<double>& stepper, long double t, const std::string& label) {
-  if (count_ == 0) since_ = std::chrono::steady_clock::now();
-  RowPlace& place = places_[count_];
-  place.t = t;
-  stepper.foretell(t, place.state, place.leading);
-  labels_[count_] = label;
-  ++count_;
+// States in unknowns of the motion's kernel are converted first. Rows of another plan, which a motion that writes its
+// equations anew leaves behind, are converted by themselves.
+void WaitingRows::compute(WaitingBlock& block, std::size_t first, std::size_t count) {
+  for (std::size_t from = 0; from < count;) {
+    WaitingBlock::Waiting& row = block[first + from];
+    std::size_t to = from + 1;
+    if (!row.own.empty()) {
+      while (to < count && !block[first + to].own.empty() && block[first + to].plan == row.plan) ++to;
+      convert(&row, to - from);
+    }
+    from = to;
+  }
+  for (std::size_t lane = 0; lane < lanes(); ++lane)
+    kernel_->place(lane, block[first + std::min(lane, count - 1)].place);
+  kernel_->compute();
+}
+
+void WaitingRows::convert(WaitingBlock::Waiting* rows, std::size_t count) {
+  if (mapped_ != rows->plan) {
+    mapped_ = rows->plan;
+    readers_.emplace(*mapped_->map(), parameters_, static_cast<int>(lanes()));
+  }
+  for (std::size_t lane = 0; lane < lanes(); ++lane) {
+    const WaitingBlock::Waiting& row = rows[std::min(lane, count - 1)];
+    readers_->load(static_cast<int>(lane), row.place.t, row.own);
+  }
+  readers_->convert();
+  for (std::size_t lane = 0; lane < count; ++lane)
+    readers_->motion(static_cast<int>(lane), rows[lane].own, rows[lane].place.state);
+}
+
+void WaitingRows::Computed::numbers(std::vector<double>& values) const {
+  values.resize(rows_.sources_.size());
+  double* to = values.data();
+  for (const Source& source : rows_.sources_)
+    *to++ = source.from == Source::From::derivative ? derivative(source.index, source.order)
+            : source.from == Source::From::output   ? output(source.index)
+                                                    : 0;
 }
 
 }  // namespace anholon

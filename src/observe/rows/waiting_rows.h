@@ -1,13 +1,45 @@
-// Rows of a motion that wait until there are enough of them to be computed side by side (row_kernel.h).
+// Rows of a motion that wait in a block until they are computed side by side (row_kernel.h).
+//
+// The thread of the motion notes where rows are to be; WaitingRows computes them, in the same thread or in another one.
 #pragma once
 #include <chrono>
 
-#include "integrate/stepper.h"
 #include "mechanics/conserved.h"
+#include "motion/motion.h"
 #include "observe/rows/row_kernel.h"
 #include "observe/rows/row_values.h"
 
 namespace anholon {
+
+// Rows that wait together, in the order of time.
+class WaitingBlock {
+ public:
+  struct Waiting {
+    RowPlace place;                          // without the state, if that is in unknowns of the motion's kernel
+    std::vector<long double> own;            // then it is here
+    std::shared_ptr<const KernelPlan> plan;  // that kernel's
+    std::string label;                       // the time as it is to be written; empty for its number
+  };
+
+  explicit WaitingBlock(std::size_t room) : rows_(room) {}
+
+  // Adds a time of the last step.
+  void add(const Motion<double>& motion, long double t, const std::string& label);
+  bool full() const { return count_ == rows_.size(); }
+  std::size_t size() const { return count_; }
+  Waiting& operator[](std::size_t i) { return rows_[i]; }
+  void clear() { count_ = 0; }
+  // Whether a row waits for so long that somebody who looks at the output would miss it.
+  bool late() const {
+    constexpr std::chrono::milliseconds kLate(100);
+    return count_ > 0 && std::chrono::steady_clock::now() - since_ > kLate;
+  }
+
+ private:
+  std::vector<Waiting> rows_;  // the first count_ of them wait; the others keep their memory
+  std::size_t count_ = 0;
+  std::chrono::steady_clock::time_point since_;  // when the first of them came
+};
 
 class WaitingRows {
  public:
@@ -16,20 +48,11 @@ class WaitingRows {
                                            const std::vector<long double>& parameters, const RowPlace& start,
                                            double end);
 
-  // Adds a time of the last step. `label`: the time as it is to be written.
-  void add(const Stepper<double>& stepper, long double t, const std::string& label);
-  bool full() const { return count_ == places_.size(); }
-  // Whether a row waits for so long that somebody who looks at the output would miss it.
-  bool late() const {
-    constexpr std::chrono::milliseconds kLate(100);
-    return count_ > 0 && std::chrono::steady_clock::now() - since_ > kLate;
-  }
-
   // A row that has been computed, in the numbers of doubles; for row_values() a point and its outputs.
   class Computed {
    public:
-    const RowPlace& place() const { return rows_.places_[lane_]; }
-    const std::string& label() const { return rows_.labels_[lane_]; }
+    const RowPlace& place() const { return row_.place; }
+    const std::string& label() const { return row_.label; }
     // If not, the reference has to compute it.
     bool good() const { return rows_.kernel_->good(lane_); }
     double derivative(std::size_t j, int k) const { return rows_.kernel_->derivative(j, k, lane_); }
@@ -45,27 +68,38 @@ class WaitingRows {
     double terms(std::size_t k) const {
       return RowExpressions::terms<double>(rows_.sum(k), [&](std::size_t i) { return output(i); });
     }
+    // The numbers of row_values(), found faster.
+    void numbers(std::vector<double>& values) const;
 
    private:
     friend class WaitingRows;
-    Computed(const WaitingRows& rows, std::size_t lane) : rows_(rows), lane_(lane) {}
+    Computed(const WaitingRows& rows, const WaitingBlock::Waiting& row, std::size_t lane)
+        : rows_(rows), row_(row), lane_(lane) {}
     double output(std::size_t i) const { return rows_.kernel_->output(i, lane_); }
     const WaitingRows& rows_;
+    const WaitingBlock::Waiting& row_;
     std::size_t lane_;
   };
-  // Computes the rows that wait and hands them to take(computed), one after the other, until that returns false. None
+
+  std::size_t lanes() const { return kernel_->lanes(); }
+  // Computes the rows of a block and hands them to take(computed), one after the other, until that returns false. None
   // waits afterwards.
   template <class F>
-  void compute(F take) {
-    if (count_ == 0) return;
-    kernel_->compute({places_.data(), count_});
-    const std::size_t count = std::exchange(count_, 0);
-    for (std::size_t lane = 0; lane < count; ++lane)
-      if (!take(Computed(*this, lane))) return;
+  void compute(WaitingBlock& block, F take) {
+    for (std::size_t first = 0; first < block.size(); first += lanes()) {
+      const std::size_t count = std::min(lanes(), block.size() - first);
+      compute(block, first, count);
+      for (std::size_t lane = 0; lane < count; ++lane)
+        if (!take(Computed(*this, block[first + lane], lane))) return block.clear();
+    }
+    block.clear();
   }
 
  private:
-  WaitingRows(const Scenario& scenario, RowExpressions expressions, std::unique_ptr<RowKernel> kernel);
+  WaitingRows(const Scenario& scenario, RowExpressions expressions, std::unique_ptr<RowKernel> kernel,
+              const std::vector<long double>& parameters);
+  void compute(WaitingBlock& block, std::size_t first, std::size_t count);
+  void convert(WaitingBlock::Waiting* rows, std::size_t count);
   const RowExpressions::Sum& sum(std::size_t k) const {
     const std::size_t monitors = expressions_.monitors.size();
     return k < monitors ? expressions_.monitors[k] : expressions_.further[k - monitors];
@@ -73,11 +107,18 @@ class WaitingRows {
 
   RowExpressions expressions_;
   std::unique_ptr<RowKernel> kernel_;
+  std::vector<long double> parameters_;
   std::vector<std::optional<std::size_t>> multipliers_;  // of each constraint: its unknown
-  std::vector<RowPlace> places_;                         // one for each lane
-  std::vector<std::string> labels_;
-  std::size_t count_ = 0;                        // of rows that wait
-  std::chrono::steady_clock::time_point since_;  // when the first of them came
+  // The numbers of a row: a derivative of an unknown, an output, or 0 for the multiplier of a redundant constraint.
+  struct Source {
+    enum class From : std::uint8_t { derivative, output, zero } from;
+    std::size_t index = 0;
+    int order = 0;
+  };
+  std::vector<Source> sources_;
+  // From the unknowns of the motion's kernel to the state.
+  std::shared_ptr<const KernelPlan> mapped_;
+  std::optional<StateReaders> readers_;
 };
 
 }  // namespace anholon

@@ -11,6 +11,8 @@
 
 namespace anholon {
 
+// Rows are written to the copy when there are so many bytes of them, so that the disk works while the motion goes on.
+static constexpr std::size_t kAhead = 4u << 20;
 // The limit of stored steps of a run; later steps are not written.
 static constexpr std::size_t kMostSteps = 5'000'000;
 
@@ -46,7 +48,10 @@ void Hdf5Sink::columns(const std::vector<RunColumn>& columns) {
 void Hdf5Sink::row(const Row& row) {
   if (!error_.empty()) return;
   block_.add(row);
-  if (block_.bytes() >= std::max(pace_.bytes, size_ / 4) || std::chrono::steady_clock::now() >= next_) checkpoint();
+  if (ahead_.bytes + block_.bytes() >= std::max(pace_.bytes, size_ / 4) || std::chrono::steady_clock::now() >= next_)
+    checkpoint();
+  else if (block_.bytes() >= kAhead)
+    extend();
 }
 
 void Hdf5Sink::step(double t) {
@@ -54,12 +59,12 @@ void Hdf5Sink::step(double t) {
 }
 
 void Hdf5Sink::flush() {
-  if (begun_ && block_.bytes() > 0) checkpoint();
+  if (begun_ && (block_.bytes() > 0 || ahead_.begun)) checkpoint();
 }
 
 std::string Hdf5Sink::close(const std::string& report) {
   if (!closed_ && !report.empty()) block_.report = report;
-  if (!closed_ && begun_ && (block_.bytes() > 0 || block_.report)) checkpoint();
+  if (!closed_ && begun_ && (block_.bytes() > 0 || block_.report || ahead_.begun)) checkpoint();
   closed_ = true;
   return error_;
 }
@@ -71,6 +76,20 @@ bool Hdf5Sink::fail(const std::string& why) {
 }
 
 // Space for the new data is allocated before HDF5 opens the file: HDF5 does not handle a full disk well.
+static bool allocate(int fd, std::size_t at, std::size_t room) {
+  return ::fallocate(fd, FALLOC_FL_KEEP_SIZE, static_cast<off_t>(at), static_cast<off_t>(room)) == 0 ||
+         errno == EOPNOTSUPP || errno == ENOSYS || errno == EINTR;
+}
+
+bool Hdf5Sink::make_room(std::size_t room) {
+  const int fd = ::open(beside_.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC);
+  struct stat info{};
+  const bool made = fd >= 0 && ::fstat(fd, &info) == 0 && allocate(fd, static_cast<std::size_t>(info.st_size), room);
+  const int why = errno;
+  if (fd >= 0) ::close(fd);
+  return made || fail(std::strerror(why));
+}
+
 bool Hdf5Sink::copy_last(const std::string& to, std::size_t room) {
   const int out = ::open(to.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (out < 0) return fail(std::strerror(errno));
@@ -79,9 +98,7 @@ bool Hdf5Sink::copy_last(const std::string& to, std::size_t room) {
     ::close(out);
     return fail(std::strerror(why));
   };
-  if (::fallocate(out, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(size_ + room)) != 0 && errno != EOPNOTSUPP &&
-      errno != ENOSYS && errno != EINTR)
-    return failed();
+  if (!allocate(out, 0, size_ + room)) return failed();
   off_t at = 0;
   bool by_kernel = true;
   std::vector<char> buffer;
@@ -113,24 +130,34 @@ bool Hdf5Sink::copy_last(const std::string& to, std::size_t room) {
   return true;
 }
 
-void Hdf5Sink::checkpoint() {
-  if (!error_.empty() || !begun_) return;
-  const auto start = std::chrono::steady_clock::now();
+// Adds the rows that wait to the copy of the last complete file.
+bool Hdf5Sink::extend() {
   // New chunks of every data set, the directory of chunks, and the texts.
   constexpr std::size_t kMargin = 1u << 20;
   std::size_t texts = 0;
   for (const RunInfo::File& f : info_.model) texts += f.text.size();
   const std::size_t room =
       kMargin + block_.bytes() + block_.bytes() / 8 + 2 * texts + (block_.report ? block_.report->size() : 0);
-  if (!copy_last(beside_, room)) return;
-  if (last_ < 0)
-    if (const std::string why = create_hdf5(beside_, info_, names_); !why.empty()) return static_cast<void>(fail(why));
-  if (const std::string why = extend_hdf5(beside_, block_); !why.empty()) return static_cast<void>(fail(why));
+  if (!(ahead_.begun ? make_room(room) : copy_last(beside_, room))) return false;
+  if (last_ < 0 && !ahead_.begun)
+    if (const std::string why = create_hdf5(beside_, info_, names_); !why.empty()) return fail(why);
+  if (const std::string why = extend_hdf5(beside_, block_); !why.empty()) return fail(why);
+  ahead_ = {true, ahead_.rows + block_.rows(), ahead_.bytes + block_.bytes()};
+  block_.clear();
+  start_writing(beside_);
+  return true;
+}
+
+void Hdf5Sink::checkpoint() {
+  if (!error_.empty() || !begun_) return;
+  const auto start = std::chrono::steady_clock::now();
+  if (!extend()) return;
   const int fd = ::open(beside_.c_str(), O_RDWR | O_CLOEXEC);
   struct stat info{};
-  // Gives back unused space; the bytes are on disk before the name appears.
-  if (fd < 0 || ::fstat(fd, &info) != 0 || ::ftruncate(fd, info.st_size) != 0 || ::fdatasync(fd) != 0 ||
-      std::rename(beside_.c_str(), target_.c_str()) != 0) {
+  // Gives back unused space; rows are on disk before the name appears.
+  const bool without_rows = last_ < 0 && ahead_.rows == 0;
+  if (fd < 0 || ::fstat(fd, &info) != 0 || ::ftruncate(fd, info.st_size) != 0 ||
+      (!without_rows && ::fdatasync(fd) != 0) || std::rename(beside_.c_str(), target_.c_str()) != 0) {
     const int why = errno;
     if (fd >= 0) ::close(fd);
     return static_cast<void>(fail(std::strerror(why)));
@@ -138,8 +165,8 @@ void Hdf5Sink::checkpoint() {
   if (last_ >= 0) ::close(last_);
   last_ = fd;
   size_ = static_cast<std::size_t>(info.st_size);
-  written_ += block_.rows();
-  block_.clear();
+  written_ += ahead_.rows;
+  ahead_ = {};
   const auto end = std::chrono::steady_clock::now();
   next_ = end + std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(
                     std::max(pace_.seconds, pace_.share * std::chrono::duration<double>(end - start).count())));

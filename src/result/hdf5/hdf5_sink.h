@@ -1,7 +1,7 @@
 // Writes rows to an HDF5 file that can be read at any moment, also after the program was killed.
 //
 // A complete file is never changed. A checkpoint copies the last complete file, extends the copy and renames it;
-// between checkpoints rows wait in memory. The first checkpoint is before the first row, the last in `close`.
+// between checkpoints rows wait in memory, or in the copy, which many rows extend ahead of the checkpoint. The first checkpoint is before the first row, the last in `close`.
 //
 // Checkpoints cost a copy of the file: a checkpoint waits 20 times as long as the last one took, and at least two
 // seconds; or until the rows in memory are 32 MB, and a quarter of the data written, so that all copies together stay
@@ -46,6 +46,8 @@ class Hdf5Sink final : public RunWriter {
 
  private:
   void checkpoint();
+  bool extend();
+  bool make_room(std::size_t room);
   bool fail(const std::string& why);
   bool copy_last(const std::string& to, std::size_t room);
 
@@ -56,6 +58,10 @@ class Hdf5Sink final : public RunWriter {
   std::vector<std::string> names_;
   RowBlock block_;
   std::vector<std::string> names_before_;
+  struct {
+    bool begun = false;               // the copy is made
+    std::size_t rows = 0, bytes = 0;  // by which it is longer
+  } ahead_;
   std::size_t written_ = 0, steps_ = 0, size_ = 0;
   int last_ = -1;  // the last complete file, even if its name was removed
   bool begun_ = false, closed_ = false;

@@ -40,6 +40,12 @@ struct Rows {
     change(kMissed, 3);
     return p;
   }
+  // The last place is in all lanes that are left.
+  void compute(const std::vector<RowPlace>& places) const {
+    for (std::size_t lane = 0; lane < kernel->lanes(); ++lane)
+      kernel->place(lane, places[std::min(lane, places.size() - 1)]);
+    kernel->compute();
+  }
   // Every number of a lane.
   std::vector<double> numbers(std::size_t lane) const {
     std::vector<double> list;
@@ -80,7 +86,7 @@ TEST_P(RowsOf, AreThoseOfTheReference) {
   ASSERT_TRUE(rows.kernel);
   std::vector<RowPlace> places;
   for (std::size_t k = 0; k < rows.kernel->lanes(); ++k) places.push_back(rows.near(static_cast<int>(k)));
-  rows.kernel->compute(places);
+  rows.compute(places);
   for (std::size_t lane = 0; lane < places.size(); ++lane) {
     EXPECT_TRUE(rows.kernel->good(lane));
     const std::vector<double> here = rows.numbers(lane), exact = rows.reference(places[lane]);
@@ -96,11 +102,11 @@ TEST_P(RowsOf, HaveTheSameBitsInAnyCompany) {
   ASSERT_TRUE(rows.kernel);
   std::vector<RowPlace> places;
   for (std::size_t k = 0; k < rows.kernel->lanes(); ++k) places.push_back(rows.near(static_cast<int>(k)));
-  rows.kernel->compute(places);
+  rows.compute(places);
   std::vector<std::vector<double>> together;
   for (std::size_t lane = 0; lane < places.size(); ++lane) together.push_back(rows.numbers(lane));
   for (std::size_t k = 0; k < places.size(); ++k) {
-    rows.kernel->compute({&places[k], 1});
+    rows.compute({places[k]});
     EXPECT_EQ(rows.numbers(0), together[k]);
   }
 }
@@ -118,7 +124,7 @@ TEST(RowKernel, SaysWhereItIsNotToBeTrusted) {
     if (rows.s->model->coordinates[a].name == "theta") theta = a;
   flat.state[2 * theta] = 1e-9L;
   flat.leading.clear();
-  rows.kernel->compute({&flat, 1});
+  rows.compute({flat});
   EXPECT_FALSE(rows.kernel->good(0));
 }
 

@@ -175,6 +175,37 @@ TEST_F(Hdf5, CheckpointsComeByTimeAndByBytes) {
   EXPECT_EQ(by_time.written(), 1u);
 }
 
+// Many rows go to the copy before the checkpoint: the complete file does not have them yet, the last one has all.
+TEST_F(Hdf5, TheCopyGetsRowsAheadOfTheCheckpoint) {
+  constexpr int kRows = 1'000'000;  // 16 MB
+  CheckpointPace pace;
+  pace.seconds = 1000;
+  {
+    Hdf5Sink sink(path_, info(), pace);
+    test::set_columns(sink, {"t", "x"});
+    for (int i = 0; i < kRows; ++i) {
+      const double values[] = {static_cast<double>(i), 0.5 * i};
+      sink.row({values});
+      sink.step(i + 0.25);
+    }
+    EXPECT_EQ(sink.written(), 0U);
+    EXPECT_EQ(read_run(path_).table.rows(), 0U);
+    EXPECT_GT(fs::file_size(path_ + ".part"), 8'000'000U);
+    EXPECT_EQ(sink.close("{}"), "");
+    EXPECT_EQ(sink.written(), static_cast<std::size_t>(kRows));
+  }
+  const RunFile run = read_run(path_);
+  ASSERT_EQ(run.table.rows(), static_cast<std::size_t>(kRows));
+  ASSERT_EQ(run.steps.size(), static_cast<std::size_t>(kRows));
+  for (int i = 0; i < kRows; i += 999) {
+    const auto k = static_cast<std::size_t>(i);
+    ASSERT_EQ(run.table.values[0][k], i);
+    ASSERT_EQ(run.table.values[1][k], 0.5 * i);
+    ASSERT_EQ(run.steps[k], i + 0.25);
+  }
+  EXPECT_FALSE(fs::exists(path_ + ".part"));
+}
+
 // A process that writes without end is killed at random times: each time the file opens, with all rows up to some
 // checkpoint.
 TEST_F(Hdf5, SurvivesKills) {

@@ -1,0 +1,121 @@
+#include "simulation/kernel_rows.h"
+
+#include <bit>
+
+namespace anholon {
+
+namespace {
+
+// Rows at which the residual report looks: the first ones, then ever fewer, so that they are not what takes the time of
+// a run.
+bool looked_at(std::size_t row) {
+  constexpr std::size_t kFirst = 128;
+  return row % std::bit_ceil(row / kFirst + 1) == 0;
+}
+
+// Rows that are worked on together, blocks under way, and rows from which on another thread is worth its start.
+constexpr std::size_t kTogether = 64, kBlocks = 8, kFew = 512;
+// Steps without rows that are told together.
+constexpr std::size_t kSteps = 4096;
+
+}  // namespace
+
+std::unique_ptr<KernelRows> KernelRows::make(Workspace& s, const SimulationOptions& o, const Motion<double>& motion,
+                                             int stages, double end, const RowTakers& takers) {
+  if (!motion.stepper().accelerated()) return nullptr;
+  auto waiting = WaitingRows::make(s, o.conserved, stages, motion.parameters(), motion.start_state(), end);
+  if (!waiting) return nullptr;
+  return std::make_unique<KernelRows>(s, o, motion, stages, std::move(waiting), takers);
+}
+
+// The program of the motion is copied, as the motion may write its equations anew on the way.
+KernelRows::KernelRows(Workspace& s, const SimulationOptions& o, const Motion<double>& motion, int stages,
+                       std::unique_ptr<WaitingRows> waiting, const RowTakers& takers)
+    : s_(s), o_(o), takers_(takers), waiting_(std::move(waiting)), stages_(stages), program_(motion.program()),
+      point_(program_, motion.parameters(), std::max(1, stages)),
+      check_(columns_after_time(s, largest_order(s, program_.d))),
+      work_(std::vector<Block>(kBlocks, Block(kTogether)), [this](Block& block) { work(block); }) {
+  program_.system = &s.system;
+}
+
+void KernelRows::add(const Motion<double>& motion, long double t, const std::string& label, bool judged) {
+  Block& block = work_.filling();
+  block.rows.add(motion, t, label);
+  block.judged.push_back(judged);
+  if (++noted_ > kFew) work_.work_beside();
+  if (block.rows.full()) pass_on();
+}
+
+void KernelRows::step(double end) {
+  Block& block = work_.filling();
+  block.steps.push_back({end, block.rows.size()});
+  if (block.steps.size() >= kSteps) pass_on();
+}
+
+Outcome KernelRows::settle() {
+  pass_on();
+  work_.settle();
+  failed_ = false;
+  return std::exchange(trouble_, {});
+}
+
+std::optional<Warning> KernelRows::warning() const {
+  const auto found = check_.found();
+  if (!found) return std::nullopt;
+  return Warning{"the rows differ from the state solved for again in wider numbers: " + found->column + " by " +
+                     number_text(found->difference, 3) +
+                     " of the largest number of its kind at t = " + number_text(found->t, 6),
+                 "trust the columns of this kind no further; please report the model, as this is a bug of anholon"};
+}
+
+void KernelRows::tell_steps(Block& block) {
+  for (; block.told < block.steps.size() && block.steps[block.told].rows <= block.taken; ++block.told)
+    takers_.writer.step(block.steps[block.told].t);
+}
+
+// After a row without a solution there are none.
+void KernelRows::work(Block& block) {
+  block.taken = block.told = 0;
+  if (!failed_)
+    waiting_->compute(block.rows, [&](const WaitingRows::Computed& row) {
+      tell_steps(block);
+      trouble_ = take(row, block.judged[block.taken] != 0);
+      if (!trouble_.ok()) failed_ = true;
+      ++block.taken;
+      return trouble_.ok() && !(o_.rows_lost && o_.rows_lost());
+    });
+  if (!failed_) block.taken = block.judged.size();
+  tell_steps(block);
+  block.rows.clear(), block.judged.clear(), block.steps.clear();
+}
+
+Outcome KernelRows::take(const WaitingRows::Computed& row, bool judged) {
+  const RowPlace& place = row.place();
+  const bool good = row.good();
+  Watch<long double>& watch = takers_.watch;
+  const bool looks = !good || looked_at(takers_.writer.rows());
+  if (looks) {
+    if (Outcome o = settle_at(point_, place, stages_ > 0); !o.ok()) return o;
+    ++takers_.report.rows_looked_at;
+    if (Outcome o = watch.see(point_, takers_.report); !o.ok()) return o;
+    row_values(s_, largest_order(s_, program_.d), point_, watch, wide_);
+  } else {
+    watch.track([&](std::size_t k) { return row.sum(k); }, [&](std::size_t k) { return row.terms(k); });
+  }
+  if (good)
+    row.numbers(numbers_);
+  else
+    numbers_.assign(wide_.begin(), wide_.end());
+  if (looks && good)
+    check_.see(static_cast<double>(place.t), numbers_, wide_, watch.cancellation(),
+               [&](std::size_t i) { return watch.made_of_monitor(i); });
+  takers_.judge.row(place.t, row.label(), numbers_, judged);
+  takers_.supports.see(static_cast<double>(place.t), [&](std::size_t r) {
+    return good ? row.multiplier(r) : static_cast<double>(watch.multiplier(r));
+  });
+  takers_.writer.row(place.t, row.label(), numbers_);
+  ++takers_.report.rows;
+  return {};
+}
+
+}  // namespace anholon

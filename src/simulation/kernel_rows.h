@@ -1,0 +1,90 @@
+// Rows in doubles that a kernel computes side by side: the thread of the motion notes where they are to be, and they are
+// computed, watched and written in their order, in a run with many rows by another thread beside the motion.
+//
+// The reference looks at ever fewer of them, compares its numbers with those of the kernel, and makes the rows for which
+// the kernel is not to be trusted.
+#pragma once
+#include <atomic>
+
+#include "observe/judge.h"
+#include "observe/rows/row_check.h"
+#include "observe/rows/waiting_rows.h"
+#include "observe/supports.h"
+#include "observe/watch.h"
+#include "simulation/in_order.h"
+#include "simulation/row_writer.h"
+
+namespace anholon {
+
+// What takes the rows of a run. While rows are under way, it belongs to their thread.
+struct RowTakers {
+  Watch<long double>& watch;
+  Judge<double>& judge;
+  SupportWatch& supports;
+  RowWriter<double>& writer;
+  SimulationReport& report;  // without its outcome
+};
+
+class KernelRows {
+ public:
+  // `stages`: orders beyond the leading derivatives that rows show; `end`: of the motion. Returns nullptr if rows need
+  // the reference.
+  static std::unique_ptr<KernelRows> make(Workspace& scenario, const SimulationOptions& options,
+                                          const Motion<double>& motion, int stages, double end,
+                                          const RowTakers& takers);
+  // As above, with the kernel of the rows.
+  KernelRows(Workspace& scenario, const SimulationOptions& options, const Motion<double>& motion, int stages,
+             std::unique_ptr<WaitingRows> waiting, const RowTakers& takers);
+
+  // Notes a row in the last step. `judged`: it may count for the estimate of the error.
+  void add(const Motion<double>& motion, long double t, const std::string& label, bool judged);
+  // The end of a step after the rows that were noted.
+  void step(double end);
+  // Hands over what waits for too long.
+  void look_at_the_time() {
+    if (work_.filling().rows.late()) pass_on();
+  }
+  // Whether a row has no solution: the motion is to end.
+  bool failed() const { return failed_; }
+  // Waits until all rows are written that were noted. Returns why a row has no solution, once.
+  Outcome settle();
+  // For the estimate of the error, after settle().
+  WaitingRows& waiting() { return *waiting_; }
+  // Of numbers of the kernel that are not those of the reference; after settle().
+  std::optional<Warning> warning() const;
+
+ private:
+  struct Block {
+    explicit Block(std::size_t room) : rows(room) {}
+    WaitingBlock rows;
+    std::vector<char> judged;  // of each row
+    struct StepEnd {
+      double t;
+      std::size_t rows;  // before it, in this block
+    };
+    std::vector<StepEnd> steps;
+    std::size_t taken = 0, told = 0;  // rows and steps that were worked on
+  };
+
+  void pass_on() { work_.pass_on(); }
+  void work(Block& block);
+  void tell_steps(Block& block);
+  Outcome take(const WaitingRows::Computed& row, bool judged);
+
+  const Scenario& s_;
+  const SimulationOptions& o_;
+  RowTakers takers_;
+  std::unique_ptr<WaitingRows> waiting_;
+  int stages_;
+  Program program_;                // of the reference
+  Expansion<long double> point_;   // where the reference looks
+  std::vector<double> numbers_;    // of a row
+  std::vector<long double> wide_;  // of a row by the reference
+  RowCheck check_;
+  std::size_t noted_ = 0;  // rows
+  Outcome trouble_;
+  std::atomic<bool> failed_ = false;
+  InOrder<Block> work_;  // the last member: its thread uses the others
+};
+
+}  // namespace anholon
