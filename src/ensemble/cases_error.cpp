@@ -42,6 +42,44 @@ SimulationReport compared(const Scenario& of_all, const EnsembleOptions& o, cons
 
 }  // namespace
 
+namespace {
+
+// The results that are judged.
+std::vector<const CaseResult*> fit_for_judgement(const EnsembleOptions& o, std::span<const CaseResult> results) {
+  std::vector<const CaseResult*> fit;
+  for (const CaseResult& r : results)
+    if (r.outcome.ok() && r.steps > 0 && (o.estimate == ErrorEstimate::always || r.steps <= kShortRun))
+      fit.push_back(&r);
+  return fit;
+}
+
+std::string none_is_fit(const EnsembleOptions& o) {
+  return "none of the cases looked at has finished" +
+         std::string(o.estimate == ErrorEstimate::always ? "" : " within " + std::to_string(kShortRun) + " steps");
+}
+
+class NoRows final : public RowSink {
+ public:
+  void columns(const std::vector<RunColumn>&) override {}
+  void row(const Row&) override {}
+};
+
+SimulationReport looked_at(const Scenario& of_all, const EnsembleOptions& o, std::size_t number) {
+  SimulationReport report;
+  const EnsembleCase numbers = o.numbers(number);
+  Scenario of_case;
+  if (report.outcome = scenario_of_case(of_all, o, numbers, of_case); !report.outcome.ok()) return report;
+  SimulationOptions options = options_of_case(o, numbers);
+  options.to = numbers.to ? *numbers.to : o.to;
+  options.order = o.order;
+  options.method = o.method;
+  options.kernel = o.kernel;
+  NoRows rows;
+  return simulate(of_case, options, rows);
+}
+
+}  // namespace
+
 std::vector<std::size_t> cases_to_compare(std::size_t cases) {
   constexpr std::size_t kFew = 3, kMany = 8, kManyCases = 20'000;
   const std::size_t count = std::min(cases, cases < kManyCases ? kFew : kMany);
@@ -53,10 +91,7 @@ std::vector<std::size_t> cases_to_compare(std::size_t cases) {
 CasesError cases_error(const Scenario& scenario, const EnsembleOptions& o, std::span<const CaseResult> results,
                        const Each& each) {
   CasesError all;
-  std::vector<const CaseResult*> fit;
-  for (const CaseResult& r : results)
-    if (r.outcome.ok() && r.steps > 0 && (o.estimate == ErrorEstimate::always || r.steps <= kShortRun))
-      fit.push_back(&r);
+  const std::vector<const CaseResult*> fit = fit_for_judgement(o, results);
   std::vector<SimulationReport> reports(fit.size());
   each(fit.size(), [&](std::size_t i) {
     try {
@@ -78,10 +113,35 @@ CasesError cases_error(const Scenario& scenario, const EnsembleOptions& o, std::
     else
       all.error->take_worse(*r.error);
   }
-  if (!all.error && all.none.empty())
-    all.none =
-        "none of the cases looked at has finished" +
-        std::string(o.estimate == ErrorEstimate::always ? "" : " within " + std::to_string(kShortRun) + " steps");
+  if (!all.error && all.none.empty()) all.none = none_is_fit(o);
+  return all;
+}
+
+CasesResiduals cases_residuals(const Scenario& scenario, const EnsembleOptions& o, std::span<const CaseResult> results,
+                               const Each& each) {
+  CasesResiduals all;
+  const std::vector<const CaseResult*> fit = fit_for_judgement(o, results);
+  std::vector<SimulationReport> reports(fit.size());
+  each(fit.size(), [&](std::size_t i) {
+    try {
+      reports[i] = looked_at(scenario, o, fit[i]->number);
+    } catch (const Failure& e) {
+      reports[i].outcome = {OutcomeKind::too_large, e.diagnostic.message, e.diagnostic.hint};
+    }
+  });
+  for (std::size_t i = 0; i < fit.size(); ++i) {
+    const SimulationReport& r = reports[i];
+    if (!r.outcome.ok()) {
+      all.none = r.outcome.message;
+      continue;
+    }
+    const auto take = [&](CasesResiduals::Worst& worst, double residual) {
+      if (all.cases.empty() || residual > worst.residual) worst = {residual, fit[i]->number};
+    };
+    take(all.newton, r.newton), take(all.constraints, r.constraints_kept), take(all.power, r.power);
+    all.cases.push_back(fit[i]->number);
+  }
+  if (all.cases.empty() && all.none.empty()) all.none = none_is_fit(o);
   return all;
 }
 

@@ -1,4 +1,4 @@
-// The error of the results of an ensemble, by sharper runs of some of its cases.  (theory: integrals)
+// The error and the residuals of an ensemble, by further runs of some of its cases.  (theory: integrals, certificate)
 #pragma once
 #include "ensemble/case.h"
 
@@ -12,5 +12,9 @@ std::vector<std::size_t> cases_to_compare(std::size_t cases);
 using Each = std::function<void(std::size_t count, const std::function<void(std::size_t)>&)>;
 CasesError cases_error(const Scenario& scenario, const EnsembleOptions& options, std::span<const CaseResult> results,
                        const Each& each);
+
+// The residual reports of the same cases: each is computed anew by `simulate`, and looked at along its whole motion.
+CasesResiduals cases_residuals(const Scenario& scenario, const EnsembleOptions& options,
+                               std::span<const CaseResult> results, const Each& each);
 
 }  // namespace anholon
