@@ -58,13 +58,6 @@ void for_each_number(std::size_t count, std::size_t threads, const std::function
   work();
 }
 
-void judge(const Scenario& s, const EnsembleOptions& o, const std::vector<CaseResult>& compared,
-           EnsembleReport& report) {
-  const Each each = [&](std::size_t count, const auto& f) { for_each_number(count, report.threads, f); };
-  report.error = cases_error(s, o, compared, each);
-  report.residuals = cases_residuals(s, o, compared, each);
-}
-
 }  // namespace
 
 EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& sink) {
@@ -134,7 +127,8 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
   if (report.done < o.cases)
     report.outcome = {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
   else if (o.estimate != ErrorEstimate::never)
-    judge(s, o, compared, report);
+    judge_cases(
+        s, o, compared, [&](std::size_t count, const auto& f) { for_each_number(count, report.threads, f); }, report);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }
