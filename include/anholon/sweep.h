@@ -23,8 +23,16 @@ struct SweepOptions {
   // How many cases there are, where values are random: the cases go round the grid. Empty: all points of the grid.
   std::optional<std::size_t> cases = {};
   std::uint64_t seed = 0;  // of the random values, which depend on it and on the number of the case alone
+  // "random", or "sobol": the points of a Sobol sequence, shifted by the seed, which lie more evenly than random ones.
+  std::string draw = "random";
+  bool together = false;  // the lists have the same length and go together: a table of cases instead of a grid
   std::optional<Number> to = {};
   std::optional<Number> tolerance = {};
+  std::vector<Number> at = {};            // times at which the state of each case is kept, too
+  std::vector<std::string> columns = {};  // names or patterns with * and ?; empty: all
+  // "max(FORMULA)", min, mean or last: over the whole motion of a case, by its Taylor polynomials; the formula is a
+  // monitor or any formula of the model. Each is a column.
+  std::vector<std::string> reduce = {};
   std::size_t threads = 0;                              // 0: as many as the machine has
   std::function<bool()> cancelled = {};                 // many threads ask at once
   std::function<void(std::size_t done)> progress = {};  // by one thread at a time
@@ -35,15 +43,23 @@ class ANHOLON_API Sweep {
  public:
   std::size_t cases() const;
   std::size_t finished() const;  // cases that reached their end
-  // Coordinates, velocities, states and monitors.
+  // Coordinates, velocities, states, monitors and reductions, as far as SweepOptions::columns chooses them.
   const std::vector<std::string>& columns() const;
   // The numbers of a column at the end, one for each case; NaN where a case has no final state. Empty if there is no
   // such column.
   std::span<const double> column(const std::string& name) const;
+  // The times of SweepOptions::at, in ascending order.
+  const std::vector<double>& times() const;
+  // A column at these times, case by case: the number of a case at times()[k] is element case * times().size() + k; NaN
+  // at times that the case did not reach. Empty if there are no times, no such column, or if it is a reduction.
+  std::span<const double> rows(const std::string& name) const;
   // The values that a name in SweepOptions::vary takes, one for each case. Empty if the name is not varied.
   std::span<const double> varied(const std::string& name) const;
   std::span<const double> t() const;  // reached
   const Outcome& outcome(std::size_t number) const;
+  // The event that ended the motion of a case; empty if none did.
+  const std::string& event(std::size_t number) const;
+  std::size_t steps(std::size_t number) const;
   // finished, or interrupted.
   const Outcome& outcome() const;
 
@@ -54,7 +70,7 @@ class ANHOLON_API Sweep {
   std::shared_ptr<const Data> data_;
 };
 
-// Errors: unknown names, no end (diagnostics).
+// Errors: unknown names and columns, formulas that make no sense, times outside of the motions, no end (diagnostics).
 ANHOLON_API Result<Sweep> sweep(const System& system, const SweepOptions& options);
 
 }  // namespace anholon::v1

@@ -416,7 +416,12 @@ class Model:
         vary: Mapping[str, Iterable[Number] | Law],
         *,
         to: Number | None = None,
+        at: Iterable[Number] = (),
+        columns: Iterable[str] = (),
+        reduce: Iterable[str] = (),
         cases: int | None = None,
+        together: bool = False,
+        draw: str = "random",
         seed: int = 0,
         tolerance: Number | None = None,
         initial: Mapping[str, Number] | None = None,
@@ -430,8 +435,16 @@ class Model:
         Args:
             vary: by the name of a parameter, a coordinate or a velocity: a list or an array of values, or a law
                 (:func:`normal`, :func:`uniform`) by which each case draws its own.
-            to: the end, s; that of the file if it is None.
+            to: the end, s; that of the file if it is None, or the last of ``at``.
+            at: times, s, at which the state of each case is kept, too: ``sweep.rows("theta")`` has shape (cases, times).
+            columns: names or patterns such as ``"theta*"``; all columns without it.
+            reduce: columns over the whole motion of a case: ``"max(theta')"``, ``"min(height)"``, ``"mean(...)"``,
+                ``"last(...)"`` of an output or of any formula of the model. They are those of the Taylor polynomials,
+                not of some times.
             cases: how many, where values are drawn; the cases go round the combinations of the lists.
+            together: the lists have the same length and go together, one case for each place: ``vary`` is a table, as a
+                DataFrame is one.
+            draw: ``"random"``, or ``"sobol"`` for the points of a Sobol sequence, which lie more evenly.
             seed: of the draws, which depend on it and on the number of the case alone.
             tolerance: of each step, relative.
             initial: values common to all cases.
@@ -445,23 +458,30 @@ class Model:
             MotionError: the initial values of the model are inconsistent.
             Interrupted: Ctrl-C; ``.result`` is the sweep as far as it came.
         """
-        values = [(name, [] if isinstance(of, Law) else list_of(of)) for name, of in vary.items()]
+        values = [(str(name), [] if isinstance(of, Law) else list_of(of)) for name, of in vary.items()]
+        if isinstance(columns, str) or isinstance(reduce, str):
+            raise TypeError('columns and reduce are lists of names: ["theta"]')
         laws = {name: str(of) for name, of in vary.items() if isinstance(of, Law)}
         system = self._system(form, texts_of(initial), ())
-        with Shown(progress, self.title, _count(values, laws, cases), unit="cases") as tell:
+        with Shown(progress, self.title, _count(values, laws, cases, together), unit="cases") as tell:
             core, raised = _core.sweep(
                 system,
                 values,
                 laws,
                 cases,
                 seed,
+                draw,
+                together,
                 None if to is None else text_of(to),
                 None if tolerance is None else text_of(tolerance),
+                list_of(at),
+                list(columns),
+                list(reduce),
                 threads,
                 stop,
                 tell,
             )
-        sweep = Sweep(self, core, list(vary))
+        sweep = Sweep(self, core, list(vary), list(reduce))
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted(sweep) from None
         if isinstance(raised, BaseException):
@@ -531,10 +551,12 @@ class Model:
         return f"<table><caption>{html.escape(self.title)}</caption><tbody>{body}</tbody></table>"
 
 
-def _count(values: list[tuple[str, list[str]]], laws: dict[str, str], cases: int | None) -> float | None:
+def _count(values: list[tuple[str, list[str]]], laws: dict[str, str], cases: int | None, together: bool) -> float | None:
     """How many cases a sweep has, if that is known before it begins."""
     if cases is not None:
         return float(cases)
+    if together:
+        return float(max((len(of) for _, of in values), default=0))
     return None if laws else float(math.prod(len(of) for _, of in values))
 
 

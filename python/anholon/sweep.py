@@ -55,11 +55,18 @@ class Sweep(Mapping[str, "Array"]):
         >>> sweep = an.load("disc").sweep({"phi'": [5, 6, 7]}, to=1)
         >>> sweep.varied["phi'"].tolist(), sweep.finished
         ([5.0, 6.0, 7.0], 3)
+
+        The extremes of the motions, and rows at given times:
+
+        >>> sweep = an.load("disc").sweep({"phi'": [5, 6, 7]}, at=[0.5, 1], reduce=["min(theta)"])
+        >>> bool((sweep["min(theta)"] <= sweep["theta"]).all()), sweep.rows("theta").shape
+        (True, (3, 2))
     """
 
-    def __init__(self, model: Model, core: _core.Sweep, names: list[str]) -> None:
+    def __init__(self, model: Model, core: _core.Sweep, names: list[str], reduced: list[str]) -> None:
         self.model: Model = model
         self._core = core
+        self._reduced = [name for name in core.columns if name in reduced]
         #: The values that vary, one array for each name, shape (cases,).
         self.varied: dict[str, Array] = {name: core.varied(name) for name in names}
 
@@ -72,6 +79,18 @@ class Sweep(Mapping[str, "Array"]):
         if name not in self._core.columns:
             raise KeyError(f"there is no column {name!r}; there are {', '.join(self._core.columns)}")
         return self._core.column(name)
+
+    @property
+    def times(self) -> Array:
+        """The times of ``rows``, s."""
+        return self._core.times
+
+    def rows(self, name: str) -> Array:
+        """A column at the times of ``at``, shape (cases, times); NaN where a motion ended before."""
+        if name in self._reduced:
+            raise KeyError(f"{name!r} is one number for each motion: sweep[{name!r}]")
+        column = self[name]
+        return self._core.rows(name).reshape(column.size, self.times.size)
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._core.columns)
@@ -115,27 +134,63 @@ class Sweep(Mapping[str, "Array"]):
         """The kinds of all outcomes."""
         return [self._core.outcome_of(case).kind for case in range(self.cases)]
 
+    @property
+    def events(self) -> list[str]:
+        """The names of the events that ended the motions; empty where none did."""
+        return [self._core.event(case) for case in range(self.cases)]
+
+    @property
+    def steps(self) -> Array:
+        """How many steps each motion took, shape (cases,)."""
+        import numpy as np
+
+        return np.array([self._core.steps(case) for case in range(self.cases)], dtype=float)
+
     def to_dict(self) -> dict[str, Array]:
-        """What varies, named as in ``anholon sweep`` (an initial value is ``x(0)``), the times reached and all columns."""
-        columns = set(self._core.columns)
-        table = {f"{name}(0)" if name in columns else name: values for name, values in self.varied.items()}
-        table["t"] = self.t
-        table.update({name: self[name] for name in self})
-        return table
+        """What varies, named as in ``anholon sweep`` (an initial value is ``x(0)``), the times reached and all columns.
+
+        With times (``at``) it is a long table: a row for each case and time, and the columns ``case`` and ``t`` say which.
+        """
+        coordinates = {coordinate.name for coordinate in self.model.coordinates}
+        table = {f"{name}(0)" if name.rstrip("'") in coordinates else name: values for name, values in self.varied.items()}
+        times = self.times.size
+        if times == 0:
+            table["t"] = self.t
+            table.update({name: self[name] for name in self})
+            return table
+        import numpy as np
+
+        long: dict[str, Array] = {"case": np.repeat(np.arange(self.cases, dtype=float), times)}
+        long.update({name: np.repeat(values, times) for name, values in table.items()})
+        long["t"] = np.tile(self.times, self.cases)
+        for name in self:
+            long[name] = np.repeat(self[name], times) if name in self._reduced else self._core.rows(name)
+        return long
+
+    def _outcomes(self) -> tuple[int, list[str]]:
+        """The place and the words of the column of outcomes in a table."""
+        times = self.times.size
+        if times == 0:
+            return len(self.varied), self.outcomes
+        return 1 + len(self.varied), [outcome for outcome in self.outcomes for _ in range(times)]
 
     def to_pandas(self) -> pandas.DataFrame:
-        """A DataFrame with a row for each case, and its outcome. Needs pandas."""
+        """A DataFrame with a row for each case, or for each case and time, and its outcome. Needs pandas."""
         import pandas
 
         frame = pandas.DataFrame(self.to_dict())
-        frame.insert(len(self.varied), "outcome", self.outcomes)
+        if self.times.size > 0:
+            frame["case"] = frame["case"].astype(int)
+        place, outcomes = self._outcomes()
+        frame.insert(place, "outcome", outcomes)
         return frame
 
     def to_polars(self) -> polars.DataFrame:
         """The same for polars. Needs polars."""
         import polars
 
-        return polars.DataFrame(self.to_dict()).insert_column(len(self.varied), polars.Series("outcome", self.outcomes))
+        place, outcomes = self._outcomes()
+        return polars.DataFrame(self.to_dict()).insert_column(place, polars.Series("outcome", outcomes))
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         """The numbers as an Arrow stream of one batch, read where they are."""

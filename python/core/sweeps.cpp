@@ -19,6 +19,13 @@ void bind_sweeps(nb::module_& m) {
             return view(nb::cast<const Sweep&>(self).varied(name), self);
           },
           "name"_a)
+      .def(
+          "rows",
+          [](nb::handle self, const std::string& name) { return view(nb::cast<const Sweep&>(self).rows(name), self); },
+          "name"_a)
+      .def_prop_ro("times", [](nb::handle self) { return view(nb::cast<const Sweep&>(self).times(), self); })
+      .def("event", &Sweep::event, "number"_a)
+      .def("steps", &Sweep::steps, "number"_a)
       .def_prop_ro("t", [](nb::handle self) { return view(nb::cast<const Sweep&>(self).t(), self); })
       .def("outcome_of", nb::overload_cast<std::size_t>(&Sweep::outcome, nb::const_), "number"_a)
       .def_prop_ro("outcome", nb::overload_cast<>(&Sweep::outcome, nb::const_));
@@ -26,9 +33,12 @@ void bind_sweeps(nb::module_& m) {
       "sweep",
       [](const System& system, const std::vector<std::pair<std::string, std::vector<std::string>>>& values,
          const std::map<std::string, std::string>& laws, std::optional<std::size_t> cases, std::uint64_t seed,
-         std::optional<std::string> to, std::optional<std::string> tolerance, std::size_t threads, nb::object stop,
-         nb::object progress) {
+         const std::string& draw, bool together, std::optional<std::string> to, std::optional<std::string> tolerance,
+         const std::vector<std::string>& at, const std::vector<std::string>& columns,
+         const std::vector<std::string>& reduce, std::size_t threads, nb::object stop, nb::object progress) {
         SweepOptions options;
+        options.draw = draw, options.together = together, options.columns = columns, options.reduce = reduce;
+        for (const std::string& t : at) options.at.emplace_back(t);
         for (const auto& [name, list] : values) {
           Vary& vary = options.vary.emplace_back();
           vary.name = name;
@@ -46,8 +56,8 @@ void bind_sweeps(nb::module_& m) {
         Sweep done = value_of(attendant.attend([&] { return sweep(system, options); }));
         return std::pair(std::move(done), attendant.raised());
       },
-      "system"_a, "values"_a, "laws"_a, "cases"_a.none(), "seed"_a, "to"_a.none(), "tolerance"_a.none(), "threads"_a,
-      "stop"_a.none(), "progress"_a.none());
+      "system"_a, "values"_a, "laws"_a, "cases"_a.none(), "seed"_a, "draw"_a, "together"_a, "to"_a.none(),
+      "tolerance"_a.none(), "at"_a, "columns"_a, "reduce"_a, "threads"_a, "stop"_a.none(), "progress"_a.none());
 }
 
 }  // namespace anholon::python

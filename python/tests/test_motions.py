@@ -140,6 +140,41 @@ def test_sweeps(disc: an.Model, program: Program, tmp_path: pathlib.Path) -> Non
     assert drawn.to_dict()["theta(0)"] is not None
 
 
+def test_sweeps_of_times_and_extremes(disc: an.Model, program: Program, tmp_path: pathlib.Path) -> None:
+    sweep = disc.sweep({"phi'": [5, 6, 7]}, at=[0.5, 1], reduce=["min(theta)", "max(theta')"], columns=["theta", "m*(*"])
+    assert sweep.rows("theta").shape == (3, 2) and sweep.times.tolist() == [0.5, 1]
+    assert (sweep["theta"] == sweep.rows("theta")[:, 1]).all() and sweep.events == ["", "", ""]
+    dense = [disc.simulate(initial={"phi'": v}, to=1, every=0.001)["theta"].min() for v in (5, 6, 7)]
+    assert np.all(sweep["min(theta)"] <= dense) and np.allclose(sweep["min(theta)"], dense, atol=1e-5)
+    file = tmp_path / "cases.csv"
+    program("sweep", "disc", "--vary", "phi'=5,6,7", "--at", "0.5,1", "--reduce", "min(theta),max(theta')", "--quiet", "-o", str(file),
+            "--columns", "phi'(0),theta,m*(*", "--error-estimate", "never")  # fmt: skip
+    lines = [line.split(",") for line in file.read_text().splitlines()]
+    table = sweep.to_dict()
+    assert lines[0] == ["case", "t", "phi'(0)", "theta", "min(theta)", "max(theta')"] and set(lines[0]) == set(table)
+    for k, name in enumerate(lines[0]):
+        assert [float(line[k]) for line in lines[1:]] == table[name].tolist(), name
+    with pytest.raises(KeyError, match="one number for each motion"):
+        sweep.rows("min(theta)")
+
+
+def test_sweeps_of_tables_and_sequences(disc: an.Model) -> None:
+    table = disc.sweep({"phi'": [5, 6], "m": [1, 2]}, together=True, to=0.1)
+    assert table.cases == 2 and table.varied["m"].tolist() == [1, 2]
+    with pytest.raises(an.ModelError, match="go together"):
+        disc.sweep({"phi'": [5, 6], "m": [1, 2, 3]}, together=True, to=0.1)
+    even = disc.sweep({"theta": an.uniform(1, 2)}, cases=16, draw="sobol", seed=3, to=0.01).varied["theta"]
+    assert sorted(np.floor((even - 1) * 16).astype(int).tolist()) == list(range(16))
+    with pytest.raises(an.ModelError, match="did you mean 'sobol'"):
+        disc.sweep({"theta": an.uniform(1, 2)}, cases=16, draw="sobl", to=0.01)
+    with pytest.raises(an.ModelError, match="beyond the end"):
+        disc.sweep({"m": [1, 2]}, to=0.1, at=[1])
+    with pytest.raises(an.ModelError, match="no column"):
+        disc.sweep({"m": [1, 2]}, to=0.1, columns=["nothing"])
+    with pytest.raises(TypeError, match="lists of names"):
+        disc.sweep({"m": [1, 2]}, to=0.1, columns="theta")
+
+
 def test_a_loop_does_not_grow() -> None:
     model = an.load("chaplygin-sleigh")
 

@@ -6,24 +6,43 @@
 #include "api/data.h"
 #include "ensemble/request.h"
 #include "ensemble/variation.h"
+#include "result/choose_columns.h"
 
 namespace anholon::v1 {
 
 struct Sweep::Data {
-  std::vector<std::string> names, columns;          // of what is varied, of the final state
+  std::vector<std::string> names, columns;          // of what is varied; of the final state, then the reductions
   std::vector<std::vector<double>> varied, values;  // by name, by column
+  std::size_t of_state = 0;                         // how many columns are no reductions
+  std::vector<double> times;
+  std::vector<std::vector<double>> rows;  // by column of the state: case by case, at the times
   std::vector<double> t;
   std::vector<Outcome> outcomes;
+  std::vector<std::string> events;  // empty if none has ended a motion
+  std::vector<std::size_t> steps;
   Outcome outcome;
   std::size_t finished = 0;
 };
 
 namespace {
 
+[[noreturn]] void refuse(const inner::MistakeInWord& m, const char* option) {
+  throw inner::Failure({}, std::string(option) + " " + m.word + ": " + m.diagnostic.message, m.diagnostic.hint);
+}
+
+inner::Variation::Draws draws_of(const std::string& name) {
+  if (name == "random") return inner::Variation::Draws::random;
+  if (name == "sobol") return inner::Variation::Draws::sobol;
+  const std::string near = inner::did_you_mean(name, {"random", "sobol"});
+  throw inner::Failure({}, "draw cannot be '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                       "random or sobol");
+}
+
 // What varies, from the options. Throws Failure.
 inner::Variation variation_of(const SweepOptions& asked, const inner::Model& model) {
   constexpr std::size_t kMostCases = 100'000'000;  // all of them are held in memory
-  inner::Variation v(asked.seed);
+  inner::Variation v(asked.seed, draws_of(asked.draw));
+  if (asked.together) v.together();
   try {
     for (const Vary& each : asked.vary) {
       if (!each.law.empty()) {
@@ -34,8 +53,8 @@ inner::Variation variation_of(const SweepOptions& asked, const inner::Model& mod
       for (const Number& n : each.values) values.push_back(exact(n, each.name));
       v.add(each.name, std::move(values), model);
     }
-  } catch (const inner::VariationMistake& m) {
-    throw inner::Failure({}, "vary " + m.word + ": " + m.diagnostic.message, m.diagnostic.hint);
+  } catch (const inner::MistakeInWord& m) {
+    refuse(m, "vary");
   }
   v.finish(asked.cases, "SweepOptions::cases");
   if (v.cases() > kMostCases)
@@ -43,20 +62,91 @@ inner::Variation variation_of(const SweepOptions& asked, const inner::Model& mod
   return v;
 }
 
+// The model with the formulas of the reductions. Throws Failure.
+inner::Outcome scenario_with(const System::Data& of, const std::vector<std::string>& words,
+                             inner::Reductions& reductions, inner::Scenario& scenario) {
+  inner::Diagnostics diagnostics;
+  const auto open = inner::open_model(of.model->source, diagnostics, of.model->overrides, of.model->cases);
+  if (!open) throw inner::Failure(diagnostics.list().front());
+  try {
+    for (const std::string& word : words) reductions.add(word, *open);
+  } catch (const inner::MistakeInWord& m) {
+    refuse(m, "reduce");
+  }
+  inner::Outcome start = make_system(open->model, of.scenario.system.form->name, of.choice, scenario);
+  if (start.ok()) reductions.move_to(scenario);
+  return start;
+}
+
+// The places of the columns that are asked for. Throws Failure.
+std::vector<std::size_t> chosen(const std::vector<std::string>& asked, const std::vector<std::string>& all) {
+  std::vector<std::size_t> places;
+  if (asked.empty()) {
+    for (std::size_t k = 0; k < all.size(); ++k) places.push_back(k);
+    return places;
+  }
+  places = inner::chosen_columns(all, asked);
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
 // Puts each case into its place.
 class CaseKeeper final : public inner::CaseSink {
  public:
-  explicit CaseKeeper(Sweep::Data& data) : data_(data) {}
+  CaseKeeper(Sweep::Data& data, const std::vector<std::string>& of_state, const inner::Reductions& reductions,
+             const std::vector<std::string>& columns)
+      : data_(data), in_state_(of_state.size()) {
+    std::vector<std::string> all = of_state;
+    for (const inner::Reduction& r : reductions.list) all.push_back(r.name);
+    places_ = chosen(columns, all);
+    for (std::size_t k : places_) {
+      data_.columns.push_back(all[k]);
+      data_.of_state += k < in_state_;
+    }
+  }
+  // Makes room for the cases.
+  void hold(std::size_t cases) {
+    constexpr double kMostNumbers = 2e9;
+    const double nothing = std::numeric_limits<double>::quiet_NaN();
+    const std::size_t times = data_.times.size();
+    if (static_cast<double>(cases) * static_cast<double>(data_.of_state * times + data_.columns.size()) > kMostNumbers)
+      throw inner::Failure({}, "the sweep has more than 2e9 numbers", "fewer columns, times or cases");
+    data_.varied.assign(data_.names.size(), std::vector<double>(cases, nothing));
+    data_.values.assign(data_.columns.size(), std::vector<double>(cases, nothing));
+    data_.rows.assign(times > 0 ? data_.of_state : 0, std::vector<double>(cases * times, nothing));
+    data_.t.assign(cases, nothing);
+    data_.steps.assign(cases, 0);
+    data_.outcomes.assign(cases, {OutcomeKind::interrupted, "the case was not computed", ""});
+  }
   void result(const inner::CaseResult& r) override {
     for (std::size_t k = 0; k < r.values.size(); ++k) data_.varied[k][r.number] = r.values[k];
-    for (std::size_t k = 0; k < r.last.size(); ++k) data_.values[k][r.number] = r.last[k];
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      const std::size_t place = places_[k];
+      const std::vector<double>& from = place < in_state_ ? r.last : r.reduced;
+      const std::size_t at = place < in_state_ ? place : place - in_state_;
+      if (at < from.size()) data_.values[k][r.number] = from[at];
+    }
+    const std::size_t times = data_.times.size();
+    for (const std::vector<double>& row : r.rows) {
+      const auto at = std::find(data_.times.begin(), data_.times.end(), row[0]);
+      if (at == data_.times.end()) continue;
+      const auto time = static_cast<std::size_t>(at - data_.times.begin());
+      for (std::size_t k = 0; k < data_.of_state; ++k) data_.rows[k][r.number * times + time] = row[1 + places_[k]];
+    }
     data_.t[r.number] = r.t;
+    data_.steps[r.number] = r.steps;
     data_.outcomes[r.number] = to_public(r.outcome);
+    if (!r.event.empty()) {
+      data_.events.resize(data_.t.size());
+      data_.events[r.number] = r.event;
+    }
     data_.finished += r.outcome.ok();
   }
 
  private:
   Sweep::Data& data_;
+  std::size_t in_state_;
+  std::vector<std::size_t> places_;  // of the columns
 };
 
 }  // namespace
@@ -71,8 +161,12 @@ std::vector<Number> linspace(double from, double to, std::size_t count) {
 Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
   const System::Data& of = system.data();
   return guarded(of.model->source, [&]() -> Result<Sweep> {
-    const inner::Scenario& s = of.scenario;
     inner::EnsembleOptions o;
+    inner::Scenario with_formulas;
+    if (!asked.reduce.empty())
+      if (const inner::Outcome start = scenario_with(of, asked.reduce, o.reductions, with_formulas); !start.ok())
+        return error_of(start);
+    const inner::Scenario& s = asked.reduce.empty() ? of.scenario : with_formulas;
     o.state = of.choice;
     const inner::Variation variation = variation_of(asked, *s.model);
     must_not_be_given(variation.varied(), o.state);
@@ -82,24 +176,23 @@ Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
     auto data = std::make_shared<Sweep::Data>();
     for (const Vary& v : asked.vary) data->names.push_back(v.name);
     inner::MotionSettings settings;
-    const auto number = [&](const char* name, const std::optional<Number>& given) {
-      if (given)
-        inner::set(settings, inner::motion_option(name), {given->text()}, name,
-                   [&](const std::string& text) { return exact(Number(text), name); });
+    const auto set = [&](const char* name, const std::vector<std::string>& words) {
+      inner::set(settings, inner::motion_option(name), words, name,
+                 [&](const std::string& text) { return exact(Number(text), name); });
     };
-    number("to", asked.to), number("tolerance", asked.tolerance);
+    if (asked.to) set("to", {asked.to->text()});
+    if (asked.tolerance) set("tolerance", {asked.tolerance->text()});
+    std::vector<std::string> times;
+    for (const Number& t : asked.at) times.push_back(t.text());
+    if (!times.empty()) set("at", times);
     settings.error_estimate = "never";
-    inner::ask(inner::merged(settings, s.model->simulate), s, {"", "", [](const std::string&) {}}, o);
+    inner::ask(settings, s, {"", "", [](const std::string&) {}}, o);
     o.threads = asked.threads;
     o.cancelled = asked.cancelled;
     o.progress = asked.progress;
-    data->columns = inner::ensemble_columns(*s.model);
-    const double nothing = std::numeric_limits<double>::quiet_NaN();
-    data->varied.assign(data->names.size(), std::vector<double>(o.cases, nothing));
-    data->values.assign(data->columns.size(), std::vector<double>(o.cases, nothing));
-    data->t.assign(o.cases, nothing);
-    data->outcomes.assign(o.cases, {OutcomeKind::interrupted, "the case was not computed", ""});
-    CaseKeeper cases(*data);
+    for (const inner::Rational& t : o.at) data->times.push_back(inner::from_rational<double>(t));
+    CaseKeeper cases(*data, inner::ensemble_columns(*s.model), o.reductions, asked.columns);
+    cases.hold(o.cases);
     data->outcome = to_public(inner::ensemble(s, o, cases).outcome);
     return Sweep(std::move(data));
   });
@@ -110,6 +203,12 @@ std::size_t Sweep::finished() const { return data_->finished; }
 const std::vector<std::string>& Sweep::columns() const { return data_->columns; }
 std::span<const double> Sweep::t() const { return data_->t; }
 const Outcome& Sweep::outcome(std::size_t number) const { return data_->outcomes.at(number); }
+const std::string& Sweep::event(std::size_t number) const {
+  static const std::string none;
+  return data_->events.empty() ? none : data_->events.at(number);
+}
+std::size_t Sweep::steps(std::size_t number) const { return data_->steps.at(number); }
+const std::vector<double>& Sweep::times() const { return data_->times; }
 const Outcome& Sweep::outcome() const { return data_->outcome; }
 
 static std::span<const double> named(const std::string& name, const std::vector<std::string>& names,
@@ -121,6 +220,10 @@ static std::span<const double> named(const std::string& name, const std::vector<
 
 std::span<const double> Sweep::column(const std::string& name) const {
   return named(name, data_->columns, data_->values);
+}
+std::span<const double> Sweep::rows(const std::string& name) const {
+  return named(name, {data_->columns.begin(), data_->columns.begin() + static_cast<std::ptrdiff_t>(data_->rows.size())},
+               data_->rows);
 }
 std::span<const double> Sweep::varied(const std::string& name) const {
   return named(name, data_->names, data_->varied);

@@ -284,17 +284,39 @@ class CommandLine {
         "several grids make all\n"
         "combinations. Random values are NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO), drawn for each of -n "
         "cases; where there are\n"
-        "grids too, the cases go round them. One line per case: what is varied, outcome, t, final state, outputs.\n"
+        "grids too, the cases go round them. case=a,b runs through the sections [case.a] and [case.b] of the file.\n"
+        "One line per case: what is varied, outcome, the event that ended the motion, t, final state, outputs, "
+        "reductions; with --at one line\n"
+        "per case and time.\n"
         "Exit status: 0 all motions finished, 1 some stopped early (their lines say why), 2 bad input.\n"
         "Examples: anholon sweep rattleback --vary \"psi'=-10:10:200\" --to 5 -o cases.csv\n"
-        "          anholon sweep disc --vary m=1,2,5 --vary \"theta~normal(0.3,0.01)\" -n 3000 --seed 7");
+        "          anholon sweep disc --vary m=1,2,5 --vary \"theta~normal(0.3,0.01)\" -n 3000 --seed 7\n"
+        "          anholon sweep disc --vary \"phi'=5:7:100\" --to 10 --reduce \"min(theta),max(theta')\" --columns "
+        "\"phi'(0),min*,max*\"\n"
+        "          anholon sweep disc --cases cases.csv --at 1,2,5 -o rows.h5");
     parameters(c), state(c), form_option(c);
     c->add_option("--vary", o_.varied,
                   "NAME=FROM:TO:COUNT, NAME=A,B,…, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO)")
         ->type_name("WHAT")
         ->allow_extra_args(false);
-    c->add_option("-n,--cases", o_.case_count, "how many, where values are random")->type_name("N");
-    c->add_option("--seed", o_.seed, "other random values (default 0)")->type_name("N");
+    c->add_option("-n", o_.case_count, "how many cases, where values are drawn")->type_name("N");
+    c->add_option("--cases", o_.case_table,
+                  "a table of cases in CSV: a first line of names, a line of numbers for each case")
+        ->type_name("FILE");
+    c->add_option("--draw", o_.draw,
+                  "random (default), or sobol: points of a Sobol sequence, which lie more evenly; -n a power of 2")
+        ->type_name("HOW")
+        ->check(CLI::IsMember({"random", "sobol"}));
+    c->add_option("--seed", o_.seed, "other draws (default 0)")->type_name("N");
+    c->add_option(
+         "--reduce", o_.reduce,
+         "max(FORMULA), min(FORMULA), mean(FORMULA) or last(FORMULA) over each motion, by its Taylor polynomials")
+        ->type_name("WHAT,…");
+    c->add_option(
+         "--columns", o_.columns,
+         "which columns, or patterns with * and ?: theta,*',outcome; beside the usual ones there are event and "
+         "steps")
+        ->type_name("NAME,…");
     c->add_option("--threads", o_.threads, "default: as many as the machine has; the numbers are the same for any")
         ->type_name("N")
         ->check(CLI::Range(1, 1024));

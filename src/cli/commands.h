@@ -26,14 +26,15 @@ struct Options {
   bool no_proof = false;
   std::string vary, about;
   std::vector<std::string> varied;  // of sweep
-  std::string case_count;
+  std::string case_count, case_table, draw;
+  std::vector<std::string> reduce;
   int threads = 0;
   int proof_digits = 308;
   int m = 0;  // of the forms of order m; 0: not asked for
   int points = 6;
   unsigned long long seed = 0;
   std::vector<std::string> files;
-  std::vector<std::string> columns;  // of plot
+  std::vector<std::string> columns;  // of plot and sweep
   std::string abscissa, from, until, size, title, labels = "unicode";
   std::string fps, seconds, picture_at, frame;  // of render
   bool dark = false;

@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 
+#include "ensemble/reduction.h"
 #include "simulation/simulate.h"
 
 namespace anholon {
@@ -26,6 +27,7 @@ struct EnsembleOptions {
   std::function<EnsembleCase(std::size_t)> numbers;  // of the case with this number; called by many threads at once
   Rational to;
   std::vector<Rational> at;  // rows at these times, ascending; none: the final state alone is kept
+  Reductions reductions;     // of formulas of the scenario
   Rational tolerance{1, 1000000000000};
   int order = 0;                        // of the Taylor polynomials; 0: from the tolerance
   Method method = Method::automatic;    // rk, bdf: one case after the other, as `simulate` does; else Taylor's, and
@@ -46,6 +48,8 @@ struct CaseResult {
   std::size_t steps = 0;
   std::vector<double> last;  // of `ensemble_columns`, at the end or at the last good state; empty if there is none
   std::vector<std::vector<double>> rows;  // the same at the times asked for, t first
+  std::vector<double> reduced;  // of the reductions, over the motion as far as it came; empty if there is none
+  std::string event;            // that ended the motion; empty if none did
 };
 
 class CaseSink {
@@ -62,6 +66,17 @@ struct CasesError {
   std::size_t worst = 0;             // the case with the largest error
   std::string none;                  // the reason if an estimate was asked for and there is none
 };
+// The residual reports of the same cases, which `simulate` computes once more with all rows.
+struct CasesResiduals {
+  struct Worst {
+    double residual = 0;
+    std::size_t number = 0;  // of the case
+  };
+  std::vector<std::size_t> cases;
+  Worst newton, constraints, power;  // in relation to their terms, as in SimulationReport
+  std::string none;                  // the reason if they were asked for and there are none
+};
+
 struct EnsembleReport {
   Outcome outcome;  // interrupted, or finished; cases may have stopped in both
   std::size_t done = 0, finished = 0;
@@ -70,6 +85,7 @@ struct EnsembleReport {
   std::size_t threads = 0;
   double seconds = 0;
   CasesError error;
+  CasesResiduals residuals;
 };
 
 }  // namespace anholon

@@ -26,9 +26,12 @@ void EnsemblePlan::make() {
   start.emplace(*s.mechanics, overrides_of(o, nullptr));
   for (std::size_t j = 0; j < s.system.size(); ++j)
     for (int k = 0; k < s.structure.d[j]; ++k) entries.push_back(s.system.symbol_node(j, static_cast<unsigned>(k)));
-  Column masses;
-  for (const VaryingMass& m : model.masses) masses.push_back(m.value);
-  program = anholon::program(s.system, s.structure, masses);
+  Column quadratures;
+  for (const VaryingMass& m : model.masses) quadratures.push_back(m.value);
+  first_reduced = quadratures.size();
+  for (const Expr e : o.reductions.formulas) quadratures.push_back(s.graph().own(e));
+  settings.known_from = first_reduced, settings.known_to = quadratures.size();
+  program = anholon::program(s.system, s.structure, quadratures);
   settings.measure = false;
   if (Start<long double> at; o.kernel && initial_state(s, o.state, at).ok()) {
     const std::vector<long double> numbers = parameter_values<long double>(model);
@@ -37,7 +40,7 @@ void EnsemblePlan::make() {
     const int order = o.order > 0 ? o.order : taylor_order(settings.log_tolerance);
     if (const auto derived = KernelPlan::make(std::make_shared<const Program>(*program), order - 1, numbers, t, state,
                                               Company::in_lanes))
-      kernel = cheapest(representations({derived, s.structure, masses, numbers, t, state, s.mechanics.get()},
+      kernel = cheapest(representations({derived, s.structure, quadratures, numbers, t, state, s.mechanics.get()},
                                         WritingEffort::long_motion))
                    .plan;
   }
@@ -88,8 +91,10 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
     }
     point_.emplace(*plan.program, parameters_, std::max(1, plan.stages));
     if (plan.outputs) outputs_.emplace(*plan.outputs, 0, parameters_);
+    if (!plan.options.reductions.list.empty()) reducer_.emplace(plan.options.reductions);
     ready_ = true;
   }
+  if (reducer_) reducer_->restart();
   const EnsembleOptions& o = plan.options;
   InitialProblem<W> problem{plan.scenario.mechanics.get(), parameters_, overrides_of(o, &numbers_), o.state.t};
   problem.plan = &*plan.start;
@@ -146,11 +151,17 @@ CaseWay CaseWalk::step() {
 
 // Takes the rows that lie in the last step, and the end if it does.
 CaseWay CaseWalk::after_step() {
-  for (std::size_t i = 0; i < plan_->program->quadratures; ++i)
+  for (std::size_t i = 0; i < plan_->first_reduced; ++i)
     if (!plan_->scenario.model->masses[i].weight &&
         stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0))
       return stop(CaseWay::simulation);
   if (!rows()) return stop(CaseWay::simulation);
+  if (reducer_) {
+    if (stepper_->one_sided()) return stop(CaseWay::simulation);
+    reducer_->step(stepper_->order() - 1, to_double(W(stepper_->time() - stepper_->before())),
+                   [&](std::size_t i, int k) { return stepper_->quadrature_coefficient(plan_->first_reduced + i, k); });
+    reducer_->values(result_->reduced);
+  }
   if (!(stepper_->time() == end_)) return CaseWay::plain;
   result_->t = to_double(end_);
   result_->steps = stepper_->steps();
@@ -293,6 +304,8 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
   const EnsembleOptions& o = plan_.options;
   r.rows.clear();
   r.last.clear();
+  r.reduced.clear();
+  r.event.clear();
   const Rational to = numbers.to ? *numbers.to : o.to;
   SimulationOptions options = options_of_case(o, numbers);
   for (const Rational& t : o.at)
@@ -302,8 +315,18 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
   options.order = o.order;
   options.method = o.method;
   options.kernel = o.kernel;
+  Reducer reducer(o.reductions);
+  if (!o.reductions.list.empty()) {
+    options.followed = o.reductions.formulas;
+    options.dense = [&](const StepPolynomials& step) {
+      reducer.step(step.one_sided ? 0 : step.order - 1, step.end - step.begin, step.followed);
+      reducer.values(r.reduced);
+    };
+  }
   EnsembleRowFilter rows(o.at, r);
   const SimulationReport report = simulate_in(own, options, rows);
+  for (const EventReport& e : report.events)
+    if (e.stop) r.event = e.name;
   r.outcome = report.outcome;
   r.steps = report.steps;
   r.t = report.t;
@@ -325,6 +348,7 @@ void CaseWorker::by_derivation(const EnsembleCase& numbers, CaseResult& r) {
   r.t = anew.state.t;
   r.rows.clear();
   r.last.clear();
+  r.reduced.clear();
   if (!r.outcome.ok()) return;
   Workspace own(anew);
   simulate_case(own, numbers, r);

@@ -34,7 +34,8 @@ class EnsemblePlan {
   // is made beside the cases when these have taken a while.
   std::shared_ptr<const KernelPlan> kernel;
   void compile_if_long(std::size_t next) const;
-  int lanes = 1;  // of the kernels of cases: as many as the machine has
+  int lanes = 1;                  // of the kernels of cases: as many as the machine has
+  std::size_t first_reduced = 0;  // of the program's quadratures
   std::optional<Tape> outputs;
   struct Entry {
     std::uint32_t slot;
@@ -99,6 +100,7 @@ class CaseWalk {
   std::optional<Stepper<double>> stepper_;
   std::optional<Expansion<W>> point_;
   std::optional<Machine<W>> outputs_;
+  std::optional<Reducer> reducer_;
 };
 
 // The workspaces of one thread.

@@ -16,11 +16,9 @@ bool made_by_kernel(const Scenario& s) {
          !may_have_kinks(p.tape, p.tape.main_end);
 }
 
-SimulationReport compared(const Scenario& of_all, const EnsembleOptions& o, const CaseResult& r) {
+SimulationReport compared(const Scenario& of_case, const EnsembleOptions& o, const EnsembleCase& numbers,
+                          const CaseResult& r) {
   SimulationReport report;
-  const EnsembleCase numbers = o.numbers(r.number);
-  Scenario of_case;
-  if (report.outcome = scenario_of_case(of_all, o, numbers, of_case); !report.outcome.ok()) return report;
   Workspace s(of_case);
   SimulationOptions options = options_of_case(o, numbers);
   options.estimate = o.estimate;
@@ -42,31 +40,56 @@ SimulationReport compared(const Scenario& of_all, const EnsembleOptions& o, cons
 
 }  // namespace
 
-std::vector<std::size_t> cases_to_compare(std::size_t cases) {
-  constexpr std::size_t kFew = 3, kMany = 8, kManyCases = 20'000;
-  const std::size_t count = std::min(cases, cases < kManyCases ? kFew : kMany);
-  std::vector<std::size_t> list;
-  for (std::size_t k = 0; k < count; ++k) list.push_back(count == 1 ? 0 : k * (cases - 1) / (count - 1));
-  return list;
-}
+namespace {
 
-CasesError cases_error(const Scenario& scenario, const EnsembleOptions& o, std::span<const CaseResult> results,
-                       const Each& each) {
-  CasesError all;
+// The results that are judged.
+std::vector<const CaseResult*> fit_for_judgement(const EnsembleOptions& o, std::span<const CaseResult> results) {
   std::vector<const CaseResult*> fit;
   for (const CaseResult& r : results)
     if (r.outcome.ok() && r.steps > 0 && (o.estimate == ErrorEstimate::always || r.steps <= kShortRun))
       fit.push_back(&r);
-  std::vector<SimulationReport> reports(fit.size());
-  each(fit.size(), [&](std::size_t i) {
-    try {
-      reports[i] = compared(scenario, o, *fit[i]);
-    } catch (const Failure& e) {
-      reports[i].no_error = e.diagnostic.message;
-    }
-  });
+  return fit;
+}
+
+std::string none_is_fit(const EnsembleOptions& o) {
+  return "none of the cases looked at has finished" +
+         std::string(o.estimate == ErrorEstimate::always ? "" : " within " + std::to_string(kShortRun) + " steps");
+}
+
+class NoRows final : public RowSink {
+ public:
+  void columns(const std::vector<RunColumn>&) override {}
+  void row(const Row&) override {}
+};
+
+SimulationReport looked_at(const Scenario& of_case, const EnsembleOptions& o, const EnsembleCase& numbers) {
+  SimulationOptions options = options_of_case(o, numbers);
+  options.to = numbers.to ? *numbers.to : o.to;
+  options.order = o.order;
+  options.method = o.method;
+  options.kernel = o.kernel;
+  NoRows rows;
+  return simulate(of_case, options, rows);
+}
+
+// What two further runs say of a case.
+struct Judged {
+  SimulationReport compared, looked_at;
+};
+
+void judge(const Scenario& of_all, const EnsembleOptions& o, const CaseResult& r, Judged& to) {
+  const EnsembleCase numbers = o.numbers(r.number);
+  Scenario of_case;
+  to.looked_at.outcome = scenario_of_case(of_all, o, numbers, of_case);
+  if (!to.looked_at.outcome.ok()) return;
+  to.compared = compared(of_case, o, numbers, r);
+  to.looked_at = looked_at(of_case, o, numbers);
+}
+
+CasesError error_of(std::span<const CaseResult* const> fit, std::span<const Judged> judged) {
+  CasesError all;
   for (std::size_t i = 0; i < fit.size(); ++i) {
-    const SimulationReport& r = reports[i];
+    const SimulationReport& r = judged[i].compared;
     if (!r.error) {
       all.none = r.no_error;
       continue;
@@ -78,11 +101,52 @@ CasesError cases_error(const Scenario& scenario, const EnsembleOptions& o, std::
     else
       all.error->take_worse(*r.error);
   }
-  if (!all.error && all.none.empty())
-    all.none =
-        "none of the cases looked at has finished" +
-        std::string(o.estimate == ErrorEstimate::always ? "" : " within " + std::to_string(kShortRun) + " steps");
   return all;
+}
+
+CasesResiduals residuals_of(std::span<const CaseResult* const> fit, std::span<const Judged> judged) {
+  CasesResiduals all;
+  for (std::size_t i = 0; i < fit.size(); ++i) {
+    const SimulationReport& r = judged[i].looked_at;
+    if (!r.outcome.ok()) {
+      all.none = r.outcome.message;
+      continue;
+    }
+    const auto take = [&](CasesResiduals::Worst& worst, double residual) {
+      if (all.cases.empty() || residual > worst.residual) worst = {residual, fit[i]->number};
+    };
+    take(all.newton, r.newton), take(all.constraints, r.constraints_kept), take(all.power, r.power);
+    all.cases.push_back(fit[i]->number);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::size_t> cases_to_compare(std::size_t cases) {
+  constexpr std::size_t kFew = 3, kMany = 8, kManyCases = 20'000;
+  const std::size_t count = std::min(cases, cases < kManyCases ? kFew : kMany);
+  std::vector<std::size_t> list;
+  for (std::size_t k = 0; k < count; ++k) list.push_back(count == 1 ? 0 : k * (cases - 1) / (count - 1));
+  return list;
+}
+
+void judge_cases(const Scenario& scenario, const EnsembleOptions& o, std::span<const CaseResult> results,
+                 const Each& each, EnsembleReport& report) {
+  const std::vector<const CaseResult*> fit = fit_for_judgement(o, results);
+  std::vector<Judged> judged(fit.size());
+  each(fit.size(), [&](std::size_t i) {
+    try {
+      judge(scenario, o, *fit[i], judged[i]);
+    } catch (const Failure& e) {
+      judged[i].compared.no_error = e.diagnostic.message;
+      judged[i].looked_at.outcome = {OutcomeKind::too_large, e.diagnostic.message, e.diagnostic.hint};
+    }
+  });
+  report.error = error_of(fit, judged);
+  report.residuals = residuals_of(fit, judged);
+  if (!report.error.error && report.error.none.empty()) report.error.none = none_is_fit(o);
+  if (report.residuals.cases.empty() && report.residuals.none.empty()) report.residuals.none = none_is_fit(o);
 }
 
 }  // namespace anholon

@@ -127,8 +127,8 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
   if (report.done < o.cases)
     report.outcome = {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
   else if (o.estimate != ErrorEstimate::never)
-    report.error = cases_error(s, o, compared,
-                               [&](std::size_t count, const auto& f) { for_each_number(count, report.threads, f); });
+    judge_cases(
+        s, o, compared, [&](std::size_t count, const auto& f) { for_each_number(count, report.threads, f); }, report);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return report;
 }

@@ -1,10 +1,50 @@
 #include "ensemble/request.h"
 
+#include <algorithm>
+
 #include "base/diagnostic.h"
 
 namespace anholon {
 
-void ask(const MotionSettings& settings, const Scenario& s, const Asker& asker, EnsembleOptions& o) {
+namespace {
+
+// The times lie between the start and the end of a motion. Cases share both.
+void set_times(const MotionSettings& asked, const Scenario& s, const Asker& asker, EnsembleOptions& o) {
+  for (const WrittenTime& t : asked.at)
+    if (o.at.empty() || o.at.back() != t.value) o.at.push_back(t.value);
+  if (o.at.empty()) return;
+  const Rational start = o.state.t                       ? *o.state.t
+                         : is_number(s.model->initial.t) ? number_value(s.model->initial.t)
+                                                         : Rational(s.state.t);
+  if (!asked.to) o.to = o.at.back() > start ? o.at.back() : o.at.front();
+  const Rational& low = std::min(start, o.to);
+  const Rational& high = std::max(start, o.to);
+  const Rational* outside = o.at.front() < low ? &o.at.front() : o.at.back() > high ? &o.at.back() : nullptr;
+  if (!outside) return;
+  const bool before_start = (*outside < start) == (start <= o.to);
+  throw Failure(
+      {},
+      "the time " + outside->get_str() + " lies " +
+          (before_start ? "before the start, t = " + start.get_str() : "beyond the end, t = " + o.to.get_str()),
+      asker.called("at") + " asks for rows between the start and the end of the motions");
+}
+
+// Reductions follow Taylor's polynomials, which know derivatives up to those that are solved for.
+void must_be_had(const Reductions& reductions, const Scenario& s, const Asker& asker, Method method) {
+  if (reductions.list.empty()) return;
+  if (method != Method::automatic && method != Method::taylor)
+    throw Failure({}, asker.called("reduce") + " follows the polynomials of Taylor's method",
+                  "leave out " + asker.called("method") + ", or use " + asker.example("method", "taylor"));
+  for (const Reduction& r : reductions.list)
+    if (const Expr e = reductions.formulas[r.formula]; orders_needed(s, {&e, 1}) > 0)
+      throw Failure({}, "'" + r.name + "' holds derivatives beyond those that are solved for",
+                    "write the formula with lower derivatives");
+}
+
+}  // namespace
+
+void ask(const MotionSettings& asked, const Scenario& s, const Asker& asker, EnsembleOptions& o) {
+  const MotionSettings settings = merged(asked, s.model->simulate);
   if (!settings.to && settings.at.empty())
     throw Failure({}, "no end time", asker.example("to", "10") + ", or [simulate] to = 10 in the model file");
   o.to = settings.to ? *settings.to : settings.at.back().value;
@@ -16,6 +56,8 @@ void ask(const MotionSettings& settings, const Scenario& s, const Asker& asker, 
   one.tolerance = o.tolerance;
   one.order = o.order;
   o.method = method(settings, s, one, asker);
+  set_times(asked, s, asker, o);
+  must_be_had(o.reductions, s, asker, o.method);
   must_go_forwards(s, Rational(s.state.t), o.to);
 }
 

@@ -5,7 +5,8 @@
 
 namespace anholon {
 
-// Fills end, accuracy and method of the cases from the settings, which are complete. Throws Failure without a place.
-void ask(const MotionSettings& settings, const Scenario& scenario, const Asker& asker, EnsembleOptions& options);
+// Fills end, times of rows, accuracy and method of the cases from what is asked and the file's settings; the file's
+// times of rows are those of single motions. Checks that the reductions can be had. Throws Failure without a place.
+void ask(const MotionSettings& asked, const Scenario& scenario, const Asker& asker, EnsembleOptions& options);
 
 }  // namespace anholon

@@ -4,6 +4,7 @@
 
 #include "modelfile/names/constant.h"
 #include "numeric/philox.h"
+#include "numeric/sobol.h"
 #include "setup/choice.h"
 
 namespace anholon {
@@ -12,28 +13,23 @@ namespace {
 
 constexpr std::size_t kMostPoints = 1'000'000;  // of one grid
 
-// Marks a part of the word.
-[[noreturn]] void wrong(const std::string& word, std::size_t at, std::size_t length, const std::string& message,
-                        const std::string& hint) {
-  Span span;
-  span.line = 1;
-  span.column = static_cast<decltype(span.column)>(at + 1);
-  span.length = static_cast<decltype(span.length)>(std::max<std::size_t>(length, 1));
-  throw VariationMistake{{Severity::error, span, message, hint}, word};
-}
-
 // A part of the word, with its place.
 struct Part {
   std::size_t at;
   std::string text;
 };
 
+// Separators within brackets belong to a part.
 std::vector<Part> parts(const std::string& word, std::size_t from, std::size_t to, char separator) {
   std::vector<Part> list;
-  for (std::size_t at = from; at <= to;) {
-    const std::size_t next = std::min(word.find(separator, at), to);
-    list.push_back({at, word.substr(at, next - at)});
-    at = next + 1;
+  std::size_t begin = from;
+  int depth = 0;
+  for (std::size_t at = from; at <= to; ++at) {
+    if (at < to && (word[at] == '(' || word[at] == '[')) ++depth;
+    if (at < to && (word[at] == ')' || word[at] == ']')) --depth;
+    if (at < to && (word[at] != separator || depth > 0)) continue;
+    list.push_back({begin, word.substr(begin, at - begin)});
+    begin = at + 1;
   }
   return list;
 }
@@ -46,20 +42,20 @@ Rational number(const std::string& word, const Part& p, const std::string& unit)
   while (skip < p.text.size() && p.text[skip] == ' ') ++skip;
   std::string text = p.text.substr(skip);
   while (!text.empty() && text.back() == ' ') text.pop_back();
-  if (text.empty()) wrong(word, p.at + skip, 1, "a number is missing here", kHint);
+  if (text.empty()) mistake_in(word, p.at + skip, 1, "a number is missing here", kHint);
   Constant c;
   try {
     c = read_constant(text);
   } catch (const Failure& f) {
     const std::string& why = f.diagnostic.message;
-    wrong(word, p.at + skip, text.size(),
-          "'" + text + "' is not a number" + (why.rfind("'" + text, 0) == 0 ? "" : ": " + why), kHint);
+    mistake_in(word, p.at + skip, text.size(),
+               "'" + text + "' is not a number" + (why.rfind("'" + text, 0) == 0 ? "" : ": " + why), kHint);
   }
   const std::optional<Unit> own = unit == "1" ? Unit{} : read_unit(unit);
   if (c.dimension && own && own->dimension != *c.dimension)
-    wrong(word, p.at + skip, text.size(),
-          describe(own->dimension) + " is expected here, this is " + describe(*c.dimension),
-          unit == "1" ? "a bare number, or an angle: 30 deg" : "in " + unit + ", or a bare number in SI units");
+    mistake_in(word, p.at + skip, text.size(),
+               describe(own->dimension) + " is expected here, this is " + describe(*c.dimension),
+               unit == "1" ? "a bare number, or an angle: 30 deg" : "in " + unit + ", or a bare number in SI units");
   return c.value;
 }
 
@@ -79,10 +75,10 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
   if (const auto q = std::find(coordinates.begin(), coordinates.end(), name); q != coordinates.end() && !multiplier) {
     const unsigned determined = first_determined_order(model);
     if (primes >= determined)
-      wrong(word, 0, text.size(),
-            determined == 2 ? "accelerations follow from the state"
-                            : "derivatives of order " + std::to_string(primes) + " follow from the state",
-            "vary " + name + ", " + name + "' or a parameter");
+      mistake_in(word, 0, text.size(),
+                 determined == 2 ? "accelerations follow from the state"
+                                 : "derivatives of order " + std::to_string(primes) + " follow from the state",
+                 "vary " + name + ", " + name + "' or a parameter");
     return {Varied::Kind::initial, static_cast<std::size_t>(q - coordinates.begin()), primes,
             derivative_name(name, primes, Format::text)};
   }
@@ -93,11 +89,11 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
   }
   known.insert(known.end(), coordinates.begin(), coordinates.end());
   const std::string near = did_you_mean(name, known);
-  wrong(word, 0, text.size(),
-        "there is no parameter and no coordinate '" + name + "'" +
-            (near.empty() ? "" : "; did you mean '" + near + "'?"),
-        "the names in [parameters], coordinates, and velocities such as " +
-            (coordinates.empty() ? std::string("x") : coordinates[0]) + "'");
+  mistake_in(word, 0, text.size(),
+             "there is no parameter and no coordinate '" + name + "'" +
+                 (near.empty() ? "" : "; did you mean '" + near + "'?"),
+             "the names in [parameters], coordinates, and velocities such as " +
+                 (coordinates.empty() ? std::string("x") : coordinates[0]) + "'");
 }
 
 }  // namespace
@@ -109,22 +105,22 @@ Variation::Values Variation::law(const std::string& word, std::size_t sign, cons
   const std::string law = word.substr(sign + 1, (open == std::string::npos ? word.size() : open) - sign - 1);
   if (law != "normal" && law != "uniform") {
     const std::string near = did_you_mean(law, {"normal", "uniform"});
-    wrong(word, sign + 1, law.size(),
-          "there is no law '" + law + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-          "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+    mistake_in(word, sign + 1, law.size(),
+               "there is no law '" + law + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+               "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
   }
   if (open == std::string::npos || word.back() != ')')
-    wrong(word, word.size(), 1, "a bracket is missing here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+    mistake_in(word, word.size(), 1, "a bracket is missing here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
   const auto list = parts(word, open + 1, word.size() - 1, ',');
   if (list.size() != 2)
-    wrong(word, open, word.size() - open, "two numbers are expected here",
-          "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+    mistake_in(word, open, word.size() - open, "two numbers are expected here",
+               "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
   const Rational a = number(word, list[0], unit), b = number(word, list[1], unit);
   values.law = law == "normal" ? Values::Law::normal : Values::Law::uniform;
   if (values.law == Values::Law::normal ? b < 0 : b < a)
-    wrong(word, list[1].at, list[1].text.size(),
-          law == "normal" ? "a deviation is not negative" : "the range ends before it begins",
-          "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
+    mistake_in(word, list[1].at, list[1].text.size(),
+               law == "normal" ? "a deviation is not negative" : "the range ends before it begins",
+               "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
   values.a = from_rational<double>(a);
   values.b = from_rational<double>(b);
   values.stream = streams_++;
@@ -140,14 +136,15 @@ Variation::Values Variation::listed(const std::string& word, std::size_t sign, c
   }
   const auto list = parts(word, sign + 1, word.size(), ':');
   if (list.size() != 3)
-    wrong(word, sign + 1, word.size() - sign - 1, "a grid has three numbers",
-          "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
+    mistake_in(word, sign + 1, word.size() - sign - 1, "a grid has three numbers",
+               "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
   const Rational from = number(word, list[0], unit), to = number(word, list[1], unit),
                  count = number(word, list[2], "");
   if (count.get_den() != 1 || count < 1 || count > static_cast<unsigned long>(kMostPoints) ||
       (count == 1 && from != to))
-    wrong(word, list[2].at, list[2].text.size(), "a grid has between 2 and " + std::to_string(kMostPoints) + " points",
-          "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
+    mistake_in(word, list[2].at, list[2].text.size(),
+               "a grid has between 2 and " + std::to_string(kMostPoints) + " points",
+               "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
   const unsigned long n = count.get_num().get_ui();
   for (unsigned long k = 0; k < n; ++k) {
     Rational part(k, std::max(n - 1, 1UL));
@@ -160,38 +157,71 @@ Variation::Values Variation::listed(const std::string& word, std::size_t sign, c
 void Variation::name(const std::string& word, std::size_t sign, const Model& model) {
   const Varied v = named(word, word.substr(0, sign), model);
   for (const Varied& before : varied_)
-    if (before.name == v.name) wrong(word, 0, sign, "'" + v.name + "' is varied twice", "each name varies once");
+    if (before.name == v.name) mistake_in(word, 0, sign, "'" + v.name + "' is varied twice", "each name varies once");
   varied_.push_back(v);
+  units_.push_back(unit_of(v, model));
 }
 
-void Variation::take(Values values) {
-  if (!values.list.empty()) {
-    if (values.list.size() > kMostCases / grid_)
-      throw Failure({}, "the grids have more than " + std::to_string(kMostCases) + " points", "fewer values");
-    grid_ *= values.list.size();
-  }
-  values_.push_back(std::move(values));
+std::size_t Variation::new_axis(std::size_t size) {
+  if (size > kMostCases / grid_)
+    throw Failure({}, "the grids have more than " + std::to_string(kMostCases) + " points", "fewer values");
+  grid_ *= size;
+  axes_.push_back(size);
+  return axes_.size() - 1;
 }
 
 void Variation::add(const std::string& word, const Model& model) {
   const std::size_t sign = word.find_first_of("=~");
   if (sign == std::string::npos || sign == 0)
-    wrong(word, 0, word.size(), "this is not of the form NAME=VALUES or NAME~LAW(…)", kHint);
+    mistake_in(word, 0, word.size(), "this is not of the form NAME=VALUES or NAME~LAW(…)", kHint);
   name(word, sign, model);
-  const std::string unit = unit_of(varied_.back(), model);
-  take(word[sign] == '~' ? law(word, sign, unit) : listed(word, sign, unit));
+  values_.push_back(word[sign] == '~' ? law(word, sign, units_.back()) : listed(word, sign, units_.back()));
+  if (!drawn(values_.back())) values_.back().axis = new_axis(values_.back().list.size());
 }
 
 void Variation::add(const std::string& name, std::vector<Rational> values, const Model& model) {
   this->name(name, name.size(), model);
-  if (values.empty()) wrong(name, 0, name.size(), "there are no values to take", "one value at least");
-  Values listed;
+  if (values.empty()) mistake_in(name, 0, name.size(), "there are no values to take", "one value at least");
+  if (together_ && common_ && axes_[*common_] != values.size())
+    mistake_in(name, 0, name.size(),
+               std::to_string(values.size()) + " values do not go together with " + std::to_string(axes_[*common_]),
+               "as many values of each name");
+  Values& listed = values_.emplace_back();
+  listed.axis = together_ && common_ ? *common_ : new_axis(values.size());
+  if (together_) common_ = listed.axis;
   listed.list = std::move(values);
-  take(std::move(listed));
+}
+
+void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) {
+  const std::size_t first = varied_.size(), axis = new_axis(table->rows());
+  for (std::size_t k = 0; k < table->names().size(); ++k) {
+    try {
+      name(table->names()[k], table->names()[k].size(), model);
+    } catch (const MistakeInWord& m) {
+      table->mistake_in_header(k, m.diagnostic.message, m.diagnostic.hint);
+    }
+    Values& cell = values_.emplace_back();
+    cell.cell = k;
+    cell.axis = axis;
+  }
+  table_ = std::move(table);
+  for (std::size_t row = 0; row < table_->rows(); ++row) {
+    const std::vector<std::string> cells = table_->cells(row);
+    for (std::size_t k = 0; k < cells.size(); ++k) try {
+        number(cells[k], {0, cells[k]}, units_[first + k]);
+      } catch (const MistakeInWord& m) {
+        table_->mistake(row, k, m.diagnostic.message, "a number, pi/2, or a number with a unit: 8 cm");
+      }
+  }
 }
 
 void Variation::finish(std::optional<std::size_t> cases, const std::string& called) {
   if (varied_.empty()) throw Failure({}, "nothing is varied", kHint);
+  if (draws_ == Draws::sobol && streams_ > kSobolDimensions)
+    throw Failure({}, "a Sobol sequence has at most " + std::to_string(kSobolDimensions) + " dimensions here",
+                  "fewer drawn values, or random ones");
+  if (draws_ == Draws::sobol && streams_ == 0)
+    throw Failure({}, "nothing is drawn from a Sobol sequence", "'m~uniform(0,2)' or 'm~normal(1,0.1)'");
   if (!cases) {
     if (streams_ > 0) throw Failure({}, "how many cases are to be drawn?", called + " 1000");
     cases_ = grid_;
@@ -209,18 +239,39 @@ void Variation::finish(std::optional<std::size_t> cases, const std::string& call
                   called + " " + std::to_string(grid_) + " or more");
 }
 
+double Variation::draw(const Values& v, std::size_t number) const {
+  const bool normal = v.law == Values::Law::normal;
+  double x = 0;
+  if (draws_ == Draws::sobol) {
+    const Draw of_stream(seed_, 0, v.stream);
+    const double p = sobol(number / grid_, v.stream, of_stream.bits());
+    x = normal ? normal_quantile(p) : p;
+  } else {
+    const Draw of_case(seed_, number, v.stream);
+    x = normal ? of_case.normal() : of_case.uniform();
+  }
+  return normal ? v.a + v.b * x : v.a + (v.b - v.a) * x;
+}
+
 std::vector<Rational> Variation::operator()(std::size_t number) const {
-  std::vector<Rational> out(values_.size());
+  std::vector<std::size_t> points(axes_.size());
   std::size_t point = number % grid_;
-  for (std::size_t i = values_.size(); i-- > 0;) {
+  for (std::size_t i = axes_.size(); i-- > 0;) {
+    points[i] = point % axes_[i];
+    point /= axes_[i];
+  }
+  std::vector<Rational> out(values_.size());
+  std::vector<std::string> cells;
+  for (std::size_t i = 0; i < values_.size(); ++i) {
     const Values& v = values_[i];
-    if (!v.list.empty()) {
-      out[i] = v.list[point % v.list.size()];
-      point /= v.list.size();
-      continue;
+    if (drawn(v)) {
+      out[i] = Rational(draw(v, number));
+    } else if (v.cell) {
+      if (cells.empty()) cells = table_->cells(points[v.axis]);
+      out[i] = anholon::number(cells[*v.cell], {0, cells[*v.cell]}, units_[i]);
+    } else {
+      out[i] = v.list[points[v.axis]];
     }
-    const Draw draw(seed_, number, v.stream);
-    out[i] = Rational(v.law == Values::Law::normal ? v.a + v.b * draw.normal() : v.a + (v.b - v.a) * draw.uniform());
   }
   return out;
 }

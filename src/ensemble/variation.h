@@ -1,26 +1,35 @@
-// The numbers that differ from case to case: grids, lists and random draws.
+// The numbers that differ from case to case: grids, lists, tables and draws.
+//
+// Grids, lists and a table are axes: there is a case for each combination of their points, the last axis fastest. Draws
+// are random, or the points of a Sobol sequence in as many dimensions as names are drawn; these are shifted by the seed,
+// and each point of the grid has the same ones.
 #pragma once
+#include "ensemble/case_table.h"
 #include "ensemble/ensemble.h"
+#include "ensemble/mistake_in_word.h"
 
 namespace anholon {
 
-// A mistake in the words of a variation, with its place in them.
-struct VariationMistake {
-  Diagnostic diagnostic;
-  std::string word;
-};
-
 class Variation {
  public:
-  explicit Variation(std::uint64_t seed = 0) : seed_(seed) {}
+  enum class Draws : std::uint8_t { random, sobol };
+  explicit Variation(std::uint64_t seed = 0, Draws draws = Draws::random) : seed_(seed), draws_(draws) {}
 
-  // NAME=FROM:TO:COUNT, NAME=A,B,…, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO). Throws VariationMistake.
+  // NAME=FROM:TO:COUNT, NAME=A,B,…, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO). Throws MistakeInWord.
   void add(const std::string& word, const Model& model);
-  // A list of values in SI units. Throws VariationMistake.
+  // A list of values in SI units. Throws MistakeInWord.
   void add(const std::string& name, std::vector<Rational> values, const Model& model);
+  // The cases of a table, all of which are read once. Throws MistakeInWord.
+  void add(std::shared_ptr<const CaseTable> table, const Model& model);
+  // The lists that are added from here on go together, value by value: they are one axis. Throws MistakeInWord if one of
+  // them has another length.
+  void together() { together_ = true; }
   // How many cases there are; without a number all points of the grid. Call it at the end. `called` is the name of the
   // number in messages. Throws Failure without a place if nothing varies or the number does not fit.
   void finish(std::optional<std::size_t> cases, const std::string& called);
+
+  // One case in which nothing differs from the model.
+  void finish_with_one() { cases_ = 1; }
 
   static constexpr std::size_t kMostCases = 1'000'000'000'000;
 
@@ -31,7 +40,9 @@ class Variation {
 
  private:
   struct Values {
-    std::vector<Rational> list;  // for a grid; else empty
+    std::vector<Rational> list;       // of a grid; else empty
+    std::optional<std::size_t> cell;  // of a line of the table
+    std::size_t axis = 0;             // of a list or a cell
     enum class Law : std::uint8_t { normal, uniform } law = Law::normal;
     double a = 0, b = 0;  // parameters of the distribution
     std::uint32_t stream = 0;
@@ -39,12 +50,20 @@ class Variation {
   Values law(const std::string& word, std::size_t sign, const std::string& unit);
   Values listed(const std::string& word, std::size_t sign, const std::string& unit) const;
   void name(const std::string& word, std::size_t sign, const Model& model);
-  void take(Values values);
+  bool drawn(const Values& v) const { return v.list.empty() && !v.cell; }
+  std::size_t new_axis(std::size_t size);
+  double draw(const Values& v, std::size_t number) const;
 
   std::vector<Varied> varied_;
   std::vector<Values> values_;
+  std::vector<std::string> units_;
+  std::vector<std::size_t> axes_;  // their sizes
+  std::shared_ptr<const CaseTable> table_;
+  std::optional<std::size_t> common_;  // the axis of lists that go together
+  bool together_ = false;
   std::size_t grid_ = 1, cases_ = 0;
   std::uint64_t seed_;
+  Draws draws_;
   std::uint32_t streams_ = 0;  // of random values
 };
 

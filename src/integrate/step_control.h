@@ -20,6 +20,8 @@ struct StepSettings {
   bool measure = true;              // how regular J is, where the kernel does not ask for it
   std::size_t integrals =
       0;  // so many of the first quadratures are integrated to the tolerance; the others as the motion's steps have it
+  std::size_t known_from = 0,
+              known_to = 0;     // the series of these quadratures are known to the tolerance over each step
   bool other_rounding = false;  // of a kernel's coefficients (Rounding::other)
   bool ordinary_steps = true;   // are not looked at closely
   bool multipliers = false;     // their series are asked for (Stepper::dense): by kernels in the motion's unknowns
@@ -83,6 +85,13 @@ N limited_by_quadrature(const N& horizon, int order, const Tolerance& tolerance,
   const double excess = std::max(term(order - 1), term(order - 2)) - tolerance.logarithm -
                         std::max({std::log(whole), term(0), term(1), term(2)});
   return excess > 0 ? N(horizon * N(std::exp(-excess / order))) : horizon;
+}
+
+// Returns `horizon`, or less: there the value of a quadrature is known to the tolerance, as an integral of its rate.
+template <Number N, std::invocable<int> Coefficient>
+N limited_by_value(const N& horizon, int order, const Tolerance& tolerance, const Coefficient& coefficient) {
+  return limited_by_quadrature(horizon, order - 1, tolerance, to_double(coefficient(0)),
+                               [&](int k) -> N { return coefficient(k + 1) * N(k + 1); });
 }
 
 }  // namespace anholon

@@ -25,7 +25,7 @@ Stepper<N>::Stepper(const Program& program, const std::vector<N>& parameters, co
       order_(settings.order > 0 ? settings.order : taylor_order(settings.log_tolerance)),
       tolerance_(settings.log_tolerance), expander_(program, parameters, wide_parameters, settings, order_),
       look_(program, parameters), guard_(program), end_(program, settings.log_tolerance, order_) {
-  end_.set_slots(program.tape.main_end);
+  watch_kinks();
 }
 
 // ---- one step -------------------------------------------------------------------------------------------------------
@@ -237,6 +237,9 @@ void Stepper<N>::limit_by_quadratures() {
     if (!expander_.constant_quadrature(i))
       horizon_ = limited_by_quadrature(horizon_, order_, tolerance_, to_double(integrals[i]),
                                        [&](int k) -> N { return expander_.quadrature(i, k); });
+  for (std::size_t i = settings_.known_from; i < std::min(settings_.known_to, program_->quadratures); ++i)
+    if (!expander_.constant_quadrature(i))
+      horizon_ = limited_by_value(horizon_, order_, tolerance_, [&](int k) -> N { return expander_.quadrature(i, k); });
 }
 
 // Where there is no such step in either direction of time, the fault stands.
@@ -544,11 +547,18 @@ void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane)
   expander_.accelerate(KernelExpansion(std::move(kernel), lane, *program_, order_, settings_.log_tolerance));
 }
 
+// What is watched, or has to be known over each step, may have kinks, too.
+template <Number N>
+void Stepper<N>::watch_kinks() {
+  const bool equations_alone = events_.empty() && settings_.known_from >= settings_.known_to;
+  const std::size_t end = equations_alone ? program_->tape.main_end : program_->tape.code.size();
+  end_.set_slots(static_cast<std::uint32_t>(end));
+}
+
 template <Number N>
 void Stepper<N>::watch(std::vector<WatchedSeries> series) {
   events_ = EventWatch<N>(std::move(series));
-  // What is watched may have kinks, too.
-  end_.set_slots(events_.empty() ? program_->tape.main_end : static_cast<std::uint32_t>(program_->tape.code.size()));
+  watch_kinks();
 }
 
 // ---- the dense output -----------------------------------------------------------------------------------------------

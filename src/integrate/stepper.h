@@ -116,6 +116,8 @@ class Stepper {
   }
   // Quadrature i as a polynomial in t - before() over the last step: its value there.
   W quadrature(std::size_t i, const W& dt) const;
+  // … and its coefficient of order k < order().
+  N quadrature_coefficient(std::size_t i, int k) const { return expander_.quadrature(i, k); }
   // Whether it is known to be the same at all times.
   bool constant_quadrature(std::size_t i) const { return expander_.constant_quadrature(i); }
 
@@ -151,6 +153,7 @@ class Stepper {
   Outcome expand_one_sided(Outcome fault);
   bool take_one_sided(const W& h);
   void limit_by_quadratures();
+  void watch_kinks();
   void expand_again(const StepperState<N>& last);
   Outcome look_back();
 

@@ -19,6 +19,9 @@ struct StepPolynomials {
   double begin, end;
   int order;
   std::function<double(std::size_t j, int k)> coefficient;
+  // The same of SimulationOptions::followed, k < order; those of the beginning alone if `one_sided`.
+  std::function<double(std::size_t i, int k)> followed;
+  bool one_sided;
 };
 
 struct SimulationOptions {
@@ -42,7 +45,10 @@ struct SimulationOptions {
   // Asked after each row, by the thread that writes it; true ends the motion, as its rows have no place.
   std::function<bool()> rows_lost;
   std::function<void(const StepPolynomials&)> dense;  // told of every step of Taylor's method
-  std::function<void(const std::string&)> note;       // told of the notes of the report as soon as there is one
+  // Formulas of which `dense` is told, too: expressions of the scenario without derivatives beyond those solved for. Steps
+  // are as short as their series ask for.
+  std::vector<Expr> followed;
+  std::function<void(const std::string&)> note;  // told of the notes of the report as soon as there is one
   std::size_t most_steps = 50'000'000;
   bool kernel = true;  // where there is one: its pivots, chosen at the start, are seen in the last digits
   ErrorEstimate estimate = ErrorEstimate::never;

@@ -7,26 +7,11 @@
 #include <tuple>
 
 #include "base/diagnostic.h"
+#include "result/choose_columns.h"
 
 namespace anholon::plot {
 
 namespace {
-
-std::string list_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 60;
-  std::string list;
-  for (std::size_t i = 0; i < names.size() && i < kMost; ++i) list += (i ? " " : "") + names[i];
-  return list + (names.size() > kMost ? " …" : "");
-}
-
-[[noreturn]] void unknown(const RunTable& table, const std::string& name) {
-  const bool pattern = name.find_first_of("*?") != std::string::npos;
-  const std::string near = pattern ? "" : did_you_mean(name, table.columns);
-  throw Failure(Span{},
-                pattern ? "no column fits '" + name + "'"
-                        : "there is no column '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-                "the columns are " + list_of(table.columns));
-}
 
 // Columns that have a derivative beside them; all columns if none has.
 std::vector<std::size_t> coordinates(const RunTable& table, std::size_t x) {
@@ -101,45 +86,8 @@ void smooth(Figure& f, const std::vector<std::vector<double>>& derivatives) {
 
 }  // namespace
 
-bool matches(const std::string& pattern, const std::string& name) {
-  std::size_t p = 0, n = 0, star = std::string::npos, back = 0;
-  while (n < name.size()) {
-    if (p < pattern.size() && pattern[p] == '*')
-      star = p++, back = n;
-    else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n]))
-      ++p, ++n;
-    else if (star != std::string::npos)
-      p = star + 1, n = ++back;
-    else
-      return false;
-  }
-  while (p < pattern.size() && pattern[p] == '*') ++p;
-  return p == pattern.size();
-}
-
 std::vector<std::size_t> select_columns(const RunTable& table, const std::vector<std::string>& names, std::size_t x) {
-  if (names.empty()) return coordinates(table, x);
-  std::vector<std::size_t> list;
-  for (const std::string& name : names) {
-    const std::size_t before = list.size();
-    if (const std::size_t j = table.find(name); j < table.columns.size()) {
-      list.push_back(j);
-    } else {
-      bool any = false;
-      for (std::size_t k = 0; k < table.columns.size(); ++k)
-        if (matches(name, table.columns[k])) {
-          any = true;
-          if (k != x && std::find(list.begin(), list.end(), k) == list.end()) list.push_back(k);
-        }
-      if (!any) unknown(table, name);
-    }
-    for (std::size_t k = 0; k < before; ++k)
-      if (list.size() > before && list[k] == list[before]) {
-        list.erase(list.begin() + static_cast<std::ptrdiff_t>(before));
-        break;
-      }
-  }
-  return list;
+  return names.empty() ? coordinates(table, x) : chosen_columns(table.columns, names, x);
 }
 
 void make_equal(Figure& f, double width, double height) {
@@ -162,7 +110,7 @@ Figure make_figure(const RunFile& run, const FigureOptions& o) {
   if (table.rows() == 0) throw Failure(Span{}, "the run has no rows yet", "wait for them, or simulate anew");
   const std::size_t time = table.find("t");
   std::size_t x = o.x.empty() ? (time < table.columns.size() ? time : 0) : table.find(o.x);
-  if (x == table.columns.size()) unknown(table, o.x);
+  if (x == table.columns.size()) unknown_column(table.columns, o.x);
 
   Figure f;
   std::tie(f.title, f.labels, f.width, f.height, f.equal) = std::tie(o.title, o.labels, o.width, o.height, o.equal);
@@ -193,7 +141,7 @@ Figure make_figure(const RunFile& run, const FigureOptions& o) {
   const std::vector<std::size_t> columns = select_columns(table, o.names, x);
   if (columns.empty())
     throw Failure(Span{}, "there is nothing to draw over '" + f.x_name + "'",
-                  "the columns are " + list_of(table.columns));
+                  "the columns are " + list_of_columns(table.columns));
   constexpr std::size_t kMostPanels = 40;
   if (o.each && columns.size() > kMostPanels)
     throw Failure(Span{}, std::to_string(columns.size()) + " panels are too many for one figure",

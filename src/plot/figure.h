@@ -54,8 +54,6 @@ void make_equal(Figure& figure, double width, double height);
 
 // The columns that a list of names and patterns selects, in the order of the list.
 std::vector<std::size_t> select_columns(const RunTable& table, const std::vector<std::string>& names, std::size_t x);
-// Whether the pattern, with * and ? as wildcards, matches the name.
-bool matches(const std::string& pattern, const std::string& name);
 
 struct Point {
   double x, y;

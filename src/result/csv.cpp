@@ -105,21 +105,26 @@ class CsvReader {
 // Cases have outcomes among their numbers, so their lines are written as cells.
 class CsvSweepWriter final : public SweepWriter {
  public:
-  CsvSweepWriter(const std::string& path, const SweepInfo& info) : lines_(path) {
-    if (error().empty()) lines_.header(info.columns);
+  CsvSweepWriter(const std::string& path, const SweepInfo& info) : lines_(path), columns_(info.columns) {
+    std::vector<std::string> names;
+    for (const SweepColumn& c : columns_) names.push_back(c.name);
+    if (error().empty()) lines_.header(names);
   }
   const std::string& error() const override { return lines_.error(); }
-  void row(const SweepRow& row) override {
-    std::vector<std::string> line = {std::to_string(row.number)};
-    for (const double v : row.varied) line.push_back(number_text(v));
-    line.emplace_back(row.outcome);
-    for (const double v : row.last) line.push_back(std::isnan(v) ? "" : number_text(v));
-    lines_.cells(line);
+  void row(std::span<const SweepCell> cells) override {
+    texts_.resize(cells.size());
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      texts_[k] = columns_[k].holds == SweepColumn::Holds::words ? csv_cell(cells[k].word)
+                  : std::isnan(cells[k].number)                  ? std::string()
+                                                                 : written_number(columns_[k], cells[k].number);
+    lines_.cells(texts_);
   }
   std::string close(const std::string&) override { return lines_.close(); }
 
  private:
   CsvLines lines_;
+  std::vector<SweepColumn> columns_;
+  std::vector<std::string> texts_;
 };
 
 std::string header_line(const std::vector<std::string>& names) {

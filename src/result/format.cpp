@@ -66,6 +66,11 @@ class Input {
 
 }  // namespace
 
+std::string written_number(const SweepColumn& column, double number) {
+  return column.holds == SweepColumn::Holds::whole_numbers ? std::to_string(static_cast<long long>(number))
+                                                           : number_text(number);
+}
+
 std::vector<const ResultFormat*> sweep_formats() {
   std::vector<const ResultFormat*> list;
   for (const ResultFormat* f : result_formats())

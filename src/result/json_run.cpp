@@ -312,20 +312,22 @@ class JsonRunWriter final : public RunWriter {
 // Written line by line: there may be more cases than memory holds.
 class JsonSweepWriter final : public SweepWriter {
  public:
-  JsonSweepWriter(const std::string& path, const SweepInfo& info) : file_(path) {
+  JsonSweepWriter(const std::string& path, const SweepInfo& info) : file_(path), columns_(info.columns) {
     if (!error().empty()) return;
     std::string names;
-    for (const std::string& n : info.columns) names += (names.empty() ? "\"" : ", \"") + json_escape(n) + "\"";
-    file_.write("{\n  \"model\": \"" + json_escape(info.model) + "\",\n  \"form\": \"" + json_escape(info.form) +
+    for (const SweepColumn& c : columns_) names += (names.empty() ? "\"" : ", \"") + json_escape(c.name) + "\"";
+    file_.write("{\n  \"model\": \"" + json_escape(info.origin.title) + "\",\n  \"form\": \"" + json_escape(info.form) +
                 "\",\n  \"columns\": [" + names + "],\n  \"rows\": [");
   }
   const std::string& error() const override { return file_.error(); }
-  void row(const SweepRow& row) override {
+  void row(std::span<const SweepCell> cells) override {
     JsonWriter j;
-    j.open_array().integer(static_cast<long long>(row.number));
-    for (const double v : row.varied) j.number(number_text(v));
-    j.string(row.outcome);
-    for (const double v : row.last) j.number(number_text(v));
+    j.open_array();
+    for (std::size_t k = 0; k < cells.size(); ++k)
+      if (columns_[k].holds == SweepColumn::Holds::words)
+        cells[k].word.empty() ? j.null() : j.string(cells[k].word);
+      else
+        j.number(written_number(columns_[k], cells[k].number));
     file_.write((any_ ? ",\n    " : "\n    ") + j.close().text());
     any_ = true;
   }
@@ -336,6 +338,7 @@ class JsonSweepWriter final : public SweepWriter {
 
  private:
   GrowingFile file_;
+  std::vector<SweepColumn> columns_;
   bool any_ = false;
 };
 

@@ -4,6 +4,7 @@
 #pragma once
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "result/rows.h"
@@ -28,26 +29,36 @@ class RunWriter : public RowSink {
   virtual std::string part() const { return {}; }
 };
 
-// A sweep before its first case.
-struct SweepInfo {
-  std::string model, form;
-  std::vector<std::string> columns;  // case, varied values, outcome, t, last values
+// A column of a sweep holds numbers, whole numbers or words.
+struct SweepColumn {
+  enum class Holds : std::uint8_t { numbers, whole_numbers, words };
+  std::string name;
+  Holds holds = Holds::numbers;
 };
 
-// One case of a sweep. A number that the case does not have is NaN.
-struct SweepRow {
-  std::size_t number = 0;
-  std::span<const double> varied;
-  const char* outcome = "";
-  std::span<const double> last;  // t, then the state there
+// A sweep before its first case.
+struct SweepInfo {
+  RunInfo origin;  // its title is that of the model
+  std::string form;
+  std::vector<SweepColumn> columns;
 };
+
+// What a case has in one column: a word, or a number; NaN if it has none.
+struct SweepCell {
+  double number = 0;
+  std::string_view word = {};
+};
+
+// A number of a column as it is written.
+std::string written_number(const SweepColumn& column, double number);
 
 // Writes the cases of a sweep as they end.
 class SweepWriter {
  public:
   virtual ~SweepWriter() = default;
   virtual const std::string& error() const = 0;
-  virtual void row(const SweepRow& row) = 0;
+  // Writes one cell for each column.
+  virtual void row(std::span<const SweepCell> cells) = 0;
   // Ends the file with the report of the sweep, a JSON object; a format that holds rows only ignores the report. Returns
   // an empty string, or the reason why the file could not be written.
   virtual std::string close(const std::string& report) = 0;

@@ -14,16 +14,29 @@ namespace anholon {
 
 namespace {
 
-StepSettings step_settings(const SimulationOptions& o) {
+// What is integrated for the report; then the formulas that are followed.
+std::vector<Expr> quadratures(Workspace& s, const Power& power, const SimulationOptions& o) {
+  std::vector<Expr> es = watched_quadratures(s, power);
+  Column own;
+  for (const Expr e : o.followed) own.push_back(s.graph().own(e));
+  own = OutputTape<long double>::put(s, own);
+  es.insert(es.end(), own.begin(), own.end());
+  return es;
+}
+
+StepSettings step_settings(const Model& model, const SimulationOptions& o) {
   StepSettings s{natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
   s.integrals = 1;  // the power
+  s.known_from = 1 + model.masses.size();
+  s.known_to = s.known_from + o.followed.size();
   s.multipliers = o.rigorous.has_value();
   return s;
 }
 
 // A motion that is saved, continued, enclosed or compared with another integrator is computed by Taylor's method.
 Method method(const SimulationOptions& o) {
-  return o.method == Method::automatic && (o.save || o.resume || o.rigorous || o.integrator != Method::taylor)
+  return o.method == Method::automatic &&
+                 (o.save || o.resume || o.rigorous || o.integrator != Method::taylor || !o.followed.empty())
              ? Method::taylor
              : o.method;
 }
@@ -42,7 +55,7 @@ class Run {
   Run(Workspace& s, const SimulationOptions& o, RowSink& sink)
       : s_(s), o_(o), power_(anholon::power(*s.mechanics)),
         stages_(std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
-        course_(s, step_settings(o), method(o), watched_quadratures(s, power_), stages_), shown_(course_),
+        course_(s, step_settings(*s.model, o), method(o), quadratures(s, power_, o), stages_), shown_(course_),
         rows_(sink, o.digits), watch_(s, power_, o.conserved, motion().parameters()),
         angles_(s, doubles(motion().parameters())), judge_(s, o), supports_(s), paces_(s.model->events) {
     report_.model = s.model->title;
@@ -226,10 +239,15 @@ class Run {
   void tell_polynomials(const W& end) const {
     const Stepper<N>& stepper = motion().stepper();
     const std::size_t n = s_.system.coordinates, mechanical = s_.system.mechanical();
-    o_.dense({to_double(stepper.before()), to_double(end), stepper.order(), [&](std::size_t j, int k) {
+    o_.dense({to_double(stepper.before()), to_double(end), stepper.order(),
+              [&](std::size_t j, int k) {
                 const std::size_t unknown = j < n ? j : mechanical + j - n;
                 return k > stepper.degree(unknown) ? 0 : to_double(stepper.coefficient(unknown, k));
-              }});
+              },
+              [&](std::size_t i, int k) {
+                return to_double(stepper.quadrature_coefficient(1 + s_.model->masses.size() + i, k));
+              },
+              stepper.one_sided()});
   }
 
   // Takes the events that fired in the last step; returns false if they end the motion.

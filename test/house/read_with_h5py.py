@@ -25,7 +25,7 @@ def main():
         print("skipped: python3-h5py is not installed")
         return 77
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / "doc" / "results.md").read_text(encoding="utf-8"), re.S)
-    five, digits = blocks
+    five, sweep, digits = blocks
     assert len(five.strip().splitlines()) <= 5, "more than five lines"
 
     with tempfile.TemporaryDirectory() as scratch:
@@ -61,6 +61,20 @@ def main():
             documented = (ROOT / "doc" / "results.md").read_text(encoding="utf-8")
             for name in f:
                 assert f"`/{name}" in documented, f"/{name} is not documented"
+
+        for name in ("cases.h5", "cases.csv"):
+            subprocess.run(
+                [program, "sweep", "disc", "--vary", "phi'=5,6,7", "--at", "0.5,1", "--reduce", "min(theta)", "--quiet", "-o", name],
+                cwd=scratch,
+                check=True,
+            )
+        names = {}
+        exec(sweep.replace('"cases.h5"', repr(str(folder / "cases.h5"))), names)
+        written = list(csv.reader((folder / "cases.csv").open()))
+        assert len(written) == 7 and set(written[0]) == set(names["cases"])
+        for j, name in enumerate(written[0]):
+            words = name == "outcome"
+            assert [row[j] if words else float(row[j]) for row in written[1:]] == list(names["cases"][name]), name
 
         simulate("disc", "--at", "0.50,1", "--digits", "30", "-o", "digits.h5")
         try:

@@ -105,6 +105,17 @@ void sweep(const anholon::System& system) {
          "a velocity at the end is not that at the start");
   expect(all->column("theta")[0] == all->column("theta")[5], "the mass of a pendulum has no influence");
 
+  options.at = {0.5, 1};
+  options.reduce = {"max(theta)"};
+  options.columns = {"theta", "max*"};
+  const auto rows = anholon::sweep(system, options);
+  expect(rows && rows->times().size() == 2 && rows->columns().size() == 2, "columns and times are chosen");
+  if (!rows) return;
+  expect(rows->rows("theta").size() == 20 && rows->rows("theta")[1] == rows->column("theta")[0],
+         "the last row is the end");
+  expect(rows->column("max(theta)")[3] >= rows->rows("theta")[6] && rows->rows("max(theta)").empty(),
+         "an extreme is one number for each case");
+  options.at = {}, options.reduce = {}, options.columns = {};
   options.vary = {{"m", {}, "uniform(1,2)"}};
   const auto endless = anholon::sweep(system, options);
   expect(!endless && endless.error().text.find("how many cases") != std::string::npos, "random values want a number");

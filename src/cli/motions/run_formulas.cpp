@@ -5,8 +5,8 @@
 #include "cli/motions/run_info.h"
 #include "formula/formula.h"
 #include "modelfile/read.h"
-#include "plot/figure.h"
 #include "report/columns.h"
+#include "result/choose_columns.h"
 
 namespace anholon::cli {
 
@@ -15,7 +15,7 @@ namespace {
 bool holds(const RunTable& table, const std::string& name) {
   return table.find(name) < table.columns.size() ||
          std::any_of(
-             table.columns.begin(), table.columns.end(), [&](const std::string& c) { return plot::matches(name, c); });
+             table.columns.begin(), table.columns.end(), [&](const std::string& c) { return matches(name, c); });
 }
 
 void add(RunFile& run, const Reader& in, const std::string& name) {

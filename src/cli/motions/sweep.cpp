@@ -1,121 +1,129 @@
 #include <algorithm>
-#include <atomic>
-#include <cmath>
 #include <cstdio>
-#include <limits>
-#include <map>
+#include <deque>
 
-#include "base/json.h"
+#include "base/read_file.h"
 #include "cli/input.h"
 #include "cli/models/show.h"
 #include "cli/motions/progress.h"
-#include "cli/motions/report_text.h"
+#include "cli/motions/run_info.h"
+#include "cli/motions/sweep_output.h"
 #include "cli/say.h"
 #include "ensemble/request.h"
 #include "ensemble/variation.h"
-#include "result/format.h"
-#include "simulation/report_json.h"
+#include "result/choose_columns.h"
 
 namespace anholon::cli {
 
 namespace {
 
-// Cases that ended in the same way; the first of them is printed.
-struct Stopped {
-  std::size_t count = 0, first = 0;
-  Outcome outcome;
-};
-
-std::vector<std::string> header(const Variation& v, const std::vector<std::string>& columns) {
-  std::vector<std::string> names = {"case"};
-  // A varied initial value is not the final value.
-  for (const Varied& each : v.varied())
-    names.push_back(each.kind == Varied::Kind::initial ? each.name + "(0)" : each.name);
-  names.insert(names.end(), {"outcome", "t"});
-  names.insert(names.end(), columns.begin(), columns.end());
-  return names;
+[[noreturn]] void refuse(const MistakeInWord& m, const char* option) {
+  throw UsageError{print(m.diagnostic, SourceText{m.file.empty() ? option : m.file, m.word})};
 }
 
-std::string error_json(const CasesError& e) {
-  JsonWriter j;
-  j.open_object();
-  if (!e.error)
-    return j.key("digits").null().key("reason").string(e.none.empty() ? "not asked for" : e.none).close().text();
-  write_error(j, *e.error);
-  j.key("worst_case").integer(static_cast<long long>(e.worst)).key("compared").open_array();
-  for (std::size_t k : e.cases) j.integer(static_cast<long long>(k));
-  std::string text = j.close().close().text();
-  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3) text.insert(at + 1, "  ");
+// -n, or a number given to --cases.
+std::optional<std::size_t> count_of(const Options& o) {
+  if (o.case_count.empty()) return std::nullopt;
+  const auto n = parse_rational(o.case_count);
+  if (!n || n->get_den() != 1 || *n < 1 || *n > static_cast<unsigned long>(Variation::kMostCases))
+    throw UsageError{"error: -n takes a number of cases up to " + std::to_string(Variation::kMostCases) + ", not '" +
+                     o.case_count + "'\nhint: -n 1000\n"};
+  return n->get_num().get_ui();
+}
+
+std::string text_of_table(const std::string& path) {
+  std::string text, why;
+  if (!read_file(path, text, &why))
+    throw UsageError{"error: --cases: cannot read " + path + ": " + why +
+                     "\nhint: a CSV file whose first line names what varies; -n 1000 is a number of cases\n"};
   return text;
 }
 
-// Hands the cases to the writer of a file, and counts the outcomes of those that stopped.
-class Output final : public CaseSink {
- public:
-  Output(const ResultFormat& format, const std::string& path, const Scenario& s, const Variation& v,
-         const std::vector<std::string>& columns)
-      : width_(columns.size()),
-        file_(format.open_sweep(path, {s.model->title, s.system.form->name, header(v, columns)})) {
-    if (!file_->error().empty()) throw UsageError{"error: " + file_->error() + "\n"};
-  }
-  void result(const CaseResult& r) override {
-    if (!r.outcome.ok()) {
-      Stopped& s = stopped_[r.outcome.kind];
-      if (s.count++ == 0) s.first = r.number, s.outcome = r.outcome;
-    }
-    // The numbers that a stopped case does not have are NaN.
-    std::vector<double> last = {r.t};
-    last.insert(last.end(), r.last.begin(), r.last.end());
-    last.resize(1 + width_, std::numeric_limits<double>::quiet_NaN());
-    file_->row({r.number, r.values, name(r.outcome.kind), last});
-    failed_ = !file_->error().empty();
-  }
-  // Called by all threads.
-  bool failed() const { return failed_; }
-  const std::map<OutcomeKind, Stopped>& stopped() const { return stopped_; }
-  // Returns an empty string, or the reason why the file could not be written.
-  std::string close(const EnsembleReport& report) { return file_->close(json(report)); }
+// Names the cases of the file that --vary case=a,b runs through; other words are left in `words`.
+std::vector<std::string> cases_of_file(std::vector<std::string>& words) {
+  constexpr std::string_view kName = "case=";
+  std::vector<std::string> names;
+  std::erase_if(words, [&](const std::string& word) {
+    if (!word.starts_with(kName)) return false;
+    for (const std::string& name : split({word.substr(kName.size())})) names.push_back(name);
+    if (names.empty())
+      throw UsageError{
+          "error: --vary case= names no case\nhint: --vary case=a,b with sections [case.a] and [case.b] in "
+          "the model file\n"};
+    return true;
+  });
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) !=
+        names.begin() + static_cast<std::ptrdiff_t>(k))
+      throw UsageError{"error: --vary names the case '" + names[k] + "' twice\nhint: each case once\n"};
+  return names;
+}
 
- private:
-  std::string json(const EnsembleReport& report) const {
-    std::string text = "{\n  \"stopped\": [";
-    bool first = true;
-    for (const auto& [kind, s] : stopped_) {
-      text += std::string(first ? "" : ",") + "\n    {\"outcome\": \"" + name(kind) +
-              "\", \"cases\": " + std::to_string(s.count) + ", \"first\": " + std::to_string(s.first) +
-              ", \"message\": \"" + json_escape(s.outcome.message) + "\", \"hint\": \"" + json_escape(s.outcome.hint) +
-              "\"}";
-      first = false;
-    }
-    return text + (first ? "" : "\n  ") + "],\n  \"error_estimate\": " + error_json(report.error) +
-           ",\n  \"cases\": " + std::to_string(report.done) + ",\n  \"finished\": " + std::to_string(report.finished) +
-           ",\n  \"outcome\": \"" + name(report.outcome.kind) + "\"\n}";
-  }
-
-  std::size_t width_;
-  std::unique_ptr<SweepWriter> file_;
-  std::atomic<bool> failed_{false};
-  std::map<OutcomeKind, Stopped> stopped_;
+// The motions of one model: of the file, or of the file with one of its cases.
+struct Part {
+  std::string word;  // the name of the case
+  Options asked;
+  Reader in;
+  std::optional<Variation> variation;
+  EnsembleOptions options;
+  Scenario scenario;
+  Outcome start;
+  std::optional<SweepTable> table;
 };
 
-// --vary, -n and --seed.
-Variation variation_of(const Options& o, const Model& model) {
-  Variation v(o.seed);
+// --vary, --cases, -n, --draw and --seed.
+Variation variation_of(const Options& o, const Model& model, const std::shared_ptr<const CaseTable>& table,
+                       bool of_cases) {
+  Variation v(o.seed, o.draw == "sobol" ? Variation::Draws::sobol : Variation::Draws::random);
   try {
     for (const std::string& word : o.varied) v.add(word, model);
-  } catch (const VariationMistake& m) {
-    throw UsageError{print(m.diagnostic, SourceText{"--vary", m.word})};
+    if (table) v.add(table, model);
+  } catch (const MistakeInWord& m) {
+    refuse(m, "--vary");
   }
-  std::optional<std::size_t> cases;
-  if (!o.case_count.empty()) {
-    const auto n = parse_rational(o.case_count);
-    if (!n || n->get_den() != 1 || *n < 1 || *n > static_cast<unsigned long>(Variation::kMostCases))
-      throw UsageError{"error: -n takes a number of cases up to " + std::to_string(Variation::kMostCases) + ", not '" +
-                       o.case_count + "'\nhint: -n 1000\n"};
-    cases = n->get_num().get_ui();
-  }
-  v.finish(cases, "-n");
+  if (of_cases && v.varied().empty() && o.case_count.empty())
+    v.finish_with_one();
+  else
+    v.finish(count_of(o), "-n");
   return v;
+}
+
+Reductions reductions_of(const Options& o, const Reader& in) {
+  Reductions list;
+  try {
+    for (const std::string& word : split(o.reduce)) list.add(word, {in.model, in.names});
+  } catch (const MistakeInWord& m) {
+    refuse(m, "--reduce");
+  }
+  return list;
+}
+
+// Returns false if --show has printed what was asked for.
+bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
+  p.in = read(p.asked);
+  const Options o = p.asked = with_form(p.asked, p.in);
+  p.variation = variation_of(o, *p.in.model, table, !p.word.empty());
+  EnsembleOptions& e = p.options;
+  e.state = state_choice(o, *p.in.model);
+  must_not_be_given(p.variation->varied(), e.state);
+  e.varied = p.variation->varied();
+  e.cases = p.variation->cases();
+  e.numbers = [&variation = *p.variation](std::size_t k) { return EnsembleCase{variation(k), {}}; };
+  e.threads = static_cast<std::size_t>(o.threads);
+  e.reductions = reductions_of(o, p.in);
+  p.start = ready(p.in, form(o, *p.in.model), e.state, p.scenario);
+  form(o, *p.in.model, Workspace(p.scenario).mechanics.get());
+  if (const auto d = not_integrated(*p.in.model)) throw UsageError{print(*d, p.in.source)};
+  if (!o.show.empty()) return false;
+  ask(o.motion, p.scenario, asker(o), e);
+  p.table.emplace(*p.in.model, e);
+  if (const std::vector<std::string> names = split(o.columns); !names.empty()) {
+    std::vector<std::string> all;
+    for (const SweepColumn& c : p.table->available()) all.push_back(c.name);
+    p.table->choose(chosen_columns(all, names));
+  }
+  if (!p.word.empty()) p.table->add_word("case_name");
+  return true;
 }
 
 // The format of the cases: by the name of the file, else --json decides.
@@ -126,72 +134,80 @@ const ResultFormat& output_format(const Options& o) {
   if (unable)
     throw UsageError{"error: " + std::string(unable) +
                      " files are not written yet\nhint: " + known_files("-o cases", sweep_formats()) + "\n"};
+  if (named && named->missing)
+    throw UsageError{"error: " + std::string(named->missing) + "\nhint: " + named->missing_hint + "\n"};
   if (o.json) return report_format();
   return named ? *named : plain_format();
 }
 
-void report(const EnsembleReport& r, const EnsembleOptions& o, const Output& out) {
-  std::string list;
-  for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);
-  say(stderr, "%zu of %zu cases: %zu finished%s; %.3g s on %zu %s\n", r.done, o.cases, r.finished, list.c_str(),
-      r.seconds, r.threads, r.threads == 1 ? "thread" : "threads");
-  std::string cases;
-  for (std::size_t k : r.error.cases) cases += (cases.empty() ? "" : ", ") + std::to_string(k);
-  if (r.error.error)
-    say(stderr, "digits to trust%s; %s\n", digits_to_trust(*r.error.error).c_str(),
-        r.error.cases.size() == 1
-            ? ("of case " + cases).c_str()
-            : ("of the cases " + cases + " the worst is " + std::to_string(r.error.worst)).c_str());
-  else if (!r.error.none.empty())
-    say(stderr, "digits to trust: not estimated, %s\n", r.error.none.c_str());
+std::vector<std::string> names_of(const SweepTable& table) {
+  std::vector<std::string> names;
+  for (const SweepColumn& c : table.columns()) names.push_back(c.name);
+  return names;
+}
+
+// Computes the cases of all parts, one part after the other.
+EnsembleReport compute(std::deque<Part>& parts, std::size_t cases, SweepOutput& out, bool quiet) {
+  EnsembleReport all;
+  Progress progress(quiet, "case", "cases");
+  for (Part& p : parts) {
+    const std::size_t before = all.done;
+    p.options.progress = [&, before](std::size_t done) {
+      const std::size_t now = before + done;
+      progress(static_cast<double>(now) / static_cast<double>(cases), static_cast<double>(now), now);
+    };
+    // Stops if the rows cannot be written.
+    p.options.cancelled = [&out] { return stop_requested() || out.failed(); };
+    out.turn_to(*p.table, p.word);
+    add_report(all, ensemble(p.scenario, p.options, out));
+    if (!all.outcome.ok()) break;
+  }
+  return all;
 }
 
 }  // namespace
 
 int sweep(const Options& asked) {
   const ResultFormat& format = output_format(asked);
-  const Reader in = read(asked);
-  const Options o = with_form(asked, in);
-  const Variation variation = variation_of(o, *in.model);
-  EnsembleOptions options;
-  options.state = state_choice(o, *in.model);
-  must_not_be_given(variation.varied(), options.state);
-  options.varied = variation.varied();
-  options.cases = variation.cases();
-  options.numbers = [&](std::size_t k) { return EnsembleCase{variation(k), {}}; };
-  options.threads = static_cast<std::size_t>(o.threads);
-  Scenario s;
-  Outcome start = ready(in, form(o, *in.model), options.state, s);
-  form(o, *in.model, Workspace(s).mechanics.get());
-  if (const auto d = not_integrated(*in.model)) {
-    print_diagnostic(*d, in.source);
-    return kBadInput;
+  Options o = asked;
+  const std::vector<std::string> names = cases_of_file(o.varied);
+  std::shared_ptr<const CaseTable> table;
+  if (!o.case_table.empty()) {
+    if (o.case_count.empty() && parse_rational(o.case_table))
+      o.case_count = o.case_table;
+    else
+      try {
+        table = std::make_shared<const CaseTable>(text_of_table(o.case_table), o.case_table);
+      } catch (const MistakeInWord& m) {
+        refuse(m, "--cases");
+      }
   }
-  if (!o.show.empty()) return show(o, s);
-  ask(merged(o.motion, in.model->simulate), s, asker(o), options);
-  if (!start.ok()) start = scenario_of_cases(options, s);
-  if (!start.ok()) {
-    print_outcome(start);
-    return kStopped;
+  std::deque<Part> parts;
+  std::size_t cases = 0;
+  for (std::size_t k = 0; k < std::max<std::size_t>(names.size(), 1); ++k) {
+    Part& p = parts.emplace_back();
+    p.asked = o;
+    if (!names.empty()) p.word = names[k], p.asked.cases.push_back(names[k]);
+    if (!prepare(p, table)) return show(p.asked, p.scenario);
+    if (!p.start.ok()) p.start = scenario_of_cases(p.options, p.scenario);
+    if (!p.start.ok()) {
+      print_outcome(p.start);
+      return kStopped;
+    }
+    if (names_of(*p.table) != names_of(*parts.front().table))
+      throw UsageError{"error: the case '" + p.word + "' has other columns than the case '" + parts.front().word +
+                       "'\nhint: --columns chooses those that both have\n"};
+    cases += p.options.cases;
   }
   catch_stop(o.output);
-  Output out(format, o.output, s, variation, ensemble_columns(*in.model));
-  // Stops if the rows cannot be written.
-  options.cancelled = [&] { return stop_requested() || out.failed(); };
-  EnsembleReport r;
-  {
-    Progress progress(o.quiet, "case", "cases");
-    options.progress = [&](std::size_t done) {
-      progress(static_cast<double>(done) / static_cast<double>(options.cases), static_cast<double>(done), done);
-    };
-    r = ensemble(s, options, out);
-  }
+  const Part& first = parts.front();
+  SweepOutput out(format, o.output,
+                  {run_info(first.asked, first.in, first.scenario, merged(o.motion, first.in.model->simulate)),
+                   first.scenario.system.form->name, first.table->columns()});
+  const EnsembleReport r = compute(parts, cases, out, o.quiet);
   const std::string write_error = out.close(r);
-  if (!o.quiet) report(r, options, out);
-  for (const auto& [kind, stopped] : out.stopped())
-    say(stderr, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,
-        stopped.count == 1 ? "case" : "cases", stopped.first, stopped.outcome.message.c_str(),
-        stopped.outcome.hint.c_str());
+  if (!o.quiet) report_sweep(r, cases, out);
+  report_stopped(out);
   if (!r.outcome.ok() && (write_error.empty() || stop_requested())) {
     print_outcome(r.outcome);
     if (!o.output.empty() && write_error.empty())

@@ -11,21 +11,6 @@ namespace {
 // Halves of [0, h] beyond this depth are narrower than a round-off of h in double.
 constexpr int kDeepest = 56, kBisections = 200, kPolish = 4;
 
-// Bernstein coefficients on [0, 1] of sum a_k u^k: b_j = sum_{k<=j} C(j,k)/C(n,k) a_k.
-template <Number N>
-std::vector<N> bernstein(std::vector<N> a) {
-  const std::size_t n = a.size() - 1;
-  N binomial(1);  // C(n, k)
-  for (std::size_t k = 1; k <= n; ++k) {
-    binomial = binomial * N(static_cast<int>(n - k + 1)) / N(static_cast<int>(k));
-    a[k] = a[k] / binomial;
-  }
-  // Sums with binomial weights, in place: k rounds of adding the neighbour below.
-  for (std::size_t k = 1; k <= n; ++k)
-    for (std::size_t j = n; j >= k; --j) a[j] += a[j - 1];
-  return a;
-}
-
 // Where in [from, to] of [0, 1] the polynomial with Bernstein coefficients b there is first below -floor.
 template <Number N>
 std::optional<N> search(std::vector<N> b, const N& from, const N& to, const N& floor, int depth) {

@@ -4,6 +4,7 @@
 // on one side are passed over whole; others are halved, the earlier half first (de Casteljau).
 #pragma once
 #include <optional>
+#include <vector>
 
 #include "numeric/number.h"
 
@@ -15,6 +16,21 @@ N value_at(const N* c, int degree, const N& x) {
   N s(0);
   for (int k = degree; k >= 0; --k) s = s * x + c[k];
   return s;
+}
+
+// Bernstein coefficients on [0, 1] of sum a_k u^k: b_j = sum_{k<=j} C(j,k)/C(n,k) a_k.
+template <Number N>
+std::vector<N> bernstein(std::vector<N> a) {
+  const std::size_t n = a.size() - 1;
+  N binomial(1);  // C(n, k)
+  for (std::size_t k = 1; k <= n; ++k) {
+    binomial = binomial * N(static_cast<int>(n - k + 1)) / N(static_cast<int>(k));
+    a[k] = a[k] / binomial;
+  }
+  // Sums with binomial weights, in place: k rounds of adding the neighbour below.
+  for (std::size_t k = 1; k <= n; ++k)
+    for (std::size_t j = n; j >= k; --j) a[j] += a[j - 1];
+  return a;
 }
 
 // The first x in (0, h], h of either sign, from where on p = sum c_k x^k is below -floor, taken back to where p left

@@ -1,4 +1,6 @@
 // The row of HDF5 in the table of formats.
+#include <limits>
+
 #include "result/format.h"
 #include "result/hdf5/hdf5_sink.h"
 
@@ -25,6 +27,36 @@ std::string write_beside(const std::string& path, const std::string& beside, con
   return {};
 }
 
+// A sweep is a file like that of a run: a cell that holds a word is NaN in /rows and stands in /text.
+class Hdf5SweepWriter final : public SweepWriter {
+ public:
+  Hdf5SweepWriter(const std::string& path, const SweepInfo& info) : file_(path, info.origin), columns_(info.columns) {
+    std::vector<RunColumn> names;
+    for (const SweepColumn& c : columns_) {
+      names.emplace_back().name = c.name;
+      if (c.holds == SweepColumn::Holds::words) texts_.resize(names.size());
+    }
+    if (error().empty()) file_.columns(names);
+  }
+  const std::string& error() const override { return file_.error(); }
+  void row(std::span<const SweepCell> cells) override {
+    numbers_.resize(cells.size());
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      const bool word = columns_[k].holds == SweepColumn::Holds::words;
+      numbers_[k] = word ? std::numeric_limits<double>::quiet_NaN() : cells[k].number;
+      if (word) texts_[k] = cells[k].word;
+    }
+    file_.row({numbers_, texts_});
+  }
+  std::string close(const std::string& report) override { return file_.close(report); }
+
+ private:
+  Hdf5Sink file_;
+  std::vector<SweepColumn> columns_;
+  std::vector<double> numbers_;
+  std::vector<std::string> texts_;  // up to the last column of words
+};
+
 }  // namespace
 
 extern const ResultFormat hdf5_format;
@@ -43,6 +75,9 @@ const ResultFormat hdf5_format = {
         },
     .open = [](const std::string& path, const RunInfo& info) -> std::unique_ptr<RunWriter> {
       return std::make_unique<Hdf5Sink>(path, info);
+    },
+    .open_sweep = [](const std::string& path, const SweepInfo& info) -> std::unique_ptr<SweepWriter> {
+      return std::make_unique<Hdf5SweepWriter>(path, info);
     },
 };
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "plot/figure.h"
+#include "result/choose_columns.h"
 #ifdef __SANITIZE_ADDRESS__
 #include <sanitizer/lsan_interface.h>
 #endif

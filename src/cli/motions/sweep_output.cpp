@@ -1,0 +1,153 @@
+#include "cli/motions/sweep_output.h"
+
+#include "base/json.h"
+#include "cli/motions/report_text.h"
+#include "cli/say.h"
+#include "simulation/report_json.h"
+
+namespace anholon::cli {
+
+namespace {
+
+void write_cases(JsonWriter& j, const char* key, const std::vector<std::size_t>& cases) {
+  j.key(key).open_array();
+  for (std::size_t k : cases) j.integer(static_cast<long long>(k));
+  j.close();
+}
+
+// An object that stands in another one.
+std::string within(std::string text) {
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3) text.insert(at + 1, "  ");
+  return text;
+}
+
+std::string error_json(const CasesError& e) {
+  JsonWriter j;
+  j.open_object();
+  if (!e.error)
+    return j.key("digits").null().key("reason").string(e.none.empty() ? "not asked for" : e.none).close().text();
+  write_error(j, *e.error);
+  j.key("worst_case").integer(static_cast<long long>(e.worst));
+  write_cases(j, "compared", e.cases);
+  return within(j.close().text());
+}
+
+std::string residuals_json(const CasesResiduals& r) {
+  JsonWriter j;
+  j.open_object();
+  if (r.cases.empty()) {
+    write_cases(j, "checked", r.cases);
+    return within(j.key("reason").string(r.none.empty() ? "not asked for" : r.none).close().text());
+  }
+  for (const auto& [key, worst] :
+       {std::pair{"newton", &r.newton}, std::pair{"constraints", &r.constraints}, std::pair{"power", &r.power}}) {
+    j.key(key).open_object().key("worst").number(number_text(worst->residual));
+    j.key("case").integer(static_cast<long long>(worst->number)).close();
+  }
+  write_cases(j, "checked", r.cases);
+  return within(j.close().text());
+}
+
+std::string list_of(const std::vector<std::size_t>& cases) {
+  std::string list;
+  for (std::size_t k : cases) list += (list.empty() ? "" : ", ") + std::to_string(k);
+  return list;
+}
+
+// "9.1e-16 (case 3)"; the case is not named if there is only one.
+std::string worst_text(const CasesResiduals& r, const CasesResiduals::Worst& worst) {
+  return number_text(worst.residual, 2) +
+         (r.cases.size() > 1 ? " (case " + std::to_string(worst.number) + ")" : std::string());
+}
+
+}  // namespace
+
+SweepOutput::SweepOutput(const ResultFormat& format, const std::string& path, const SweepInfo& info)
+    : file_(format.open_sweep(path, info)) {
+  if (!file_->error().empty()) throw UsageError{"error: " + file_->error() + "\n"};
+}
+
+void SweepOutput::result(const CaseResult& r) {
+  const std::size_t number = before_ + r.number;
+  if (!r.outcome.ok()) {
+    StoppedCases& s = stopped_[r.outcome.kind];
+    if (s.count++ == 0) s.first = number, s.outcome = r.outcome;
+  }
+  table_->rows(r, number, word_, [&](std::span<const SweepCell> cells) { file_->row(cells); });
+  ++taken_;
+  failed_ = !file_->error().empty();
+}
+
+std::string SweepOutput::close(const EnsembleReport& report) {
+  std::string text = "{\n  \"stopped\": [";
+  bool first = true;
+  for (const auto& [kind, s] : stopped_) {
+    text += std::string(first ? "" : ",") + "\n    {\"outcome\": \"" + name(kind) +
+            "\", \"cases\": " + std::to_string(s.count) + ", \"first\": " + std::to_string(s.first) +
+            ", \"message\": \"" + json_escape(s.outcome.message) + "\", \"hint\": \"" + json_escape(s.outcome.hint) +
+            "\"}";
+    first = false;
+  }
+  return file_->close(text + (first ? "" : "\n  ") + "],\n  \"error_estimate\": " + error_json(report.error) +
+                      ",\n  \"residuals\": " + residuals_json(report.residuals) + ",\n  \"cases\": " +
+                      std::to_string(report.done) + ",\n  \"finished\": " + std::to_string(report.finished) +
+                      ",\n  \"outcome\": \"" + name(report.outcome.kind) + "\"\n}");
+}
+
+void add_report(EnsembleReport& all, const EnsembleReport& next) {
+  const std::size_t before = all.done;
+  all.done += next.done, all.finished += next.finished, all.in_workspaces += next.in_workspaces;
+  all.seconds += next.seconds;
+  all.threads = next.threads;
+  if (!next.outcome.ok()) all.outcome = next.outcome;
+  for (std::size_t k : next.error.cases) all.error.cases.push_back(before + k);
+  if (const auto& error = next.error.error) {
+    if (!all.error.error || error->worst().error > all.error.error->worst().error)
+      all.error.worst = before + next.error.worst;
+    if (!all.error.error)
+      all.error.error = error;
+    else
+      all.error.error->take_worse(*error);
+  }
+  if (!next.error.none.empty()) all.error.none = next.error.none;
+  CasesResiduals& r = all.residuals;
+  const auto take = [&](CasesResiduals::Worst& worst, const CasesResiduals::Worst& other) {
+    if (!next.residuals.cases.empty() && (r.cases.empty() || other.residual > worst.residual))
+      worst = {other.residual, before + other.number};
+  };
+  take(r.newton, next.residuals.newton), take(r.constraints, next.residuals.constraints);
+  take(r.power, next.residuals.power);
+  for (std::size_t k : next.residuals.cases) r.cases.push_back(before + k);
+  if (!next.residuals.none.empty()) r.none = next.residuals.none;
+}
+
+void report_sweep(const EnsembleReport& r, std::size_t cases, const SweepOutput& out) {
+  std::string list;
+  for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);
+  say(stderr, "%zu of %zu cases: %zu finished%s; %.3g s on %zu %s\n", r.done, cases, r.finished, list.c_str(),
+      r.seconds, r.threads, r.threads == 1 ? "thread" : "threads");
+  const std::string compared = list_of(r.error.cases);
+  if (r.error.error)
+    say(stderr, "digits to trust%s; %s\n", digits_to_trust(*r.error.error).c_str(),
+        r.error.cases.size() == 1
+            ? ("of case " + compared).c_str()
+            : ("of the cases " + compared + " the worst is " + std::to_string(r.error.worst)).c_str());
+  else if (!r.error.none.empty())
+    say(stderr, "digits to trust: not estimated, %s\n", r.error.none.c_str());
+  const CasesResiduals& all = r.residuals;
+  if (!all.cases.empty())
+    say(stderr, "residuals (relative) of the %s %s: Newton's law %s, constraints %s, power balance %s\n",
+        all.cases.size() == 1 ? "case" : "cases", list_of(all.cases).c_str(), worst_text(all, all.newton).c_str(),
+        worst_text(all, all.constraints).c_str(), worst_text(all, all.power).c_str());
+  else if (!all.none.empty())
+    say(stderr, "residuals: not looked at, %s\n", all.none.c_str());
+}
+
+void report_stopped(const SweepOutput& out) {
+  for (const auto& [kind, stopped] : out.stopped())
+    say(stderr, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,
+        stopped.count == 1 ? "case" : "cases", stopped.first, stopped.outcome.message.c_str(),
+        stopped.outcome.hint.c_str());
+}
+
+}  // namespace anholon::cli

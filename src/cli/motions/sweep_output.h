@@ -1,0 +1,48 @@
+// The file of a sweep and what is said of its cases at the end.
+#pragma once
+#include <atomic>
+#include <map>
+
+#include "cli/input.h"
+#include "ensemble/table.h"
+#include "result/format.h"
+
+namespace anholon::cli {
+
+// Cases that ended in the same way; the first of them is printed.
+struct StoppedCases {
+  std::size_t count = 0, first = 0;
+  Outcome outcome;
+};
+
+// Hands the rows of the cases to the writer of a file, and counts the outcomes of those that stopped.
+class SweepOutput final : public CaseSink {
+ public:
+  SweepOutput(const ResultFormat& format, const std::string& path, const SweepInfo& info);
+  // The cases that follow are those of this table, which has the columns of the file. Their numbers follow on; `word` is
+  // in the added column.
+  void turn_to(SweepTable& table, const std::string& word) { table_ = &table, word_ = word, before_ = taken_; }
+  void result(const CaseResult& r) override;
+  // Called by all threads.
+  bool failed() const { return failed_; }
+  const std::map<OutcomeKind, StoppedCases>& stopped() const { return stopped_; }
+  // Returns an empty string, or the reason why the file could not be written.
+  std::string close(const EnsembleReport& report);
+
+ private:
+  std::unique_ptr<SweepWriter> file_;
+  SweepTable* table_ = nullptr;
+  std::string word_;
+  std::size_t before_ = 0, taken_ = 0;  // cases
+  std::atomic<bool> failed_{false};
+  std::map<OutcomeKind, StoppedCases> stopped_;
+};
+
+// Adds the report of cases that follow on those of `all`.
+void add_report(EnsembleReport& all, const EnsembleReport& next);
+
+// On stderr: how many cases finished, how far they can be trusted; why the others stopped.
+void report_sweep(const EnsembleReport& report, std::size_t cases, const SweepOutput& output);
+void report_stopped(const SweepOutput& output);
+
+}  // namespace anholon::cli

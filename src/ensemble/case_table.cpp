@@ -1,0 +1,96 @@
+#include "ensemble/case_table.h"
+
+#include <algorithm>
+
+#include "ensemble/mistake_in_word.h"
+#include "result/table.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr const char* kTableHint = "a first line of names, m,theta',…, and a line of numbers for each case";
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  return first == std::string::npos ? std::string() : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+}  // namespace
+
+CaseTable::CaseTable(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";  // of UTF-8, which some programs write first
+  if (text_.compare(0, kMark.size(), kMark) == 0) text_.erase(0, kMark.size());
+  bool header = false;
+  std::size_t cells = 0;
+  for (std::size_t at = 0; at < text_.size();) {
+    const std::string_view here = line(at);
+    const std::size_t begin = at;
+    at = std::min(text_.find('\n', at), text_.size() - 1) + 1;
+    if (here.find_first_not_of(" \t") == std::string_view::npos) continue;
+    const std::size_t count = split_csv(here).size();
+    if (!header) {
+      header_ = begin, header = true, cells = count;
+      continue;
+    }
+    if (count != cells)
+      mistake_at(begin, 0,
+                 "the line has " + std::to_string(count) + (count == 1 ? " cell" : " cells") + ", the first line " +
+                     std::to_string(cells),
+                 "a number for each name");
+    lines_.push_back(begin);
+  }
+  if (!header) throw Failure({}, "the table " + file_ + " is empty", kTableHint);
+  const std::vector<std::string> all = split_csv(line(header_));
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    std::string name = trimmed(all[k]);
+    if (name == "case") continue;
+    // As a sweep names initial values.
+    if (name.ends_with("(0)")) name.erase(name.size() - 3);
+    names_.push_back(name);
+    places_.push_back(k);
+  }
+  if (names_.empty()) mistake_at(header_, 0, "the table names nothing that varies", kTableHint);
+  if (lines_.empty()) mistake_at(header_, 0, "the table has no cases", kTableHint);
+}
+
+std::string_view CaseTable::line(std::size_t begin) const {
+  std::string_view all = std::string_view(text_).substr(begin);
+  all = all.substr(0, all.find('\n'));
+  if (!all.empty() && all.back() == '\r') all.remove_suffix(1);
+  return all;
+}
+
+std::vector<std::string> CaseTable::cells(std::size_t row) const {
+  std::vector<std::string> all = split_csv(line(lines_[row])), list;
+  for (std::size_t k : places_) list.push_back(std::move(all[k]));
+  return list;
+}
+
+// The text that is printed has this line at its number, after empty ones.
+void CaseTable::mistake_at(std::size_t begin, std::size_t cell, const std::string& message,
+                           const std::string& hint) const {
+  const auto before = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(begin), '\n');
+  const std::string here(line(begin));
+  std::size_t at = 0;
+  for (const std::vector<std::string> all = split_csv(here); cell > 0 && cell < all.size(); --cell)
+    at = std::min(here.find(',', at), here.size() - 1) + 1;
+  const std::size_t length = std::min(here.find(',', at), here.size()) - at;
+  Span span;
+  span.line = static_cast<decltype(span.line)>(before + 1);
+  span.column = static_cast<decltype(span.column)>(at + 1);
+  span.length = static_cast<decltype(span.length)>(std::max<std::size_t>(length, 1));
+  throw MistakeInWord{
+      {Severity::error, span, message, hint}, std::string(static_cast<std::size_t>(before), '\n') + here, file_};
+}
+
+void CaseTable::mistake(std::size_t row, std::size_t column, const std::string& message,
+                        const std::string& hint) const {
+  mistake_at(lines_[row], places_[column], message, hint);
+}
+
+void CaseTable::mistake_in_header(std::size_t column, const std::string& message, const std::string& hint) const {
+  mistake_at(header_, places_[column], message, hint);
+}
+
+}  // namespace anholon

@@ -1,0 +1,41 @@
+// A table of cases: names of what varies in its first line, a case in each further one.
+//
+// The text is kept as it was read, and a cell becomes a number when its case is computed: many rows need little memory.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "numeric/rational.h"
+
+namespace anholon {
+
+class CaseTable {
+ public:
+  // CSV. `file` names the table in messages. Empty lines are passed over. Throws MistakeInWord if there is no header, no
+  // row, or a line with another number of cells than the header.
+  CaseTable(std::string text, std::string file);
+
+  // Without a column "case", which holds numbers of cases in the table of a sweep.
+  const std::vector<std::string>& names() const { return names_; }
+  std::size_t rows() const { return lines_.size(); }
+  // The cells of a row, in the order of the names.
+  std::vector<std::string> cells(std::size_t row) const;
+  // Throws MistakeInWord that marks a cell of a row, or of the header, by its place among the names.
+  [[noreturn]] void mistake(std::size_t row, std::size_t column, const std::string& message,
+                            const std::string& hint) const;
+  [[noreturn]] void mistake_in_header(std::size_t column, const std::string& message, const std::string& hint) const;
+
+ private:
+  std::string_view line(std::size_t begin) const;
+  [[noreturn]] void mistake_at(std::size_t begin, std::size_t cell, const std::string& message,
+                               const std::string& hint) const;
+
+  std::string text_, file_;
+  std::size_t header_ = 0;          // where its line begins
+  std::vector<std::size_t> lines_;  // where they begin
+  std::vector<std::string> names_;
+  std::vector<std::size_t> places_;  // of the names among the cells of a line
+};
+
+}  // namespace anholon

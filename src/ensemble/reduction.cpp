@@ -1,0 +1,255 @@
+#include "ensemble/reduction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ensemble/mistake_in_word.h"
+#include "formula/formula.h"
+#include "integrate/motion_state.h"
+#include "integrate/series/sign_change.h"
+#include "modelfile/names/names.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr const char* kReductionHint =
+    "max(FORMULA), min(FORMULA), mean(FORMULA) or last(FORMULA), such as max(theta')";
+
+std::optional<Reduction::Kind> kind_of(const std::string& word) {
+  if (word == "max") return Reduction::Kind::greatest;
+  if (word == "min") return Reduction::Kind::least;
+  if (word == "mean") return Reduction::Kind::mean;
+  if (word == "last") return Reduction::Kind::last;
+  return std::nullopt;
+}
+
+// The names of the model, in which lambda.NAME is a multiplier, as in a monitor.
+class MonitorNames final : public Names {
+ public:
+  explicit MonitorNames(const OpenModel& model) : names_(*model.names), multipliers_(model.model->names.multipliers) {}
+
+  Graph& graph() override { return names_.graph(); }
+  Value name(const std::string& name, Span span) override {
+    return name == "lambda" && multipliers_.size() > 1 ? Value(InertialName{}) : names_.name(name, span);
+  }
+  std::optional<Value> call(const std::string& function, const std::vector<Value>& arguments,
+                            const Syntax& syntax) override {
+    return names_.call(function, arguments, syntax);
+  }
+  Value member(const Value& object, const Syntax& syntax) override {
+    const std::string path = multiplier_path(syntax);
+    if (path.empty()) return names_.member(object, syntax);
+    for (std::size_t r = 0; r < multipliers_.size(); ++r)
+      if (multipliers_[r] == path) return graph().multiplier(static_cast<std::uint32_t>(r), 0);
+    for (const std::string& name : multipliers_)
+      if (name.starts_with(path + ".")) return InertialName{};  // of a vector equation: a component follows
+    const std::string near = did_you_mean(path, multipliers_);
+    throw Failure(syntax.span,
+                  "there is no constraint '" + path + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  }
+  std::vector<std::string> functions() const override { return names_.functions(); }
+  std::optional<Vector> point(const BodyName& body, Span use) override { return names_.point(body, use); }
+  std::optional<Rotation> frame(const BodyName& body, Span use) override { return names_.frame(body, use); }
+  std::string body_name(const BodyName& body) const override { return names_.body_name(body); }
+  bool declares(const std::string& name) const override { return names_.declares(name); }
+
+ private:
+  Names& names_;
+  const std::vector<std::string>& multipliers_;
+};
+
+// The formula of a monitor, or one that is written out.
+Expr formula_of(const std::string& word, std::size_t at, const std::string& text, const OpenModel& model) {
+  for (const Monitor& m : model.model->monitors)
+    if (m.name == text) return m.value;
+  Value value;
+  try {
+    Span place;
+    place.line = 1, place.column = static_cast<std::uint32_t>(at + 1);
+    MonitorNames names(model);
+    value = evaluate(parse_formula(FormulaText(text, place)), names);
+  } catch (const Failure& f) {
+    throw MistakeInWord{f.diagnostic, word};
+  }
+  if (const Expr* e = std::get_if<Expr>(&value)) return put_masses(*model.model, *e);
+  mistake_in(word, at, text.size(), "'" + text + "' is " + type_name(value) + ", no number",
+             std::holds_alternative<Vector>(value) ? "a component, as " + text + ".x, or its length, norm(" + text + ")"
+                                                   : "a formula that is a number");
+}
+
+}  // namespace
+
+void Reductions::add(const std::string& word, const OpenModel& model) {
+  const std::size_t open = word.find('(');
+  const std::string kind = word.substr(0, open);
+  const std::optional<Reduction::Kind> known = kind_of(kind);
+  if (open == std::string::npos || (known && word.back() != ')'))
+    mistake_in(word, 0, word.size(), "this is not of the form KIND(FORMULA)", kReductionHint);
+  if (!known) {
+    const std::string near = did_you_mean(kind, {"max", "min", "mean", "last"});
+    mistake_in(word, 0, open,
+               "a motion is not summed up by '" + kind + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+               kReductionHint);
+  }
+  for (const Reduction& before : list)
+    if (before.name == word) mistake_in(word, 0, word.size(), "'" + word + "' is asked for twice", "once is enough");
+  const std::string text = word.substr(open + 1, word.size() - open - 2);
+  if (text.find_first_not_of(' ') == std::string::npos)
+    mistake_in(word, open + 1, 1, "a formula is missing here", kReductionHint);
+  const Expr e = formula_of(word, open + 1, text, model);
+  const auto same = std::find(formulas.begin(), formulas.end(), e);
+  list.push_back({*known, static_cast<std::size_t>(same - formulas.begin()), word});
+  if (same == formulas.end()) formulas.push_back(e);
+}
+
+void Reductions::move_to(const Scenario& scenario) {
+  for (Expr& e : formulas) e = scenario.model->graph->own(e);
+}
+
+// ---- extremes of a polynomial -----------------------------------------------------------------------------------------
+
+namespace {
+
+// A polynomial on [0, 1], whose pieces are in Bernstein form.
+class Highest {
+ public:
+  Highest(const std::vector<double>& c, double known) : c_(c), best_(known) {}
+
+  double find() {
+    see(c_[0]);
+    see(value_at(c_.data(), degree(), 1.0));
+    // The sum of what each term adds at most.
+    double bound = c_[0];
+    for (std::size_t k = 1; k < c_.size(); ++k) bound += std::max(c_[k], 0.0);
+    if (!(bound > best_) || monotonic()) return best_;
+    search(bernstein(c_), 0, 1, kDeepest);
+    return best_;
+  }
+
+ private:
+  static constexpr int kDeepest = 40, kBisections = 60;
+
+  int degree() const { return static_cast<int>(c_.size()) - 1; }
+  void see(double x) { best_ = x > best_ ? x : best_; }
+  double slope(double x) const {
+    double s = 0;
+    for (int k = degree(); k >= 1; --k) s = s * x + k * c_[static_cast<std::size_t>(k)];
+    return s;
+  }
+  // Whether the first term of the derivative outweighs the others.
+  bool monotonic() const {
+    double others = 0;
+    for (std::size_t k = 2; k < c_.size(); ++k) others += static_cast<double>(k) * std::abs(c_[k]);
+    return c_.size() < 2 || std::abs(c_[1]) > others;
+  }
+
+  // The piece [from, to] lies below the greatest of its Bernstein coefficients, and its derivative has at most as many
+  // zeros as their differences have changes of sign.
+  void search(std::vector<double> b, double from, double to, int depth) {
+    if (!(*std::max_element(b.begin(), b.end()) > best_)) return;
+    int changes = 0, first = 0, sign = 0;
+    for (std::size_t j = 0; j + 1 < b.size(); ++j) {
+      const double d = b[j + 1] - b[j];
+      const int now = (d > 0) - (d < 0);
+      if (now != 0 && sign != 0 && now != sign) ++changes;
+      if (now != 0) sign = now;
+      if (first == 0) first = now;
+    }
+    see(value_at(c_.data(), degree(), from));
+    see(value_at(c_.data(), degree(), to));
+    if (changes == 0 || depth == 0) return;
+    if (changes == 1 && first < 0) return;  // the zero of the slope is a minimum
+    if (changes == 1) return see(value_at(c_.data(), degree(), end_of_rise(from, to)));
+    std::vector<double> left = b;
+    for (std::size_t k = 1; k < b.size(); ++k) {
+      for (std::size_t j = 0; j + k < b.size(); ++j) b[j] = (b[j] + b[j + 1]) / 2;
+      left[k] = b[0];
+    }
+    const double middle = (from + to) / 2;
+    search(std::move(left), from, middle, depth - 1);
+    search(std::move(b), middle, to, depth - 1);
+  }
+
+  // The piece rises from its beginning up to there.
+  double end_of_rise(double from, double to) const {
+    for (int k = 0; k < kBisections; ++k) {
+      const double middle = (from + to) / 2;
+      if (middle == from || middle == to) break;
+      (slope(middle) > 0 ? from : to) = middle;
+    }
+    return from;
+  }
+
+  const std::vector<double>& c_;
+  double best_;
+};
+
+}  // namespace
+
+double greatest_on(const double* c, int degree, double h, double known) {
+  std::vector<double> scaled;
+  double power = 1;
+  for (int k = 0; k <= degree; ++k, power *= h) {
+    scaled.push_back(c[k] * power);
+    if (!std::isfinite(scaled.back())) return known;
+  }
+  return Highest(scaled, known).find();
+}
+
+// ---- over the steps -----------------------------------------------------------------------------------------------------
+
+void Reducer::restart() {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity(),
+                   kNone = std::numeric_limits<double>::quiet_NaN();
+  seen_.assign(of_->formulas.size(), {});
+  for (Seen& s : seen_) s.most = -kInfinity, s.fewest = kInfinity, s.last = kNone;
+  for (const Reduction& r : of_->list) {
+    Seen& s = seen_[r.formula];
+    s.greatest = s.greatest || r.kind == Reduction::Kind::greatest;
+    s.least = s.least || r.kind == Reduction::Kind::least;
+    s.mean = s.mean || r.kind == Reduction::Kind::mean;
+  }
+  length_ = 0;
+}
+
+void Reducer::see(std::size_t formula, double h) {
+  Seen& s = seen_[formula];
+  std::vector<double>& c = polynomial_;
+  const int degree = static_cast<int>(c.size()) - 1;
+  s.last = value_at(c.data(), degree, h);
+  if (s.mean) {
+    double over = 0;
+    for (int k = degree; k >= 0; --k) over = over * h + c[static_cast<std::size_t>(k)] / (k + 1);
+    add_compensated(s.integral, s.carry, over * h);
+  }
+  if (s.greatest) s.most = greatest_on(c.data(), degree, h, s.most);
+  if (!s.least) return;
+  for (double& x : c) x = -x;
+  s.fewest = -greatest_on(c.data(), degree, h, -s.fewest);
+}
+
+void Reducer::values(std::vector<double>& to) const {
+  to.clear();
+  for (const Reduction& r : of_->list) {
+    const Seen& s = seen_[r.formula];
+    const bool none = std::isnan(s.last);
+    switch (r.kind) {
+    case Reduction::Kind::greatest:
+      to.push_back(none ? s.last : s.most);
+      break;
+    case Reduction::Kind::least:
+      to.push_back(none ? s.last : s.fewest);
+      break;
+    case Reduction::Kind::mean:
+      to.push_back(none || length_ == 0 ? s.last : (s.integral + s.carry) / length_);
+      break;
+    case Reduction::Kind::last:
+      to.push_back(s.last);
+      break;
+    }
+  }
+}
+
+}  // namespace anholon

@@ -1,0 +1,68 @@
+// Numbers that sum up a formula over the whole motion of a case: its extremes, its mean, its last value.
+//
+// They are those of the Taylor polynomials of the formula, step by step, not of its values at some times. The steps are
+// as short as the tolerance asks for the series of these formulas (StepSettings::known). A step whose polynomials end
+// with the leading derivatives (integrate/one_sided_start.h) shows the formula at its beginning alone.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "modelfile/read.h"
+#include "setup/scenario.h"
+
+namespace anholon {
+
+struct Reduction {
+  enum class Kind : std::uint8_t { greatest, least, mean, last } kind = Kind::greatest;
+  std::size_t formula = 0;
+  std::string name;  // "max(height)", as it was written
+};
+
+struct Reductions {
+  std::vector<Expr> formulas;
+  std::vector<Reduction> list;
+
+  // KIND(FORMULA), KIND one of max, min, mean, last; the formula is a monitor or any formula that a monitor may be. Builds
+  // in the graph of the model. Throws MistakeInWord.
+  void add(const std::string& word, const OpenModel& model);
+  // The formulas become those of a scenario of that model, which may outlive it.
+  void move_to(const Scenario& scenario);
+};
+
+// The greatest value of sum c_k x^k, k <= degree, for x from 0 to h, h of either sign; `known` if no value is greater. A
+// value is found wherever the derivative changes its sign.
+double greatest_on(const double* c, int degree, double h, double known);
+
+// What the steps of a motion have shown so far.
+class Reducer {
+ public:
+  explicit Reducer(const Reductions& of) : of_(&of) { restart(); }
+  void restart();
+  // A step of length h: coefficient(i, k) of formula i, k <= degree.
+  template <class Coefficient>
+  void step(int degree, double h, const Coefficient& coefficient) {
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      polynomial_.resize(static_cast<std::size_t>(degree) + 1);
+      for (int k = 0; k <= degree; ++k) polynomial_[static_cast<std::size_t>(k)] = coefficient(i, k);
+      see(i, h);
+    }
+    length_ += h;
+  }
+  // NaN without a step.
+  void values(std::vector<double>& to) const;
+
+ private:
+  struct Seen {
+    bool greatest = false, least = false, mean = false;  // what is asked for
+    double most = 0, fewest = 0, last = 0, integral = 0, carry = 0;
+  };
+  void see(std::size_t formula, double h);
+
+  const Reductions* of_;
+  std::vector<Seen> seen_;
+  std::vector<double> polynomial_;
+  double length_ = 0;
+};
+
+}  // namespace anholon

@@ -1,0 +1,42 @@
+// A sweep as a table: its columns, and the rows of each case.
+//
+//   case, [t,] what varies, outcome, event, t, steps, the columns of an ensemble, the reductions
+// Without times of rows, a case has one row, the last of its motion. With times it has one row for each of them, in which
+// t is that time; a row at a time that the motion did not reach holds NaN for the state there.
+#pragma once
+#include <functional>
+
+#include "ensemble/case.h"
+#include "result/writer.h"
+
+namespace anholon {
+
+class SweepTable {
+ public:
+  SweepTable(const Model& model, const EnsembleOptions& options);
+
+  // All columns that there are.
+  const std::vector<SweepColumn>& available() const { return available_; }
+  // The ones that are written; at first those without the number of steps, and without events if none ends a motion.
+  std::vector<SweepColumn> columns() const;
+  // Writes these columns of the available ones, after those that say which row it is: case, and t if there are times.
+  void choose(const std::vector<std::size_t>& columns);
+  // Adds a column of one word after the number of the case; each call of `rows` tells the word.
+  void add_word(const std::string& name);
+
+  using Take = std::function<void(std::span<const SweepCell>)>;
+  // The rows of a case, with its number and the word of the added column.
+  void rows(const CaseResult& result, std::size_t number, std::string_view word, const Take& take);
+
+ private:
+  void fill(const CaseResult& result, double t, std::span<const double> state);
+
+  std::vector<SweepColumn> available_;
+  std::vector<std::size_t> chosen_;
+  std::size_t varied_, state_, reduced_;
+  std::vector<double> times_;
+  bool named_ = false;  // the column of a word is there
+  std::vector<SweepCell> all_, cells_;
+};
+
+}  // namespace anholon

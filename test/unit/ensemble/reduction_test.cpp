@@ -1,0 +1,199 @@
+// Extremes and means of a motion: those of polynomials against fine sampling, those of cases against dense rows, and the
+// same bits for any number of threads and lanes.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "ensemble/ensemble.h"
+#include "ensemble/table.h"
+#include "support/models.h"
+
+namespace anholon::reduction_test {
+namespace {
+
+const char* const kPendulum = R"toml(
+coordinates = ["x", "y"]
+[parameters]
+m = 1
+l = 2
+[[particle]]
+name = "bob"
+mass = "m"
+position = "x*ex + y*ey"
+[[force]]
+name = "weight"
+on = "bob"
+vector = "-10*m*ey"
+[[constraint]]
+name = "rod"
+equation = "x^2 + y^2 = l^2"
+[initial]
+x = 1
+guess = {y = -1}
+[output]
+height = "y + l"
+)toml";
+
+// The same with an event, which no plain case has, that ends the motion.
+const char* const kStop = R"toml(
+[[event]]
+name = "turned"
+when = "x + 0.9"
+direction = "down"
+stop = true
+)toml";
+
+class Results final : public CaseSink {
+ public:
+  void result(const CaseResult& r) override { list.push_back(r); }
+  std::vector<CaseResult> list;
+};
+
+struct Sweep {
+  Sweep(const std::string& text, const std::vector<std::string>& words) {
+    Diagnostics diagnostics;
+    const auto open = open_model({"model.toml", text}, diagnostics);
+    if (!open) throw std::runtime_error(diagnostics.print({"model.toml", text}));
+    for (const std::string& word : words) options.reductions.add(word, *open);
+    EXPECT_TRUE(make_scenario(open->model, *find_formulation("routh"), {}, scenario).ok());
+    options.reductions.move_to(scenario);
+    options.to = 3;
+    options.varied = {{Varied::Kind::initial, 0, 0, "x"}};
+  }
+  std::vector<CaseResult> go(std::size_t cases, std::size_t threads) {
+    options.cases = cases;
+    options.threads = threads;
+    options.numbers = [](std::size_t k) { return EnsembleCase{{Rational(50 + static_cast<long>(k % 100), 100)}, {}}; };
+    Results results;
+    report = ensemble(scenario, options, results);
+    return results.list;
+  }
+  Scenario scenario;
+  EnsembleOptions options;
+  EnsembleReport report;
+};
+
+double value(const std::vector<double>& c, double x) {
+  double s = 0;
+  for (std::size_t k = c.size(); k-- > 0;) s = s * x + c[k];
+  return s;
+}
+
+TEST(Reduction, TheGreatestValueOfAPolynomialIsFound) {
+  const std::vector<std::vector<double>> list = {{1},
+                                                 {0, 1},
+                                                 {0, -1},
+                                                 {0, 1, -1},
+                                                 {0, 0, 0, 1, -2, 0.5},
+                                                 {1, -9, 24, -20, 3, 1},
+                                                 {0, 1, -8.5, 24, -29, 12.5},
+                                                 {0.3, 0, -1},
+                                                 {-1, 0, 0, 0, 0, 0, 0}};
+  for (const auto& c : list)
+    for (const double h : {1.0, -1.0, 2.3, 0.1}) {
+      constexpr int kSamples = 20'000;
+      double most = -INFINITY;
+      for (int k = 0; k <= kSamples; ++k) most = std::max(most, value(c, h * k / kSamples));
+      const double found = greatest_on(c.data(), static_cast<int>(c.size()) - 1, h, -INFINITY);
+      // Samples miss an extreme by the second order of their distance.
+      EXPECT_GE(found, most - 1e-14 * (1 + std::abs(most)));
+      EXPECT_LE(found, most + 1e-6 * (1 + std::abs(most)));
+      EXPECT_EQ(greatest_on(c.data(), static_cast<int>(c.size()) - 1, h, 1e6), 1e6);
+    }
+}
+
+// The pendulum rises to the height of its start: y = -sqrt(l^2 - x^2). Between the ends of steps lie its lowest points.
+TEST(Reduction, ExtremesAreThoseOfTheMotion) {
+  Sweep run(kPendulum, {"max(height)", "min(height)", "last(height)", "mean(x')", "max(abs(x))"});
+  const auto list = run.go(4, 1);
+  for (const CaseResult& r : list) {
+    ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
+    const double x = r.values[0], high = 2 - std::sqrt(4 - x * x);
+    EXPECT_NEAR(r.reduced[0], high, 1e-11);
+    EXPECT_NEAR(r.reduced[1], 0, 1e-11);
+    EXPECT_NEAR(r.reduced[2], r.last[4], 1e-11);
+    EXPECT_NEAR(r.reduced[3], (r.last[0] - x) / 3, 1e-11);
+    EXPECT_NEAR(r.reduced[4], x, 1e-11);  // at both ends of the swing
+  }
+}
+
+// Plain cases in lanes, alone, and by `simulate` find the same, and the number of threads has no influence on a bit.
+TEST(Reduction, ThreadsAndLanesHaveNoInfluence) {
+  const std::vector<std::string> words = {"max(x')", "min(y)", "mean(height)", "max(lambda)"};
+  Sweep run(kPendulum, words);
+  const auto one = run.go(100, 1), two = run.go(100, 3), few = run.go(5, 1);
+  EXPECT_EQ(run.report.in_workspaces, 0U);
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    ASSERT_EQ(one[k].reduced.size(), words.size());
+    EXPECT_EQ(std::memcmp(one[k].reduced.data(), two[k].reduced.data(), words.size() * sizeof(double)), 0);
+    if (k < few.size())
+      EXPECT_EQ(std::memcmp(one[k].reduced.data(), few[k].reduced.data(), words.size() * sizeof(double)), 0);
+  }
+  run.options.kernel = false;
+  const auto reference = run.go(5, 1);
+  for (std::size_t k = 0; k < reference.size(); ++k)
+    for (std::size_t i = 0; i < words.size(); ++i)
+      EXPECT_NEAR(reference[k].reduced[i], one[k].reduced[i], 1e-11 * (1 + std::abs(one[k].reduced[i])));
+}
+
+TEST(Reduction, AnEventThatEndsACaseIsNamed) {
+  Sweep run(std::string(kPendulum) + kStop, {"min(x)", "max(t)"});
+  const auto list = run.go(80, 2);
+  bool stopped = false, went_on = false;
+  for (const CaseResult& r : list) {
+    ASSERT_TRUE(r.outcome.ok());
+    if (r.event == "turned") {
+      stopped = true;
+      EXPECT_LT(r.t, 3);
+      EXPECT_NEAR(r.reduced[0], -0.9, 1e-11);
+      EXPECT_NEAR(r.reduced[1], r.t, 1e-11);
+    } else {
+      went_on = true;
+      EXPECT_EQ(r.event, "");
+      EXPECT_EQ(r.t, 3);
+      EXPECT_GT(r.reduced[0], -0.9 - 1e-12);  // 0.9 is where one starts and turns
+    }
+  }
+  EXPECT_TRUE(stopped && went_on);
+}
+
+// A row for each case and time, also for times that the motion does not reach.
+TEST(Reduction, TablesAreLongWithTimes) {
+  Sweep run(std::string(kPendulum) + kStop, {"min(x)"});
+  run.options.at = {Rational(1, 2), Rational(5, 2)};
+  const auto list = run.go(60, 2);
+  SweepTable table(*run.scenario.model, run.options);
+  std::vector<std::string> names;
+  for (const SweepColumn& c : table.columns()) names.push_back(c.name);
+  EXPECT_EQ(names, std::vector<std::string>(
+                       {"case", "x(0)", "outcome", "event", "t", "x", "y", "x'", "y'", "height", "min(x)"}));
+  for (const CaseResult& r : list) {
+    std::size_t row = 0;
+    table.rows(r, r.number, "", [&](std::span<const SweepCell> cells) {
+      EXPECT_EQ(cells[0].number, static_cast<double>(r.number));
+      const double t = row++ == 0 ? 0.5 : 2.5;
+      EXPECT_EQ(cells[4].number, t);
+      EXPECT_EQ(std::isnan(cells[5].number), t > r.t);
+      EXPECT_EQ(cells[10].number, r.reduced[0]);
+    });
+    EXPECT_EQ(row, 2U);
+  }
+}
+
+// The residual reports of some cases.
+TEST(Reduction, ResidualsOfSomeCasesAreLookedAt) {
+  Sweep run(kPendulum, {});
+  run.options.estimate = ErrorEstimate::short_runs;
+  run.go(9, 2);
+  EXPECT_EQ(run.report.residuals.cases, std::vector<std::size_t>({0, 4, 8}));
+  for (const auto& worst :
+       {run.report.residuals.newton, run.report.residuals.constraints, run.report.residuals.power}) {
+    EXPECT_GT(worst.residual, 0);
+    EXPECT_LT(worst.residual, 1e-11);
+  }
+}
+
+}  // namespace
+}  // namespace anholon::reduction_test
