@@ -214,6 +214,10 @@ if(TARGET anholon)
     anholon_script_test(${attack} test/attacks/${attack}.py --program $<TARGET_FILE:anholon> ${limits})
     set_tests_properties(script.${attack} PROPERTIES LABELS "script;long" PROCESSORS 2)
   endforeach()
+  # Sweeps in folders, with kills, stops, shares and full disks: few here, 40 kills with ANHOLON_LONG.
+  anholon_script_test(sweeps test/sweeps/folders.py --program $<TARGET_FILE:anholon>)
+  set_tests_properties(script.sweeps PROPERTIES LABELS "script;long" PROCESSORS 2)
+  anholon_script_test(sweeps_selftest test/sweeps/folders.py --program $<TARGET_FILE:anholon> --self-test)
   anholon_script_test(faults test/attacks/faults.py --program $<TARGET_FILE:anholon>)
   set_tests_properties(script.faults PROPERTIES LABELS long-only PROCESSORS 2)
   # Pages of real models in a browser; left out where there is none, or no viewer.

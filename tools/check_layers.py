@@ -31,7 +31,7 @@ FORMS = {name for name in LEVEL if name.startswith("formulation/forms/")}
 ONLY = {
     "result": {"base", "numeric"},
     "result/hdf5": {"base", "numeric", "result"},
-    "result/parquet": {"base"},
+    "result/parquet": {"base", "numeric", "result"},
     "ensemble/store": {"base", "result", "result/parquet"},
     "proof/checker": {"base", "numeric"},  # it must not trust the simplifier
     "jit": {"kernel", "kernel/plan"},  # a module of its own

@@ -293,7 +293,9 @@ class CommandLine {
         "          anholon sweep disc --vary m=1,2,5 --vary \"theta~normal(0.3,0.01)\" -n 3000 --seed 7\n"
         "          anholon sweep disc --vary \"phi'=5:7:100\" --to 10 --reduce \"min(theta),max(theta')\" --columns "
         "\"phi'(0),min*,max*\"\n"
-        "          anholon sweep disc --cases cases.csv --at 1,2,5 -o rows.h5");
+        "          anholon sweep disc --cases cases.csv --at 1,2,5 -o rows.h5\n"
+        "          anholon sweep disc --vary \"phi'=1:7:1000000\" --to 3 -o falls/        goes on after a kill\n"
+        "          anholon sweep disc --vary \"phi'=1:7:1000000\" --to 3 -o falls/ --shard 3/8");
     parameters(c), state(c), form_option(c);
     c->add_option("--vary", o_.varied,
                   "NAME=FROM:TO:COUNT, NAME=A,B,…, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO)")
@@ -322,7 +324,41 @@ class CommandLine {
         ->check(CLI::Range(1, 1024));
     for (const MotionOption& row : anholon::motion_options())
       if (row.in_sweep) motion_option(c, row.name, row.in_sweep);
+    c->add_option("-o,--output", o_.output,
+                  known_files("FILE", sweep_formats()) +
+                      ", or FOLDER/, which the same command completes after any stop" + plain_output())
+        ->type_name("FILE");
+    c->add_option("--shard", o_.shard, "with -o FOLDER/: the I-th of N shares, for N processes on any machines")
+        ->type_name("I/N");
+    c->add_option("--chunk", o_.chunk,
+                  "with a new FOLDER/: cases in each of its files (default: as many as take some seconds)")
+        ->type_name("N");
+    add_sweep_folder(c);
+  }
+
+  // Commands of `sweep` on a folder.
+  void add_sweep_folder(CLI::App* sweep) {
+    const auto part = [&](const char* name, const char* what, Function f, const char* footer) {
+      CLI::App* c = sweep->add_subcommand(name, what);
+      c->footer(footer);
+      c->callback([this, f] { command_ = f, needs_model_ = false; });
+      c->add_option("FOLDER", o_.folder, "the folder of a sweep")->required();
+      c->add_flag("--json", o_.json, "JSON on the standard output");
+      return c;
+    };
+    part("status", "how far a sweep in a folder is", sweep_status,
+         "Exit status: 0 complete, 1 parts are missing, 2 bad input.\n"
+         "Example: anholon sweep status falls/");
+    CLI::App* c = part("collect", "one file of a sweep in a folder", sweep_collect,
+                       "Exit status: 0 ok, 2 bad input, or parts are missing.\n"
+                       "Example: anholon sweep collect falls/ -o falls.csv");
     c->add_option("-o,--output", o_.output, known_files("FILE", sweep_formats()) + plain_output())->type_name("FILE");
+    c->add_flag("--partial", o_.partial, "those parts that are there");
+    c->add_flag("--quiet", o_.quiet, "no report on stderr");
+    // A command on a folder is not the sweep of a model.
+    sweep->callback([this, sweep] {
+      if (sweep->get_subcommands().empty()) command_ = cli::sweep, needs_model_ = true;
+    });
   }
 
   void add_linearize() {

@@ -28,6 +28,8 @@ struct Options {
   std::vector<std::string> varied;  // of sweep
   std::string case_count, case_table, draw;
   std::vector<std::string> reduce;
+  std::string shard, chunk, folder;  // of sweeps in folders
+  bool partial = false;
   int threads = 0;
   int proof_digits = 308;
   int m = 0;  // of the forms of order m; 0: not asked for
@@ -52,6 +54,8 @@ int evaluate(const Options& o);
 int linearize(const Options& o);
 int simulate(const Options& o);
 int sweep(const Options& o);
+int sweep_status(const Options& o);
+int sweep_collect(const Options& o);
 int forms(const Options& o);
 int models(const Options& o);
 int plot(const Options& o);

@@ -3,10 +3,10 @@
 
 namespace anholon {
 
-extern const ResultFormat hdf5_format, csv_format, json_format;
+extern const ResultFormat hdf5_format, csv_format, json_format, parquet_format;
 
 const std::vector<const ResultFormat*>& result_formats() {
-  static const std::vector<const ResultFormat*> all = {&hdf5_format, &csv_format, &json_format};
+  static const std::vector<const ResultFormat*> all = {&hdf5_format, &csv_format, &json_format, &parquet_format};
   return all;
 }
 

@@ -7,6 +7,7 @@
 #include "cli/models/show.h"
 #include "cli/motions/progress.h"
 #include "cli/motions/run_info.h"
+#include "cli/motions/sweep_folder.h"
 #include "cli/motions/sweep_output.h"
 #include "cli/say.h"
 #include "ensemble/request.h"
@@ -126,24 +127,55 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   return true;
 }
 
-// The format of the cases: by the name of the file, else --json decides.
-const ResultFormat& output_format(const Options& o) {
-  const ResultFormat* named = format_of(o.output);
-  // A data base is planned.
-  const char* unable = o.output.ends_with(".db") ? ".db" : named && !named->open_sweep ? named->endings[0] : nullptr;
-  if (unable)
-    throw UsageError{"error: " + std::string(unable) +
-                     " files are not written yet\nhint: " + known_files("-o cases", sweep_formats()) + "\n"};
-  if (named && named->missing)
-    throw UsageError{"error: " + std::string(named->missing) + "\nhint: " + named->missing_hint + "\n"};
-  if (o.json) return report_format();
-  return named ? *named : plain_format();
-}
-
 std::vector<std::string> names_of(const SweepTable& table) {
   std::vector<std::string> names;
   for (const SweepColumn& c : table.columns()) names.push_back(c.name);
   return names;
+}
+
+// Computes the cases from one number to the one before another, of as many parts as they lie in.
+EnsembleReport compute_range(std::deque<Part>& parts, std::size_t from, std::size_t to, SweepOutput& out) {
+  EnsembleReport all;
+  std::size_t first = 0;  // of the part
+  for (Part& p : parts) {
+    const std::size_t begin = std::max(from, first), end = std::min(to, first + p.options.cases);
+    if (begin < end) {
+      EnsembleOptions options = p.options;
+      options.cases = end - begin;
+      options.numbers = [&variation = *p.variation, skipped = begin - first](std::size_t k) {
+        return EnsembleCase{variation(skipped + k), {}};
+      };
+      options.estimate = ErrorEstimate::never;
+      options.cancelled = stop_requested;
+      out.turn_to(*p.table, p.word, begin);
+      add_report(all, ensemble(p.scenario, options, out));
+      if (!all.outcome.ok()) break;
+    }
+    first += p.options.cases;
+  }
+  return all;
+}
+
+// Everything on which the rows depend.
+std::vector<std::pair<std::string, std::string>> asked_of(const RunInfo& info, const Options& o,
+                                                          const std::string& table_text) {
+  std::vector<std::pair<std::string, std::string>> all;
+  const auto add = [&](const std::string& name, const std::string& text) {
+    if (!text.empty()) all.emplace_back(name, text);
+  };
+  const auto joined = [](const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+    return text;
+  };
+  add("title", info.title);
+  for (std::size_t k = 0; k < info.model.size(); ++k)
+    add(k == 0 ? "model" : "base file " + std::to_string(k), info.model[k].text);
+  for (const auto& [name, words] : info.settings)
+    if (name != "model_sha256" && name != "error-estimate") add(name, joined(words));
+  add("vary", joined(o.varied)), add("table of cases", table_text), add("n", o.case_count), add("draw", o.draw);
+  add("seed", std::to_string(o.seed)), add("reduce", joined(o.reduce));
+  return all;
 }
 
 // Computes the cases of all parts, one part after the other.
@@ -168,16 +200,17 @@ EnsembleReport compute(std::deque<Part>& parts, std::size_t cases, SweepOutput& 
 }  // namespace
 
 int sweep(const Options& asked) {
-  const ResultFormat& format = output_format(asked);
+  const ResultFormat& format = sweep_format(asked);
   Options o = asked;
   const std::vector<std::string> names = cases_of_file(o.varied);
   std::shared_ptr<const CaseTable> table;
+  std::string table_text;
   if (!o.case_table.empty()) {
     if (o.case_count.empty() && parse_rational(o.case_table))
       o.case_count = o.case_table;
     else
       try {
-        table = std::make_shared<const CaseTable>(text_of_table(o.case_table), o.case_table);
+        table = std::make_shared<const CaseTable>(table_text = text_of_table(o.case_table), o.case_table);
       } catch (const MistakeInWord& m) {
         refuse(m, "--cases");
       }
@@ -201,9 +234,14 @@ int sweep(const Options& asked) {
   }
   catch_stop(o.output);
   const Part& first = parts.front();
-  SweepOutput out(format, o.output,
-                  {run_info(first.asked, first.in, first.scenario, merged(o.motion, first.in.model->simulate)),
-                   first.scenario.system.form->name, first.table->columns()});
+  const RunInfo info = run_info(first.asked, first.in, first.scenario, merged(o.motion, first.in.model->simulate));
+  if (names_folder(o.output))
+    return sweep_into_folder(
+        o, {first.table->columns(), asked_of(info, asked, table_text), cases,
+            [&](std::size_t from, std::size_t to, SweepOutput& out) { return compute_range(parts, from, to, out); }});
+  if (!o.shard.empty() || !o.chunk.empty())
+    throw UsageError{"error: --shard and --chunk belong to a sweep in a folder\nhint: -o falls/\n"};
+  SweepOutput out(format, o.output, {info, first.scenario.system.form->name, first.table->columns()});
   const EnsembleReport r = compute(parts, cases, out, o.quiet);
   const std::string write_error = out.close(r);
   if (!o.quiet) report_sweep(r, cases, out);

@@ -1,0 +1,209 @@
+#!/usr/bin/env python3
+"""Sweeps in folders: whatever happens to the processes, what is collected has the bytes of one quiet sweep.
+
+    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model part status
+    folders.py --self-test                                  a part with other numbers is found
+
+Kills come at random moments. Nothing is lost but parts under way, and nothing is left behind that a later process does not clear.
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+SWEEP = ["sweep", "disc", "--vary", "phi'=1:7:40", "--vary", "theta=1.2,1.3,1.4,0", "--to", "5", "--quiet", "--threads", "1"]
+CHUNK = ["--chunk", "8"]
+PATIENCE = 300  # seconds
+
+
+class Wrong(Exception):
+    pass
+
+
+def must(truth, what):
+    if not truth:
+        raise Wrong(what)
+
+
+class Folders:
+    def __init__(self, program, place, kills):
+        self.program, self.place, self.kills = program, pathlib.Path(place), kills
+        self.folder = self.place / "falls"
+        quiet = self.place / "quiet.csv"
+        self.run(*SWEEP, "--error-estimate", "never", "-o", str(quiet))
+        self.expected = self.hash(quiet)
+
+    def begin(self, *words, **options):
+        return subprocess.Popen([self.program, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options)
+
+    def run(self, *words, status=None):
+        process = self.begin(*words)
+        out, error = process.communicate(timeout=PATIENCE)
+        must(process.returncode in ((0, 1) if status is None else (status,)), f"{' '.join(words)}: {process.returncode}: {error}")
+        return out, error
+
+    def into(self, *words):
+        return [*SWEEP, *CHUNK, "-o", str(self.folder) + "/", *words]
+
+    @staticmethod
+    def hash(path):
+        return hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()
+
+    def check(self):
+        """The folder holds the whole sweep and nothing else, with the right numbers."""
+        names = sorted(os.listdir(self.folder))
+        must(names == [f"part-{k:06}.parquet" for k in range(20)] + ["sweep.json"], f"in the folder: {names}")
+        collected = self.place / "all.csv"
+        self.run("sweep", "collect", str(self.folder), "--quiet", "-o", str(collected), status=0)
+        must(self.hash(collected) == self.expected, "what was collected has other bytes")
+        shutil.rmtree(self.folder)
+
+    def kill(self):
+        """kill -9 at random moments; the same command goes on."""
+        for _ in range(self.kills):
+            process = self.begin(*self.into())
+            time.sleep(random.uniform(0, 0.25))
+            process.kill()
+            process.communicate()
+            if (self.folder / "sweep.json").exists():
+                self.run("sweep", "status", str(self.folder))
+        self.run(*self.into())
+        self.check()
+
+    def stop(self):
+        """A process that is stopped while another one computes its part: its late commit does no harm."""
+        process = self.begin(*self.into("--shard", "1/1"))
+        time.sleep(0.2)
+        process.send_signal(signal.SIGSTOP)
+        self.run(*self.into())
+        process.send_signal(signal.SIGCONT)
+        out, error = process.communicate(timeout=PATIENCE)
+        must(process.returncode in (0, 1), f"the late process: {process.returncode}: {out}{error}")
+        self.check()
+
+    def two(self):
+        """Two processes on one folder; each computes what the other has not."""
+        processes = [self.begin(*self.into()) for _ in range(2)]
+        for process in processes:
+            _, error = process.communicate(timeout=PATIENCE)
+            must(process.returncode in (0, 1), error)
+        self.check()
+
+    def shards(self):
+        """Three shares, one of which is killed and started anew."""
+        processes = [self.begin(*self.into("--shard", f"{k}/3")) for k in (1, 2, 3)]
+        time.sleep(0.2)
+        processes[1].kill()
+        for process in processes:
+            process.communicate(timeout=PATIENCE)
+        self.run(*self.into("--shard", "2/3"))
+        self.check()
+        _, error = self.run(*self.into("--shard", "4/3"), status=2)
+        must("--shard takes a share" in error, error)
+
+    def disk(self):
+        """A full disk, by a limit on the size of files; then room again."""
+        limited = ["bash", "-c", 'ulimit -f 1; trap "" XFSZ; exec "$0" "$@"', self.program, *self.into()]
+        done = subprocess.run(limited, capture_output=True, text=True, timeout=PATIENCE, check=False)
+        must(done.returncode == 2 and "cannot write" in done.stderr, f"{done.returncode}: {done.stderr}")
+        must(not [name for name in os.listdir(self.folder) if name.startswith("part-")], "a part that is not whole")
+        self.run(*self.into())
+        self.check()
+
+    def model(self):
+        """Other options, another model, a foreign folder: named, and nothing is overwritten."""
+        self.run(*self.into())
+        before = {p.name: self.hash(p) for p in self.folder.iterdir()}
+        for words, word in [(["--tolerance", "1e-9"], "tolerance"), (["--set", "m=2"], "set"), (["--to", "6"], "to")]:
+            _, error = self.run(*[w for w in self.into() if word != "to" or w not in ("--to", "5")], *words, status=2)
+            must("holds another sweep" in error and word in error, error)
+        _, error = self.run(*[w if w != "disc" else "rolling-coin" for w in self.into()], status=2)
+        must({p.name: self.hash(p) for p in self.folder.iterdir()} == before, "the folder was changed")
+        self.check()
+        self.folder.mkdir()
+        (self.folder / "thesis.tex").write_text("text")
+        _, error = self.run(*self.into(), status=2)
+        must("holds other files ('thesis.tex')" in error, error)
+        shutil.rmtree(self.folder)
+        _, error = self.run("sweep", "status", str(self.folder), status=2)
+        must("is no folder of a sweep" in error, error)
+
+    def part(self):
+        """A part that was changed by hand is named; without it the command computes it again."""
+        self.run(*self.into())
+        part = self.folder / "part-000007.parquet"
+        text = bytearray(part.read_bytes())
+        text[40] ^= 1
+        part.write_bytes(text)
+        _, error = self.run("sweep", "collect", str(self.folder), "-o", str(self.place / "none.csv"), status=2)
+        must("part-000007.parquet: the numbers of the file are not those that were written" in error, error)
+        part.unlink()
+        _, error = self.run("sweep", "collect", str(self.folder), "-o", str(self.place / "none.csv"), status=2)
+        must("1 of 20 parts are missing" in error, error)
+        self.run("sweep", "collect", str(self.folder), "--partial", "-o", str(self.place / "some.csv"), status=0)
+        self.run(*self.into())
+        self.check()
+
+    def status(self):
+        """What any process that sees the folder is told."""
+        self.run(*self.into("--shard", "1/2"))
+        out, _ = self.run("sweep", "status", str(self.folder), "--json", status=1)
+        told = json.loads(out)
+        must(told["parts"] == 10 and told["all_parts"] == 20 and told["cases"] == 80, out)
+        must(sum(told["outcomes"].values()) == 80 and set(told["outcomes"]) >= {"finished"}, out)
+        self.run(*self.into())
+        self.run("sweep", "status", str(self.folder), status=0)
+        self.check()
+
+
+PARTS = ["kill", "stop", "two", "shards", "disk", "model", "part", "status"]
+
+
+def run_parts(arguments):
+    with tempfile.TemporaryDirectory() as place:
+        folders = Folders(os.path.abspath(arguments.program), place, arguments.kills)
+        for name in arguments.parts or PARTS:
+            try:
+                getattr(folders, name)()
+            except Wrong as wrong:
+                print(f"{name}: {wrong}")
+                return 1
+            print(f"{name}: as expected")
+    return 0
+
+
+def self_test(arguments):
+    """A part of another sweep's numbers has to be found by the comparison of bytes."""
+    with tempfile.TemporaryDirectory() as place:
+        folders = Folders(os.path.abspath(arguments.program), place, 1)
+        folders.expected = "0" * 64
+        folders.run(*folders.into())
+        try:
+            folders.check()
+        except Wrong:
+            print("other bytes are found")
+            return 0
+    return 1
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--program", required=True)
+    parser.add_argument("--kills", type=int, default=40 if os.environ.get("ANHOLON_LONG") else 4)
+    parser.add_argument("--self-test", action="store_true")
+    parser.add_argument("parts", nargs="*")
+    arguments = parser.parse_args()
+    return self_test(arguments) if arguments.self_test else run_parts(arguments)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
