@@ -25,7 +25,7 @@ ParquetTable table_of(const RunFile& run) {
   const RunTable& t = run.table;
   for (std::size_t c = 0; c < t.columns.size(); ++c) {
     if (t.texts[c].empty()) {
-      out.columns.push_back({t.columns[c], t.values[c]});
+      out.columns.push_back({t.columns[c], std::vector<double>(t.values[c].begin(), t.values[c].end())});
       continue;
     }
     Words words;
@@ -44,9 +44,9 @@ RunFile read_run_of_parquet(std::string_view bytes) {
   run.table.set_columns(names);
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     if (const auto* numbers = std::get_if<std::vector<double>>(&table.columns[c].values))
-      run.table.values[c] = *numbers;
+      run.table.values.growing(c).assign(numbers->begin(), numbers->end());
     else if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&table.columns[c].values))
-      run.table.values[c].assign(whole->begin(), whole->end());
+      run.table.values.growing(c).assign(whole->begin(), whole->end());
     else
       for (const Words& w = std::get<Words>(table.columns[c].values); const std::uint32_t k : w.rows)
         run.table.add(c, w.different[k]);

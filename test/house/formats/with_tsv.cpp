@@ -6,7 +6,8 @@ namespace anholon {
 extern const ResultFormat hdf5_format, csv_format, json_format, parquet_format, tsv_format;
 
 const std::vector<const ResultFormat*>& result_formats() {
-  static const std::vector<const ResultFormat*> all = {&hdf5_format, &csv_format, &json_format, &parquet_format, &tsv_format};
+  static const std::vector<const ResultFormat*> all = {&hdf5_format, &csv_format, &json_format, &parquet_format,
+                                                       &tsv_format};
   return all;
 }
 
