@@ -67,20 +67,21 @@ Shard shard_of(const std::string& word) {
 
 constexpr std::size_t kMostInPart = 1'000'000;
 
-// The number of cases that take some seconds on one core, by a trial: 1, 2 or 5 times a power of ten.
+// The number of cases that take some seconds on one core: 1, 2 or 5 times a power of ten. By trials of more and more
+// cases, whose difference leaves out what each part takes to begin.
 std::size_t chunk_by_trial(const FolderSweep& sweep) {
-  constexpr double kTrial = 0.1, kPart = 4;  // seconds
-  double seconds = 0;
-  std::size_t count = 16;
-  for (;; count *= 4) {
+  constexpr double kTrial = 0.2, kPart = 8;  // seconds
+  double last = 0, each = 0;                 // seconds of the last trial, of a case
+  for (std::size_t count = 16, before = 0; before < sweep.cases; before = count, count *= 4) {
     count = std::min(count, sweep.cases);
     SweepOutput out(std::make_unique<PartWriter>(sweep.columns));
     const EnsembleReport r = sweep.compute(0, count, out);
-    seconds = r.seconds * static_cast<double>(r.threads);
-    if (seconds >= kTrial || count == sweep.cases || !r.outcome.ok()) break;
+    const double seconds = r.seconds * static_cast<double>(r.threads);
+    each = std::max(seconds - last, 0.0) / static_cast<double>(count - before);
+    if (seconds - last >= kTrial || !r.outcome.ok()) break;
+    last = seconds;
   }
-  const double wanted =
-      std::clamp(kPart * static_cast<double>(count) / std::max(seconds, 1e-6), 1.0, static_cast<double>(kMostInPart));
+  const double wanted = std::clamp(kPart / std::max(each, 1e-9), 1.0, static_cast<double>(kMostInPart));
   const double power = std::pow(10.0, std::floor(std::log10(wanted)));
   const double digit = wanted / power;
   return static_cast<std::size_t>(power * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1));

@@ -44,8 +44,9 @@ void must_agree(const std::string& folder, const SweepRequest& there, const Swee
   for (const SweepRequest* r : {&here, &there})
     for (const auto& [name, text] : r->asked) {
       if (!names.insert(name).second) continue;
-      const auto text_in = [&, &name = name](const SweepRequest& of) {
-        const auto at = std::find_if(of.asked.begin(), of.asked.end(), [&](const auto& e) { return e.first == name; });
+      const auto text_in = [&, &sought = name](const SweepRequest& of) {
+        const auto at =
+            std::find_if(of.asked.begin(), of.asked.end(), [&](const auto& e) { return e.first == sought; });
         return at == of.asked.end() ? std::string() : at->second;
       };
       const std::string old = text_in(there), now = text_in(here);
