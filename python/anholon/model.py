@@ -455,6 +455,7 @@ class Model:
 
         Raises:
             ModelError: an argument makes no sense.
+            TypeError: ``columns`` or ``reduce`` is a single name, no list.
             MotionError: the initial values of the model are inconsistent.
             Interrupted: Ctrl-C; ``.result`` is the sweep as far as it came.
         """

@@ -86,7 +86,17 @@ class Sweep(Mapping[str, "Array"]):
         return self._core.times
 
     def rows(self, name: str) -> Array:
-        """A column at the times of ``at``, shape (cases, times); NaN where a motion ended before."""
+        """A column at the times of ``at``, shape (cases, times); NaN where a motion ended before.
+
+        Raises:
+            KeyError: there is no such column, or it is a reduction, which is one number for each motion.
+
+        Example:
+            >>> import anholon as an
+            >>> sweep = an.load("disc").sweep({"phi'": [5, 6]}, at=[0, 1, 2])
+            >>> sweep.rows("theta").shape, sweep.times.tolist(), bool((sweep.steps > 5).all())
+            ((2, 3), [0.0, 1.0, 2.0], True)
+        """
         if name in self._reduced:
             raise KeyError(f"{name!r} is one number for each motion: sweep[{name!r}]")
         column = self[name]

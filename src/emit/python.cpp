@@ -44,16 +44,12 @@ def _newton(t, state, p, lead@GIVEN):
     raise ArithmeticError("Newton's method for the leading derivatives does not converge")
 )";
 
-// The functions of NumPy for single numbers, which are several times faster than NumPy's own.
+// The functions of NumPy for single numbers, which are several times faster than NumPy's own. @FUNCTIONS: those that the
+// module math has under the names of C.
 constexpr const char* kScalars = R"(class _One:
     """What NumPy has, for single numbers."""
-    pi = math.pi
-    abs = abs
-    sin, cos, tan, exp, log, sqrt = math.sin, math.cos, math.tan, math.exp, math.log, math.sqrt
-    sinh, cosh, tanh = math.sinh, math.cosh, math.tanh
-    arcsin, arccos, arctan, arctan2 = math.asin, math.acos, math.atan, math.atan2
-    arcsinh, arccosh, arctanh = math.asinh, math.acosh, math.atanh
-
+    pi, abs, sqrt, arctan2 = math.pi, abs, math.sqrt, math.atan2
+@FUNCTIONS
     @staticmethod
     def sign(x):
         return (x > 0.0) - (x < 0.0)
@@ -71,6 +67,17 @@ constexpr const char* kScalars = R"(class _One:
         return values[i]
 
 )";
+
+std::string scalars() {
+  constexpr std::size_t kPrefix = std::string_view("np.").size();
+  std::string functions;
+  for (const FunctionInfo& f : elementary_functions()) {
+    const std::string numpy = std::string(f.numpy).substr(kPrefix);
+    if (numpy == "abs" || numpy == "sign") continue;  // not of math
+    functions += "    " + numpy + " = math." + f.c + "\n";
+  }
+  return replaced(kScalars, "@FUNCTIONS", functions);
+}
 
 // @GIVEN, @INPUTS: the inputs as an argument and as a name; @FAST, @NEAR: the elimination; @BLOCK: many states.
 constexpr const char* kLeading = R"(
@@ -292,7 +299,7 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
     for (std::size_t i = 0; i < right.size(); ++i) names.right.push_back(name(-right[i], "b", i));
     const Statements body = writer_.body(es, own);
     std::string out = "\n\n_DEFAULTS = DEFAULTS.tolist()\n\n\n";
-    out += kScalars;
+    out += scalars();
     if (inputs_) {
       const Statements formulas = writer_.body(m_.input_values, targets(m_.inputs.size()));
       out +=

@@ -22,7 +22,7 @@ constexpr double kWaiting = 5;
 // The limits of steps of a stage and of operations of the elimination: beyond them machine code is made in pieces, for
 // one lane; the compilation as a whole would take more than some five seconds.
 constexpr std::size_t kMostCompiled = 1000, kMostEliminated = 12000;
-// The limits for code in pieces; it takes some two milliseconds a link of a chain.
+// The limits for code in pieces; it takes 2 (128 links) to 10 ms (512, refined) a link of a chain.
 constexpr std::size_t kMostInPieces = 100'000, kMostEliminatedInPieces = 1'000'000;
 // The inverse of J replaces an elimination if it has at most this number of entries: it has more operations, but they
 // do not wait for each other. It is tried first for all that a stage needs, then for the unknowns alone.

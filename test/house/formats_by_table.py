@@ -18,6 +18,10 @@ TABLE = "src/result/formats.cpp"
 ALLOWED = {
     ("src/cli/equations/derive.cpp", '".json"'),  # of files that hold equations
     ("src/api/motion.cpp", '#include "result/json_run.h"'),  # Run::json() promises JSON
+    # The parts of a sweep in a folder are Parquet files.
+    ("src/ensemble/store/sweep_store.h", '#include "result/parquet/parquet.h"'),
+    ("src/ensemble/store/sweep_store.cpp", '".parquet"'),
+    ("src/cli/motions/sweep_folder.cpp", '#include "result/parquet/parquet_sweep.h"'),
 }
 
 

@@ -57,20 +57,22 @@ TEST_F(NewFormat, IsRefusedWhereItHoldsNoSweeps) {
     command({"sweep", "chaplygin-sleigh", "--vary", "m=1,2", "--to", "1", "-o", path("cases.tsv")});
     FAIL();
   } catch (const cli::UsageError& e) {
-    EXPECT_EQ(e.text, "error: .tsv files are not written yet\nhint: -o cases.csv or -o cases.json\n");
+    EXPECT_EQ(
+        e.text,
+        "error: .tsv files are not written yet\nhint: -o cases.h5, -o cases.csv, -o cases.json or -o cases.parquet\n");
   }
 }
 
 TEST_F(NewFormat, IsNamedInHelpAndMessages) {
-  EXPECT_EQ(known_files("FILE"), "FILE.h5, FILE.csv, FILE.json or FILE.tsv");
-  EXPECT_EQ(known_formats(), "HDF5, CSV, JSON or TSV");
-  EXPECT_EQ(held_by_formats(),
-            "HDF5 holds the model, the rows and the report, JSON the rows and the report, CSV the rows, TSV the rows.");
+  EXPECT_EQ(known_files("FILE"), "FILE.h5, FILE.csv, FILE.json, FILE.parquet or FILE.tsv");
+  EXPECT_EQ(known_formats(), "HDF5, CSV, JSON, Parquet or TSV");
+  EXPECT_EQ(held_by_formats(), "HDF5 holds the model, the rows and the report, JSON the rows and the report, CSV the "
+                               "rows, Parquet the rows and the report, TSV the rows.");
   try {
     command({"convert", path("run.csv"), path("run.xls")});
     FAIL();
   } catch (const cli::UsageError& e) {
-    EXPECT_NE(e.text.find("a name that ends in .h5, .csv, .json or .tsv"), std::string::npos) << e.text;
+    EXPECT_NE(e.text.find("a name that ends in .h5, .csv, .json, .parquet or .tsv"), std::string::npos) << e.text;
   }
 }
 

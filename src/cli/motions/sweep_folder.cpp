@@ -12,7 +12,7 @@
 #include "cli/motions/progress.h"
 #include "cli/say.h"
 #include "result/file.h"
-#include "result/parquet/parquet_format.h"
+#include "result/parquet/parquet_sweep.h"
 
 namespace anholon::cli {
 

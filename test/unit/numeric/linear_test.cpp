@@ -60,7 +60,7 @@ TYPED_TEST_SUITE(LuOf, Numbers);
 TYPED_TEST(LuOf, SolvesRandomSystemsAndTheirTransposes) {
   using N = TypeParam;
   const double tolerance = this->kResidualRoundoffs * to_double(unit_roundoff<N>());
-  for (std::size_t n : {1, 2, 7, 30}) {
+  for (std::size_t n : {1, 2, 7, 30, 33, 70}) {
     const Matrix<N> a = random_matrix<N>(n, n, 17 + static_cast<unsigned>(n));
     const std::vector<N> b = random_matrix<N>(n, 1, 3).data;
     Lu<N> lu;

@@ -1,4 +1,4 @@
-// Runs and sweeps as Parquet files. (doc/results.md)
+// The cases of a sweep as a table of Parquet. (doc/sweeps.md)
 #pragma once
 #include "result/parquet/parquet.h"
 #include "result/writer.h"
