@@ -38,7 +38,7 @@ struct CompareOptions {
 // Compares equations, one per line, LABEL: left = right, in the names of the model. Errors: diagnostics of the text.
 ANHOLON_API Result<std::vector<ComparedEquation>> compare(const Model& model, const std::string& equations,
                                                           const CompareOptions& options = {});
-// The same of a file, or of shipped equations by their name.
+// Compares the equations of a file, or shipped equations by their name.
 ANHOLON_API Result<std::vector<ComparedEquation>> compare_file(const Model& model, const std::string& path,
                                                                const CompareOptions& options = {});
 

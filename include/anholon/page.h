@@ -13,7 +13,7 @@ struct PageOptions {
 // The text of the page. Errors: unknown forms; a run without rows (diagnostics).
 ANHOLON_API Result<std::string> page(const Run& run, const PageOptions& options = {});
 
-// What the viewer of the page reads, as JSON: columns, events, and the bodies as formulas of the columns
+// Returns the JSON that the viewer of the page reads: columns, events, and the bodies as formulas of the columns
 // (viewer/CONTRACT.md). Errors: a run without rows (diagnostics).
 ANHOLON_API Result<std::string> picture_data(const Run& run);
 

@@ -46,7 +46,7 @@ class FormulaValues {
   const RateFormulas& formulas() const { return formulas_; }
 
   using Point = FormulaPoint;
-  // Of one thread: it makes the points after the first one cheaper.
+  // Belongs to one thread, and makes the points after the first one cheaper.
   struct Work {
     CompiledFormulas::Work inputs, outputs, equations, derivatives;
   };

@@ -230,7 +230,7 @@ class CFile {
   }
 
   std::string right_side() const {
-    // Where Newton's method begins.
+    // Newton's method begins here.
     std::string out = "\nconst double $_begin[$_UNKNOWNS + 1] = {";
     const bool guess = !m_.linear && options_.start && !options_.start->leading.empty();
     for (std::size_t j = 0; guess && j < system_.size(); ++j) out += number_text(options_.start->leading[j]) + ", ";
@@ -249,7 +249,7 @@ class CFile {
     return out + "  return status;\n}\n";
   }
 
-  // Of many states: the solution at one is where to start at the next, if the equations are not linear.
+  // A function of many states. If the equations are not linear, the solution at one is the first guess at the next.
   std::string many() const {
     const std::string u = inputs_ ? ", u" : "";
     return with_inputs(
@@ -283,7 +283,7 @@ class CFile {
     return with_inputs("(int k, double t, double *state, const double *lead, double *p)");
   }
 
-  // What events set. All formulas of one event use the values before it.
+  // The function that sets what events set. All formulas of one event use the values before it.
   std::string resets() const {
     if (m_.events.empty()) return {};
     std::size_t most = 1;

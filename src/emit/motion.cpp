@@ -103,7 +103,7 @@ void add_parameters(const Model& model, Motion& m) {
     });
 }
 
-// What formulas of a program may hold: the time, state and lead, parameters and inputs.
+// The symbols that formulas of a program may hold: the time, state and lead, parameters and inputs.
 class Known {
  public:
   Known(const System& s, const Motion& m) : s_(s), m_(m) {}

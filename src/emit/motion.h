@@ -42,7 +42,7 @@ struct Motion {
 
 // Throws Failure for functions without a formula.
 Motion motion(const System& system, const Structure& structure, const EmitOptions& options);
-// The same without outputs and events.
+// Returns the motion without outputs and events.
 Motion motion_between_events(const System& system, const Structure& structure, std::span<const InputFormula> inputs);
 
 // The initial state in the order of the state.

@@ -113,7 +113,7 @@ def _of_many(t, state, p, start@GIVEN):
     return lead.reshape((len(LEAD),) + state.shape[1:])
 )";
 
-// Of one state, in the numbers of Python.
+// Computes one state, in the numbers of Python.
 constexpr const char* kFast = R"(    try:
         lead, suits = _eliminated(_One, float(t), state.tolist(), _DEFAULTS if p is None else np.asarray(p, dtype=float).tolist()@FAST_U)
         if suits:
@@ -122,7 +122,7 @@ constexpr const char* kFast = R"(    try:
         pass  # a formula has no value, or a pivot is zero
 )";
 
-// Of many states, in blocks that stay in the processor's cache.
+// Computes many states, in blocks that stay in the processor's cache.
 constexpr const char* kBlocks = R"(    left = []
     with np.errstate(all="ignore"):
         for first in range(0, flat.shape[1], 2048):

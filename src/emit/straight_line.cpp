@@ -71,7 +71,7 @@ StraightLine::StraightLine(const RateFormulas& f, const Column& es) : formulas_(
   for (const std::uint32_t root : tape_.roots) needed[root] = true;
   for (std::uint32_t s = size; s-- > 0;)
     if (needed[s]) for_each_operand(s, [&](std::uint32_t k) { needed[k] = true; });
-  // What depends on u is not constant here, though it is for a tape, which takes u for parameters.
+  // A tape takes u for parameters, so a slot that depends on u is constant for the tape and varies here.
   std::vector<bool> varies(size, false), kept(size, false);  // kept: constants that something varying, or a root, needs
   for (std::uint32_t s = 0; s < size; ++s) {
     const Instruction& in = tape_.code[s];
@@ -91,7 +91,7 @@ StraightLine::StraightLine(const RateFormulas& f, const Column& es) : formulas_(
     if (in.op == Op::input || in.op == Op::parameter) {
       name_[s] = in.op == Op::input ? given.at(s) : parameters.at(in.index);
     } else if (!inline_number(s)) {
-      // What was computed before is not computed again.
+      // An operation that was computed before is not computed again.
       const auto [known, fresh] = computed.try_emplace(operation(s), "s" + std::to_string(s));
       if (fresh) to += "  const double " + known->second + " = " + known->first + ";\n";
       name_[s] = known->second;

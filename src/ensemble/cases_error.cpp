@@ -72,7 +72,7 @@ SimulationReport looked_at(const Scenario& of_case, const EnsembleOptions& o, co
   return simulate(of_case, options, rows);
 }
 
-// What two further runs say of a case.
+// The reports of two further runs of a case.
 struct Judged {
   SimulationReport compared, looked_at;
 };

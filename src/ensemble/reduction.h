@@ -34,7 +34,7 @@ struct Reductions {
 // value is found wherever the derivative changes its sign.
 double greatest_on(const double* c, int degree, double h, double known);
 
-// What the steps of a motion have shown so far.
+// Collects the values of the reductions over the steps of a motion.
 class Reducer {
  public:
   explicit Reducer(const Reductions& of) : of_(&of) { restart(); }

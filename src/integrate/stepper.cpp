@@ -547,7 +547,7 @@ void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane)
   expander_.accelerate(KernelExpansion(std::move(kernel), lane, *program_, order_, settings_.log_tolerance));
 }
 
-// What is watched, or has to be known over each step, may have kinks, too.
+// Formulas that are watched, or have to be known over each step, may have kinks, too.
 template <Number N>
 void Stepper<N>::watch_kinks() {
   const bool equations_alone = events_.empty() && settings_.known_from >= settings_.known_to;

@@ -1,6 +1,6 @@
-// Several steps that a caller asks for at once: what ends them, and what is known of each of them afterwards. Whoever
-// has something to do after every step asks for one step; who has nothing to do for a while says so here, and the
-// steps follow each other in one loop.
+// Several steps that a caller asks for at once: the conditions that end them, and the times at which they ended. A caller
+// that has something to do after every step asks for one step; other callers ask for many, which follow each other in
+// one loop.
 #pragma once
 #include <algorithm>
 #include <chrono>

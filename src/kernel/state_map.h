@@ -54,7 +54,7 @@ class StateReader {
   Machine<long double> to_own_, to_motion_;
 };
 
-// The same for several motions side by side, from the kernel's state to the motion's, in pairs of doubles.
+// Maps the kernel's states of several motions side by side to states of the motions, in pairs of doubles.
 class StateReaders {
  public:
   using Numbers = StateReader::Numbers;

@@ -123,7 +123,7 @@ std::vector<std::vector<std::complex<double>>> curves(const Linearization& l) {
     std::vector<Pair> pairs;
     for (std::size_t c = 0; c < most; ++c)
       for (std::size_t i = 0; i < here.size(); ++i) {
-        // Where the curve would go straight on.
+        // The distance from the point at which the curve would go straight on.
         const double distance = std::abs(here[i] - (2.0 * last[c] - before[c]));
         pairs.push_back({std::isnan(distance) ? std::numeric_limits<double>::infinity() : distance, c, i});
       }

@@ -23,9 +23,9 @@ class CodeForLongRuns {
   // request, if these are not all that have passed. One lane gets code that is made quickly at first.
   void step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes = 1,
             std::optional<double> spent = {});
-  // What is left takes so many times as long, as the motion is computed once more.
+  // The rest takes so many times as long, because the motion is computed once more.
   void expect(double times) { times_ = times; }
-  // So many steps followed the last request, which stands for one of them.
+  // Tells how many steps followed the last request, which stands for one of them.
   void count(std::size_t steps) { asked_ += steps > 1 ? steps - 1 : 0; }
 
  private:

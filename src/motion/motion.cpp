@@ -101,7 +101,7 @@ void Motion<N>::write_anew() {
   if (effort <= effort_ || leg_->pivots || !leg_->stepper.accelerated()) return;
   effort_ = effort;
   given_.reset();
-  // What was found without effort is the same as before.
+  // The representations that were found without effort are those of before.
   if (std::vector<Representation> list = leg_->at_once; !list.empty()) {
     add_representations(to_represent(*leg_, list.front().plan), effort, list);
     if (best(list).writing == leg_->writing) return;

@@ -157,7 +157,7 @@ bool followed_by_slots(const KernelPlan& plan) { return !plan.plan().roots_of_ev
 
 bool large(const KernelPlan& derived) { return derived.program().unknowns() > kMostUnknowns; }
 
-// Where few unknowns ask for refined solutions, J has rounded something away, and no writing is as good as another.
+// If a system of few unknowns asks for refined solutions, J has rounded something away, and no writing is as good as another.
 // The condition of a long chain asks for them in any writing, sooner or later.
 void add(const ToRepresent& e, Writing writing, std::shared_ptr<const Program> p, std::vector<Representation>& list) {
   if (!p) return;

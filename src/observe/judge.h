@@ -20,7 +20,7 @@ class Judge {
   void look_beside(const Course<N>& course);
   // A row, at the time that is written, after so many steps of the course.
   void row(const W& t, const std::string& label, const std::vector<W>& numbers, const Course<N>& course);
-  // The same of a row in doubles. `counts`: the run was short enough for an estimate (wanted) when it came to the row.
+  // Takes a row in doubles. `counts`: the run was short enough for an estimate (wanted) when it came to the row.
   void row(const W& t, const std::string& label, const std::vector<double>& numbers, bool counts);
   // Whether an estimate is made if the run ends here.
   bool wanted(const Course<N>& course) const {

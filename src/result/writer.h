@@ -43,7 +43,7 @@ struct SweepInfo {
   std::vector<SweepColumn> columns;
 };
 
-// What a case has in one column: a word, or a number; NaN if it has none.
+// The value of a case in one column: a word, or a number; NaN if it has none.
 struct SweepCell {
   double number = 0;
   std::string_view word = {};

@@ -16,7 +16,7 @@
 
 namespace anholon {
 
-// What takes the rows of a run. While rows are under way, it belongs to their thread.
+// The objects that take the rows of a run. While rows are under way, these belong to the thread of the rows.
 struct RowTakers {
   Watch<long double>& watch;
   Judge<double>& judge;
@@ -50,7 +50,7 @@ class KernelRows {
   Outcome settle();
   // For the estimate of the error, after settle().
   WaitingRows& waiting() { return *waiting_; }
-  // Of numbers of the kernel that are not those of the reference; after settle().
+  // Returns a warning if numbers of the kernel are not those of the reference. Call it after settle().
   std::optional<Warning> warning() const;
 
  private:

@@ -28,7 +28,7 @@ class RowWriter {
     sink_.row({values_, texts_});
     ++rows_;
   }
-  // The same of numbers in doubles.
+  // Writes a row of numbers in doubles.
   void row(const W& t, const std::string& label, const std::vector<double>& numbers)
     requires std::same_as<N, double>
   {

@@ -14,7 +14,7 @@ namespace anholon {
 
 namespace {
 
-// What is integrated for the report; then the formulas that are followed.
+// The formulas that are integrated for the report, then those that are followed.
 std::vector<Expr> quadratures(Workspace& s, const Power& power, const SimulationOptions& o) {
   std::vector<Expr> es = watched_quadratures(s, power);
   Column own;
@@ -197,7 +197,7 @@ class Run {
     if (!report_.outcome.ok()) stopped();
   }
 
-  // What is due after the next step, or after several.
+  // Limits the stretch to the steps after which nothing is due.
   void limit_stretch() {
     stretch_.restart();
     const bool each = schedule_.every_step() || o_.dense || defect_ || watch_.any_redundant() ||

@@ -1,4 +1,4 @@
-// What a sweep in a folder was asked for, and its file sweep.json. (doc/sweeps.md)
+// The request of a sweep in a folder, and its file sweep.json. (doc/sweeps.md)
 #pragma once
 #include <cstddef>
 #include <string>

@@ -7,7 +7,7 @@ namespace anholon {
 
 // Half of the digits of a double: elimination in doubles may lose some, a kernel whose pivots are large not as many.
 static constexpr double kNotRoundoff = 0x1p-26;
-// So many round-offs of 1, or of a number, are noise.
+// Differences up to this many round-offs of 1, or of a number, are noise.
 static constexpr double kNoiseOfDoubles = 64 * 0x1p-53;
 
 static ColumnKind group(ColumnKind kind) {

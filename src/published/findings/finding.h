@@ -1,4 +1,4 @@
-// What the comparison of one published equation found, as text: for the command, the library and pages.
+// The finding of the comparison of one published equation, as text: for the command, the library and pages.
 #pragma once
 #include "published/compare.h"
 

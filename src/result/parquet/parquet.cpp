@@ -39,7 +39,7 @@ std::string_view ParquetTable::note(std::string_view name) const {
 
 namespace {
 
-// Where a column of a row group lies in the file.
+// The place of a column of a row group in the file.
 struct Chunk {
   std::size_t begin = 0, data = 0, end = 0;
 };

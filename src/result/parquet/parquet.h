@@ -43,7 +43,7 @@ std::string parquet_bytes(const ParquetTable& table);
 // changed.
 ParquetTable read_parquet(std::string_view bytes);
 
-// What the metadata at the end of a file tells.
+// The number of rows and the notes, which the end of a file holds.
 struct ParquetSummary {
   std::size_t rows = 0;
   std::vector<std::pair<std::string, std::string>> notes;
