@@ -30,11 +30,12 @@ PairMachine::PairMachine(const Tape& tape, const std::vector<long double>& param
 }
 
 void PairMachine::add(const Instruction& in, std::uint32_t slot) {
-  using Act = PairProgram::Act;
-  const auto emit = [&](Act act, std::uint32_t a, std::uint32_t b) { program_.steps.push_back({act, slot, a, b}); };
+  using PairAct = PairProgram::Act;
+  const auto emit = [&](PairAct act, std::uint32_t a, std::uint32_t b) { program_.steps.push_back({act, slot, a, b}); };
   switch (in.op) {
   case Op::linear:
-    program_.steps.push_back({Act::linear, slot, 0, 0, static_cast<std::uint32_t>(program_.terms.size()), in.count});
+    program_.steps.push_back(
+        {PairAct::linear, slot, 0, 0, static_cast<std::uint32_t>(program_.terms.size()), in.count});
     for (std::uint32_t k = in.first; k < in.first + in.count; ++k) {
       const long double c = wide_.rational(tape_->linear_terms[k].coefficient);
       const double high = static_cast<double>(c);
@@ -43,11 +44,11 @@ void PairMachine::add(const Instruction& in, std::uint32_t slot) {
     return;
   case Op::multiply:
   case Op::scale:
-    return emit(Act::multiply, in.a, in.b);
+    return emit(PairAct::multiply, in.a, in.b);
   case Op::square:
-    return emit(Act::multiply, in.a, in.a);
+    return emit(PairAct::multiply, in.a, in.a);
   case Op::divide:
-    return emit(Act::divide, in.a, in.b);
+    return emit(PairAct::divide, in.a, in.b);
   case Op::function: {
     const Function f = static_cast<Function>(in.index);
     if (f != Function::sin && f != Function::cos) break;
@@ -57,9 +58,9 @@ void PairMachine::add(const Instruction& in, std::uint32_t slot) {
     const std::uint32_t sine = fresh ? std::exchange(program_.places, program_.places + 2) : known->second;
     if (fresh) {
       sines_.emplace_back(in.a, sine);
-      program_.steps.push_back({Act::sine_cosine, sine, in.a, sine + 1});
+      program_.steps.push_back({PairAct::sine_cosine, sine, in.a, sine + 1});
     }
-    return emit(Act::copy, f == Function::sin ? sine : sine + 1, 0);
+    return emit(PairAct::copy, f == Function::sin ? sine : sine + 1, 0);
   }
   case Op::constant:
   case Op::pi:
@@ -72,7 +73,7 @@ void PairMachine::add(const Instruction& in, std::uint32_t slot) {
   case Op::rate:
     break;
   }
-  emit(Act::other, 0, 0);
+  emit(PairAct::other, 0, 0);
 }
 
 void PairMachine::evaluate() { run_(program_, numbers_.get(), other_); }
