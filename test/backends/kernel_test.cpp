@@ -319,7 +319,9 @@ TEST_P(CompiledKernelOf, HasTheSameBits) {
     const std::string why = compiled->compile({}, 1, effort);
     ASSERT_EQ(why, compiler() ? "" : "there is no compiler beside the program");
     ASSERT_EQ(compiled->code() != nullptr, compiler() != nullptr);
-    if (compiler()) EXPECT_EQ(compiled->code()->effort, shift == 0 ? CodeEffort::quick : CodeEffort::full);
+    if (compiler()) {
+      EXPECT_EQ(compiled->code()->effort, shift == 0 ? CodeEffort::quick : CodeEffort::full);
+    }
     for (double& x : state) x += shift;
     for (Kernel* k : {&a, &b}) {
       k->load(0, static_cast<double>(r.start.t) + shift, state, Reference::narrow(r.start.leading));

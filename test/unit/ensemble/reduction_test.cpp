@@ -128,8 +128,9 @@ TEST(Reduction, ThreadsAndLanesHaveNoInfluence) {
   for (std::size_t k = 0; k < one.size(); ++k) {
     ASSERT_EQ(one[k].reduced.size(), words.size());
     EXPECT_EQ(std::memcmp(one[k].reduced.data(), two[k].reduced.data(), words.size() * sizeof(double)), 0);
-    if (k < few.size())
+    if (k < few.size()) {
       EXPECT_EQ(std::memcmp(one[k].reduced.data(), few[k].reduced.data(), words.size() * sizeof(double)), 0);
+    }
   }
   run.options.kernel = false;
   const auto reference = run.go(5, 1);

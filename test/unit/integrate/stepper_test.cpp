@@ -362,7 +362,9 @@ TEST(ByKernel, AStretchHasTheBitsOfItsSteps) {
         ASSERT_TRUE(single.steps.step(end).ok());
         single.steps.round_state();
         EXPECT_EQ(single.steps.time(), stretch.times[i]) << name;
-        if (i + 1 < stretch.times.size() && stretch.until) EXPECT_LT(stretch.times[i], until) << name;
+        if (i + 1 < stretch.times.size() && stretch.until) {
+          EXPECT_LT(stretch.times[i], until) << name;
+        }
       }
       expect_equal(single.steps, together.steps, name);
     }
