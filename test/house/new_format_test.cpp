@@ -66,8 +66,8 @@ TEST_F(NewFormat, IsRefusedWhereItHoldsNoSweeps) {
 TEST_F(NewFormat, IsNamedInHelpAndMessages) {
   EXPECT_EQ(known_files("FILE"), "FILE.h5, FILE.csv, FILE.json, FILE.parquet or FILE.tsv");
   EXPECT_EQ(known_formats(), "HDF5, CSV, JSON, Parquet or TSV");
-  EXPECT_EQ(held_by_formats(), "HDF5 holds the model, the rows and the report, JSON the rows and the report, CSV the "
-                               "rows, Parquet the rows and the report, TSV the rows.");
+  EXPECT_EQ(held_by_formats(), "HDF5 holds the model, the rows and the report, JSON the rows and the report, "
+                               "Parquet the rows and the report, CSV the rows, TSV the rows.");
   try {
     command({"convert", path("run.csv"), path("run.xls")});
     FAIL();
