@@ -215,7 +215,7 @@ class Run {
     Outcome o = course_.steps(schedule_.end(), stretch_);
     work_ = std::max(work_, W(stretch_.greatest_integral));
     // Before its last step there is nothing to do.
-    for (std::size_t i = 0; i + (o.ok() ? 1 : 0) < stretch_.times.size(); ++i) rows_.step(stretch_.times[i]);
+    for (std::size_t i = 0; i + (o.ok() ? 1 : 0) < stretch_.times.size(); ++i) tell_step(stretch_.times[i]);
     if (!o.ok()) {
       report_.outcome = std::move(o);
       return false;
@@ -340,10 +340,18 @@ class Run {
     if (report_.outcome.ok()) row(t, label);
   }
 
+  // Tells the end of a step. While rows are under way, their thread tells it, after the rows before it.
+  void tell_step(const W& end) {
+    if (kernel_rows_)
+      kernel_rows_->step(to_double(end));
+    else
+      rows_.step(end);
+  }
+
   // The end of a step, after its rows.
   void step_of_rows(const W& end) {
-    if (!kernel_rows_) return rows_.step(end);
-    kernel_rows_->step(to_double(end));
+    tell_step(end);
+    if (!kernel_rows_) return;
     kernel_rows_->look_at_the_time();
     if (kernel_rows_->failed()) settle_rows();
   }

@@ -79,5 +79,38 @@ TEST(RowsBesideTheMotion, HaveTheSameBits) {
   }
 }
 
+// A sink that notes the ends of steps, the number of rows before each, and the thread that tells it.
+class Steps final : public RowSink {
+ public:
+  void columns(const std::vector<RunColumn>&) override {}
+  void row(const Row& row) override { last_ = row.values[0]; }
+  void step(double t) override {
+    in_order = in_order && (ends.empty() || ends.back() < t) && last_ <= t;
+    ends.push_back(t);
+  }
+  std::vector<double> ends;
+  bool in_order = true;
+
+ private:
+  double last_ = 0;
+};
+
+// Several steps lie between two rows, so stretches of steps are told beside rows that are under way.
+TEST(RowsBesideTheMotion, HaveTheStepsInTheirOrder) {
+  Scenario s;
+  SimulationOptions o;
+  o.to = 600;
+  o.every = Rational(1, 4);
+  o.estimate = ErrorEstimate::never;
+  ASSERT_TRUE(
+      make_scenario(test::model_of(test::shipped_text("zoo/disc")), *find_formulation("routh"), o.state, s).ok());
+  Steps sink;
+  const SimulationReport report = simulate(s, o, sink);
+  ASSERT_TRUE(report.outcome.ok());
+  EXPECT_GT(report.steps, 2 * report.rows);
+  EXPECT_EQ(sink.ends.size(), report.steps);
+  EXPECT_TRUE(sink.in_order);
+}
+
 }  // namespace
 }  // namespace anholon::in_order_test
