@@ -1,17 +1,21 @@
-"""Models from ``sympy.physics.mechanics``: KanesMethod, LagrangesMethod with bodies, System.
+"""Models from ``sympy.physics.mechanics``: KanesMethod, LagrangesMethod, System.
 
 What is read is the mechanical system itself: bodies, velocities, loads and constraints; the equations are then derived anew.
-Generalized speeds are replaced by the rates of the coordinates, and loads become generalized forces. A mass centre whose
-position SymPy does not know (only its velocity was set) gets coordinates of its own, which follow its velocity by constraints.
-A speed without a coordinate (the spin of a wheel) gets one whose rate it is.
+Generalized speeds are replaced by the rates of the coordinates, auxiliary speeds are zero, and loads become generalized forces. A mass centre whose
+position SymPy does not know (only its velocity was set) gets coordinates of its own, which follow its velocity by constraints,
+unless that velocity is the rate of an expression. A speed without a coordinate (the spin of a wheel) gets one whose rate it is.
+A LagrangesMethod without bodies is read by its Lagrangian: particles stand in for the coordinates, and generalized forces bring
+the terms of Lagrange's equations that these lack; the energies in its reports are then those of the particles.
 """
 
 from __future__ import annotations
 
+import contextlib
 import importlib
 import json
 import random
 import re
+import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -43,37 +47,17 @@ class _Parts:
     loads: list[Any]
     holonomic: list[Any] = field(default_factory=list)
     velocity: list[Any] = field(default_factory=list)
+    auxiliary: list[Any] = field(default_factory=list)  # speeds that are zero
+    lagrangian: Any = None  # where no bodies tell the inertia
 
 
 def _parts_of(method: Any) -> _Parts:
     mechanics = _mechanics()
 
     if isinstance(method, mechanics.KanesMethod):
-        rates = method.kindiffdict()
-        velocity = list(method._k_nh * method.u + method._f_nh) if method._k_nh else []
-        return _Parts(
-            method._inertial,
-            list(method.q),
-            list(method.u),
-            [rate - value for rate, value in rates.items()],
-            list(method.bodies),
-            list(method.loads or []),
-            list(method._f_h or []),
-            velocity,
-        )
+        return _parts_of_kane(method)
     if isinstance(method, mechanics.LagrangesMethod):
-        if not method.bodies:
-            raise ModelError("a LagrangesMethod is read by its bodies, and this one has none\nhint: LagrangesMethod(L, q, bodies=[…], frame=N)")
-        return _Parts(
-            method.inertial,
-            list(method.q),
-            [],
-            [],
-            list(method.bodies),
-            list(method.loads or []) + _potential_loads(method),
-            list(method._hol_coneqs or []),
-            list(getattr(method, "_nonhol_coneqs", None) or []) or _nonholonomic_of(method),
-        )
+        return _parts_of_lagrange(method)
     if isinstance(method, mechanics.System):
         return _Parts(
             method.frame,
@@ -84,22 +68,64 @@ def _parts_of(method: Any) -> _Parts:
             list(method.loads) + [load for actuator in method.actuators for load in actuator.to_loads()],
             list(method.holonomic_constraints),
             list(method.velocity_constraints or method.nonholonomic_constraints),
+            list(method.u_aux),
         )
     raise TypeError(f"from_sympy reads a KanesMethod, LagrangesMethod or System, not a {type(method).__name__}")
 
 
-def _nonholonomic_of(method: Any) -> list[Any]:
-    """The nonholonomic constraints of a LagrangesMethod: its velocity constraints beyond the rates of the holonomic ones."""
-    count = len(method._hol_coneqs or [])
-    return [] if method.coneqs is None or len(method.coneqs) == 0 else list(method.coneqs)[count:]
+def _parts_of_kane(method: Any) -> _Parts:
+    velocity = list(method._k_nh * method.u + method._f_nh) if method._k_nh else []
+    rates = _sympy().Matrix([q.diff(_mechanics().dynamicsymbols._t) for q in method.q])
+    # The equations as they were written; solved for the rates they may have denominators.
+    kinematic = method._k_kqdot_implicit * rates + method._k_ku_implicit * method.u + method._f_k_implicit
+    return _Parts(
+        method._inertial,
+        list(method.q),
+        list(method.u),
+        list(kinematic),
+        list(method.bodies),
+        list(method.loads or []),
+        list(method._f_h or []),
+        velocity,
+        list(method._uaux or []),
+    )
 
 
-def _potential_loads(method: Any) -> list[Any]:
-    """The loads of the potential energies of the bodies, as generalized forces ``(coordinate, force)``."""
+def _parts_of_lagrange(method: Any) -> _Parts:
     sm = _sympy()
 
-    energy = sum((body.potential_energy for body in method.bodies), sm.Integer(0))
-    return [(q, -sm.diff(energy, q)) for q in method.q]
+    holonomic = list(method._hol_coneqs or [])
+    # The velocity constraints of a LagrangesMethod begin with the rates of the holonomic ones.
+    every = [] if method.coneqs is None or len(method.coneqs) == 0 else list(method.coneqs)
+    parts = _Parts(method.inertial, list(method.q), [], [], list(method.bodies or []), list(method.loads or []), holonomic, every[len(holonomic) :])
+    energy = method._L[0] if isinstance(method._L, sm.MatrixBase) else method._L
+    if parts.frame is not None and parts.bodies:
+        potential = sum((body.potential_energy for body in parts.bodies), sm.Integer(0))
+        kinetic = sum((body.kinetic_energy(parts.frame) for body in parts.bodies), sm.Integer(0))
+        if _vanish([energy - kinetic + potential], {}):
+            parts.loads += [(q, -sm.diff(potential, q)) for q in parts.q]
+            return parts
+    parts.bodies, parts.lagrangian = [], energy
+    return parts
+
+
+def _vanish(expressions: Iterable[Any], near: Mapping[Any, Any]) -> bool:
+    """Whether expressions vanish, with 30 digits, at random values of all that is in them, and at those of ``near``."""
+    import mpmath
+
+    sm, time, draw = _sympy(), _mechanics().dynamicsymbols._t, random.Random(1)
+    expressions = list(expressions)
+    atoms: set[Any] = {time}
+    for e in expressions:
+        atoms |= e.atoms(sm.Derivative) | e.atoms(sm.core.function.AppliedUndef) | e.free_symbols
+    listed = sorted(atoms, key=str)
+    with mpmath.workdps(40):
+        values = sm.lambdify(listed, expressions, "mpmath", cse=True, dummify=True)
+        for _ in range(1 if near else 3):
+            at = [near[a] if a in near else mpmath.mpf(draw.uniform(0.3, 1.3)) for a in listed]
+            if any(abs(x) > 1e-20 for x in values(*at)):
+                return False
+    return True
 
 
 class _Writer:
@@ -112,12 +138,18 @@ class _Writer:
         self.time = dynamicsymbols._t
         self.names: dict[Any, str] = {}
         self._taken = set(_RESERVED)
-        for q in parts.q:
-            self.names[q] = self.new(str(q.func))
-        self.q = parts.q
-        self.rates = [q.diff(self.time) for q in parts.q]
         self.parameters: dict[Any, str] = {}
         self.functions: dict[Any, str] = {}
+        self.q: list[Any] = []
+        self.rates: list[Any] = []
+        for q in parts.q:
+            self.add(q)
+
+    def add(self, q: Any) -> None:
+        """Names a coordinate."""
+        self.names[q] = self.new(str(q.func))
+        self.q.append(q)
+        self.rates.append(q.diff(self.time))
 
     def new(self, wish: str) -> str:
         """A name that is not taken yet."""
@@ -187,66 +219,181 @@ class _Import:
 
         self.sm = sm
         self.parts = parts = _parts_of(method)
-        self._add_angles(parts)
+        self.time = _mechanics().dynamicsymbols._t
+        self._without_auxiliary()
+        known = [u for u in parts.u if any(e.has(u) for e in parts.kinematic)]
+        self.speeds: dict[Any, Any] = {}  # in coordinates and their rates
+        parts.velocity += self._solve(list(parts.kinematic), known)
+        self.centers: list[tuple[str, Any]] = []  # constraints that tie coordinates of mass centres to their velocities
         self.writer = _Writer(parts)
-        self.speeds = self._speeds()
-        self.extra: list[tuple[str, Any]] = []  # coordinates of mass centres, and their rates
+        self._places: dict[Any, list[Any]] = {}
+        self._place_centers([u for u in parts.u if u not in known])
 
-    @staticmethod
-    def _add_angles(parts: _Parts) -> None:
-        """Coordinates for speeds that no kinematic differential equation knows."""
-        symbols = _mechanics().dynamicsymbols
-        unknown = [u for u in parts.u if not any(e.has(u) for e in parts.kinematic)]
-        if len(unknown) != len(parts.u) - len(parts.q):
-            return
-        for u in unknown:
-            angle = symbols(f"{u.func}_angle")
-            parts.q.append(angle)
-            parts.kinematic.append(angle.diff(symbols._t) - u)
+    def _without_auxiliary(self) -> None:
+        """Sets auxiliary speeds to zero where they are known now; ``in_rates`` does it in velocities and loads."""
+        zero = self.sm.Integer(0)
+        self._zero = {**{u.diff(self.time): zero for u in self.parts.auxiliary}, **dict.fromkeys(self.parts.auxiliary, zero)}
+        for name in ("kinematic", "holonomic", "velocity"):
+            setattr(self.parts, name, [self.sm.sympify(e).xreplace(self._zero) for e in getattr(self.parts, name)])
 
-    def _speeds(self) -> dict[Any, Any]:
-        """Generalized speeds in coordinates and their rates."""
-        sm, parts = self.sm, self.parts
-        if not parts.u:
-            return {}
-        rates = self.writer.rates
-        dummies = [sm.Dummy() for _ in parts.u]
-        equations = sm.Matrix([e.xreplace(dict(zip(parts.u, dummies, strict=True))) for e in parts.kinematic])
-        a = equations.jacobian(dummies)
-        if a.shape[0] != a.shape[1]:
-            raise ModelError(f"{len(parts.u)} generalized speeds for {len(rates)} rates of coordinates: from_sympy needs as many")
-        b = equations.xreplace(dict.fromkeys(dummies, sm.Integer(0)))
-        solved = a.LUsolve(-b)
-        if any(x.has(sm.nan, sm.zoo) for x in solved):
+    def _solve(self, equations: list[Any], speeds: list[Any]) -> list[Any]:
+        """Solves linear equations for speeds, which enter ``self.speeds``; returns the equations that are left."""
+        sm, draw = self.sm, random.Random(5)
+        if not speeds:
+            return [e for e in equations if e != 0]
+        dummies = {u: sm.Dummy() for u in speeds}
+        matrix = sm.Matrix([e.xreplace(dummies) for e in equations])
+        a = matrix.jacobian(list(dummies.values()))
+        b = matrix.xreplace(dict.fromkeys(dummies.values(), sm.Integer(0)))
+        atoms = sorted(a.atoms(sm.core.function.AppliedUndef) | a.free_symbols, key=str)
+        numbers = sm.lambdify(atoms, a, "mpmath", cse=True, dummify=True)(*(sm.Float(draw.uniform(0.3, 1.3), 30) for _ in atoms))
+        rows: list[int] = []
+        for k in sorted(range(len(equations)), key=lambda k: (sm.count_ops(equations[k]), k)):
+            trial = sm.Matrix([[sm.Float(str(numbers[i, j]), 30) for j in range(a.cols)] for i in [*rows, k]])
+            if trial.rank(iszerofunc=lambda x: abs(x) < 1e-20) > len(rows):
+                rows.append(k)
+        if len(rows) < len(speeds):
             raise ModelError("the kinematic differential equations cannot be solved for the generalized speeds")
-        return dict(zip(parts.u, (sm.simplify(x) if sm.count_ops(x) < 200 else x for x in solved), strict=True))
+        rows.sort()
+        solved = a.extract(rows, list(range(a.cols))).LUsolve(-b.extract(rows, [0]))
+        found = dict(zip(speeds, (sm.simplify(x) if sm.count_ops(x) < 200 else x for x in solved), strict=True))
+        self.speeds = {**{u: e.xreplace(found) for u, e in self.speeds.items()}, **found}
+        left = [self.in_rates(e) for k, e in enumerate(equations) if k not in rows]
+        return [e for e in left if sm.simplify(e) != 0]
+
+    def _add_coordinate(self, wish: str) -> Any:
+        """A coordinate that SymPy does not have."""
+        taken = {str(q.func) for q in self.parts.q} | _RESERVED
+        while wish in taken:
+            wish += "_"
+        q = _mechanics().dynamicsymbols(wish)
+        self.parts.q.append(q)
+        self.writer.add(q)
+        return q
+
+    def _place_centers(self, unknown: list[Any]) -> None:
+        """Finds where mass centres are. One that has a velocity only gets coordinates with that velocity, from which
+        speeds without a kinematic equation follow; such a speed that is left becomes the rate of an angle."""
+        open_equations: list[Any] = []
+        names: list[str] = []
+        for body in self.parts.bodies:
+            point = body.point if isinstance(body, _mechanics().Particle) else body.masscenter
+            if point in self._places:
+                continue
+            velocity = self.components(point.vel(self.parts.frame))
+            self._look_at_acceleration(point)
+            place = self.position(point)
+            if place is None:
+                place = []
+                for axis, rate in zip("xyz", velocity, strict=True):
+                    whole = self.sm.Integer(0) if rate == 0 else self._integral(rate)
+                    if whole is None:
+                        whole = self._add_coordinate(f"{re.sub(r'[^A-Za-z0-9]+', '_', str(body.name)) or 'body'}_{axis}")
+                        open_equations.append(whole.diff(self.time) - rate)
+                        names.append(str(whole.func))
+                    place.append(whole)
+            self._places[point] = place
+        joined = [u for u in unknown if any(e.has(u) for e in open_equations)]
+        for u in [u for u in unknown if u not in joined]:
+            self.speeds[u] = self._add_coordinate(f"{u.func}_angle").diff(self.time)
+        open_equations = [self.in_rates(e) for e in open_equations]
+        left = self._solve(open_equations, joined) if joined else open_equations
+        self.centers = [(f"center{k + 1}" if joined else f"center_{names[k]}", e) for k, e in enumerate(left)]
+
+    def _look_at_acceleration(self, point: Any) -> None:
+        """Warns if SymPy was told an acceleration that is not the rate of the velocity."""
+        told = point._acc_dict.get(self.parts.frame)
+        if told is None:
+            return
+        rates = [x.diff(self.time) for x in self.components(point.vel(self.parts.frame))]
+        if not self._vanishes([self.in_rates(r) - a for r, a in zip(rates, self.components(told), strict=True)]):
+            warnings.warn(
+                f"the acceleration that was set for the point {point.name} is not the rate of its velocity; "
+                "the model follows the velocity, and SymPy's equations differ from its equations",
+                stacklevel=6,
+            )
+
+    def _integral(self, rate: Any) -> Any | None:
+        """An expression of coordinates and time whose rate this is, or None if none is found."""
+        sm, q, rates = self.sm, self.writer.q, self.writer.rates
+        if rate.atoms(sm.core.function.AppliedUndef) - set(q):
+            return None  # speeds that are not known yet, or given functions
+        dummies = [sm.Dummy() for _ in q]
+        values = dict(zip(rates, dummies, strict=True))
+        e = sm.expand(rate.xreplace(values))
+        if any(e.has(sm.Derivative(c, self.time)) for c in q) or not all(sm.diff(e, d, f) == 0 for d in dummies for f in dummies):
+            return None
+        plain = {c: sm.Dummy() for c in q}
+        whole, done = sm.Integer(0), dict(plain)
+        for c, d in reversed(list(zip(q, dummies, strict=True))):
+            slope = sm.diff(e, d).xreplace(done)
+            if sm.count_ops(slope) > 60 or not slope.is_polynomial(plain[c]) and slope.has(sm.tan, sm.log, sm.Pow):
+                return None
+            part = sm.integrate(slope, plain[c])
+            if part.has(sm.Integral):
+                return None
+            whole += part - part.subs(plain[c], 0)
+            done[c] = sm.Integer(0)
+        whole = whole.xreplace({d: c for c, d in plain.items()})
+        return whole if _vanish([whole.diff(self.time) - rate], {}) else None
 
     def in_rates(self, e: Any) -> Any:
-        """An expression without generalized speeds."""
-        e = self.sm.sympify(e)
-        # Rates of speeds come from the product rule in velocities of velocities; there are none in velocities.
-        return e.xreplace(self.speeds)
+        """An expression without generalized speeds, and without their rates."""
+        e = self.sm.sympify(e).xreplace(self._zero)
+        second = {u.diff(self.time): x.diff(self.time) for u, x in self.speeds.items()} if e.has(self.sm.Derivative) else {}
+        return e.xreplace({k: v for k, v in second.items() if e.has(k)}).xreplace(self.speeds)
 
     def components(self, vector: Any) -> list[Any]:
         """Components along the inertial axes."""
         return [self.in_rates(x) for x in vector.to_matrix(self.parts.frame)]
 
     def _vanishes(self, expressions: Iterable[Any]) -> bool:
-        """Whether expressions vanish at random values of all that is in them, with 30 digits."""
-        sm, draw = self.sm, random.Random(1)
-        expressions = list(expressions)
-        atoms: set[Any] = set()
-        for e in expressions:
-            atoms |= e.atoms(sm.Derivative) | e.atoms(sm.core.function.AppliedUndef) | {s for s in e.free_symbols if s != self.writer.time}
-        for _ in range(3):
-            values = {a: sm.Float(draw.uniform(0.3, 1.3), 30) for a in atoms}
-            order = sorted(values, key=lambda a: not isinstance(a, sm.Derivative))
-            for e in expressions:
-                for a in order:
-                    e = e.subs(a, values[a])
-                if abs(sm.N(e.subs(self.writer.time, sm.Float("0.7", 30)), 30)) > 1e-20:
-                    return False
-        return True
+        """Whether expressions vanish with 30 digits where the constraints hold."""
+        return _vanish(expressions, self._on_constraints())
+
+    def _on_constraints(self) -> dict[Any, Any]:
+        """Random values of all coordinates and rates, with 40 digits, that satisfy the constraints, and the values of the
+        other symbols in these; empty without constraints, and if no such values are found."""
+        import mpmath
+
+        if not hasattr(self, "_drawn"):
+            self._drawn: dict[Any, Any] = {}
+            if self.parts.holonomic or self.parts.velocity:
+                with mpmath.workdps(50), contextlib.suppress(ZeroDivisionError):
+                    self._drawn = self._draw_on_constraints()
+        return self._drawn
+
+    def _draw_on_constraints(self) -> dict[Any, Any]:
+        import mpmath
+
+        sm, holonomic, draw = self.sm, self.parts.holonomic, random.Random(7)
+        q, rates = list(self.writer.q), list(self.writer.rates)
+        fixed = dict.fromkeys(rates, sm.Integer(0))
+        flows = [self.in_rates(e.diff(self.time)) for e in holonomic] + self.velocity_constraints()
+        rows, rest = sm.Matrix(flows).jacobian(rates), [e.xreplace(fixed) for e in flows]
+        atoms: set[Any] = {self.time}
+        for e in [*holonomic, *flows]:
+            atoms |= e.xreplace(fixed).atoms(sm.core.function.AppliedUndef) | e.free_symbols
+        others = sorted(atoms - set(q), key=str)
+        values = {a: mpmath.mpf(draw.uniform(0.3, 1.3)) for a in others}
+        f = sm.lambdify([*q, *others], [holonomic, rows.tolist(), rest], "mpmath", cse=True, dummify=True)
+
+        def least(jacobian: Any, right: Any) -> Any:
+            j = mpmath.matrix(jacobian)
+            return j.T * mpmath.lu_solve(j * j.T, mpmath.matrix(right))
+
+        x = mpmath.matrix([draw.uniform(0.3, 0.9) for _ in q])
+        for _ in range(60):
+            value, j, _rest = f(*x, *values.values())
+            if not value or max(abs(v) for v in value) < mpmath.mpf(10) ** -45:
+                break
+            x = x - least(j[: len(value)], value)
+        else:
+            return {}
+        _value, j, rest = f(*x, *values.values())
+        v = mpmath.matrix([draw.uniform(-1, 1) for _ in q])
+        v = v - least(j, mpmath.matrix(j) * v + mpmath.matrix(rest))
+        return {**dict(zip(q, x, strict=True)), **dict(zip(rates, v, strict=True)), **values}
 
     def position(self, point: Any) -> list[Any] | None:
         """The position of a point in the inertial frame if its rate is the point's velocity, else None."""
@@ -255,8 +402,8 @@ class _Import:
         while queue:
             here = queue.pop(0)
             if here._vel_dict.get(self.parts.frame) == 0:
-                place = [self.sm.sympify(x) for x in point.pos_from(here).to_matrix(self.parts.frame)]
-                if self._vanishes([self.in_rates(x.diff(self.writer.time)) - v for x, v in zip(place, velocity, strict=True)]):
+                place = [self.in_rates(x) for x in point.pos_from(here).to_matrix(self.parts.frame)]
+                if self._vanishes([self.in_rates(x.diff(self.time)) - v for x, v in zip(place, velocity, strict=True)]):
                     return place
             for neighbour in here._pos_dict:
                 if neighbour not in seen:
@@ -264,21 +411,9 @@ class _Import:
                     queue.append(neighbour)
         return None
 
-    def center(self, name: str, point: Any) -> list[str]:
-        """The formulas of a mass centre; without a position it gets coordinates."""
-        place = self.position(point)
-        if place is not None:
-            return [self.writer.formula(x) for x in place]
-        velocity = self.components(point.vel(self.parts.frame))
-        names = []
-        for axis, rate in zip("xyz", velocity, strict=True):
-            if rate == 0:
-                names.append("0")
-                continue
-            coordinate = self.writer.new(f"{name}_{axis}")
-            self.extra.append((coordinate, rate))
-            names.append(coordinate)
-        return names
+    def center(self, point: Any) -> list[str]:
+        """The formulas of a mass centre."""
+        return [self.writer.formula(x) for x in self._places[point]]
 
     def _turn(self, body: Any) -> tuple[Any, Any]:
         """The rotation of a body's axes against the inertial ones, and its inertia along them.
@@ -319,7 +454,7 @@ class _Import:
             if not any(self.components(point.vel(self.parts.frame))):
                 return ""
             name = self.writer.new(str(body.name))
-            center = json.dumps(self.center(name, point))
+            center = json.dumps(self.center(point))
             return f"[[particle]]\nname = {json.dumps(name)}\nmass = {json.dumps(self.writer.formula(body.mass))}\nposition = {center}\n"
         name = self.writer.new(str(body.name))
         turn, tensor = self._turn(body)
@@ -334,15 +469,41 @@ class _Import:
         matrix = "matrix([" + ", ".join("[" + ", ".join(row) + "]" for row in turned) + "])"
         return (
             f"[[body]]\nname = {json.dumps(name)}\nmass = {json.dumps(self.writer.formula(body.mass))}\n"
-            f"inertia = {json.dumps(inertia)}\ncenter = {json.dumps(self.center(name, body.masscenter))}\norientation = {json.dumps(matrix)}\n"
+            f"inertia = {json.dumps(inertia)}\ncenter = {json.dumps(self.center(body.masscenter))}\norientation = {json.dumps(matrix)}\n"
         )
+
+    def _inertia_of(self, q: Any) -> Any:
+        """What stands in for the inertia of a coordinate if only a Lagrangian is known: its constant part, else 1."""
+        sm = self.sm
+        own = sm.expand(sm.diff(self.parts.lagrangian, q.diff(self.time), 2))
+        constant = own.as_independent(*self.writer.q, *self.writer.rates, self.time, as_Add=True)[0]
+        return constant if constant != 0 else sm.Integer(1)
+
+    def stand_ins(self) -> list[str]:
+        """A particle on a line for each coordinate. Its inertia is one term of the kinetic energy, and
+        ``generalized_forces`` adds the others, so that the equations are Lagrange's."""
+        bodies = []
+        for q in self.writer.q:
+            name, mass = self.writer.new(f"{self.writer.names[q]}_inertia"), self.writer.formula(self._inertia_of(q))
+            bodies.append(f"[[particle]]\nname = {json.dumps(name)}\nmass = {json.dumps(mass)}\nposition = {json.dumps([self.writer.names[q], '0', '0'])}\n")
+        return bodies
+
+    def _lagrange_terms(self) -> dict[Any, Any]:
+        """The terms of Lagrange's equations beyond the inertia of the particles that stand in."""
+        sm, energy = self.sm, self.parts.lagrangian
+        terms = {}
+        for q in self.writer.q:
+            rate = q.diff(self.time)
+            whole = (sm.diff(energy, rate).diff(self.time) - sm.diff(energy, q)).doit()
+            terms[q] = sm.expand(self._inertia_of(q) * rate.diff(self.time) - whole)
+        return terms
 
     def generalized_forces(self) -> dict[Any, Any]:
         """The sum of all loads, by coordinate."""
         Point, ReferenceFrame = _mechanics().Point, _mechanics().ReferenceFrame
 
         sm, frame = self.sm, self.parts.frame
-        sums: dict[Any, Any] = {}
+        sums: dict[Any, Any] = self._lagrange_terms() if self.parts.lagrangian is not None else {}
         for load in self.parts.loads:
             at, what = load[0], load[1]
             if isinstance(at, (Point, ReferenceFrame)):
@@ -372,6 +533,8 @@ class _Import:
         numbers = [at_point(row) for row in rows]
         rank = sm.Matrix(numbers).rank(iszerofunc=lambda x: abs(x) < 1e-20) if numbers else 0
         for e in wanted:
+            if sm.count_ops(e) < 400 and any(x.exp.is_negative and x.base.has(*self.writer.q) for x in e.atoms(sm.Pow)):
+                e = sm.simplify(e)  # SymPy solves for speeds with pivots that vanish at the origin
             numbers.append(at_point(sm.Matrix([e]).jacobian(rates)))
             if sm.Matrix(numbers).rank(iszerofunc=lambda x: abs(x) < 1e-20) > rank:
                 rank += 1
@@ -383,17 +546,17 @@ class _Import:
     def text(self, title: str, values: Mapping[Any, Number], initial: Mapping[Any, Number]) -> str:
         """The model file."""
         w = self.writer
-        bodies = [self.body(b) for b in self.parts.bodies]
+        bodies = [self.body(b) for b in self.parts.bodies] if self.parts.lagrangian is None else self.stand_ins()
         constraints = [(f"holonomic{k + 1}", w.formula(e)) for k, e in enumerate(self.parts.holonomic)]
         constraints += [(f"velocity{k + 1}", w.formula(e)) for k, e in enumerate(self.velocity_constraints())]
-        constraints += [(f"center_{name}", f"{name}' - {w.formula(rate)}") for name, rate in self.extra]
+        constraints += [(name, w.formula(e)) for name, e in self.centers]
         forces = {w.names[q]: w.formula(s) for q, s in self.generalized_forces().items()}
         by_name = {_name_of(key): value for key, value in values.items()}
         missing = sorted(symbol.name for symbol in w.parameters if symbol.name not in by_name)
         if missing:
             raise ModelError(f"values are missing for {', '.join(missing)}\nhint: from_sympy(…, values={{{missing[0]}: 1}})")
         lines = [f"title = {json.dumps(title)}", 'source = "imported from sympy.physics.mechanics"', ""]
-        lines.append(f"coordinates = {json.dumps([w.names[q] for q in w.q] + [name for name, _ in self.extra])}\n")
+        lines.append(f"coordinates = {json.dumps([w.names[q] for q in w.q])}\n")
         if w.parameters:
             lines.append("[parameters]")
             for symbol, name in w.parameters.items():
@@ -417,7 +580,7 @@ class _Import:
 
 
 def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, Number] | None = None, initial: Mapping[Any, Number] | None = None) -> Model:
-    """The model of a KanesMethod, a LagrangesMethod with bodies, or a System of ``sympy.physics.mechanics``.
+    """The model of a KanesMethod, a LagrangesMethod, or a System of ``sympy.physics.mechanics``.
 
     Args:
         method: the object of SymPy.
@@ -431,6 +594,9 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
     Raises:
         ModelError: something has no counterpart in a model.
         TypeError: the object is none of these.
+
+    Warns:
+        UserWarning: an acceleration was set that is not the rate of the velocity of its point.
 
     Example:
         >>> import anholon as an, sympy as sm

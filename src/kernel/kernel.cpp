@@ -286,6 +286,8 @@ std::string KernelPlan::compile(const std::string& cache, int lanes, CodeEffort 
   const std::lock_guard lock(made.making);
   if (const Code* known = this->code(lanes); known && known->effort >= effort) return {};
   if (lanes == 1 && code_of_stages()) return {};
+  const bool first = !made.ready.load(std::memory_order_relaxed);
+  if (!first && made.lanes != lanes) return "there is code for another number of lanes";
   Code code;
   std::string message;
   const Tier& tier = tiers().back();
@@ -296,7 +298,7 @@ std::string KernelPlan::compile(const std::string& cache, int lanes, CodeEffort 
   if (!code.extend) return message;
   Code& place = code.effort == CodeEffort::full ? made.full : made.quick;
   place = std::move(code);
-  made.lanes = lanes;
+  if (first) made.lanes = lanes;  // other threads read it as soon as a code is ready
   made.ready.store(&place, std::memory_order_release);
   return {};
 }
