@@ -7,7 +7,9 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "doc").rglob("*.md"))]
+READ_RESULTS = {"doc/results.md", "doc/sweeps.md"}  # their Python reads files of runs that the reader has
 DOCUMENTS = [p.relative_to(ROOT).as_posix() for p in PAGES if "\n```python\n" in p.read_text(encoding="utf-8")]
+DOCUMENTS = [name for name in DOCUMENTS if name not in READ_RESULTS]
 
 
 @pytest.mark.parametrize("document", DOCUMENTS)
