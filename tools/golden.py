@@ -9,7 +9,8 @@ in \\ goes on in the next line), and what follows it is its exact output, stdout
 trailing blank lines aside; a last line `[exit 2]` is the exit code where it is not 0. `models` in the
 scratch folder is the folder of shipped models, `anholon` the program under test.
 
-In an expected line … stands for any text; a line that is only … stands for any number of lines.
+In an expected line … stands for any text; a line that is only … stands for any number of lines. Lines that show
+the progress of a long run are left out.
 
 A picture `![…](figures/NAME.svg)` of the page is the file NAME.svg that one of its commands writes, byte by byte.
 """
@@ -28,6 +29,7 @@ WILD = "…"
 TIMEOUT = 600
 EXIT = re.compile(r"\[exit \d+\]|\[still running after \d+ s\]")
 FENCE = re.compile(r"^(`{3,})\s*(.*?)\s*$")
+PROGRESS = re.compile(r"^\[#*\.*\] +\d+ %  .*$")  # of long runs; whether a run is long depends on the machine
 FIGURE = re.compile(r"!\[[^\]]*\]\(([^()\s]*figures/([\w.-]+))\)")
 
 
@@ -131,7 +133,7 @@ class Scratch:
         text = done.stdout.decode("utf-8", errors="backslashreplace")
         text = text.replace(str(self.work), "<scratch>").replace(str(ROOT), "<root>")
         # Not splitlines(): that also cuts at form feeds and the like.
-        lines = strip_end(text.split("\n"))
+        lines = strip_end([line for line in text.split("\n") if not PROGRESS.match(line)])
         if done.returncode != 0:
             lines.append(f"[exit {done.returncode}]")
         return lines
@@ -322,7 +324,7 @@ def all_cases():
 
 def self_test():
     """The runner must accept what is right and refuse each mutant of it."""
-    fake = '#!/bin/sh\necho "took $$ s"; cat "$1" >&2; [ -e "$1" ] || exit 2\n'
+    fake = '#!/bin/sh\necho "took $$ s"; echo "[##........]  21 %  t = 2"; cat "$1" >&2; [ -e "$1" ] || exit 2\n'
     case = "# title\n```toml a.toml\nx = 1\n```\n```console\n$ anholon a.toml\ntook … s\nx = 1\n\n$ anholon b 2>/dev/null \\\n    && true\n…\n[exit 2]\n```\n"
     mutants = {
         "wrong line": case.replace("\nx = 1\n\n", "\nx = 2\n\n"),
