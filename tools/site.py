@@ -44,6 +44,11 @@ OTHERS = {  # pages outside of doc/ that belong to a part
 }
 RUN_BY_GOLDEN = ("book", "recipes", "asked", "from")  # their transcripts; tools/readme.py runs those of README.md and of doc/
 LEAST_EXAMPLES = 300
+RUN_ELSEWHERE = {  # commands that no transcript can run, and the test that does
+    "render": "test/house/render_disc.py",  # needs a browser
+    "sweep status": "test/sweeps/folders.py",  # needs a sweep that other processes compute
+    "sweep collect": "test/sweeps/folders.py",
+}
 GALLERY = {"papers": "Papers", "asked": "Asked and answered", "templates": "Templates", "zoo": "Systems of the literature"}
 
 
@@ -87,6 +92,21 @@ def examples_of(text):
 def transcripts(root):
     """The pages whose commands golden.py runs."""
     return [page for part in RUN_BY_GOLDEN for page in sorted((root / "doc" / part).glob("*.md")) if "```console" in page.read_text(encoding="utf-8")]
+
+
+def commands_without_example(root):
+    """A problem for each command of doc/commands.md that no transcript runs."""
+    page = root / "doc/commands.md"
+    if not page.exists():
+        return []
+    steps = []
+    for path in [*sorted((root / "doc").rglob("*.md")), *sorted((root / "test/golden").glob("*/*.md")), root / "README.md"]:
+        try:
+            steps += [step.command for step in golden.parse(path.read_text(encoding="utf-8").split("\n"))[1]]
+        except golden.CaseError:
+            pass  # check() tells
+    names = re.findall(r"^###+ `anholon ([a-z ]+)`$", page.read_text(encoding="utf-8"), re.M)
+    return [f"no example runs `anholon {name}`" for name in names if name not in RUN_ELSEWHERE and not any(re.search(rf"\banholon {name}\b", s) for s in steps)]
 
 
 def check(root, least=LEAST_EXAMPLES):
@@ -138,6 +158,7 @@ def check(root, least=LEAST_EXAMPLES):
             problems.append(f"{figure.relative_to(root)}: no page shows it")
     for case in sorted((root / "test/golden").glob("*/*.md")):
         count += examples_of(case.read_text(encoding="utf-8"))
+    problems += commands_without_example(root)
     if count < least:
         problems.append(f"{count} examples are executed, {least} are wanted")
     return problems, count
@@ -445,11 +466,12 @@ def build(program, out, jobs, only_pages):
 
 GOOD = {
     "README.md": "# A\n![disc](doc/book/figures/a.svg)\n",
-    "doc/README.md": "# Documentation\n[b](b.md)\n",
+    "doc/README.md": "# Documentation\n[b](b.md) [c](commands.md)\n",
     "doc/b.md": "# B\n```python\nx = 1\n```\n",
     "doc/book/README.md": "# Book\n1. [coin](1.md)\n",
     "doc/book/1.md": "# Coin\n![a](figures/a.svg)\n```console\n$ anholon plot x -o a.svg\n```\n\n## Exercises\n",
     "doc/book/figures/a.svg": "<svg/>",
+    "doc/commands.md": "# Commands\n### `anholon check`\n",
     "doc/asked/README.md": "# Asked\n[q](q.md)\n",
     "doc/asked/q.md": "# Q\n<https://github.com/a/b/issues/1>\n```console\n$ anholon check x\n```\n",
 }
@@ -465,6 +487,7 @@ MUTANTS = {
     "figure that is not there": ("doc/b.md", "# B\n![x](figures/x.svg)\n```python\nx = 1\n```\n"),
     "figure that is not shown": ("doc/book/figures/b.svg", ""),
     "answer without its question": ("doc/asked/q.md", "# Q\n```console\n$ anholon check x\n```\n"),
+    "command without an example": ("doc/commands.md", "# Commands\n### `anholon check`\n### `anholon fly`\n"),
     "too few examples": ("doc/b.md", "# B\n"),
     "Python that nothing runs": ("doc/theory/README.md", "# T\n```python\nx = 1\n```\n"),
 }
