@@ -529,6 +529,12 @@ def self_test():
         if stage.written("index.md") != wanted:
             print(stage.written("index.md"))
             failures += 1
+    python = ROOT / "build/docs-env/bin/python"
+    if python.exists():  # the tools of the site are there
+        code = "from mathml import *; mathml(r'\\frac{a}{b}', True); raise SystemExit(0 if formulas_refused() else 1)"
+        if subprocess.run([python, "-c", code], cwd=ROOT / "doc/site").returncode != 0:
+            print("a formula that cannot be translated is not refused")
+            failures += 1
     print(f"{len(MUTANTS) + len(BUILT_MUTANTS)} mutants, {failures} mistakes")
     return 1 if failures else 0
 

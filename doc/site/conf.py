@@ -18,6 +18,8 @@ myst_dmath_allow_digits = False
 myst_all_links_external = False
 suppress_warnings = ["myst.header", "misc.highlighting_failure"]
 
+smartquotes = False  # a prime is a derivative and -- begins an option
+
 html_theme = "furo"
 html_static_path = [str(Path(__file__).parent / "static")]
 html_css_files = ["site.css"]
