@@ -9,7 +9,10 @@ in \\ goes on in the next line), and what follows it is its exact output, stdout
 trailing blank lines aside; a last line `[exit 2]` is the exit code where it is not 0. `models` in the
 scratch folder is the folder of shipped models, `anholon` the program under test.
 
-In an expected line … stands for any text; a line that is only … stands for any number of lines.
+In an expected line … stands for any text; a line that is only … stands for any number of lines. Lines that show
+the progress of a long run are left out.
+
+A picture `![…](figures/NAME.svg)` of the page is the file NAME.svg that one of its commands writes, byte by byte.
 """
 
 import argparse
@@ -26,6 +29,8 @@ WILD = "…"
 TIMEOUT = 600
 EXIT = re.compile(r"\[exit \d+\]|\[still running after \d+ s\]")
 FENCE = re.compile(r"^(`{3,})\s*(.*?)\s*$")
+PROGRESS = re.compile(r"^\[#*\.*\] +\d+ %  .*$")  # of long runs; whether a run is long depends on the machine
+FIGURE = re.compile(r"!\[[^\]]*\]\(([^()\s]*figures/([\w.-]+))\)")
 
 
 class CaseError(Exception):
@@ -128,7 +133,7 @@ class Scratch:
         text = done.stdout.decode("utf-8", errors="backslashreplace")
         text = text.replace(str(self.work), "<scratch>").replace(str(ROOT), "<root>")
         # Not splitlines(): that also cuts at form feeds and the like.
-        lines = strip_end(text.split("\n"))
+        lines = strip_end([line for line in text.split("\n") if not PROGRESS.match(line)])
         if done.returncode != 0:
             lines.append(f"[exit {done.returncode}]")
         return lines
@@ -245,6 +250,25 @@ def merge_lines(expected, actual):
     return False, merged
 
 
+def check_figures(path, text, work, bless):
+    """-> True if every figure of the page is what its commands drew; `bless` writes those that are not."""
+    good, shown = True, os.path.relpath(path, ROOT)
+    for place, name in FIGURE.findall(text):
+        drawn, kept = work / name, path.parent / place
+        if not drawn.is_file():
+            raise CaseError(f"no command of the page writes {name}, which it shows")
+        if kept.is_file() and kept.read_bytes() == drawn.read_bytes():
+            continue
+        if bless:
+            kept.parent.mkdir(parents=True, exist_ok=True)
+            kept.write_bytes(drawn.read_bytes())
+            print(f"{shown}: {place} drawn anew")
+        else:
+            print(f"{shown}: {place} is not what the commands of the page draw")
+            good = False
+    return good
+
+
 def run_case(path, program, bless, run_step=None):
     """-> True if all is as expected. run_step(step, expected) may say 'skip' or 'code only'."""
     shown = os.path.relpath(path, ROOT)
@@ -270,6 +294,7 @@ def run_case(path, program, bless, run_step=None):
             print(f"{shown}:{step.number}: $ {step.command}")
             diff = difflib.unified_diff(expected, merged, "expected", "actual", lineterm="", n=3)
             print("\n".join(list(diff)))
+        good = check_figures(path, "\n".join(lines), scratch.work, bless) and good
     if bless and edits:
         for step, merged in reversed(edits):
             if any(line.startswith(("$ ", "```")) for line in merged):
@@ -299,7 +324,7 @@ def all_cases():
 
 def self_test():
     """The runner must accept what is right and refuse each mutant of it."""
-    fake = '#!/bin/sh\necho "took $$ s"; cat "$1" >&2; [ -e "$1" ] || exit 2\n'
+    fake = '#!/bin/sh\necho "took $$ s"; echo "[##........]  21 %  t = 2"; cat "$1" >&2; [ -e "$1" ] || exit 2\n'
     case = "# title\n```toml a.toml\nx = 1\n```\n```console\n$ anholon a.toml\ntook … s\nx = 1\n\n$ anholon b 2>/dev/null \\\n    && true\n…\n[exit 2]\n```\n"
     mutants = {
         "wrong line": case.replace("\nx = 1\n\n", "\nx = 2\n\n"),
@@ -314,6 +339,8 @@ def self_test():
         "nothing run": case.replace("$ anholon a.toml", "").replace("console", "text"),
         "never closed": case.removesuffix("```\n"),
         "escape": case.replace("a.toml\nx", "../a.toml\nx"),
+        "figure of another page": case + "![a](figures/b.svg)\n",
+        "figure of old": case + "![a](figures/a.toml)\n",
     }
     failures = 0
     with tempfile.TemporaryDirectory() as scratch:
@@ -331,6 +358,8 @@ def self_test():
                 sys.stdout.close()
                 sys.stdout = stdout
 
+        (path.parent / "figures").mkdir()
+        (path.parent / "figures" / "a.toml").write_text("x = 2\n")
         if not verdict(case):
             print("a good case was refused")
             failures += 1
@@ -343,6 +372,10 @@ def self_test():
             if path.read_text(encoding="utf-8").replace("\n\n$", "\n$") != case.replace("\n\n$", "\n$"):
                 print(f"blessing did not restore: {title}\n{path.read_text(encoding='utf-8')}")
                 failures += 1
+        verdict(mutants["figure of old"], bless=True)
+        if not verdict(mutants["figure of old"]):
+            print("blessing did not draw the figure")
+            failures += 1
     print(f"{len(mutants)} mutants, {failures} mistakes")
     return 1 if failures else 0
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the ```console blocks of README.md and of pages of doc/ with the rules of golden.py.
 
-usage: readme.py --program PROGRAM [--bless]
+usage: readme.py --program PROGRAM [--bless] [PAGE.md ...]     (default: all of PAGES)
 
 `$ anholon …` (or `$ build/anholon …`) is run, and so are cat, head and tail of its results. Where no output is
 shown only success is asked for. `$ ./dev COMMAND` must be a command of ./dev and is not run.
@@ -42,8 +42,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", type=pathlib.Path, required=True)
     parser.add_argument("--bless", action="store_true")
+    parser.add_argument("pages", nargs="*", type=pathlib.Path)
     args = parser.parse_args()
-    pages = [page for page in (golden.ROOT / name for name in PAGES) if page.exists()]
+    pages = [page.resolve() for page in args.pages] or [page for page in (golden.ROOT / name for name in PAGES) if page.exists()]
     return 1 if golden.run_all(pages, args.program, args.bless, step_mode) else 0
 
 

@@ -1,0 +1,36 @@
+"""Settings of the site that `./dev docs` builds from the staged pages (tools/site.py)."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+project = "Anholon"
+copyright = "the authors of Anholon"
+html_title = "Anholon"
+root_doc = "index"
+extensions = ["myst_parser", "sphinx_copybutton", "mathml"]
+
+myst_enable_extensions = ["dollarmath", "attrs_block"]
+myst_heading_anchors = 5
+myst_dmath_double_inline = True
+myst_dmath_allow_digits = False
+myst_all_links_external = False
+suppress_warnings = ["myst.header", "misc.highlighting_failure"]
+
+smartquotes = False  # a prime is a derivative and -- begins an option
+
+html_theme = "furo"
+html_static_path = [str(Path(__file__).parent / "static")]
+html_css_files = ["site.css"]
+html_math_renderer = "mathml"
+html_copy_source = False
+html_show_sourcelink = False
+html_theme_options = {"navigation_with_keys": True}
+pygments_style = "a11y-high-contrast-light"
+pygments_dark_style = "a11y-high-contrast-dark"
+
+# A copied command has neither its prompt nor its output.
+copybutton_prompt_text = "$ "
+copybutton_only_copy_prompt_lines = True
+copybutton_remove_prompts = True
