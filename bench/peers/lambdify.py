@@ -6,7 +6,8 @@
 Prints the time of a batch and of one call. SymPy is used as people use it: (a) lambdify of mass_matrix_full and
 forcing_full, then numpy.linalg.solve; (b) lambdify of an explicit right side, simplified, with common subexpressions.
 anholon: the compiled function; the formulas of the same function as they run in NumPy; and the program of
-`derive --format python`, in all coordinates and velocities with multipliers. The last two need no compiler.
+`derive --format python`, by its rates in independent velocities and by its rhs in all coordinates and velocities with
+multipliers. The last three need no compiler. SymPy's functions have six rates, ours eight: also those of the place.
 """
 
 import sys
@@ -92,6 +93,7 @@ def main(states):
     rows = {"anholon, NumPy": (lambda: by_numpy(0.0, x), lambda: by_numpy(0.0, one))}
     full = program["START"][:, None] * (1 + 0.01 * draw.standard_normal((len(program["START"]), states)))
     first = full[:, 0].copy()
+    rows["anholon, rates"] = (lambda: program["rates"](0.0, x), lambda: program["rates"](0.0, one))
     rows["anholon, program"] = (lambda: program["rhs"](0.0, full), lambda: program["rhs"](0.0, first))
     rows |= {name: (lambda peer=peer: peer(*y), lambda peer=peer: peer(*single)) for name, peer in peers.items()}
     for name, (many, alone) in rows.items():

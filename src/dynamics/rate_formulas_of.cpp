@@ -213,6 +213,14 @@ Column gradients(const Column& es, const Column& by, std::size_t first_row, cons
 
 }  // namespace
 
+std::optional<RateFormulas> independent_rates(const Scenario& scenario, const StateChoice& choice) {
+  Workspace own(scenario);
+  std::string why;
+  const std::unique_ptr<Dynamics> function = Dynamics::make(own, choice, {}, why);
+  if (!function || !function->minimal()) return std::nullopt;
+  return rate_formulas_of(own, *function, {});
+}
+
 RateFormulas rate_formulas_of(Workspace& s, const Dynamics& dynamics, std::span<const NodeId> input_formulas) {
   return Builder(s, dynamics, input_formulas).run();
 }

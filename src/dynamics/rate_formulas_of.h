@@ -9,6 +9,9 @@ namespace anholon {
 // Throws Failure for functions without a formula.
 RateFormulas rate_formulas_of(Workspace& scenario, const Dynamics& dynamics, std::span<const NodeId> input_formulas);
 
+// The rates in independent velocities, with inputs by their formulas. Returns nullopt if the equations have none.
+std::optional<RateFormulas> independent_rates(const Scenario& scenario, const StateChoice& choice);
+
 // A point: all parameters of the model, inputs among them, and what the equations were solved for (empty where rates are
 // explicit).
 struct FormulaPoint {

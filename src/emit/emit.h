@@ -21,6 +21,8 @@
 
 namespace anholon {
 
+struct RateFormulas;
+
 // An input, which is a symbol in the equations, and its formula in t, state and parameters.
 struct InputFormula {
   std::size_t control;
@@ -38,6 +40,7 @@ struct EmitOptions {
   std::optional<Start> start;  // an initial state
   std::vector<InputFormula> inputs;
   std::vector<std::pair<std::string, Expr>> outputs;  // names and values
+  const RateFormulas* rates = nullptr;                // of independent velocities, for Python
 };
 
 // Both throw Failure for an expression that cannot be written: an unknown function of time, a number beyond double.

@@ -1,5 +1,6 @@
 #include "base/escape.h"
 #include "emit/elimination.h"
+#include "emit/python_rates.h"
 #include "emit/statements.h"
 #include "emit/text.h"
 #include "numeric/number.h"
@@ -168,8 +169,8 @@ class PythonModule {
 
   std::string text() {
     if (options_.start) pivots_ = pivots_at_start(system_, m_, *options_.start);
-    return documentation() + tables() + start() + parameters() + inputs() + equations() + newton() + elimination() +
-           leading() + right_side() + results() + demonstration();
+    return documentation() + tables() + start() + parameters() + inputs() + equations() + newton() + one() +
+           elimination() + leading() + right_side() + rates() + results() + demonstration();
   }
 
  private:
@@ -187,6 +188,11 @@ All functions also take many states at once: state[:, k] at time t[k].
 With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
 """
 )";
+    if (options_.rates)
+      out =
+          put(out, "With SciPy:",
+              "rates(t, x, p) is the same motion in the numbers X: in independent velocities, without multipliers and\n"
+              "constraints that drift, and several times faster. It begins at X_START.\nWith SciPy:");
     return options_.start ? out : put(out, "START", "start");
   }
 
@@ -194,7 +200,7 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
   std::string tables() const {
     std::vector<std::string> parameters;
     for (const Parameter& p : system_.model->parameters) parameters.push_back(p.name);
-    return std::string(pivots_ ? "import bisect\nimport math\n\n" : "") + "import numpy as np\n\n" +
+    return std::string(fast() ? "import bisect\nimport math\n\n" : "") + "import numpy as np\n\n" +
            table("STATE", m_.state_names) + table("LEAD", m_.leading_names) + table("PARAMETERS", parameters) +
            table("HIDDEN", m_.hidden_names) + (inputs_ ? table("INPUTS", m_.input_names) : "") + event_tables();
   }
@@ -277,6 +283,12 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
     return begin + "\n" + text;
   }
 
+  // Functions of single numbers are faster by the module math.
+  bool fast() const { return pivots_ || options_.rates; }
+  std::string one() const { return fast() ? "\n\n_DEFAULTS = DEFAULTS.tolist()\n\n\n" + scalars() : ""; }
+
+  std::string rates() const { return options_.rates ? python_rates(*options_.rates) : ""; }
+
   // The matrix and the right side by names, then the elimination: a function of the library for numbers.
   std::string elimination() {
     if (!pivots_) return {};
@@ -298,8 +310,7 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
     for (std::size_t i = 0; i < matrix.size(); ++i) names.matrix.push_back(name(matrix[i], "a", i));
     for (std::size_t i = 0; i < right.size(); ++i) names.right.push_back(name(-right[i], "b", i));
     const Statements body = writer_.body(es, own);
-    std::string out = "\n\n_DEFAULTS = DEFAULTS.tolist()\n\n\n";
-    out += scalars();
+    std::string out;
     if (inputs_) {
       const Statements formulas = writer_.body(m_.input_values, targets(m_.inputs.size()));
       out +=

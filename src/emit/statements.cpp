@@ -128,14 +128,7 @@ std::string Writer::call(NodeId id) {
   if (n.kind == Kind::lookup) {
     const StepFunction& f = g_.step_function(n.index);
     const std::string& x = text_.at(g_.terms(id)[0].node).s;
-    const auto list = [](const std::vector<Rational>& numbers) {
-      std::string out;
-      for (const Rational& r : numbers) out += (out.empty() ? "" : ", ") + number(r);
-      return "[" + out + "]";
-    };
-    if (language_ == Language::python)
-      return "np.take(" + list(f.values) + ", np.searchsorted(" + list(f.knots) + ", " + x + ", side='right'))";
-    return c_lookup(f, x);
+    return language_ == Language::python ? python_lookup(f, x) : c_lookup(f, x);
   }
   if (n.kind == Kind::atan2)
     return std::string(language_ == Language::c ? "atan2(" : "np.arctan2(") + text_.at(g_.terms(id)[0].node).s + ", " +

@@ -53,7 +53,17 @@ void StraightLine::for_each_operand(std::uint32_t s, const F& f) const {
   }
 }
 
-StraightLine::StraightLine(const RateFormulas& f, const Column& es) : formulas_(f), tape_(tape_of(es)) {
+std::string StraightLine::assigned(const std::string& name, const std::string& value, bool declare) const {
+  if (language_ == Language::python) return "    " + name + " = " + value + "\n";
+  return (declare ? "  const double " : "  ") + name + " = " + value + ";\n";
+}
+
+std::string StraightLine::function_name(Function f) const {
+  return language_ == Language::python ? info(f).numpy : info(f).c;
+}
+
+StraightLine::StraightLine(const RateFormulas& f, const Column& es, Language language)
+    : formulas_(f), language_(language), tape_(tape_of(es)) {
   std::unordered_map<NodeId, std::string> arguments{{f.model->graph->time().id, "t"}};
   const auto add = [&](const RateFormulas::Symbols& list, const char* array) {
     for (std::size_t i = 0; i < list.size(); ++i) arguments[list.symbols[i].id] = element(array, i);
@@ -93,7 +103,7 @@ StraightLine::StraightLine(const RateFormulas& f, const Column& es) : formulas_(
     } else if (!inline_number(s)) {
       // An operation that was computed before is not computed again.
       const auto [known, fresh] = computed.try_emplace(operation(s), "s" + std::to_string(s));
-      if (fresh) to += "  const double " + known->second + " = " + known->first + ";\n";
+      if (fresh) to += assigned(known->second, known->first, true);
       name_[s] = known->second;
     } else {
       name_[s] = operation(s);
@@ -109,7 +119,7 @@ StraightLine::StraightLine(const RateFormulas& f, const Column& es) : formulas_(
   for (const std::uint32_t s : constants) {
     const auto [place, fresh] = places.try_emplace(name_[s], element("c", constants_.size()));
     if (fresh) {
-      constants_text_ += "  " + place->second + " = " + name_[s] + ";\n";
+      constants_text_ += assigned(place->second, name_[s], false);
       constants_.push_back(s);
     }
     name_[s] = place->second;
@@ -121,13 +131,13 @@ StraightLine::StraightLine(const RateFormulas& f, const Column& es) : formulas_(
     }
   for (std::size_t i = 0; i < tape_.roots.size(); ++i)
     if (const std::string& value = name_[tape_.roots[i]]; value != "0.0")
-      text_ += "  " + element("out", i) + " = " + value + ";\n";
+      text_ += assigned(element("out", i), value, false);
 }
 
 std::string StraightLine::statements(bool sparse) const {
   std::string out = text_;
   for (std::size_t i = 0; !sparse && i < tape_.roots.size(); ++i)
-    if (name_[tape_.roots[i]] == "0.0") out += "  " + element("out", i) + " = 0;\n";
+    if (name_[tape_.roots[i]] == "0.0") out += assigned(element("out", i), "0", false);
   return out;
 }
 
@@ -155,16 +165,18 @@ bool StraightLine::inline_number(std::uint32_t s) const {
 
 std::string StraightLine::power(const std::string& x, const Rational& exponent) const {
   const Rational e = abs(exponent);
+  const std::string root = language_ == Language::python ? "np.sqrt(" : "sqrt(";
   std::string out;
   if (e == Rational(1, 2)) {
-    out = "sqrt(" + x + ")";
+    out = root + x + ")";
   } else if (e == Rational(3, 2)) {
-    out = x + "*sqrt(" + x + ")";
+    out = x + "*" + root + x + ")";
   } else if (e.get_den() == 1 && e <= kLargestPower) {
     out = x;
     for (long k = e.get_num().get_si(); k > 1; --k) out += "*" + x;
   } else {
-    return "pow(" + x + ", " + number(exponent) + ")";
+    return language_ == Language::python ? x + "**(" + number(exponent) + ")"
+                                         : "pow(" + x + ", " + number(exponent) + ")";
   }
   return exponent < 0 ? "1/(" + out + ")" : out;
 }
@@ -207,14 +219,16 @@ std::string StraightLine::operation(std::uint32_t s) {
   case Op::function: {
     const Function f = static_cast<Function>(in.index);
     used_sign_ = used_sign_ || f == Function::sign;
-    return std::string(info(f).c) + "(" + a + ")";
+    return function_name(f) + "(" + a + ")";
   }
   case Op::arctan2:
-    return "atan2(" + a + ", " + name_[in.b] + ")";
+    return (language_ == Language::python ? "np.arctan2(" : "atan2(") + a + ", " + name_[in.b] + ")";
   case Op::select:
+    if (language_ == Language::python) return "np.where(" + name_[in.first] + " >= 0, " + a + ", " + name_[in.b] + ")";
     return "(" + name_[in.first] + " >= 0 ? " + a + " : " + name_[in.b] + ")";
   case Op::lookup:
-    return c_lookup(tape_.step_functions[in.index], a);
+    return language_ == Language::python ? python_lookup(tape_.step_functions[in.index], a)
+                                         : c_lookup(tape_.step_functions[in.index], a);
   case Op::input:
   case Op::parameter:
   case Op::rate:

@@ -1,17 +1,18 @@
-// Expressions as statements of C, one operation each, from a tape: products of many factors share what they have in
+// Expressions as statements of C or Python, one operation each, from a tape: products of many factors share what they have in
 // common, and what depends on parameters alone is computed apart, once for many calls.
 #pragma once
 #include <string>
 #include <vector>
 
 #include "emit/rate_formulas.h"
+#include "emit/statements.h"
 #include "tape/tape.h"
 
 namespace anholon::emit {
 
 class StraightLine {
  public:
-  StraightLine(const RateFormulas& formulas, const Column& es);
+  StraightLine(const RateFormulas& formulas, const Column& es, Language language = Language::c);
 
   // c[i] = …, of p.
   const std::string& constants() const { return constants_text_; }
@@ -32,8 +33,11 @@ class StraightLine {
   template <class F>
   void for_each_operand(std::uint32_t slot, const F& f) const;
   bool inline_number(std::uint32_t slot) const;
+  std::string assigned(const std::string& name, const std::string& value, bool declare) const;
+  std::string function_name(Function f) const;
 
   const RateFormulas& formulas_;
+  Language language_;
   Tape tape_;
   bool time_ = false, used_sign_ = false;
   std::vector<std::string> name_;         // of each slot that is needed

@@ -139,6 +139,15 @@ std::string number(const Rational& r) {
   return sign + digits.substr(0, whole) + "." + digits.substr(whole);
 }
 
+std::string python_lookup(const StepFunction& f, const std::string& x) {
+  const auto list = [](const std::vector<Rational>& numbers) {
+    std::string out;
+    for (const Rational& r : numbers) out += (out.empty() ? "" : ", ") + number(r);
+    return "[" + out + "]";
+  };
+  return "np.take(" + list(f.values) + ", np.searchsorted(" + list(f.knots) + ", " + x + ", side='right'))";
+}
+
 std::string c_lookup(const StepFunction& f, const std::string& x) {
   // Splits in halves, because compilers recurse over nested expressions.
   const std::function<std::string(std::size_t, std::size_t)> among = [&](std::size_t from, std::size_t to) {

@@ -13,6 +13,9 @@ std::string number(const Rational& r);
 // The value of a step function at x as an expression of C.
 std::string c_lookup(const StepFunction& f, const std::string& x);
 
+// The same of Python.
+std::string python_lookup(const StepFunction& f, const std::string& x);
+
 // Values and the places that they are assigned to.
 struct Assignments {
   Column values;

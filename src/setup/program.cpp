@@ -29,11 +29,12 @@ EmitOptions::Start start_for_program(Workspace& s, const StateChoice& choice) {
 }  // namespace
 
 std::string program_text(const Scenario& scenario, const StateChoice& choice, ProgramLanguage language,
-                         const std::string& name, const std::string& made_by) {
+                         const std::string& name, const std::string& made_by, const RateFormulas* rates) {
   Workspace own(scenario);
   EmitOptions options;
   options.name = name;
   options.made_by = made_by;
+  options.rates = rates;
   options.start = start_for_program(own, choice);
   for (const Monitor& m : own.model->monitors) options.outputs.emplace_back(m.name, m.value);
   OpenSystem open = open_inputs(own);

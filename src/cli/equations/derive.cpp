@@ -5,6 +5,7 @@
 #include "cli/input.h"
 #include "cli/models/show.h"
 #include "cli/say.h"
+#include "dynamics/rate_formulas_of.h"
 #include "report/equations.h"
 #include "result/file.h"
 #include "setup/eliminate.h"
@@ -57,8 +58,10 @@ int write_program(const Options& o, const Reader& in, const Formulation& f) {
       "anholon derive " + o.model + " --format " + o.format + (o.motion.form ? " --form " + *o.motion.form : "");
   for (const std::string& set : o.set) made_by += " --set " + set;
   try {
-    deliver(o, program_text(s, choice, o.format == "c" ? ProgramLanguage::c : ProgramLanguage::python,
-                            std::filesystem::path(o.model).stem().string(), made_by));
+    const bool python = o.format == "python";
+    const auto rates = python ? independent_rates(s, choice) : std::nullopt;
+    deliver(o, program_text(s, choice, python ? ProgramLanguage::python : ProgramLanguage::c,
+                            std::filesystem::path(o.model).stem().string(), made_by, rates ? &*rates : nullptr));
   } catch (const Failure& failure) {
     print_diagnostic(failure.diagnostic, in.source);
     return kBadInput;
