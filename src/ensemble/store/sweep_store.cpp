@@ -36,7 +36,9 @@ std::string shown(const std::string& text) {
 // Throws Failure that names the first thing in which two requests differ.
 void must_agree(const std::string& folder, const SweepRequest& there, const SweepRequest& here) {
   const auto refuse = [&](const std::string& what, const std::string& old, const std::string& now) {
-    throw Failure({}, folder + " holds another sweep: " + what + " is " + old + " there and " + now + " here",
+    throw Failure({},
+                  folder + " holds another sweep: " + what +
+                      (old == now ? " differs" : " is " + old + " there and " + now + " here"),
                   "give another folder; a sweep goes on by the same command");
   };
   std::set<std::string> names;
@@ -140,7 +142,11 @@ FileEnd end_of(const std::string& path) {
 }  // namespace
 
 SweepStore::SweepStore(std::string folder, SweepRequest request)
-    : folder_(std::move(folder)), request_(std::move(request)), id_(sha256_text(request_json(request_, ""))) {}
+    : folder_(std::move(folder)), request_(std::move(request)) {
+  SweepRequest distinguished = request_;
+  distinguished.recipe.clear();
+  id_ = sha256_text(request_json(distinguished, ""));
+}
 
 bool SweepStore::is_there(const std::string& folder) {
   std::error_code none;
