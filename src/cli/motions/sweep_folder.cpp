@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <thread>
 
 #include "base/json.h"
 #include "cli/commands.h"
@@ -131,8 +133,41 @@ int sweep_into_folder(const Options& o, const FolderSweep& sweep) {
   return all_finished(p) ? kOk : kStopped;
 }
 
+namespace {
+
+// Prints one line every few seconds until all parts are there, or Ctrl-C. What was written since the last line tells how
+// fast the cases come now.
+void watch(const SweepStore& store) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::seconds kPause{2};
+  catch_stop("");
+  std::size_t before = 0;
+  std::optional<Clock::time_point> last;
+  while (!stop_requested()) {
+    const SweepStore::Progress p = or_refuse([&] { return store.progress(); });
+    const Clock::time_point now = Clock::now();
+    const double seconds = last ? std::chrono::duration<double>(now - *last).count() : 0;
+    const double speed =
+        p.cases > before && seconds > 0 ? static_cast<double>(p.cases - before) / seconds : p.cases_per_second;
+    std::string rest;
+    if (p.parts < p.all_parts && speed > 0)
+      rest = "; " + number_text(speed, 3) + " cases/s, " +
+             duration(static_cast<double>(p.all_cases - p.cases) / speed) + " left";
+    say(stdout, "%zu of %zu parts, %zu of %zu cases%s%s%s\n", p.parts, p.all_parts, p.cases, p.all_cases,
+        p.outcomes.empty() ? "" : ": ", outcome_list(p.outcomes).c_str(), rest.c_str());
+    std::fflush(stdout);
+    if (p.parts == p.all_parts) return;
+    if (!last || p.cases > before) last = now, before = p.cases;
+    for (int k = 0; k < 20 && !stop_requested(); ++k) std::this_thread::sleep_for(kPause / 20.0);
+  }
+}
+
+}  // namespace
+
 int sweep_status(const Options& o) {
   const SweepStore store = or_refuse([&] { return SweepStore::open(o.folder); });
+  if (o.watch && o.json) throw UsageError{"error: --watch and --json exclude each other\n"};
+  if (o.watch) watch(store);
   const SweepStore::Progress p = or_refuse([&] { return store.progress(); });
   if (o.json) {
     JsonWriter j;
