@@ -5,6 +5,7 @@ import pathlib
 import pickle
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -70,8 +71,13 @@ def test_an_opened_folder_goes_on(quiet: pathlib.Path, tmp_path: pathlib.Path, d
 
 def test_ctrl_c_keeps_complete_parts(tmp_path: pathlib.Path, disc: an.Model) -> None:
     folder, many = tmp_path / "stopped", np.linspace(1, 7, 100_000)
-    press = threading.Timer(1, signal.raise_signal, [signal.SIGINT])
-    press.start()
+
+    def press() -> None:
+        while not list(folder.glob("part-*")):
+            time.sleep(0.01)
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+
+    threading.Thread(target=press, daemon=True).start()
     with pytest.raises(an.Interrupted) as stopped:
         disc.sweep({"phi'": many}, to=5, out=folder, chunk=500)
     kept = stopped.value.result
