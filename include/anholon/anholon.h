@@ -10,5 +10,6 @@
 #include "anholon/page.h"
 #include "anholon/proof.h"
 #include "anholon/sweep.h"
+#include "anholon/sweep_folder.h"
 #include "anholon/system.h"
 #include "anholon/version.h"

@@ -57,6 +57,8 @@ class ANHOLON_API Model {
   const std::vector<Diagnostic>& remarks() const;
   // The text it was read from.
   const std::string& text() const;
+  // How many further files that text refers to.
+  std::size_t base_files() const;
 
   struct Data;
   explicit Model(std::shared_ptr<const Data> data) : data_(std::move(data)) {}

@@ -70,6 +70,7 @@ from .from_sympy import from_sympy
 from .model import Check, Model, load, loads, zoo
 from .run import Figure, Page, Run
 from .sweep import Sweep, normal, uniform
+from .sweep_folder import open_sweep, SweepFolder
 
 __version__: str = version()
 
@@ -100,6 +101,7 @@ __all__ = [
     "Stability",
     "State",
     "Sweep",
+    "SweepFolder",
     "acc",
     "acos",
     "acosh",
@@ -131,6 +133,7 @@ __all__ = [
     "norm",
     "norm2",
     "normal",
+    "open_sweep",
     "pi",
     "piecewise",
     "quat",

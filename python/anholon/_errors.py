@@ -6,12 +6,13 @@ import html
 import linecache
 import re
 import traceback
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ._core import Diagnostic, Outcome
     from .run import Run
     from .sweep import Sweep
+    from .sweep_folder import SweepFolder
 
 
 class ModelError(ValueError):
@@ -100,7 +101,7 @@ class Interrupted(KeyboardInterrupt):
     """Ctrl-C during a computation. What was computed until then is kept.
 
     Attributes:
-        result: the :class:`Run` or :class:`Sweep` as far as it came.
+        result: the :class:`Run`, :class:`Sweep` or :class:`SweepFolder` as far as it came.
 
     Example:
         >>> import anholon as an, signal, threading
@@ -113,9 +114,9 @@ class Interrupted(KeyboardInterrupt):
         interrupted
     """
 
-    def __init__(self, result: Run | Sweep) -> None:
+    def __init__(self, result: Run | Sweep | SweepFolder) -> None:
         super().__init__("interrupted; what was computed is in .result")
-        self.result = result
+        self.result: Any = result
 
 
 def _calling_lines(error: BaseException) -> list[str]:

@@ -6,7 +6,8 @@ import html
 import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, overload
 
 from . import _core, _display
 from ._errors import Interrupted, ModelError, MotionError
@@ -18,8 +19,26 @@ from .equations import Equations, Proof
 from .expressions import Expr
 from .run import Run
 from .sweep import Law, Sweep
+from .sweep_folder import SweepFolder, SweepRequest, Words
+
+if TYPE_CHECKING:
+    from distributed import Client
 
 _KEPT = 16  # prepared systems of a model
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a model is read: a text with its name, or a file."""
+
+    text: str | None
+    name: str
+
+    def __call__(self, given: dict[str, str], cases: list[str]) -> _core.Model:
+        """Reads the model."""
+        if self.text is None:
+            return _core.read_file(self.name, given, cases)
+        return _core.read_text(self.text, given, cases, self.name)
 
 
 class Model:
@@ -35,10 +54,14 @@ class Model:
         <model 'Disc rolling on a plane': coordinates x, y, psi, theta, phi; 2 constraints>
     """
 
-    def __init__(self, core: _core.Model, again: Callable[[dict[str, str], list[str]], _core.Model], given: dict[str, str], cases: list[str]) -> None:
+    def __init__(self, core: _core.Model, again: Source, given: dict[str, str], cases: list[str]) -> None:
         self._core = core
         self._again, self._given, self._cases = again, given, cases
         self._prepared: dict[Any, _core.System] = {}
+
+    def __reduce__(self) -> tuple[Callable[..., Model], tuple[Source, dict[str, str], list[str]]]:
+        """Another process reads the model again."""
+        return _made, (self._again, self._given, self._cases)
 
     # ---- what it says ----
 
@@ -411,6 +434,7 @@ class Model:
         given = self._linear(about, initial, t)
         return Stability(_core.stability(self._core, parameter, values, form, given, list(eliminate), about == "equilibrium", digits))
 
+    @overload
     def sweep(
         self,
         vary: Mapping[str, Iterable[Number] | Law],
@@ -429,7 +453,57 @@ class Model:
         threads: int = 0,
         stop: Callable[[], bool] | None = None,
         progress: Progress = None,
-    ) -> Sweep:
+        out: None = None,
+    ) -> Sweep: ...
+
+    @overload
+    def sweep(
+        self,
+        vary: Mapping[str, Iterable[Number] | Law],
+        *,
+        to: Number | None = None,
+        at: Iterable[Number] = (),
+        columns: Iterable[str] = (),
+        reduce: Iterable[str] = (),
+        cases: int | None = None,
+        together: bool = False,
+        draw: str = "random",
+        seed: int = 0,
+        tolerance: Number | None = None,
+        initial: Mapping[str, Number] | None = None,
+        form: str = "routh",
+        threads: int = 0,
+        stop: Callable[[], bool] | None = None,
+        progress: Progress = None,
+        out: str | os.PathLike[str],
+        on: Client | str | None = None,
+        chunk: int | None = None,
+        share: tuple[int, int] = (1, 1),
+    ) -> SweepFolder: ...
+
+    def sweep(
+        self,
+        vary: Mapping[str, Iterable[Number] | Law],
+        *,
+        to: Number | None = None,
+        at: Iterable[Number] = (),
+        columns: Iterable[str] = (),
+        reduce: Iterable[str] = (),
+        cases: int | None = None,
+        together: bool = False,
+        draw: str = "random",
+        seed: int = 0,
+        tolerance: Number | None = None,
+        initial: Mapping[str, Number] | None = None,
+        form: str = "routh",
+        threads: int = 0,
+        stop: Callable[[], bool] | None = None,
+        progress: Progress = None,
+        out: str | os.PathLike[str] | None = None,
+        on: Client | str | None = None,
+        chunk: int | None = None,
+        share: tuple[int, int] = (1, 1),
+    ) -> Sweep | SweepFolder:
         """Many motions, on all cores: all combinations of the values, the last name varying fastest.
 
         Args:
@@ -453,8 +527,16 @@ class Model:
             stop: asked every 20 ms; True ends the sweep.
             progress: as in :meth:`simulate`; a function is told the number of cases done, twice.
 
+            out: a folder that takes the cases, part by part; what is there already is not computed again. The value is a
+                :class:`SweepFolder`. Ctrl-C keeps all parts that are complete, and the same call goes on.
+            on: with ``out``, a client of Dask distributed, or the address of its scheduler: its workers compute the parts.
+                They need anholon and the folder, nothing else; a part whose worker died is computed by another one.
+            chunk: cases of a part of a new folder; None: as many as take some seconds.
+            share: (i, n): the i-th of n shares, for n processes on one folder.
+
         Raises:
-            ModelError: an argument makes no sense.
+            ModelError: an argument makes no sense; the folder holds another sweep or other files.
+            OSError: a part could not be written.
             TypeError: ``columns`` or ``reduce`` is a single name, no list.
             MotionError: the initial values of the model are inconsistent.
             Interrupted: Ctrl-C; ``.result`` is the sweep as far as it came.
@@ -463,25 +545,17 @@ class Model:
         if isinstance(columns, str) or isinstance(reduce, str):
             raise TypeError('columns and reduce are lists of names: ["theta"]')
         laws = {name: str(of) for name, of in vary.items() if isinstance(of, Law)}
+        end, relative = (None if number is None else text_of(number) for number in (to, tolerance))
+        words: Words = (values, laws, cases, seed, draw, together, end, relative, list_of(at), list(columns), list(reduce))
+        if out is not None:
+            return SweepRequest(self, form, texts_of(initial), words).fill(
+                os.fspath(out), chunk or 0, on=on, share=share, threads=threads, stop=stop, progress=progress
+            )
+        if on is not None or chunk is not None or share != (1, 1):
+            raise ModelError('on, chunk and share belong to a sweep in a folder\nhint: out="falls/"')
         system = self._system(form, texts_of(initial), ())
         with Shown(progress, self.title, _count(values, laws, cases, together), unit="cases") as tell:
-            core, raised = _core.sweep(
-                system,
-                values,
-                laws,
-                cases,
-                seed,
-                draw,
-                together,
-                None if to is None else text_of(to),
-                None if tolerance is None else text_of(tolerance),
-                list_of(at),
-                list(columns),
-                list(reduce),
-                threads,
-                stop,
-                tell,
-            )
+            core, raised = _core.sweep(system, words, threads, stop, tell)
         sweep = Sweep(self, core, list(vary), list(reduce))
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted(sweep) from None
@@ -622,7 +696,7 @@ def load(path: str | os.PathLike[str], *, case: str | Sequence[str] = (), set: M
         'Disc rolling on a plane'
     """
     name = os.fspath(path)
-    return _read(lambda given, cases: _core.read_file(name, given, cases), set, case)
+    return _read(Source(None, os.path.abspath(name) if os.path.exists(name) else name), set, case)
 
 
 def loads(text: str, *, case: str | Sequence[str] = (), set: Mapping[str, Number] | None = None, name: str = "model") -> Model:
@@ -638,11 +712,14 @@ def loads(text: str, *, case: str | Sequence[str] = (), set: Mapping[str, Number
         ... ''').coordinates[0].name
         'th'
     """
-    return _read(lambda given, cases: _core.read_text(text, given, cases, name), set, case)
+    return _read(Source(text, name), set, case)
 
 
-def _read(again: Callable[[dict[str, str], list[str]], _core.Model], set: Mapping[str, Number] | None, case: str | Sequence[str]) -> Model:
-    given, cases = texts_of(set), [case] if isinstance(case, str) else list(case)
+def _read(again: Source, set: Mapping[str, Number] | None, case: str | Sequence[str]) -> Model:
+    return _made(again, texts_of(set), [case] if isinstance(case, str) else list(case))
+
+
+def _made(again: Source, given: dict[str, str], cases: list[str]) -> Model:
     return Model(again(given, cases), again, given, cases)
 
 

@@ -139,5 +139,6 @@ void bind_results(nb::module_& m);
 void bind_models(nb::module_& m);
 void bind_motions(nb::module_& m);
 void bind_sweeps(nb::module_& m);
+void bind_sweep_folders(nb::module_& m);
 
 }  // namespace anholon::python

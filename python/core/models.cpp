@@ -48,6 +48,7 @@ void bind_model(nb::module_& m) {
       .def_prop_ro("cases", &Model::cases)
       .def_prop_ro("remarks", &Model::remarks)
       .def_prop_ro("text", &Model::text)
+      .def_prop_ro("stands_alone", [](const Model& m) { return m.base_files() == 0; })
       .def("forms", [](const Model& model) { return value_of(unlocked([&] { return model.forms(); })); });
   m.def(
       "read_file",

@@ -7,6 +7,7 @@ NB_MODULE(_core, m) {
   anholon::python::bind_models(m);
   anholon::python::bind_motions(m);
   anholon::python::bind_sweeps(m);
+  anholon::python::bind_sweep_folders(m);
   anholon::python::bind_dynamics(m);
   anholon::python::bind_analysis(m);
 }

@@ -1,6 +1,23 @@
-#include "core.h"
+#include "sweep_options.h"
 
 namespace anholon::python {
+
+SweepOptions options_of(const SweepWords& words) {
+  const auto& [values, laws, cases, seed, draw, together, to, tolerance, at, columns, reduce] = words;
+  SweepOptions options;
+  options.draw = draw, options.together = together, options.columns = columns, options.reduce = reduce;
+  options.cases = cases, options.seed = seed;
+  for (const std::string& t : at) options.at.emplace_back(t);
+  for (const auto& [name, list] : values) {
+    Vary& vary = options.vary.emplace_back();
+    vary.name = name;
+    for (const std::string& number : list) vary.values.emplace_back(number);
+    if (const auto law = laws.find(name); law != laws.end()) vary.law = law->second;
+  }
+  if (to) options.to = Number(*to);
+  if (tolerance) options.tolerance = Number(*tolerance);
+  return options;
+}
 
 void bind_sweeps(nb::module_& m) {
   nb::class_<Sweep>(m, "Sweep")
@@ -31,24 +48,8 @@ void bind_sweeps(nb::module_& m) {
       .def_prop_ro("outcome", nb::overload_cast<>(&Sweep::outcome, nb::const_));
   m.def(
       "sweep",
-      [](const System& system, const std::vector<std::pair<std::string, std::vector<std::string>>>& values,
-         const std::map<std::string, std::string>& laws, std::optional<std::size_t> cases, std::uint64_t seed,
-         const std::string& draw, bool together, std::optional<std::string> to, std::optional<std::string> tolerance,
-         const std::vector<std::string>& at, const std::vector<std::string>& columns,
-         const std::vector<std::string>& reduce, std::size_t threads, nb::object stop, nb::object progress) {
-        SweepOptions options;
-        options.draw = draw, options.together = together, options.columns = columns, options.reduce = reduce;
-        for (const std::string& t : at) options.at.emplace_back(t);
-        for (const auto& [name, list] : values) {
-          Vary& vary = options.vary.emplace_back();
-          vary.name = name;
-          for (const std::string& number : list) vary.values.emplace_back(number);
-          if (const auto law = laws.find(name); law != laws.end()) vary.law = law->second;
-        }
-        options.cases = cases;
-        options.seed = seed;
-        if (to) options.to = Number(*to);
-        if (tolerance) options.tolerance = Number(*tolerance);
+      [](const System& system, const SweepWords& words, std::size_t threads, nb::object stop, nb::object progress) {
+        SweepOptions options = options_of(words);
         options.threads = threads;
         Attendant attendant(std::move(stop), std::move(progress));
         options.cancelled = [&] { return attendant.cancelled(); };
@@ -56,8 +57,7 @@ void bind_sweeps(nb::module_& m) {
         Sweep done = value_of(attendant.attend([&] { return sweep(system, options); }));
         return std::pair(std::move(done), attendant.raised());
       },
-      "system"_a, "values"_a, "laws"_a, "cases"_a.none(), "seed"_a, "draw"_a, "together"_a, "to"_a.none(),
-      "tolerance"_a.none(), "at"_a, "columns"_a, "reduce"_a, "threads"_a, "stop"_a.none(), "progress"_a.none());
+      "system"_a, "words"_a, "threads"_a, "stop"_a.none(), "progress"_a.none());
 }
 
 }  // namespace anholon::python

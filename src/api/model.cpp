@@ -31,6 +31,7 @@ const char* version() { return ANHOLON_VERSION; }
 const std::string& Model::title() const { return data_->model->title; }
 const std::vector<Diagnostic>& Model::remarks() const { return data_->remarks; }
 const std::string& Model::text() const { return data_->source.text; }
+std::size_t Model::base_files() const { return data_->source.others.size(); }
 
 std::vector<Coordinate> Model::coordinates() const {
   const inner::Model& m = *data_->model;

@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "api/data.h"
-#include "ensemble/request.h"
-#include "ensemble/variation.h"
-#include "result/choose_columns.h"
+#include "api/sweep_request.h"
 
 namespace anholon::v1 {
 
@@ -26,70 +23,6 @@ struct Sweep::Data {
 
 namespace {
 
-[[noreturn]] void refuse(const inner::MistakeInWord& m, const char* option) {
-  throw inner::Failure({}, std::string(option) + " " + m.word + ": " + m.diagnostic.message, m.diagnostic.hint);
-}
-
-inner::Variation::Draws draws_of(const std::string& name) {
-  if (name == "random") return inner::Variation::Draws::random;
-  if (name == "sobol") return inner::Variation::Draws::sobol;
-  const std::string near = inner::did_you_mean(name, {"random", "sobol"});
-  throw inner::Failure({}, "draw cannot be '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-                       "random or sobol");
-}
-
-// What varies, from the options. Throws Failure.
-inner::Variation variation_of(const SweepOptions& asked, const inner::Model& model) {
-  constexpr std::size_t kMostCases = 100'000'000;  // all of them are held in memory
-  inner::Variation v(asked.seed, draws_of(asked.draw));
-  if (asked.together) v.together();
-  try {
-    for (const Vary& each : asked.vary) {
-      if (!each.law.empty()) {
-        v.add(each.name + "~" + each.law, model);
-        continue;
-      }
-      std::vector<inner::Rational> values;
-      for (const Number& n : each.values) values.push_back(exact(n, each.name));
-      v.add(each.name, std::move(values), model);
-    }
-  } catch (const inner::MistakeInWord& m) {
-    refuse(m, "vary");
-  }
-  v.finish(asked.cases, "SweepOptions::cases");
-  if (v.cases() > kMostCases)
-    throw inner::Failure({}, "the sweep has more than " + std::to_string(kMostCases) + " cases", "fewer values");
-  return v;
-}
-
-// The model with the formulas of the reductions. Throws Failure.
-inner::Outcome scenario_with(const System::Data& of, const std::vector<std::string>& words,
-                             inner::Reductions& reductions, inner::Scenario& scenario) {
-  inner::Diagnostics diagnostics;
-  const auto open = inner::open_model(of.model->source, diagnostics, of.model->overrides, of.model->cases);
-  if (!open) throw inner::Failure(diagnostics.list().front());
-  try {
-    for (const std::string& word : words) reductions.add(word, *open);
-  } catch (const inner::MistakeInWord& m) {
-    refuse(m, "reduce");
-  }
-  inner::Outcome start = make_system(open->model, of.scenario.system.form->name, of.choice, scenario);
-  if (start.ok()) reductions.move_to(scenario);
-  return start;
-}
-
-// The places of the columns that are asked for. Throws Failure.
-std::vector<std::size_t> chosen(const std::vector<std::string>& asked, const std::vector<std::string>& all) {
-  std::vector<std::size_t> places;
-  if (asked.empty()) {
-    for (std::size_t k = 0; k < all.size(); ++k) places.push_back(k);
-    return places;
-  }
-  places = inner::chosen_columns(all, asked);
-  std::sort(places.begin(), places.end());
-  return places;
-}
-
 // Puts each case into its place.
 class CaseKeeper final : public inner::CaseSink {
  public:
@@ -98,7 +31,7 @@ class CaseKeeper final : public inner::CaseSink {
       : data_(data), in_state_(of_state.size()) {
     std::vector<std::string> all = of_state;
     for (const inner::Reduction& r : reductions.list) all.push_back(r.name);
-    places_ = chosen(columns, all);
+    places_ = chosen_places(columns, all);
     for (std::size_t k : places_) {
       data_.columns.push_back(all[k]);
       data_.of_state += k < in_state_;
@@ -161,39 +94,21 @@ std::vector<Number> linspace(double from, double to, std::size_t count) {
 Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
   const System::Data& of = system.data();
   return guarded(of.model->source, [&]() -> Result<Sweep> {
-    inner::EnsembleOptions o;
-    inner::Scenario with_formulas;
-    if (!asked.reduce.empty())
-      if (const inner::Outcome start = scenario_with(of, asked.reduce, o.reductions, with_formulas); !start.ok())
-        return error_of(start);
-    const inner::Scenario& s = asked.reduce.empty() ? of.scenario : with_formulas;
-    o.state = of.choice;
-    const inner::Variation variation = variation_of(asked, *s.model);
-    must_not_be_given(variation.varied(), o.state);
-    o.varied = variation.varied();
-    o.cases = variation.cases();
-    o.numbers = [&variation](std::size_t number) { return inner::EnsembleCase{variation(number), {}}; };
+    constexpr std::size_t kMostCases = 100'000'000;  // all of them are held in memory
+    PreparedSweep p(of, asked);
+    if (!p.start.ok()) return error_of(p.start);
+    inner::EnsembleOptions& o = p.options;
+    if (o.cases > kMostCases)
+      throw inner::Failure({}, "the sweep has more than " + std::to_string(kMostCases) + " cases",
+                           "fewer values, or a sweep in a folder");
     auto data = std::make_shared<Sweep::Data>();
     for (const Vary& v : asked.vary) data->names.push_back(v.name);
-    inner::MotionSettings settings;
-    const auto set = [&](const char* name, const std::vector<std::string>& words) {
-      inner::set(settings, inner::motion_option(name), words, name,
-                 [&](const std::string& text) { return exact(Number(text), name); });
-    };
-    if (asked.to) set("to", {asked.to->text()});
-    if (asked.tolerance) set("tolerance", {asked.tolerance->text()});
-    std::vector<std::string> times;
-    for (const Number& t : asked.at) times.push_back(t.text());
-    if (!times.empty()) set("at", times);
-    settings.error_estimate = "never";
-    inner::ask(settings, s, {"", "", [](const std::string&) {}}, o);
-    o.threads = asked.threads;
     o.cancelled = asked.cancelled;
     o.progress = asked.progress;
     for (const inner::Rational& t : o.at) data->times.push_back(inner::from_rational<double>(t));
-    CaseKeeper cases(*data, inner::ensemble_columns(*s.model), o.reductions, asked.columns);
+    CaseKeeper cases(*data, inner::ensemble_columns(*p.scenario->model), o.reductions, asked.columns);
     cases.hold(o.cases);
-    data->outcome = to_public(inner::ensemble(s, o, cases).outcome);
+    data->outcome = to_public(inner::ensemble(*p.scenario, o, cases).outcome);
     return Sweep(std::move(data));
   });
 }

@@ -346,9 +346,10 @@ class CommandLine {
       c->add_flag("--json", o_.json, "JSON on the standard output");
       return c;
     };
-    part("status", "how far a sweep in a folder is", sweep_status,
-         "Exit status: 0 complete, 1 parts are missing, 2 bad input.\n"
-         "Example: anholon sweep status falls/");
+    CLI::App* status = part("status", "how far a sweep in a folder is", sweep_status,
+                            "Exit status: 0 complete, 1 parts are missing, 2 bad input.\n"
+                            "Example: anholon sweep status falls/ --watch");
+    status->add_flag("--watch", o_.watch, "a line every two seconds until all parts are there");
     CLI::App* c = part("collect", "one file of a sweep in a folder", sweep_collect,
                        "Exit status: 0 ok, 2 bad input, or parts are missing.\n"
                        "Example: anholon sweep collect falls/ -o falls.csv");
@@ -483,12 +484,17 @@ class CommandLine {
                           "Examples: anholon plot run.h5\n"
                           "          anholon plot run.h5 theta \"theta'\" --each --from 2 --to 5\n"
                           "          anholon plot run.h5 y --x x --title \"path of the contact\"\n"
-                          "          anholon plot run.h5 'lambda.*' -o forces.pdf --size 8cmx5cm",
+                          "          anholon plot run.h5 'lambda.*' -o forces.pdf --size 8cmx5cm\n"
+                          "          anholon plot falls/ outcome -o falls.svg       cells over the two that vary",
                           true);
-    c->add_option("RUN", o_.model, "a run: " + known_files("FILE") + ", or - for what comes through a pipe")
+    c->add_option("RUN", o_.model,
+                  "a run: " + known_files("FILE") + ", or - for what comes through a pipe; or the folder of a sweep")
         ->required();
     c->add_option("COLUMN", o_.columns, "names of columns, or patterns");
     c->add_option("--x", o_.abscissa, "the column along the horizontal axis (default: t)")->type_name("COLUMN");
+    c->add_option("--y", o_.ordinate,
+                  "of a sweep: the column along the vertical axis (default: the second that varies)")
+        ->type_name("COLUMN");
     c->add_option("--from", o_.from, "no rows before this time")->type_name("T");
     c->add_option("--to", o_.until, "no rows after this time")->type_name("T");
     c->add_flag("--log", o_.log_axis, "logarithmic vertical axis; what is not positive is left out");

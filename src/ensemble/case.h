@@ -25,6 +25,9 @@ struct EnsembleOptions {
   std::vector<Varied> varied;
   std::size_t cases = 0;
   std::function<EnsembleCase(std::size_t)> numbers;  // of the case with this number; called by many threads at once
+  // Cases that come bit by bit: called when all cases so far have begun, it returns how many more there are, 0 at the end.
+  // `cases` is then the most there may be. Without it all cases are there.
+  std::function<std::size_t()> more;
   Rational to;
   std::vector<Rational> at;  // rows at these times, ascending; none: the final state alone is kept
   Reductions reductions;     // of formulas of the scenario

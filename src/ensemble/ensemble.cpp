@@ -71,17 +71,18 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
 
   tbb::enumerable_thread_specific<CaseWorker> workers([&] { return CaseWorker(plan); });
   std::mutex in_order;
-  std::size_t next = 0, held = 0;
+  std::size_t next = 0, known = o.more ? 0 : o.cases, held = 0;
   bool cut = false;
   const auto begin = [&](tbb::flow_control& flow) -> Group* {
     joined();
     const std::lock_guard lock(in_order);
-    if (next >= o.cases || cancelled()) {
+    if (next >= known && o.more && !cancelled()) known += o.more();
+    if (next >= known || cancelled()) {
       flow.stop();
       return nullptr;
     }
     auto* g = new Group;
-    for (; next < o.cases && g->cases.size() < group; ++next) g->cases.emplace_back().number = next;
+    for (; next < known && g->cases.size() < group; ++next) g->cases.emplace_back().number = next;
     report.most_held = std::max(report.most_held, held += g->cases.size());
     g->hand_over();
     return g;
@@ -124,7 +125,7 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
   });
   const std::lock_guard lock(in_order);
   for (const CaseWorker& w : workers) report.in_workspaces += w.in_workspaces();
-  if (report.done < o.cases)
+  if (report.done < known)
     report.outcome = {OutcomeKind::interrupted, "interrupted", "what was computed is kept"};
   else if (o.estimate != ErrorEstimate::never)
     judge_cases(

@@ -20,6 +20,7 @@ const char* const kNoCairo = "this build of anholon draws no PDF and PNG";
 
 bool has_cairo() { return false; }
 std::string draw_cairo(const Figure&, CairoFormat, const std::string&) { return kNoCairo; }
+std::string draw_cairo(const Drawing&, const std::string&, CairoFormat, const std::string&) { return kNoCairo; }
 
 #else
 
@@ -102,6 +103,10 @@ void word(cairo_t* c, const Word& w) {
 }  // namespace
 
 std::string draw_cairo(const Figure& figure, CairoFormat format, const std::string& path) {
+  return draw_cairo(lay_out(figure), figure.title, format, path);
+}
+
+std::string draw_cairo(const Drawing& d, const std::string& title, CairoFormat format, const std::string& path) {
   // cairo reports neither why a file cannot be written nor that its last bytes are missing, so it draws into memory.
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) return std::strerror(errno);
@@ -110,14 +115,12 @@ std::string draw_cairo(const Figure& figure, CairoFormat format, const std::stri
     static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), length);
     return CAIRO_STATUS_SUCCESS;
   };
-  const Drawing d = lay_out(figure);
   constexpr double kPixelsPerPoint = 200.0 / 72;
   cairo_surface_t* surface = nullptr;
   if (format == CairoFormat::pdf) {
     surface = cairo_pdf_surface_create_for_stream(keep, &bytes, d.width, d.height);
     if (cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS) {
-      if (!figure.title.empty())
-        cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, figure.title.c_str());
+      if (!title.empty()) cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, title.c_str());
       // Without a creation date the same figure has the same bytes.
       cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
     }
@@ -133,6 +136,15 @@ std::string draw_cairo(const Figure& figure, CairoFormat format, const std::stri
   }
   cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
   cairo_set_line_cap(c, CAIRO_LINE_CAP_ROUND);
+  // Patches that share a border would show the paper between them.
+  cairo_set_antialias(c, CAIRO_ANTIALIAS_NONE);
+  for (const Patch& p : d.patches) {
+    cairo_set_source_rgb(c, static_cast<double>(p.rgb >> 16 & 255U) / 255, static_cast<double>(p.rgb >> 8 & 255U) / 255,
+                         static_cast<double>(p.rgb & 255U) / 255);
+    cairo_rectangle(c, p.from.x, p.from.y, p.to.x - p.from.x, p.to.y - p.from.y);
+    cairo_fill(c);
+  }
+  cairo_set_antialias(c, CAIRO_ANTIALIAS_DEFAULT);
   for (const Stroke& s : d.strokes) stroke(c, s);
   for (const Word& w : d.words) word(c, w);
   cairo_status_t status = cairo_status(c);

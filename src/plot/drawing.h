@@ -1,6 +1,8 @@
 // A figure laid out on paper: lines and words with their positions, in points of 1/72 inch, y downwards. The drawing
 // functions know nothing of axes.
 #pragma once
+#include <cstdint>
+
 #include "plot/figure.h"
 
 namespace anholon::plot {
@@ -22,8 +24,15 @@ struct Word {
   bool upwards = false;
 };
 
+// A filled rectangle, below the lines.
+struct Patch {
+  Point from, to;         // opposite corners
+  std::uint32_t rgb = 0;  // 0xrrggbb
+};
+
 struct Drawing {
   double width = 0, height = 0;
+  std::vector<Patch> patches;
   std::vector<Stroke> strokes;
   std::vector<Word> words;
 };
@@ -37,6 +46,7 @@ extern const char* const kColour[kColours];
 // A complete SVG whose colours a page can set: classes s0 … s7, axis, grid, words; variables --s0 …, --ink, --grid,
 // --paper.
 std::string draw_svg(const Figure& figure);
+std::string draw_svg(const Drawing& drawing, const std::string& title);
 // An axis of pgfplots, to be \input.
 std::string draw_tex(const Figure& figure);
 
@@ -45,5 +55,6 @@ bool has_cairo();
 extern const char* const kNoCairo;
 // Returns an empty string, or the reason why the file could not be written.
 std::string draw_cairo(const Figure& figure, CairoFormat format, const std::string& path);
+std::string draw_cairo(const Drawing& drawing, const std::string& title, CairoFormat format, const std::string& path);
 
 }  // namespace anholon::plot

@@ -1,4 +1,5 @@
 #include <charconv>
+#include <cstdio>
 
 #include "base/escape.h"
 #include "plot/drawing.h"
@@ -38,12 +39,13 @@ std::string class_of(const Stroke& s) {
 
 }  // namespace
 
-std::string draw_svg(const Figure& figure) {
-  const Drawing d = lay_out(figure);
+std::string draw_svg(const Figure& figure) { return draw_svg(lay_out(figure), figure.title); }
+
+std::string draw_svg(const Drawing& d, const std::string& title) {
   const std::string w = number(d.width), h = number(d.height);
   std::string out = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + w + "pt\" height=\"" + h +
                     "pt\" viewBox=\"0 0 " + w + " " + h + "\" class=\"anholon-plot\">\n";
-  if (!figure.title.empty()) out += "<title>" + markup_escape(figure.title) + "</title>\n";
+  if (!title.empty()) out += "<title>" + markup_escape(title) + "</title>\n";
   out += "<style>\n.anholon-plot{background:var(--paper,#fff)}\n.anholon-plot "
          "path{fill:none;stroke-linejoin:round}\n.anholon-plot .grid{stroke:var(--grid,#e4e4e4);stroke-width:.5}\n"
          ".anholon-plot .axis{stroke:var(--ink,#222);stroke-width:.6}\n.anholon-plot "
@@ -53,6 +55,12 @@ std::string draw_svg(const Figure& figure) {
   for (std::size_t k = 0; k < kColours; ++k)
     out += ".anholon-plot .s" + std::to_string(k) + "{stroke:var(--s" + std::to_string(k) + "," + kColour[k] + ")}\n";
   out += "</style>\n";
+  for (const Patch& p : d.patches) {
+    char colour[8];
+    std::snprintf(colour, sizeof colour, "#%06x", static_cast<unsigned>(p.rgb & 0xffffffU));
+    out += "<rect x=\"" + number(p.from.x) + "\" y=\"" + number(p.from.y) + "\" width=\"" + number(p.to.x - p.from.x) +
+           "\" height=\"" + number(p.to.y - p.from.y) + "\" fill=\"" + colour + "\" shape-rendering=\"crispEdges\"/>\n";
+  }
   for (const Stroke& s : d.strokes) out += "<path class=\"" + class_of(s) + "\" d=\"" + path(s.points) + "\"/>\n";
   for (const Word& word : d.words) {
     const std::string at = number(word.at.x) + (word.upwards ? " " : "\" y=\"") + number(word.at.y);

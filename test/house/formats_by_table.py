@@ -21,6 +21,7 @@ ALLOWED = {
     # The parts of a sweep in a folder are Parquet files.
     ("src/ensemble/store/sweep_store.h", '#include "result/parquet/parquet.h"'),
     ("src/ensemble/store/sweep_store.cpp", '".parquet"'),
+    ("src/ensemble/parts/fill.cpp", '#include "result/parquet/parquet_sweep.h"'),
     ("src/cli/motions/sweep_folder.cpp", '#include "result/parquet/parquet_sweep.h"'),
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Sweeps in folders: whatever happens to the processes, what is collected has the bytes of one quiet sweep.
 
-    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model part status
+    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model part status plot watched
     folders.py --self-test                                  a part with other numbers is found
 
 Kills come at random moments. Nothing is lost but parts under way, and nothing is left behind that a later process does not clear.
@@ -165,7 +165,40 @@ class Folders:
         self.check()
 
 
-PARTS = ["kill", "stop", "two", "shards", "disk", "model", "part", "status"]
+    def plot(self):
+        """Pictures of a folder, which are the same for the same cases; mistakes are named."""
+        self.run(*self.into())
+        pictures = []
+        for name in ("outcome", "theta"):
+            for k in range(2):
+                path = self.place / f"{name}{k}.svg"
+                self.run("plot", str(self.folder), name, "-o", str(path), status=0)
+                pictures.append(path.read_text())
+        must(pictures[0] == pictures[1] and pictures[2] == pictures[3] != pictures[0], "the pictures differ")
+        must("finished" in pictures[0] and pictures[0].count("<rect") >= 4, "no cells, or no legend")
+        for words, message in [
+            (["lean", "-o", "x.svg"], "has no column 'lean'"),
+            (["outcome"], "a sweep is drawn as .svg"),
+            (["outcome", "--y", "mass", "-o", "x.svg"], "has no column 'mass'"),
+        ]:
+            _, error = self.run("plot", str(self.folder), *words, status=2)
+            must(message in error, error)
+        self.check()
+
+    def watched(self):
+        """Another process looks on until the sweep is complete."""
+        self.run(*self.into("--shard", "1/2"))
+        watcher = self.begin("sweep", "status", str(self.folder), "--watch")
+        time.sleep(0.3)
+        self.run(*self.into())
+        out, error = watcher.communicate(timeout=PATIENCE)
+        lines = out.splitlines()
+        must(watcher.returncode == 0 and lines[0].startswith("10 of 20 parts, 80 of 160 cases"), out + error)
+        must(any(line.startswith("20 of 20 parts, 160 of 160 cases") for line in lines), out)
+        self.check()
+
+
+PARTS = ["kill", "stop", "two", "shards", "disk", "model", "part", "status", "plot", "watched"]
 
 
 def run_parts(arguments):

@@ -133,27 +133,10 @@ std::vector<std::string> names_of(const SweepTable& table) {
   return names;
 }
 
-// Computes the cases from one number to the one before another, of as many parts as they lie in.
-EnsembleReport compute_range(std::deque<Part>& parts, std::size_t from, std::size_t to, SweepOutput& out) {
-  EnsembleReport all;
-  std::size_t first = 0;  // of the part
-  for (Part& p : parts) {
-    const std::size_t begin = std::max(from, first), end = std::min(to, first + p.options.cases);
-    if (begin < end) {
-      EnsembleOptions options = p.options;
-      options.cases = end - begin;
-      options.numbers = [&variation = *p.variation, skipped = begin - first](std::size_t k) {
-        return EnsembleCase{variation(skipped + k), {}};
-      };
-      options.estimate = ErrorEstimate::never;
-      options.cancelled = stop_requested;
-      out.turn_to(*p.table, p.word, begin);
-      add_report(all, ensemble(p.scenario, options, out));
-      if (!all.outcome.ok()) break;
-    }
-    first += p.options.cases;
-  }
-  return all;
+std::vector<SweepPiece> pieces_of(std::deque<Part>& parts) {
+  std::vector<SweepPiece> list;
+  for (Part& p : parts) list.push_back({&p.scenario, &p.options, &*p.table, p.word});
+  return list;
 }
 
 // Everything on which the rows depend.
@@ -235,10 +218,7 @@ int sweep(const Options& asked) {
   catch_stop(o.output);
   const Part& first = parts.front();
   const RunInfo info = run_info(first.asked, first.in, first.scenario, merged(o.motion, first.in.model->simulate));
-  if (names_folder(o.output))
-    return sweep_into_folder(
-        o, {first.table->columns(), asked_of(info, asked, table_text), cases,
-            [&](std::size_t from, std::size_t to, SweepOutput& out) { return compute_range(parts, from, to, out); }});
+  if (names_folder(o.output)) return sweep_into_folder(o, {pieces_of(parts), asked_of(info, asked, table_text), cases});
   if (!o.shard.empty() || !o.chunk.empty())
     throw UsageError{"error: --shard and --chunk belong to a sweep in a folder\nhint: -o falls/\n"};
   SweepOutput out(format, o.output, {info, first.scenario.system.form->name, first.table->columns()});

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
-
-#include <unistd.h>
+#include <thread>
 
 #include "base/json.h"
 #include "cli/commands.h"
 #include "cli/motions/progress.h"
+#include "cli/motions/sweep_output.h"
 #include "cli/say.h"
 #include "result/file.h"
 #include "result/parquet/parquet_sweep.h"
@@ -30,24 +31,9 @@ auto or_refuse(const F& f) {
   }
 }
 
-// The cases of a part, as they are computed.
-class PartWriter final : public SweepWriter {
- public:
-  explicit PartWriter(const std::vector<SweepColumn>& columns) : rows_(columns) {}
-  const std::string& error() const override { return none_; }
-  void row(std::span<const SweepCell> cells) override { rows_.row(cells); }
-  std::string close(const std::string&) override { return {}; }
-  ParquetTable take() { return rows_.take(); }
-
- private:
-  std::string none_;
-  SweepRows rows_;
-};
-
 // --shard i/N: every N-th part, from the i-th on.
 struct Shard {
   std::size_t number = 1, of = 1;
-  bool has(std::size_t part) const { return part % of == number - 1; }
 };
 
 Shard shard_of(const std::string& word) {
@@ -65,28 +51,6 @@ Shard shard_of(const std::string& word) {
   return s;
 }
 
-constexpr std::size_t kMostInPart = 1'000'000;
-
-// The number of cases that take some seconds on one core: 1, 2 or 5 times a power of ten. By trials of more and more
-// cases, whose difference leaves out what each part takes to begin.
-std::size_t chunk_by_trial(const FolderSweep& sweep) {
-  constexpr double kTrial = 0.2, kPart = 8;  // seconds
-  double last = 0, each = 0;                 // seconds of the last trial, of a case
-  for (std::size_t count = 16, before = 0; before < sweep.cases; before = count, count *= 4) {
-    count = std::min(count, sweep.cases);
-    SweepOutput out(std::make_unique<PartWriter>(sweep.columns));
-    const EnsembleReport r = sweep.compute(0, count, out);
-    const double seconds = r.seconds * static_cast<double>(r.threads);
-    each = std::max(seconds - last, 0.0) / static_cast<double>(count - before);
-    if (seconds - last >= kTrial || !r.outcome.ok()) break;
-    last = seconds;
-  }
-  const double wanted = std::clamp(kPart / std::max(each, 1e-9), 1.0, static_cast<double>(kMostInPart));
-  const double power = std::pow(10.0, std::floor(std::log10(wanted)));
-  const double digit = wanted / power;
-  return static_cast<std::size_t>(power * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1));
-}
-
 std::size_t chunk_asked(const std::string& word) {
   std::size_t chunk = 0;
   const auto [end, why] = std::from_chars(word.data(), word.data() + word.size(), chunk);
@@ -94,15 +58,6 @@ std::size_t chunk_asked(const std::string& word) {
     throw UsageError{"error: --chunk takes a number of cases from 1 to " + std::to_string(kMostInPart) + ", not '" +
                      word + "'\n"};
   return chunk;
-}
-
-// The parts to compute, in the order in which this process takes them. A second process on this machine begins at the
-// other end.
-std::vector<std::size_t> parts_to_do(const SweepStore& store, const Shard& shard, bool alone) {
-  std::vector<std::size_t> list = store.missing();
-  std::erase_if(list, [&](std::size_t part) { return !shard.has(part); });
-  if (!alone) std::reverse(list.begin(), list.end());
-  return list;
 }
 
 std::string outcome_list(const std::map<std::string, std::size_t>& outcomes) {
@@ -143,54 +98,76 @@ bool names_folder(const std::string& output) {
 int sweep_into_folder(const Options& o, const FolderSweep& sweep) {
   const Shard shard = shard_of(o.shard);
   SweepRequest request{sweep.asked, {}, sweep.cases, o.chunk.empty() ? 0 : chunk_asked(o.chunk)};
-  for (const SweepColumn& c : sweep.columns) request.columns.push_back(c.name);
-  if (request.chunk == 0) request.chunk = SweepStore::is_there(o.output) ? 1 : chunk_by_trial(sweep);
+  for (const SweepColumn& c : sweep.pieces.front().table->columns()) request.columns.push_back(c.name);
+  if (request.chunk == 0) request.chunk = SweepStore::is_there(o.output) ? 1 : cases_in_part(sweep.pieces);
   const SweepStore store = or_refuse([&] { return SweepStore::open(o.output, request, "anholon " ANHOLON_VERSION); });
   if (!o.chunk.empty() && store.request().chunk != request.chunk)
     say(stderr, "note: the parts of %s have %zu cases; --chunk holds for new folders\n", store.folder().c_str(),
         store.request().chunk);
 
-  const WritingClaim claim(store.folder() + "/" + (o.shard.empty() ? "parts" : "shard " + o.shard));
-  const std::vector<std::size_t> parts = or_refuse([&] { return parts_to_do(store, shard, claim.error().empty()); });
-  const std::size_t all = store.parts();
-  std::size_t done = 0;
-  std::string error;
+  FillOptions fill_options;
+  fill_options.parts = or_refuse([&] { return parts_to_do(store, shard.number, shard.of); });
+  fill_options.cancelled = stop_requested;
+  std::size_t cases = 0;
+  for (const std::size_t part : fill_options.parts) cases += store.range(part).second - store.range(part).first;
+  Filled filled;
   {
-    Progress progress(o.quiet, "part", "parts");
-    for (const std::size_t part : parts) {
-      if (stop_requested()) break;
-      std::error_code none;
-      // Another process was faster.
-      if (!fs::exists(store.path_of(part), none)) {
-        auto rows = std::make_unique<PartWriter>(sweep.columns);
-        PartWriter& written = *rows;
-        SweepOutput out(std::move(rows));
-        const auto [from, to] = store.range(part);
-        if (!sweep.compute(from, to, out).outcome.ok()) break;  // Ctrl-C: an unfinished part does not count
-        error = store.commit(part, written.take());
-        if (!error.empty()) break;
-      }
-      ++done;
-      progress(static_cast<double>(done) / static_cast<double>(parts.size()), static_cast<double>(part), done);
-    }
+    Progress progress(o.quiet, "case", "cases");
+    fill_options.progress = [&](std::size_t done) {
+      progress(static_cast<double>(done) / static_cast<double>(cases), static_cast<double>(done), done);
+    };
+    if (cases > 0) filled = fill(store, sweep.pieces, fill_options);
   }
-  if (!error.empty()) {
-    say(stderr, "error: %s\nhint: the parts before it are kept; the same command goes on\n", error.c_str());
+  if (!filled.error.empty()) {
+    say(stderr, "error: %s\nhint: the parts before it are kept; the same command goes on\n", filled.error.c_str());
     return kBadInput;
   }
   const SweepStore::Progress p = or_refuse([&] { return store.progress(); });
   if (!o.quiet) say_progress(store, p);
-  if (done < parts.size()) {
+  if (filled.parts < fill_options.parts.size()) {
     print_outcome({OutcomeKind::interrupted, "interrupted", "the same command goes on where this one stopped"});
     return kStopped;
   }
-  if (!o.quiet && p.parts < all)
-    say(stderr, "this share is complete; the others are missing: %zu parts\n", all - p.parts);
+  if (!o.quiet && p.parts < p.all_parts)
+    say(stderr, "this share is complete; the others are missing: %zu parts\n", p.all_parts - p.parts);
   return all_finished(p) ? kOk : kStopped;
 }
 
+namespace {
+
+// Prints one line every few seconds until all parts are there, or Ctrl-C. What was written since the last line tells how
+// fast the cases come now.
+void watch(const SweepStore& store) {
+  using Clock = std::chrono::steady_clock;
+  constexpr std::chrono::seconds kPause{2};
+  catch_stop("");
+  std::size_t before = 0;
+  std::optional<Clock::time_point> last;
+  while (!stop_requested()) {
+    const SweepStore::Progress p = or_refuse([&] { return store.progress(); });
+    const Clock::time_point now = Clock::now();
+    const double seconds = last ? std::chrono::duration<double>(now - *last).count() : 0;
+    const double speed =
+        p.cases > before && seconds > 0 ? static_cast<double>(p.cases - before) / seconds : p.cases_per_second;
+    std::string rest;
+    if (p.parts < p.all_parts && speed > 0)
+      rest = "; " + number_text(speed, 3) + " cases/s, " +
+             duration(static_cast<double>(p.all_cases - p.cases) / speed) + " left";
+    say(stdout, "%zu of %zu parts, %zu of %zu cases%s%s%s\n", p.parts, p.all_parts, p.cases, p.all_cases,
+        p.outcomes.empty() ? "" : ": ", outcome_list(p.outcomes).c_str(), rest.c_str());
+    std::fflush(stdout);
+    if (p.parts == p.all_parts) return;
+    if (!last || p.cases > before) last = now, before = p.cases;
+    for (int k = 0; k < 20 && !stop_requested(); ++k) std::this_thread::sleep_for(kPause / 20.0);
+  }
+}
+
+}  // namespace
+
 int sweep_status(const Options& o) {
   const SweepStore store = or_refuse([&] { return SweepStore::open(o.folder); });
+  if (o.watch && o.json) throw UsageError{"error: --watch and --json exclude each other\n"};
+  if (o.watch) watch(store);
   const SweepStore::Progress p = or_refuse([&] { return store.progress(); });
   if (o.json) {
     JsonWriter j;

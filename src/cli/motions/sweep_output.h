@@ -19,14 +19,9 @@ struct StoppedCases {
 class SweepOutput final : public CaseSink {
  public:
   SweepOutput(const ResultFormat& format, const std::string& path, const SweepInfo& info);
-  explicit SweepOutput(std::unique_ptr<SweepWriter> writer) : file_(std::move(writer)) {}
   // The cases that follow are those of this table, which has the columns of the file. Their numbers follow on; `word` is
   // in the added column.
-  void turn_to(SweepTable& table, const std::string& word) { turn_to(table, word, taken_); }
-  // The first of them has this number.
-  void turn_to(SweepTable& table, const std::string& word, std::size_t first) {
-    table_ = &table, word_ = word, before_ = first;
-  }
+  void turn_to(SweepTable& table, const std::string& word) { table_ = &table, word_ = word, before_ = taken_; }
   void result(const CaseResult& r) override;
   // Called by all threads.
   bool failed() const { return failed_; }

@@ -12,6 +12,7 @@
 #include "base/json.h"
 #include "cli/motions/result_file.h"
 #include "cli/motions/run_formulas.h"
+#include "cli/pictures/plot_sweep.h"
 #include "cli/say.h"
 #include "plot/drawing.h"
 #include "plot/terminal.h"
@@ -140,22 +141,17 @@ std::string ranges(const Figure& f) {
   return j.text() + "\n";
 }
 
+std::string write_drawing(const Drawing& d, const std::string& title, Target t, const std::string& path) {
+  if (t == Target::svg) return write_whole(path, draw_svg(d, title));
+  return write_whole_by_name(path, [&](const std::string& beside) {
+    const std::string why = draw_cairo(d, title, t == Target::pdf ? CairoFormat::pdf : CairoFormat::png, beside);
+    return why.empty() ? why : "cannot write " + path + ": " + why;
+  });
+}
+
 std::string write_figure(const Figure& f, Target t, const std::string& path) {
-  switch (t) {
-  case Target::svg:
-    return write_whole(path, draw_svg(f));
-  case Target::tex:
-    return write_whole(path, draw_tex(f));
-  case Target::pdf:
-  case Target::png:
-    return write_whole_by_name(path, [&](const std::string& beside) {
-      const std::string why = draw_cairo(f, t == Target::pdf ? CairoFormat::pdf : CairoFormat::png, beside);
-      return why.empty() ? why : "cannot write " + path + ": " + why;
-    });
-  case Target::terminal:
-    break;
-  }
-  return {};
+  if (t == Target::tex) return write_whole(path, draw_tex(f));
+  return t == Target::terminal ? std::string() : write_drawing(lay_out(f), f.title, t, path);
 }
 
 }  // namespace
@@ -184,8 +180,29 @@ int plot(const Options& o) {
   given.rows = 0;
   take_size(o.size, t, options, given);
 
-  RunFile run = read_result(o.model);
-  add_formulas(run, o);
+  const bool of_sweep = is_sweep_folder(o.model);
+  if (!of_sweep && !o.ordinate.empty())
+    throw UsageError{"error: --y belongs to the folder of a sweep\nhint: anholon plot run.h5 NAME\n"};
+  RunFile run;
+  if (of_sweep) {
+    if (t == Target::terminal || t == Target::tex)
+      throw UsageError{"error: a sweep is drawn as .svg, .pdf or .png\nhint: -o falls.svg\n"};
+    SweepPicture picture = picture_of_sweep(o);
+    if (picture.map) {
+      picture.map->labels = options.labels;
+      if (!o.size.empty()) picture.map->width = options.width, picture.map->height = options.height;
+      if (const std::string why = write_drawing(lay_out(*picture.map), o.title, t, o.output); !why.empty())
+        throw UsageError{"error: " + why + "\n"};
+      return kOk;
+    }
+    run = std::move(picture.table);
+    options.x = picture.abscissa;
+    options.names.assign(run.table.columns.begin() + 1, run.table.columns.end());
+    options.smooth = false;
+  } else {
+    run = read_result(o.model);
+    add_formulas(run, o);
+  }
   Figure figure;
   try {
     figure = make_figure(run, options);

@@ -110,10 +110,4 @@ std::size_t clear_unfinished(const std::string& folder) {
   return left;
 }
 
-double written_at(const std::string& path) {
-  struct stat info{};
-  if (::stat(path.c_str(), &info) != 0) return 0;
-  return static_cast<double>(info.st_mtim.tv_sec) + 1e-9 * static_cast<double>(info.st_mtim.tv_nsec);
-}
-
 }  // namespace anholon

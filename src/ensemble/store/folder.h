@@ -23,7 +23,4 @@ std::vector<std::string> files_of(const std::string& folder);
 // Removes unfinished files of processes of this machine that have ended. Returns how many unfinished files are left.
 std::size_t clear_unfinished(const std::string& folder);
 
-// Seconds since the epoch at which a file was written; 0 if there is none.
-double written_at(const std::string& path);
-
 }  // namespace anholon

@@ -22,7 +22,9 @@ std::string request_json(const SweepRequest& r, const std::string& program) {
   for (const std::string& name : r.columns) j.string(name);
   j.close().key("asked").open_object();
   for (const auto& [name, text] : r.asked) j.key(name).string(text);
-  return j.close().close().text() + "\n";
+  j.close();
+  if (!r.recipe.empty()) j.key("recipe").string(r.recipe);
+  return j.close().text() + "\n";
 }
 
 SweepRequest request_of(const std::string& text, const std::string& path) {
@@ -52,6 +54,8 @@ SweepRequest request_of(const std::string& text, const std::string& path) {
     if (!value.is_string()) return refuse("is damaged");
     r.asked.emplace_back(name, value.get<std::string>());
   }
+  if (const auto recipe = j.find("recipe"); recipe != j.end() && recipe->is_string())
+    r.recipe = recipe->get<std::string>();
   return r;
 }
 

@@ -14,6 +14,8 @@ struct SweepRequest {
   std::vector<std::string> columns;
   std::size_t cases = 0;
   std::size_t chunk = 0;  // cases of a part
+  // How a program makes the request again, in words of its own; it does not distinguish sweeps.
+  std::string recipe = {};
 };
 
 // The version of the program is told and does not distinguish sweeps.

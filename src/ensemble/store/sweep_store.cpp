@@ -1,14 +1,13 @@
 #include "ensemble/store/sweep_store.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <set>
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/assert.h"
 #include "base/diagnostic.h"
@@ -37,7 +36,9 @@ std::string shown(const std::string& text) {
 // Throws Failure that names the first thing in which two requests differ.
 void must_agree(const std::string& folder, const SweepRequest& there, const SweepRequest& here) {
   const auto refuse = [&](const std::string& what, const std::string& old, const std::string& now) {
-    throw Failure({}, folder + " holds another sweep: " + what + " is " + old + " there and " + now + " here",
+    throw Failure({},
+                  folder + " holds another sweep: " + what +
+                      (old == now ? " differs" : " is " + old + " there and " + now + " here"),
                   "give another folder; a sweep goes on by the same command");
   };
   std::set<std::string> names;
@@ -108,26 +109,44 @@ void add_outcomes(std::string_view text, std::map<std::string, std::size_t>& to)
   }
 }
 
-// The end of a file, with the metadata of a Parquet file.
-std::string end_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const auto size = static_cast<std::streamoff>(file.tellg());
-  const auto last = [&](std::streamoff count) {
-    std::string text(static_cast<std::size_t>(count), '\0');
-    file.seekg(size - count);
-    file.read(text.data(), count);
-    return text;
+// The end of a file, with the metadata of a Parquet file, and when it was written.
+struct FileEnd {
+  std::string bytes;  // empty if the file is not whole
+  double written = 0;
+};
+
+// Most ends are read at once: a folder may hold many parts.
+FileEnd end_of(const std::string& path) {
+  FileEnd end;
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return end;
+  struct stat info{};
+  const auto last = [&](std::size_t count) {
+    std::string text(count, '\0');
+    const ssize_t got = ::pread(fd, text.data(), count, info.st_size - static_cast<off_t>(count));
+    return got == static_cast<ssize_t>(count) ? text : std::string();
   };
-  constexpr std::streamoff kLast = 8;
-  if (!file || size < kLast) return {};
-  const auto end = static_cast<std::streamoff>(parquet_end(last(kLast)));
-  return end == 0 || end > size ? std::string() : last(end);
+  constexpr std::size_t kLast = 8, kUsual = 4096;
+  if (::fstat(fd, &info) == 0 && info.st_size >= static_cast<off_t>(kLast)) {
+    const auto size = static_cast<std::size_t>(info.st_size);
+    end.written = static_cast<double>(info.st_mtim.tv_sec) + 1e-9 * static_cast<double>(info.st_mtim.tv_nsec);
+    const std::string usual = last(std::min(size, kUsual));
+    const std::size_t wanted = usual.empty() ? 0 : parquet_end(std::string_view(usual).substr(usual.size() - kLast));
+    if (wanted > 0 && wanted <= size)
+      end.bytes = wanted <= usual.size() ? usual.substr(usual.size() - wanted) : last(wanted);
+  }
+  ::close(fd);
+  return end;
 }
 
 }  // namespace
 
 SweepStore::SweepStore(std::string folder, SweepRequest request)
-    : folder_(std::move(folder)), request_(std::move(request)), id_(sha256_text(request_json(request_, ""))) {}
+    : folder_(std::move(folder)), request_(std::move(request)) {
+  SweepRequest distinguished = request_;
+  distinguished.recipe.clear();
+  id_ = sha256_text(request_json(distinguished, ""));
+}
 
 bool SweepStore::is_there(const std::string& folder) {
   std::error_code none;
@@ -145,6 +164,7 @@ SweepStore SweepStore::open(const std::string& named) {
 SweepStore SweepStore::open(const std::string& named, const SweepRequest& wanted, const std::string& program) {
   ANHOLON_ASSERT(wanted.chunk > 0);
   const std::string folder = without_slash(named);
+  bool made = false;
   if (!is_there(folder)) {
     if (std::string why = create_folder(folder); !why.empty()) throw Failure({}, why);
     for (const std::string& name : files_of(folder))
@@ -153,9 +173,11 @@ SweepStore SweepStore::open(const std::string& named, const SweepRequest& wanted
                       "give the name of a new folder, or of an empty one");
     const Committed done = commit_file(folder, kRequest, request_json(wanted, program));
     if (done.how == Committed::How::failed) throw Failure({}, done.error);
+    made = done.how == Committed::How::mine;
   }
   SweepStore store = open(folder);
   must_agree(folder, store.request_, wanted);
+  store.made_here_ = made;
   clear_unfinished(folder);
   return store;
 }
@@ -231,11 +253,17 @@ SweepStore::Progress SweepStore::progress() const {
   Progress p;
   p.all_parts = parts(), p.all_cases = request_.cases;
   std::vector<std::pair<double, std::size_t>> written;  // when, how many cases
-  for (const std::size_t part : present()) {
+  std::vector<std::size_t> there;
+  for (const std::string& name : files_of(folder_)) {
+    p.unfinished += name.starts_with(".tmp-");
+    if (const auto part = part_of(name); part && *part < p.all_parts) there.push_back(*part);
+  }
+  for (const std::size_t part : there) {
     const std::string path = path_of(part);
+    const FileEnd read = end_of(path);
     ParquetSummary end;
     try {
-      end = parquet_summary(end_of(path));
+      end = parquet_summary(read.bytes);
     } catch (const Failure& f) {
       throw Failure({}, path + ": " + f.diagnostic.message,
                     "remove it; the same command of the sweep computes it again");
@@ -246,7 +274,7 @@ SweepStore::Progress SweepStore::progress() const {
     const auto [from, to] = range(part);
     ++p.parts, p.cases += to - from;
     add_outcomes(notes.note(kOutcomesNote), p.outcomes);
-    written.emplace_back(written_at(path), to - from);
+    written.emplace_back(read.written, to - from);
   }
   // Rows of a table may be several for a case, so cases are counted by ranges.
   std::sort(written.begin(), written.end());
@@ -258,7 +286,6 @@ SweepStore::Progress SweepStore::progress() const {
     const double seconds = written.back().first - written[from].first;
     if (seconds > 0) p.cases_per_second = static_cast<double>(cases) / seconds;
   }
-  for (const std::string& name : files_of(folder_)) p.unfinished += name.starts_with(".tmp-");
   return p;
 }
 

@@ -27,6 +27,8 @@ class SweepStore {
   // Whether a folder holds a sweep.
   static bool is_there(const std::string& folder);
 
+  // Whether this process made the folder.
+  bool made_here() const { return made_here_; }
   const std::string& folder() const { return folder_; }
   const SweepRequest& request() const { return request_; }
   // The text of something that was asked; empty if it was not.
@@ -63,6 +65,7 @@ class SweepStore {
   std::string folder_;
   SweepRequest request_;
   std::string id_;  // hash of the request
+  bool made_here_ = false;
 };
 
 }  // namespace anholon

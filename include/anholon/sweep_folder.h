@@ -1,0 +1,77 @@
+// Sweeps in folders: parts that are complete or absent, which any number of processes compute.
+#pragma once
+#include <variant>
+
+#include "anholon/sweep.h"
+
+namespace anholon::v1 {
+
+struct FolderProgress {
+  std::size_t parts = 0, all_parts = 0, cases = 0, all_cases = 0;
+  std::size_t unfinished = 0;                   // files of parts under way, or of processes that were killed
+  std::map<std::string, std::size_t> outcomes;  // cases by the name of their outcome
+  double cases_per_second = 0;                  // by the times at which the last parts were written; 0: unknown
+};
+
+// A column over all cases of the parts that are there. `number` is a double that may be NaN.
+struct FolderColumn {
+  struct Words {
+    std::vector<std::string> different;
+    std::vector<std::uint32_t> rows;  // the index of the word of each row
+  };
+  std::string name;
+  std::variant<std::vector<double>, std::vector<std::int64_t>, Words> values;
+};
+
+struct FolderWork {
+  std::size_t share = 1, shares = 1;                     // every part with a number that leaves the remainder share - 1
+  std::optional<std::vector<std::size_t>> parts = {};    // these parts instead
+  std::size_t threads = 0;                               // 0: as many as the machine has
+  std::function<bool()> cancelled = {};                  // many threads ask at once
+  std::function<void(std::size_t cases)> progress = {};  // by one thread at a time
+};
+struct FolderDone {
+  std::size_t parts = 0, cases = 0;  // computed by this call
+  bool complete = false;             // whether the folder holds all parts that were asked for
+  std::string error;  // the reason why a part could not be written: a full disk, another part of that name
+};
+
+// Immutable and cheap to copy; the folder itself changes as processes add parts.
+class ANHOLON_API SweepFolder {
+ public:
+  const std::string& path() const;
+  std::size_t cases() const;
+  std::size_t parts() const;
+  std::size_t chunk() const;  // cases of a part
+  const std::vector<std::string>& columns() const;
+  // How the program that made the folder can ask for the same sweep, in words of its own.
+  const std::string& recipe() const;
+  // What was asked, by name: "model", "vary", "to", "tolerance", …; empty if it was not.
+  const std::string& asked(const std::string& name) const;
+  // Numbers of parts, ascending. Errors: the folder cannot be read.
+  Result<std::vector<std::size_t>> missing() const;
+  Result<std::vector<std::size_t>> present() const;
+  // Errors: a part is damaged or belongs to another sweep.
+  Result<FolderProgress> progress() const;
+  // The columns of these names, of the parts that are there; all columns if no name is given. Errors: as above, or there
+  // is no such column.
+  Result<std::vector<FolderColumn>> read(const std::vector<std::string>& names = {}) const;
+  // Computes parts that are missing. All calls share the equations, and the calls of several threads may overlap. Errors:
+  // the folder was opened by its name alone.
+  Result<FolderDone> fill(const FolderWork& work = {}) const;
+
+  struct Data;
+  explicit SweepFolder(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
+ private:
+  std::shared_ptr<const Data> data_;
+};
+
+// Opens the folder for this sweep, or makes it; nothing is computed. `chunk` holds for a new folder; 0: as many cases as
+// take some seconds, by a trial. `recipe` is kept in a new folder as it is. Errors: as `sweep`; another sweep or other files are in the folder; it cannot be written.
+ANHOLON_API Result<SweepFolder> sweep_into(const System& system, const SweepOptions& options, const std::string& folder,
+                                           std::size_t chunk = 0, const std::string& recipe = {});
+// Opens a folder to look at it. Errors: it holds no sweep.
+ANHOLON_API Result<SweepFolder> open_sweep(const std::string& folder);
+
+}  // namespace anholon::v1

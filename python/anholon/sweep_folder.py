@@ -1,0 +1,376 @@
+"""Sweeps in folders: any number of processes compute the parts, and any process reads them."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from . import _core
+from ._errors import Interrupted, ModelError
+from ._progress import Progress, Shown
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+    import pandas
+    import polars
+    import pyarrow
+    from distributed import Client
+
+    from .model import Model
+
+Words = tuple[
+    list[tuple[str, list[str]]],
+    dict[str, str],
+    "int | None",
+    int,
+    str,
+    bool,
+    "str | None",
+    "str | None",
+    list[str],
+    list[str],
+    list[str],
+]
+"""What is asked of a sweep: values, laws, cases, seed, draw, together, to, tolerance, at, columns, reduce."""
+
+_MOST_TASKS = 10_000  # of one call: a scheduler holds some kB for each
+_ATTEMPTS = 5  # rounds in which no part was added before the trouble of the workers is raised
+
+
+class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
+    """A sweep in a folder. It is read when it is asked, so it shows the parts that are there then.
+
+    ``folder["theta"]`` has one number for each case (each case and time with ``at``), in the order of the cases; columns of
+    words (``outcome``, ``event``) are arrays of strings. Each part that is read is compared with the hash in its file.
+
+    Example:
+        >>> import anholon as an, tempfile
+        >>> place = tempfile.mkdtemp()
+        >>> falls = an.load("disc").sweep({"phi'": [5, 6, 7]}, to=1, out=place + "/falls", chunk=2)
+        >>> falls.cases, falls.complete, falls["phi'(0)"].tolist()
+        (3, True, [5.0, 6.0, 7.0])
+        >>> opened = an.open_sweep(place + "/falls")
+        >>> opened.progress(), opened.path == falls.path, opened.parts, opened.chunk
+        (2 of 2 parts, 3 of 3 cases, True, 2, 2)
+
+        A part that is missing is computed again, with the same bytes:
+
+        >>> import os
+        >>> os.remove(place + "/falls/part-000001.parquet")
+        >>> opened.missing, opened.fill().missing, opened.to_arrow(["theta"]).num_rows
+        ([1], [], 3)
+    """
+
+    def __init__(self, core: _core.SweepFolder) -> None:
+        self._core = core
+
+    @property
+    def path(self) -> str:
+        """The name of the folder, without a slash at its end."""
+        return self._core.path
+
+    @property
+    def cases(self) -> int:
+        """How many cases the whole sweep has."""
+        return self._core.cases
+
+    @property
+    def parts(self) -> int:
+        """How many parts the whole sweep has."""
+        return self._core.parts
+
+    @property
+    def chunk(self) -> int:
+        """How many cases a part has."""
+        return self._core.chunk
+
+    @property
+    def missing(self) -> list[int]:
+        """The numbers of the parts that are not there."""
+        return self._core.missing()
+
+    @property
+    def complete(self) -> bool:
+        """Whether all parts are there."""
+        return not self._core.missing()
+
+    def progress(self) -> _core.FolderProgress:
+        """How far the sweep is: parts, cases, outcomes, cases per second.
+
+        Raises:
+            ModelError: a part is damaged, or belongs to another sweep.
+        """
+        return self._core.progress()
+
+    @property
+    def outcomes(self) -> dict[str, int]:
+        """How many of the cases that are there ended in which way."""
+        return self._core.progress().outcomes
+
+    def __getitem__(self, name: str) -> npt.NDArray[Any]:
+        """A column of the parts that are there, shape (cases,) or (cases * times,), in SI units.
+
+        Raises:
+            KeyError: there is no such column.
+            ModelError: a part was changed.
+        """
+        if name not in self._core.columns:
+            raise KeyError(f"there is no column {name!r}; there are {', '.join(self._core.columns)}")
+        return _array(self._core.read([name])[0][1])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._core.columns)
+
+    def __len__(self) -> int:
+        """The number of columns; ``cases`` is that of the motions."""
+        return len(self._core.columns)
+
+    def to_dict(self, columns: Sequence[str] = ()) -> dict[str, npt.NDArray[Any]]:
+        """Columns as arrays, all of them without names; each part is read once."""
+        return {name: _array(column) for name, column in self._core.read(list(columns))}
+
+    def to_pandas(self, columns: Sequence[str] = ()) -> pandas.DataFrame:
+        """A DataFrame with a row for each case; words are categories. Needs pandas."""
+        import pandas
+
+        def of(column: Any) -> Any:
+            return pandas.Categorical.from_codes(column[1].astype("int32"), column[0]) if isinstance(column, tuple) else column
+
+        return pandas.DataFrame({name: of(column) for name, column in self._core.read(list(columns))})
+
+    def to_polars(self, columns: Sequence[str] = ()) -> polars.DataFrame:
+        """The same for polars. Needs polars."""
+        import polars
+
+        def of(column: Any) -> Any:
+            return polars.Series(column[0], dtype=polars.String).gather(column[1]) if isinstance(column, tuple) else column
+
+        return polars.DataFrame({name: of(column) for name, column in self._core.read(list(columns))})
+
+    def to_arrow(self, columns: Sequence[str] = ()) -> pyarrow.Table:
+        """A table of Arrow; words are dictionaries. Needs pyarrow."""
+        import pyarrow
+
+        def of(column: Any) -> Any:
+            return pyarrow.DictionaryArray.from_arrays(column[1], column[0]) if isinstance(column, tuple) else pyarrow.array(column)
+
+        return pyarrow.table({name: of(column) for name, column in self._core.read(list(columns))})
+
+    def fill(
+        self,
+        *,
+        on: Client | str | None = None,
+        share: tuple[int, int] = (1, 1),
+        threads: int = 0,
+        stop: Callable[[], bool] | None = None,
+        progress: Progress = None,
+    ) -> SweepFolder:
+        """Computes what is missing, as :meth:`Model.sweep` with the same arguments does; it returns this object.
+
+        Raises:
+            ModelError: the folder was made by the command line, or the files of its model are not there.
+            OSError: a part could not be written.
+            Interrupted: Ctrl-C; the complete parts are kept.
+        """
+        core = _computing(self.path)
+        return _fill(core, on=on, share=share, threads=threads, stop=stop, progress=progress)
+
+    def _repr_html_(self) -> str:
+        import html
+
+        from . import _display
+
+        p = self.progress()
+        lines = [("parts", f"{p.parts} of {p.all_parts}"), ("cases", f"{p.cases} of {p.all_cases}")]
+        return _display.rows(html.escape(f"sweep in {self.path}"), lines + [(html.escape(kind), str(count)) for kind, count in p.outcomes.items()])
+
+    def __repr__(self) -> str:
+        missing = len(self.missing)
+        return f"<sweep in {self.path!r}: {self.cases} cases, {self.parts - missing} of {self.parts} parts>"
+
+
+def open_sweep(folder: str | os.PathLike[str]) -> SweepFolder:
+    """Opens the folder of a sweep, to look at it or to go on with it.
+
+    Raises:
+        ModelError: the folder holds no sweep.
+
+    Example:
+        >>> import anholon as an, tempfile
+        >>> try:
+        ...     an.open_sweep(tempfile.mkdtemp())
+        ... except an.ModelError as error:
+        ...     print("holds no sweep.json" in str(error))
+        True
+    """
+    return SweepFolder(_core.open_sweep(os.fspath(folder)))
+
+
+class SweepRequest:
+    """What is asked of a sweep, in words that another process understands."""
+
+    def __init__(self, model: Model, form: str, initial: dict[str, str], words: Words) -> None:
+        self._model, self._form, self._initial, self._words = model, form, initial, words
+
+    def fill(
+        self,
+        folder: str,
+        chunk: int,
+        *,
+        on: Client | str | None,
+        share: tuple[int, int],
+        threads: int,
+        stop: Callable[[], bool] | None,
+        progress: Progress,
+    ) -> SweepFolder:
+        """Opens the folder or makes it, and computes what is missing there."""
+        core = self.open(folder, chunk)
+        _opened[_key(core.path)] = core
+        return _fill(core, on=on, share=share, threads=threads, stop=stop, progress=progress)
+
+    def open(self, folder: str, chunk: int) -> _core.SweepFolder:
+        """Opens the folder or makes it."""
+        system = self._model._system(self._form, self._initial, ())
+        return _core.sweep_into(system, self._words, folder, chunk, self._recipe())
+
+    def _recipe(self) -> str:
+        model = self._model
+        # The text of the model is in the folder; a text that refers to further files is read where it lies.
+        path = "" if model._core.stands_alone or model._again.text is not None else model._again.name
+        return json.dumps(
+            {"path": path, "set": model._given, "case": model._cases, "form": self._form, "initial": self._initial, "words": self._words}
+        )
+
+
+def _array(column: Any) -> npt.NDArray[Any]:
+    import numpy as np
+
+    if not isinstance(column, tuple):
+        return np.asarray(column)
+    words, rows = column
+    return np.array(words, dtype=object)[rows] if words else np.array([], dtype=object)
+
+
+# The equations of a sweep are derived once in a process.
+_opened: dict[tuple[str, bytes], _core.SweepFolder] = {}
+
+
+def _key(folder: str) -> tuple[str, bytes]:
+    import hashlib
+
+    path = os.path.realpath(folder)
+    with open(os.path.join(path, "sweep.json"), "rb") as file:
+        return path, hashlib.sha256(file.read()).digest()
+
+
+def _computing(folder: str) -> _core.SweepFolder:
+    """The sweep of a folder, ready to be computed, from what its sweep.json says."""
+    looked_at = _core.open_sweep(folder)
+    key = _key(folder)
+    if key not in _opened:
+        if not looked_at.recipe:
+            raise ModelError(f"{looked_at.path} was made by the command line\nhint: its command goes on, or anholon sweep … -o {looked_at.path}/")
+        from .model import load, loads
+
+        recipe = json.loads(looked_at.recipe)
+        given = {"set": recipe["set"], "case": recipe["case"]}
+        model = load(recipe["path"], **given) if recipe["path"] else loads(looked_at.asked("model"), **given)
+        words = recipe["words"]
+        words[0] = [(name, values) for name, values in words[0]]
+        while len(_opened) >= 4:
+            _opened.pop(next(iter(_opened)))
+        _opened[key] = SweepRequest(model, recipe["form"], recipe["initial"], tuple(words)).open(looked_at.path, 0)
+    return _opened[key]
+
+
+def _fill(
+    core: _core.SweepFolder, *, on: Client | str | None, share: tuple[int, int], threads: int, stop: Callable[[], bool] | None, progress: Progress
+) -> SweepFolder:
+    folder = SweepFolder(core)
+    missing = [part for part in core.missing() if part % share[1] == share[0] - 1] if on is not None else None
+    left = core.cases if missing is None else min(core.cases, len(missing) * core.chunk)
+    with Shown(progress, f"sweep in {core.path}", float(left), unit="cases") as tell:
+        if on is not None:
+            _fill_by_workers(core, on, share, threads or 1, stop, tell)
+            return folder
+        _, _, error, raised = core.fill(None, share[0], share[1], threads, stop, tell)
+    if isinstance(raised, KeyboardInterrupt):
+        raise Interrupted(folder) from None
+    if isinstance(raised, BaseException):
+        raise raised
+    if error:
+        raise OSError(f"{error}\nhint: the parts before it are kept; the same call goes on")
+    return folder
+
+
+def fill_parts(folder: str, parts: list[int], threads: int) -> int:
+    """The task of a worker: computes parts, and returns how many cases it computed.
+
+    Raises:
+        OSError: a part could not be written.
+    """
+    cases, _, error, _ = _computing(folder).fill(parts, 1, 1, threads, None, None)
+    if error:
+        raise OSError(error)
+    return cases
+
+
+def _fill_by_workers(
+    core: _core.SweepFolder,
+    on: Any,
+    share: tuple[int, int],
+    threads: int,
+    stop: Callable[[], bool] | None,
+    tell: Callable[[float, int], object] | None,
+) -> None:
+    """Gives parts to the workers of Dask until all are there. The folder says what is done, not the scheduler."""
+    from asyncio import CancelledError
+
+    import distributed
+
+    # Its functions have no types.
+    api: Any = distributed
+    client = api.Client(on) if isinstance(on, str) else on
+    path = os.path.realpath(core.path)
+    idle, first = 0, None
+    try:
+        while missing := [part for part in core.missing() if part % share[1] == share[0] - 1]:
+            first = len(missing) if first is None else first
+            size = math.ceil(len(missing) / _MOST_TASKS)
+            groups = [missing[k : k + size] for k in range(0, len(missing), size)]
+            waiting = set(client.map(fill_parts, [path] * len(groups), groups, [threads] * len(groups), pure=False, retries=3))
+            trouble: BaseException | None = None
+            try:
+                while waiting:
+                    try:
+                        done, waiting = api.wait(waiting, timeout=0.5, return_when="FIRST_COMPLETED")
+                        trouble = next((task.exception() for task in done if task.status == "error"), trouble)
+                        if isinstance(trouble, (OSError, ModelError)):
+                            break
+                    except api.TimeoutError:
+                        pass
+                    if tell is not None:
+                        cases = (first - len(missing) + len(groups) * size - len(waiting) * size) * core.chunk
+                        tell(float(cases), cases)
+                    if stop is not None and stop():
+                        client.cancel(list(waiting))
+                        return
+            except KeyboardInterrupt:
+                client.cancel(list(waiting))
+                raise Interrupted(SweepFolder(core)) from None
+            except (Exception, CancelledError) as error:  # the scheduler is gone
+                trouble = error
+            if isinstance(trouble, (OSError, ModelError)):
+                client.cancel(list(waiting))
+                raise trouble
+            left = sum(part % share[1] == share[0] - 1 for part in core.missing())
+            idle = idle + 1 if left >= len(missing) else 0
+            if left > 0 and (idle >= _ATTEMPTS or client.status != "running"):
+                raise OSError(f"{left} parts are missing: {trouble or 'the workers failed'}\nhint: the same call goes on") from trouble
+    finally:
+        if client is not on:
+            client.close()

@@ -1,0 +1,92 @@
+#include "anholon/sweep_folder.h"
+#include "core.h"
+#include "sweep_options.h"
+
+namespace anholon::python {
+
+namespace {
+
+// Numbers as an array; words as a pair of the different words and an array of the index of each row.
+nb::object column_of(FolderColumn column) {
+  if (auto* numbers = std::get_if<std::vector<double>>(&column.values)) {
+    const std::size_t size = numbers->size();
+    return nb::cast(array<1>(std::move(*numbers), {size}));
+  }
+  const auto owned = [](auto values) {
+    using Values = decltype(values);
+    auto* held = new Values(std::move(values));
+    const nb::capsule owner(held, [](void* p) noexcept { delete static_cast<Values*>(p); });
+    return nb::cast(
+        nb::ndarray<nb::numpy, typename Values::value_type, nb::ndim<1>>(held->data(), {held->size()}, owner));
+  };
+  if (auto* whole = std::get_if<std::vector<std::int64_t>>(&column.values)) return owned(std::move(*whole));
+  auto& words = std::get<FolderColumn::Words>(column.values);
+  return nb::make_tuple(words.different, owned(std::move(words.rows)));
+}
+
+}  // namespace
+
+void bind_sweep_folders(nb::module_& m) {
+  nb::class_<FolderProgress>(m, "FolderProgress", "How far a sweep in a folder is.")
+      .def_ro("parts", &FolderProgress::parts)
+      .def_ro("all_parts", &FolderProgress::all_parts)
+      .def_ro("cases", &FolderProgress::cases)
+      .def_ro("all_cases", &FolderProgress::all_cases)
+      .def_ro("unfinished", &FolderProgress::unfinished, "Files of parts under way, or of processes that were killed.")
+      .def_ro("outcomes", &FolderProgress::outcomes, "How many cases ended in which way.")
+      .def_ro("cases_per_second", &FolderProgress::cases_per_second,
+              "By the times at which the last parts were written; 0: unknown.")
+      .def("__repr__", [](const FolderProgress& p) {
+        return nb::cast<std::string>(
+            nb::str("{} of {} parts, {} of {} cases").format(p.parts, p.all_parts, p.cases, p.all_cases));
+      });
+  nb::class_<SweepFolder>(m, "SweepFolder")
+      .def_prop_ro("path", &SweepFolder::path)
+      .def_prop_ro("cases", &SweepFolder::cases)
+      .def_prop_ro("parts", &SweepFolder::parts)
+      .def_prop_ro("chunk", &SweepFolder::chunk)
+      .def_prop_ro("columns", &SweepFolder::columns)
+      .def_prop_ro("recipe", &SweepFolder::recipe)
+      .def("asked", &SweepFolder::asked, "name"_a)
+      .def("missing", [](const SweepFolder& f) { return value_of(unlocked([&] { return f.missing(); })); })
+      .def("present", [](const SweepFolder& f) { return value_of(unlocked([&] { return f.present(); })); })
+      .def("progress", [](const SweepFolder& f) { return value_of(unlocked([&] { return f.progress(); })); })
+      .def(
+          "read",
+          [](const SweepFolder& f, const std::vector<std::string>& names) {
+            std::vector<FolderColumn> columns = value_of(unlocked([&] { return f.read(names); }));
+            std::vector<std::pair<std::string, nb::object>> all;
+            for (FolderColumn& c : columns) {
+              const std::string name = c.name;
+              all.emplace_back(name, column_of(std::move(c)));
+            }
+            return all;
+          },
+          "names"_a)
+      .def(
+          "fill",
+          [](const SweepFolder& f, std::optional<std::vector<std::size_t>> parts, std::size_t share, std::size_t shares,
+             std::size_t threads, nb::object stop, nb::object progress) {
+            FolderWork work;
+            work.parts = std::move(parts), work.share = share, work.shares = shares, work.threads = threads;
+            Attendant attendant(std::move(stop), std::move(progress));
+            work.cancelled = [&] { return attendant.cancelled(); };
+            work.progress = [&](std::size_t done) { attendant.tell(static_cast<double>(done), done); };
+            const FolderDone done = value_of(attendant.attend([&] { return f.fill(work); }));
+            return std::tuple(done.cases, done.complete, done.error, attendant.raised());
+          },
+          "parts"_a.none(), "share"_a, "shares"_a, "threads"_a, "stop"_a.none(), "progress"_a.none());
+  m.def(
+      "open_sweep", [](const std::string& folder) { return value_of(unlocked([&] { return open_sweep(folder); })); },
+      "folder"_a);
+  m.def(
+      "sweep_into",
+      [](const System& system, const SweepWords& words, const std::string& folder, std::size_t chunk,
+         const std::string& recipe) {
+        const SweepOptions options = options_of(words);
+        return value_of(unlocked([&] { return sweep_into(system, options, folder, chunk, recipe); }));
+      },
+      "system"_a, "words"_a, "folder"_a, "chunk"_a, "recipe"_a);
+}
+
+}  // namespace anholon::python

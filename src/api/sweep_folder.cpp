@@ -1,0 +1,202 @@
+#include "anholon/sweep_folder.h"
+
+#include <algorithm>
+
+#include "api/sweep_request.h"
+#include "base/json.h"
+#include "ensemble/parts/fill.h"
+#include "result/choose_columns.h"
+
+namespace anholon::v1 {
+
+struct SweepFolder::Data {
+  inner::SweepStore store;
+  // Null if the folder was opened by its name alone.
+  std::optional<System> system;
+  std::shared_ptr<const PreparedSweep> prepared;
+  std::vector<std::string> asked_columns;
+};
+
+namespace {
+
+inner::SweepTable table_of(const PreparedSweep& p, const std::vector<std::string>& columns) {
+  inner::SweepTable table(*p.scenario->model, p.options);
+  if (columns.empty()) return table;
+  std::vector<std::string> all;
+  for (const inner::SweepColumn& c : table.available()) all.push_back(c.name);
+  table.choose(chosen_places(columns, all));
+  return table;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+std::string text_of(const Vary& v) {
+  if (!v.law.empty()) return v.name + "~" + v.law;
+  std::string text = v.name + "=";
+  for (std::size_t k = 0; k < v.values.size(); ++k) text += (k == 0 ? "" : ",") + v.values[k].text();
+  return text;
+}
+
+// Everything on which the rows depend.
+std::vector<std::pair<std::string, std::string>> asked_of(const System::Data& system, const PreparedSweep& p,
+                                                          const SweepOptions& o) {
+  std::vector<std::pair<std::string, std::string>> all;
+  const auto add = [&](const std::string& name, const std::string& text) {
+    if (!text.empty()) all.emplace_back(name, text);
+  };
+  const Model::Data& model = *system.model;
+  add("title", model.model->title), add("model", model.source.text);
+  for (std::size_t k = 0; k < model.source.others.size(); ++k)
+    add("base file " + std::to_string(k + 1), model.source.others[k].text);
+  std::string set;
+  for (const auto& [name, value] : model.overrides) set += (set.empty() ? "" : " ") + name + "=" + value;
+  add("set", set), add("case", joined(model.cases)), add("form", system.scenario.system.form->name);
+  std::string initial, eliminate;
+  for (const inner::StateOverride& s : system.choice.overrides)
+    initial += (initial.empty() ? "" : " ") +
+               (s.multiplier ? system.scenario.model->constraints[s.coordinate].name
+                             : system.scenario.model->coordinates[s.coordinate].name) +
+               (s.multiplier ? " as multiplier" : "") + std::string(s.order, '\'') + "=" + s.value.get_str();
+  for (const std::size_t k : system.choice.eliminate)
+    eliminate += (eliminate.empty() ? "" : " ") + system.scenario.model->coordinates[k].name;
+  add("initial", initial), add("eliminate", eliminate), add("start", inner::number_text(system.scenario.state.t));
+  const inner::MotionSettings settings = inner::merged(p.settings, system.scenario.model->simulate);
+  for (const inner::MotionOption& m : inner::motion_options())
+    if (std::string_view(m.name) != "error-estimate" && std::string_view(m.name) != "form")
+      add(m.name, joined(inner::words(settings, m)));
+  for (const Vary& v : o.vary) add("vary " + v.name, text_of(v));
+  add("together", o.together ? "yes" : ""), add("cases", o.cases ? std::to_string(*o.cases) : "");
+  add("draw", o.draw), add("seed", std::to_string(o.seed)), add("reduce", joined(o.reduce));
+  return all;
+}
+
+template <class F>
+auto told(const F& f) -> decltype(f()) {
+  return guarded(inner::SourceText(), f);
+}
+
+// Adds the values of a column of a part.
+void append(FolderColumn& to, const inner::ParquetColumn& from) {
+  if (const auto* numbers = std::get_if<std::vector<double>>(&from.values)) {
+    auto& all = std::get<std::vector<double>>(to.values);
+    all.insert(all.end(), numbers->begin(), numbers->end());
+  } else if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&from.values)) {
+    auto& all = std::get<std::vector<std::int64_t>>(to.values);
+    all.insert(all.end(), whole->begin(), whole->end());
+  } else {
+    const inner::Words& words = std::get<inner::Words>(from.values);
+    auto& all = std::get<FolderColumn::Words>(to.values);
+    std::vector<std::uint32_t> places;
+    for (const std::string& word : words.different) {
+      const auto at = std::find(all.different.begin(), all.different.end(), word);
+      places.push_back(static_cast<std::uint32_t>(at - all.different.begin()));
+      if (at == all.different.end()) all.different.push_back(word);
+    }
+    for (const std::uint32_t k : words.rows) all.rows.push_back(places[k]);
+  }
+}
+
+FolderColumn empty_column(const inner::ParquetColumn& like) {
+  FolderColumn c{like.name, {}};
+  if (std::holds_alternative<std::vector<std::int64_t>>(like.values)) c.values = std::vector<std::int64_t>();
+  if (std::holds_alternative<inner::Words>(like.values)) c.values = FolderColumn::Words();
+  return c;
+}
+
+}  // namespace
+
+const std::string& SweepFolder::path() const { return data_->store.folder(); }
+std::size_t SweepFolder::cases() const { return data_->store.request().cases; }
+std::size_t SweepFolder::parts() const { return data_->store.parts(); }
+std::size_t SweepFolder::chunk() const { return data_->store.request().chunk; }
+const std::vector<std::string>& SweepFolder::columns() const { return data_->store.request().columns; }
+const std::string& SweepFolder::recipe() const { return data_->store.request().recipe; }
+const std::string& SweepFolder::asked(const std::string& name) const { return data_->store.asked(name); }
+
+Result<std::vector<std::size_t>> SweepFolder::missing() const {
+  return told([&]() -> Result<std::vector<std::size_t>> { return data_->store.missing(); });
+}
+Result<std::vector<std::size_t>> SweepFolder::present() const {
+  return told([&]() -> Result<std::vector<std::size_t>> { return data_->store.present(); });
+}
+
+Result<FolderProgress> SweepFolder::progress() const {
+  return told([&]() -> Result<FolderProgress> {
+    const inner::SweepStore::Progress p = data_->store.progress();
+    return FolderProgress{p.parts, p.all_parts, p.cases, p.all_cases, p.unfinished, p.outcomes, p.cases_per_second};
+  });
+}
+
+Result<std::vector<FolderColumn>> SweepFolder::read(const std::vector<std::string>& names) const {
+  return told([&]() -> Result<std::vector<FolderColumn>> {
+    const std::vector<std::size_t> places =
+        names.empty() ? chosen_places(names, columns()) : inner::chosen_columns(columns(), names);
+    std::vector<FolderColumn> all;
+    for (const std::size_t part : data_->store.present()) {
+      const inner::ParquetTable table = data_->store.read(part);
+      if (table.columns.size() != columns().size())
+        throw inner::Failure({}, data_->store.path_of(part) + " has other columns than the sweep");
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        if (all.size() <= k) all.push_back(empty_column(table.columns[places[k]]));
+        append(all[k], table.columns[places[k]]);
+      }
+    }
+    for (std::size_t k = all.size(); k < places.size(); ++k) all.push_back({columns()[places[k]], {}});
+    return all;
+  });
+}
+
+Result<FolderDone> SweepFolder::fill(const FolderWork& work) const {
+  return told([&]() -> Result<FolderDone> {
+    const PreparedSweep* p = data_->prepared.get();
+    if (!p) return mistake("this sweep was opened to be read", "sweep_into opens it for a computation");
+    if (work.shares == 0 || work.share < 1 || work.share > work.shares)
+      return mistake("there is no share " + std::to_string(work.share) + " of " + std::to_string(work.shares),
+                     "shares are numbered from 1");
+    inner::FillOptions o;
+    o.parts = work.parts ? *work.parts : parts_to_do(data_->store, work.share, work.shares);
+    for (const std::size_t part : o.parts)
+      if (part >= parts())
+        return mistake("there is no part " + std::to_string(part), "there are " + std::to_string(parts()) + " parts");
+    if (o.parts.empty()) return FolderDone{0, 0, true, {}};
+    o.cancelled = work.cancelled, o.progress = work.progress;
+    inner::EnsembleOptions options = p->options;
+    options.threads = work.threads;
+    inner::SweepTable table = table_of(*p, data_->asked_columns);
+    const inner::SweepPiece piece{p->scenario, &options, &table, {}};
+    const inner::Filled done = inner::fill(data_->store, {&piece, 1}, o);
+    return FolderDone{done.parts, done.report.done, done.parts == o.parts.size(), done.error};
+  });
+}
+
+Result<SweepFolder> sweep_into(const System& system, const SweepOptions& asked, const std::string& folder,
+                               std::size_t chunk, const std::string& recipe) {
+  const System::Data& of = system.data();
+  return guarded(of.model->source, [&]() -> Result<SweepFolder> {
+    if (folder.empty()) return mistake("the sweep needs the name of a folder");
+    const auto prepared = std::make_shared<const PreparedSweep>(of, asked);
+    if (!prepared->start.ok()) return error_of(prepared->start);
+    inner::SweepTable table = table_of(*prepared, asked.columns);
+    const inner::SweepPiece piece{prepared->scenario, &prepared->options, &table, {}};
+    inner::SweepRequest request{asked_of(of, *prepared, asked), {}, prepared->options.cases, chunk, recipe};
+    for (const inner::SweepColumn& c : table.columns()) request.columns.push_back(c.name);
+    if (chunk > inner::kMostInPart)
+      return mistake("a part has at most " + std::to_string(inner::kMostInPart) + " cases");
+    if (chunk == 0) request.chunk = inner::SweepStore::is_there(folder) ? 1 : inner::cases_in_part({&piece, 1});
+    return SweepFolder(std::make_shared<const SweepFolder::Data>(SweepFolder::Data{
+        inner::SweepStore::open(folder, request, "anholon " ANHOLON_VERSION), system, prepared, asked.columns}));
+  });
+}
+
+Result<SweepFolder> open_sweep(const std::string& folder) {
+  return told([&]() -> Result<SweepFolder> {
+    return SweepFolder(
+        std::make_shared<const SweepFolder::Data>(SweepFolder::Data{inner::SweepStore::open(folder), {}, {}, {}}));
+  });
+}
+
+}  // namespace anholon::v1

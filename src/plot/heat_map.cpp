@@ -1,0 +1,235 @@
+#include "plot/heat_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "base/diagnostic.h"
+
+namespace anholon::plot {
+
+namespace {
+
+constexpr double kMapPointsPerCm = 72 / 2.54, kLabelSize = 9, kMarkSize = 8, kMapGap = 4, kMapTick = 3,
+                 kLetterWidth = 0.62;
+
+// Points of the colour map viridis, from its least number to its greatest.
+constexpr std::uint32_t kScale[] = {0x440154, 0x482878, 0x3e4989, 0x31688e, 0x26828e,
+                                    0x1f9e89, 0x35b779, 0x6ece58, 0xb5de2b, 0xfde725};
+
+std::uint32_t scale_colour(double place) {
+  constexpr std::size_t kSteps = std::size(kScale) - 1;
+  const double at = std::clamp(place, 0.0, 1.0) * static_cast<double>(kSteps);
+  const std::size_t k = std::min(static_cast<std::size_t>(at), kSteps - 1);
+  std::uint32_t rgb = 0;
+  for (const unsigned shift : {16U, 8U, 0U}) {
+    const double a = kScale[k] >> shift & 255U, b = kScale[k + 1] >> shift & 255U;
+    rgb |= static_cast<std::uint32_t>(std::lround(a + (b - a) * (at - static_cast<double>(k)))) << shift;
+  }
+  return rgb;
+}
+
+std::uint32_t word_colour(std::size_t k) {
+  return static_cast<std::uint32_t>(std::strtoul(kColour[k % kColours] + 1, nullptr, 16));
+}
+
+// The cell of each row along one axis; leaves the middles of the cells in the column.
+std::vector<std::size_t> cells_along(NamedColumn& c) {
+  std::vector<double> different;
+  for (const double v : c.values)
+    if (std::isfinite(v)) different.push_back(v);
+  std::sort(different.begin(), different.end());
+  different.erase(std::unique(different.begin(), different.end()), different.end());
+  if (different.empty()) throw Failure({}, "no case has a value of '" + c.name + "'");
+  std::vector<std::size_t> cells;
+  if (different.size() > kMostCells) {
+    const double from = different.front(), width = (different.back() - from) / static_cast<double>(kMostCells);
+    for (const double v : c.values)
+      cells.push_back(std::isfinite(v) ? std::min(static_cast<std::size_t>((v - from) / width), kMostCells - 1)
+                                       : kMostCells);
+    different.resize(kMostCells);
+    for (std::size_t k = 0; k < kMostCells; ++k) different[k] = from + (static_cast<double>(k) + 0.5) * width;
+  } else {
+    for (const double v : c.values)
+      cells.push_back(
+          std::isfinite(v)
+              ? static_cast<std::size_t>(std::lower_bound(different.begin(), different.end(), v) - different.begin())
+              : different.size());
+  }
+  c.values = std::move(different);
+  return cells;
+}
+
+// The borders of cells with these middles.
+std::vector<double> borders(const std::vector<double>& middles) {
+  if (middles.size() == 1) return {middles[0] - 0.5, middles[0] + 0.5};
+  std::vector<double> list{middles[0] - (middles[1] - middles[0]) / 2};
+  for (std::size_t k = 1; k < middles.size(); ++k) list.push_back((middles[k - 1] + middles[k]) / 2);
+  list.push_back(middles.back() + (middles.back() - middles[middles.size() - 2]) / 2);
+  return list;
+}
+
+class MapLayout {
+ public:
+  explicit MapLayout(const HeatMap& m) : m_(m) {
+    d_.width = m.width * kMapPointsPerCm, d_.height = m.height * kMapPointsPerCm;
+    for (const double v : m.values)
+      if (std::isfinite(v)) least_ = std::min(least_, v), greatest_ = std::max(greatest_, v);
+    if (!(least_ < greatest_)) greatest_ = least_ + 1;
+  }
+
+  Drawing make() {
+    top_ = kMapGap;
+    if (!m_.title.empty()) {
+      word({d_.width / 2, top_ + kLabelSize}, {{m_.title}}, kLabelSize + 1, Anchor::middle);
+      top_ += kLabelSize + 1 + 2 * kMapGap;
+    }
+    bottom_ = d_.height - kMapGap - 2 * kLabelSize - kMarkSize;
+    const std::vector<double> xs = borders(m_.x.values), ys = borders(m_.y.values);
+    x_ = {xs.front(), xs.back()}, y_ = {ys.front(), ys.back()};
+    const Ticks y_ticks = ticks(y_, static_cast<int>((bottom_ - top_) / 28));
+    left_ = 2 * kMapGap + 1.3 * kLabelSize + widest(y_ticks.labels) + kMapTick;
+    right_ = d_.width - 2.5 * kMapGap;
+    m_.words.empty() ? bar() : legend();
+    cells(xs, ys);
+    axes(y_ticks);
+    return std::move(d_);
+  }
+
+ private:
+  static double widest(const std::vector<std::string>& labels) {
+    double width = 0;
+    for (const std::string& l : labels)
+      width = std::max(width, kLetterWidth * kMarkSize * static_cast<double>(shown_width(l)));
+    return width;
+  }
+  void word(Point at, RichText text, double size, Anchor anchor, bool upwards = false) {
+    d_.words.push_back({at, std::move(text), size, anchor, upwards});
+  }
+  void box(Point a, Point b) { d_.strokes.push_back({{a, {b.x, a.y}, b, {a.x, b.y}, a}, Role::axis, 0}); }
+  double x_at(double x) const { return left_ + (right_ - left_) * x_.place(x); }
+  double y_at(double y) const { return bottom_ - (bottom_ - top_) * y_.place(y); }
+
+  // The words and their colours, in lines above the cells.
+  void legend() {
+    double x = left_, y = top_ + kMarkSize;
+    for (std::size_t k = 0; k < m_.words.size(); ++k) {
+      const std::string text = m_.words[k].empty() ? "none" : m_.words[k];
+      const double width = kMarkSize + 3 * kMapGap + kLetterWidth * kMarkSize * static_cast<double>(shown_width(text));
+      if (x > left_ && x + width > right_) x = left_, y += kMarkSize + kMapGap;
+      d_.patches.push_back({{x, y - 0.8 * kMarkSize}, {x + kMarkSize, y + 0.2 * kMarkSize}, word_colour(k)});
+      word({x + kMarkSize + kMapGap, y}, {{text}}, kMarkSize, Anchor::start);
+      x += width;
+    }
+    top_ = y + 2 * kMapGap;
+  }
+
+  // The scale of the numbers, at the right of the cells.
+  void bar() {
+    const Axis axis{least_, greatest_};
+    const Ticks marks = ticks(axis, static_cast<int>((bottom_ - top_) / 28));
+    const double width = 10, end = d_.width - 2 * kMapGap - 1.3 * kLabelSize - widest(marks.labels) - kMapTick,
+                 from = end - width;
+    constexpr int kPatches = 64;
+    const double high = (bottom_ - top_) / kPatches;
+    for (int k = 0; k < kPatches; ++k)
+      d_.patches.push_back(
+          {{from, bottom_ - (k + 1) * high}, {end, bottom_ - k * high}, scale_colour((k + 0.5) / kPatches)});
+    box({from, top_}, {end, bottom_});
+    for (std::size_t k = 0; k < marks.at.size(); ++k) {
+      const double y = bottom_ - (bottom_ - top_) * axis.place(marks.at[k]);
+      d_.strokes.push_back({{{end, y}, {end + kMapTick, y}}, Role::axis, 0});
+      word({end + kMapTick + 2, y + 0.36 * kMarkSize}, {{marks.labels[k]}}, kMarkSize, Anchor::start);
+    }
+    RichText label = rich_label(m_.name, m_.unit, m_.labels);
+    if (!marks.note.empty()) label.push_back({" " + marks.note});
+    word({d_.width - kMapGap, (top_ + bottom_) / 2}, std::move(label), kLabelSize, Anchor::middle, true);
+    right_ = from - 3 * kMapGap;
+  }
+
+  void cells(const std::vector<double>& xs, const std::vector<double>& ys) {
+    const std::size_t columns = m_.x.values.size();
+    for (std::size_t k = 0; k < m_.y.values.size(); ++k) {
+      // Neighbours of one colour in a row are one patch.
+      bool open = false;
+      for (std::size_t i = 0; i < columns; ++i) {
+        const double v = m_.values[k * columns + i];
+        if (!std::isfinite(v)) {
+          open = false;
+          continue;
+        }
+        const std::uint32_t rgb = m_.words.empty() ? scale_colour((v - least_) / (greatest_ - least_))
+                                                   : word_colour(static_cast<std::size_t>(v));
+        if (open && d_.patches.back().rgb == rgb)
+          d_.patches.back().to.x = x_at(xs[i + 1]);
+        else
+          d_.patches.push_back({{x_at(xs[i]), y_at(ys[k + 1])}, {x_at(xs[i + 1]), y_at(ys[k])}, rgb});
+        open = true;
+      }
+    }
+  }
+
+  void axes(const Ticks& y_ticks) {
+    box({left_, top_}, {right_, bottom_});
+    const Ticks x_ticks = ticks(x_, static_cast<int>((right_ - left_) / 55));
+    for (std::size_t k = 0; k < x_ticks.at.size(); ++k) {
+      const double x = x_at(x_ticks.at[k]);
+      d_.strokes.push_back({{{x, bottom_}, {x, bottom_ + kMapTick}}, Role::axis, 0});
+      word({x, bottom_ + kMapTick + kMarkSize}, {{x_ticks.labels[k]}}, kMarkSize, Anchor::middle);
+    }
+    for (std::size_t k = 0; k < y_ticks.at.size(); ++k) {
+      const double y = y_at(y_ticks.at[k]);
+      d_.strokes.push_back({{{left_ - kMapTick, y}, {left_, y}}, Role::axis, 0});
+      word({left_ - kMapTick - 2, y + 0.36 * kMarkSize}, {{y_ticks.labels[k]}}, kMarkSize, Anchor::end);
+    }
+    const auto named = [&](const NamedColumn& c, const std::string& note) {
+      // An initial value is named as what it is the value of.
+      const bool initial = c.name.ends_with("(0)");
+      RichText label =
+          rich_label(c.name.substr(0, c.name.size() - (initial ? 3 : 0)), initial ? "" : c.unit, m_.labels);
+      if (initial) label.push_back({c.unit.empty() || c.unit == "1" ? "(0)" : "(0) (" + c.unit + ")"});
+      if (!note.empty()) label.push_back({" " + note});
+      return label;
+    };
+    word({(left_ + right_) / 2, d_.height - 1.5 * kMapGap}, named(m_.x, x_ticks.note), kLabelSize, Anchor::middle);
+    word({kMapGap + kLabelSize, (top_ + bottom_) / 2}, named(m_.y, y_ticks.note), kLabelSize, Anchor::middle, true);
+  }
+
+  const HeatMap& m_;
+  Drawing d_;
+  Axis x_, y_;
+  double least_ = std::numeric_limits<double>::infinity(), greatest_ = -std::numeric_limits<double>::infinity();
+  double left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;
+};
+
+}  // namespace
+
+HeatMap make_heat_map(NamedColumn x, NamedColumn y, const NamedColumn& of, std::vector<std::string> words) {
+  HeatMap m;
+  const std::vector<std::size_t> i = cells_along(x), k = cells_along(y);
+  const std::size_t columns = x.values.size(), cells = columns * y.values.size();
+  std::vector<double> sum(cells, 0);
+  std::vector<std::size_t> count(cells, 0);
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> of_word;  // by cell and word
+  for (std::size_t row = 0; row < of.values.size(); ++row) {
+    const double v = of.values[row];
+    if (i[row] >= columns || k[row] >= y.values.size() || !std::isfinite(v)) continue;
+    const std::size_t cell = k[row] * columns + i[row];
+    ++count[cell], sum[cell] += v;
+    if (!words.empty()) ++of_word[{cell, static_cast<std::size_t>(v)}];
+  }
+  m.values.assign(cells, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t cell = 0; cell < cells; ++cell)
+    if (words.empty() && count[cell] > 0) m.values[cell] = sum[cell] / static_cast<double>(count[cell]);
+  std::vector<std::size_t> most(words.empty() ? 0 : cells, 0);
+  for (const auto& [at, cases] : of_word)
+    if (cases > most[at.first]) most[at.first] = cases, m.values[at.first] = static_cast<double>(at.second);
+  m.x = std::move(x), m.y = std::move(y), m.words = std::move(words);
+  m.name = of.name, m.unit = of.unit;
+  return m;
+}
+
+Drawing lay_out(const HeatMap& map) { return MapLayout(map).make(); }
+
+}  // namespace anholon::plot

@@ -1,0 +1,59 @@
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "base/diagnostic.h"
+#include "plot/heat_map.h"
+
+namespace anholon::plot::heat_map_test {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+TEST(HeatMap, HasACellForEachPairOfValues) {
+  // (x, y): value, in any order; the pair (2, 20) does not occur.
+  const HeatMap m = make_heat_map({"x", "m", {2, 1, 1}}, {"y", "", {10, 10, 20}}, {"v", "", {5, 3, 7}}, {});
+  EXPECT_EQ(m.x.values, (std::vector<double>{1, 2}));
+  EXPECT_EQ(m.y.values, (std::vector<double>{10, 20}));
+  EXPECT_EQ(m.values[0], 3);
+  EXPECT_EQ(m.values[1], 5);
+  EXPECT_EQ(m.values[2], 7);
+  EXPECT_TRUE(std::isnan(m.values[3]));
+}
+
+TEST(HeatMap, TakesMeansAndTheMostFrequentWord) {
+  const NamedColumn x{"x", "", {1, 1, 1, 1}}, y{"y", "", {1, 1, 1, 1}};
+  EXPECT_EQ(make_heat_map(x, y, {"v", "", {1, 2, 6, kNone}}, {}).values[0], 3);
+  EXPECT_EQ(make_heat_map(x, y, {"v", "", {1, 0, 1, 0}}, {"finished", "fell"}).values[0], 0);
+  EXPECT_EQ(make_heat_map(x, y, {"v", "", {1, 0, 1, 1}}, {"finished", "fell"}).values[0], 1);
+}
+
+TEST(HeatMap, CutsManyValuesIntoCells) {
+  NamedColumn x{"x", "", {}}, y{"y", "", {}}, v{"v", "", {}};
+  for (int k = 0; k <= 1000; ++k) x.values.push_back(k), y.values.push_back(0), v.values.push_back(k);
+  const HeatMap m = make_heat_map(x, y, v, {});
+  ASSERT_EQ(m.x.values.size(), kMostCells);
+  for (std::size_t k = 0; k < kMostCells; ++k) EXPECT_NEAR(m.values[k], m.x.values[k], 1000.0 / kMostCells);
+}
+
+TEST(HeatMap, RefusesColumnsWithoutNumbers) {
+  EXPECT_THROW(make_heat_map({"x", "", {kNone}}, {"y", "", {1}}, {"v", "", {1}}, {}), Failure);
+}
+
+TEST(HeatMap, PaintsEachCellInItsPlace) {
+  const HeatMap m =
+      make_heat_map({"x", "", {0, 1, 0, 1}}, {"y", "", {0, 0, 1, 1}}, {"v", "", {0, 1, 1, 0}}, {"a", "b"});
+  const Drawing d = lay_out(m);
+  // Two patches of the legend, then the cells, the lower row first.
+  ASSERT_EQ(d.patches.size(), 6U);
+  const Patch &low = d.patches[2], &high = d.patches[5];
+  EXPECT_EQ(low.rgb, d.patches[0].rgb);
+  EXPECT_EQ(high.rgb, d.patches[0].rgb);
+  EXPECT_EQ(d.patches[3].rgb, d.patches[1].rgb);
+  EXPECT_LT(low.from.x, high.from.x);
+  EXPECT_GT(low.from.y, high.from.y);
+  EXPECT_NEAR(low.to.x, high.from.x, 1e-9);
+  EXPECT_NE(draw_svg(d, "falls").find("<rect"), std::string::npos);
+}
+
+}  // namespace anholon::plot::heat_map_test
