@@ -155,7 +155,7 @@ function(anholon_compiler_module)
   anholon_in_batches(anholon_jit)
   # The name of the build is part of the key of what is kept on disk.
   target_link_options(anholon_jit PRIVATE -Wl,--build-id=sha1)
-  install(TARGETS anholon_jit LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/anholon")
+  install(TARGETS anholon_jit LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/anholon" COMPONENT program)
 endfunction()
 
 # libanholon: the layers behind the headers of include/anholon, as one shared library that other projects find by
@@ -181,6 +181,18 @@ function(anholon_public_library)
   install(EXPORT anholonConfig NAMESPACE anholon:: DESTINATION "${place}")
   write_basic_package_version_file("${CMAKE_BINARY_DIR}/anholonConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
   install(FILES "${CMAKE_BINARY_DIR}/anholonConfigVersion.cmake" DESTINATION "${place}")
+endfunction()
+
+# Installs our licence, and those of the libraries that are linked in where the build takes them from tools/static_libraries.py.
+function(anholon_install_licences place component)
+  install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${place}" COMPONENT "${component}" RENAME anholon.txt)
+  set(prefixes ${CMAKE_PREFIX_PATH})
+  string(REPLACE ":" ";" more "$ENV{CMAKE_PREFIX_PATH}")
+  foreach(prefix IN LISTS prefixes more)
+    if(IS_DIRECTORY "${prefix}/licences")
+      install(DIRECTORY "${prefix}/licences/" DESTINATION "${place}" COMPONENT "${component}")
+    endif()
+  endforeach()
 endfunction()
 
 # The source folder is baked in here and nowhere else, so that ccache can serve the other layers
