@@ -68,13 +68,29 @@ def main(folder):
     print(", ".join(f"{name} {size:.2f} MB" for name, size in sizes.items()))
     if sizes["anholon"] > MOST["anholon"] or sum(sizes.values()) > MOST["both"]:
         raise SystemExit(f"the wheels are larger than {MOST} MB")
-    # The numpy that the environment has, for those who have no network.
-    run(sys.executable, "-m", "pip", "download", "-q", "--no-deps", "-d", folder / "others", "numpy")
+    # NumPy, and pandas for the README's example, for those who have no network.
+    run(sys.executable, "-m", "pip", "download", "-q", "-d", folder / "others", "numpy", "pandas")
     with tempfile.TemporaryDirectory() as scratch:
         venv.create(scratch, with_pip=True)
         python = pathlib.Path(scratch) / "bin" / "python"
-        run(python, "-m", "pip", "install", "-q", "--no-index", "--find-links", folder / "others", *wheels)
-        run(python, "-c", TRIAL, cwd=scratch, env={**os.environ, "ANHOLON_CACHE": ""})
+        environment = {**os.environ, "ANHOLON_CACHE": ""}
+        install = [python, "-m", "pip", "install", "-q", "--no-index", "--find-links", folder / "others"]
+        run(*install, *wheels)
+        run(python, "-c", TRIAL, cwd=scratch, env=environment)
+        seconds = import_time(python, scratch)
+        print(f"import anholon: {seconds:.3f} s of processor time, NumPy included")
+        run(*install, "pandas")
+        example = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.S).group(1)
+        run(python, "-c", example, cwd=scratch, env=environment, stdout=subprocess.DEVNULL)
+        licences = list(pathlib.Path(scratch).glob("lib/*/site-packages/anholon/licences/*"))
+        if not {"anholon.txt", "flint.txt", "gmp.txt", "llvm.txt", "README.md"} <= {f.name for f in licences}:
+            raise SystemExit(f"licences are missing: {licences}")
+
+
+def import_time(python, folder):
+    """The processor time of `import anholon`, beyond that of the interpreter: the least of five."""
+    code = "import time; t = time.process_time(); import anholon; print(time.process_time() - t)"
+    return min(float(subprocess.run([python, "-c", code], cwd=folder, check=True, capture_output=True, text=True).stdout) for _ in range(5))
 
 
 if __name__ == "__main__":
