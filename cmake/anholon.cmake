@@ -260,7 +260,8 @@ endfunction()
 # Debian ships these without CMake packages: external::<name> from one header and its libraries.
 function(anholon_find_library name header)
   find_path(ANHOLON_${name}_INCLUDE ${header})
-  find_library(ANHOLON_${name}_LIBRARY ${ARGN})
+  # The folder counts before the name: CMAKE_PREFIX_PATH comes first, whatever the library is called there.
+  find_library(ANHOLON_${name}_LIBRARY NAMES ${ARGN} NAMES_PER_DIR)
   mark_as_advanced(ANHOLON_${name}_INCLUDE ANHOLON_${name}_LIBRARY)
   if(NOT ANHOLON_${name}_INCLUDE OR NOT ANHOLON_${name}_LIBRARY)
     message(FATAL_ERROR "${name} not found (<${header}>); ./dev setup installs it")
