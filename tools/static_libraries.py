@@ -37,6 +37,7 @@ INSTALLED = {
     "tomlplusplus": ("libtomlplusplus-dev", "MIT", []),
     "nlohmann-json": ("nlohmann-json3-dev", "MIT", []),
     "llvm": ("llvm-19-dev", "Apache-2.0 with LLVM exceptions", []),  # in the compiler module
+    "zstd": ("libzstd1", "BSD-3-Clause or GPL-2.0-only", []),  # beside the compiler module, as LLVM wants it
 }
 
 
@@ -121,7 +122,7 @@ def licence_table():
 
 def main(folder):
     prefix = pathlib.Path(folder).resolve()
-    wanted = hashlib.sha256(repr((PACKAGES, FLAGS, TUPLE, str(prefix))).encode()).hexdigest()
+    wanted = hashlib.sha256(repr((PACKAGES, INSTALLED, FLAGS, TUPLE, str(prefix))).encode()).hexdigest()
     complete = prefix / "complete"
     if complete.exists() and complete.read_text(encoding="utf-8") == wanted:
         return

@@ -41,9 +41,9 @@ def run(*words, **options):
 
 
 def bundled(wheel):
-    """The shared libraries that auditwheel has put into a wheel."""
+    """The shared libraries that auditwheel has put into a wheel, but zstd, which LLVM needs and which gets a name of its own."""
     with zipfile.ZipFile(wheel) as archive:
-        return [name for name in archive.namelist() if re.search(r"\.libs/.*\.so", name)]
+        return [name for name in archive.namelist() if re.search(r"\.libs/(?!libzstd).*\.so", name)]
 
 
 def main(folder):
