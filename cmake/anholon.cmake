@@ -155,7 +155,7 @@ function(anholon_compiler_module)
   anholon_in_batches(anholon_jit)
   # The name of the build is part of the key of what is kept on disk.
   target_link_options(anholon_jit PRIVATE -Wl,--build-id=sha1)
-  install(TARGETS anholon_jit LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/anholon")
+  install(TARGETS anholon_jit LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/anholon" COMPONENT program)
 endfunction()
 
 # libanholon: the layers behind the headers of include/anholon, as one shared library that other projects find by
@@ -181,6 +181,18 @@ function(anholon_public_library)
   install(EXPORT anholonConfig NAMESPACE anholon:: DESTINATION "${place}")
   write_basic_package_version_file("${CMAKE_BINARY_DIR}/anholonConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
   install(FILES "${CMAKE_BINARY_DIR}/anholonConfigVersion.cmake" DESTINATION "${place}")
+endfunction()
+
+# Installs our licence, and those of the libraries that are linked in where the build takes them from tools/static_libraries.py.
+function(anholon_install_licences place component)
+  install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${place}" COMPONENT "${component}" RENAME anholon.txt)
+  set(prefixes ${CMAKE_PREFIX_PATH})
+  string(REPLACE ":" ";" more "$ENV{CMAKE_PREFIX_PATH}")
+  foreach(prefix IN LISTS prefixes more)
+    if(IS_DIRECTORY "${prefix}/licences")
+      install(DIRECTORY "${prefix}/licences/" DESTINATION "${place}" COMPONENT "${component}")
+    endif()
+  endforeach()
 endfunction()
 
 # The source folder is baked in here and nowhere else, so that ccache can serve the other layers
@@ -248,7 +260,8 @@ endfunction()
 # Debian ships these without CMake packages: external::<name> from one header and its libraries.
 function(anholon_find_library name header)
   find_path(ANHOLON_${name}_INCLUDE ${header})
-  find_library(ANHOLON_${name}_LIBRARY ${ARGN})
+  # The folder counts before the name: CMAKE_PREFIX_PATH comes first, whatever the library is called there.
+  find_library(ANHOLON_${name}_LIBRARY NAMES ${ARGN} NAMES_PER_DIR)
   mark_as_advanced(ANHOLON_${name}_INCLUDE ANHOLON_${name}_LIBRARY)
   if(NOT ANHOLON_${name}_INCLUDE OR NOT ANHOLON_${name}_LIBRARY)
     message(FATAL_ERROR "${name} not found (<${header}>); ./dev setup installs it")

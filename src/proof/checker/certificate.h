@@ -9,7 +9,7 @@
 // point, the witness. The text is JSON; numbers are exact rationals as text.
 //
 //   { "format": "anholon-certificate", "version": 1,
-//     "program": "anholon 0.1.0", "model": "disc", "source_hash": "…",
+//     "program": "anholon 0.2.0", "model": "disc", "source_hash": "…",
 //     "hypotheses": ["…"], "meaning": "…",
 //     "symbols": ["x", "x'"],
 //     "nodes": [[0, "number", "1/2"], [1, "pi"], [2, "symbol", 0],

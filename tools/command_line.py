@@ -1,0 +1,198 @@
+#!/usr/bin/env python3
+"""Makes the manual page and the completions of shells from the help of the program, so that they cannot differ from it.
+
+    command_line.py PROGRAM PREFIX      writes PREFIX/share/man/man1/anholon.1.gz, and completions of bash, zsh and fish
+    command_line.py PROGRAM --check     checks that both name every command and option, and completes words in bash
+"""
+
+import dataclasses
+import gzip
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+OPTION = re.compile(r"^  (-\S+)(?: (.*))?$")
+
+
+@dataclasses.dataclass
+class Option:
+    flags: list[str]
+    value: str  # the word for its value; empty for a flag
+    text: str
+
+
+@dataclasses.dataclass
+class Command:
+    words: str  # "sweep collect"; empty for the program
+    about: str
+    arguments: list[tuple[str, str]]
+    options: list[Option]
+    inner: list["Command"]
+    footer: str
+
+
+def sections(text):
+    """The titled parts of a help text, and what follows them."""
+    parts, footer, title = {}, [], None
+    for line in text.splitlines()[2:]:
+        if re.fullmatch(r"(Positionals|Options|Subcommands):", line):
+            title = line[:-1]
+            parts[title] = []
+        elif title and line.startswith("  "):
+            parts[title].append(line)
+        elif title and line:
+            title = None
+            footer.append(line)
+        elif footer and not title:
+            footer.append(line)
+    # "Examples:" is followed by indented lines, which belong to the footer.
+    return parts, "\n".join(footer).strip()
+
+
+def entries(lines):
+    """Pairs (left column, right column) of a part; lines that begin further right go on with the text."""
+    found = []
+    for line in lines:
+        if line.startswith("    "):
+            found[-1][1] += " " + line.strip()
+        else:
+            left, _, right = line.strip().partition("  ")
+            found.append([left, right.strip()])
+    return found
+
+
+def command(program, words=""):
+    """The command that `words` name, read from its help."""
+    text = subprocess.run([program, *words.split(), "--help"], capture_output=True, text=True, check=True).stdout
+    parts, footer = sections(text)
+    options = []
+    for left, right in entries(parts.get("Options", [])):
+        names, _, value = left.partition(" ")
+        options.append(Option(names.split(","), value, right))
+    inner = [command(program, f"{words} {name}".strip()) for name, _ in entries(parts.get("Subcommands", []))]
+    return Command(words, text.splitlines()[0], [(a, b) for a, b in entries(parts.get("Positionals", []))], options, inner, footer)
+
+
+def all_of(c):
+    """A command and the commands inside it."""
+    return [c] + [each for i in c.inner for each in all_of(i)]
+
+
+# ---- the manual page ----
+
+
+def roff(text):
+    return "\n".join(re.sub(r"^([.'])", r"\\&\1", line) for line in text.replace("\\", "\\e").replace("-", "\\-").splitlines())
+
+
+def manual(top, version):
+    lines = [f'.TH ANHOLON 1 "" "anholon {version}" "User Commands"', ".SH NAME", "anholon \\- equations and motions of nonholonomic mechanical systems", ".SH SYNOPSIS"]
+    lines += [".B anholon", ".I COMMAND", "[OPTIONS]", ".SH DESCRIPTION", roff(top.about), ".SH COMMANDS"]
+    for c in all_of(top)[1:]:
+        lines += [f".SS anholon {roff(c.words)}", roff(c.about)]
+        for name, text in c.arguments:
+            lines += [".TP", f"\\fI{roff(name)}\\fR", roff(text) or "\\&"]
+        for o in c.options:
+            lines += [".TP", f"\\fB{roff(', '.join(o.flags))}\\fR \\fI{roff(o.value)}\\fR", roff(o.text) or "\\&"]
+        if c.footer:
+            lines += [".PP", ".nf", roff(c.footer), ".fi"]
+    lines += [".SH EXAMPLES", ".nf", roff(top.footer), ".fi"]
+    return "\n".join(lines) + "\n"
+
+
+# ---- completions ----
+
+
+def bash(top):
+    cases = ""
+    for c in all_of(top):
+        words = [i.words.split()[-1] for i in c.inner] + [f for o in c.options for f in o.flags]
+        cases += f'    "{c.words}") words="{" ".join(words)}" ;;\n'
+    names = "|".join(sorted({i.words for c in all_of(top) for i in c.inner}))
+    return f"""# Completion of anholon for bash, made from the help of the program.
+_anholon() {{
+  local current="${{COMP_WORDS[COMP_CWORD]}}" path="" word words="" i
+  for ((i = 1; i < COMP_CWORD; ++i)); do
+    word="${{path:+$path }}${{COMP_WORDS[i]}}"
+    case "$word" in {names.replace(" ", chr(92) + " ")}) path="$word" ;; esac
+  done
+  case "$path" in
+{cases}  esac
+  # Names of models complete the first word that is no option.
+  if [[ -n "$path" && "$current" != -* ]]; then words+=" $("${{COMP_WORDS[0]}}" models 2>/dev/null | sed -n 's/^ *\\([a-z][a-z0-9-]*\\)  .*/\\1/p')"; fi
+  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current"; [[ -n "$path" && "$current" != -* ]] && compgen -f -- "$current")
+}}
+complete -o filenames -F _anholon anholon
+"""
+
+
+def quoted(text):
+    return "'" + text.replace("'", "'\\''") + "'"
+
+
+def zsh(top):
+    cases = ""
+    for c in top.inner:
+        specifications = []
+        for o in c.options:
+            about = re.sub(r"([\[\]:\\])", r"\\\1", o.text)
+            specifications += [quoted(f"*{flag}[{about}]" + (":value:_files" if o.value else "")) for flag in o.flags]
+        cases += f"    {c.words}) _arguments {' '.join(specifications)} '*:file:_files' ;;\n"
+    names = " ".join(quoted(f"{c.words}:{c.about}") for c in top.inner)
+    return f"#compdef anholon\n# Made from the help of the program.\nlocal -a commands\ncommands=({names})\nif (( CURRENT == 2 )); then\n  _describe command commands\nelse\n  case $words[2] in\n{cases}  esac\nfi\n"
+
+
+def fish(top):
+    lines = ["# Completion of anholon for fish, made from the help of the program."]
+    for c in top.inner:
+        lines.append(f"complete -c anholon -n __fish_use_subcommand -a {c.words} -d {quoted(c.about)}")
+        for o in c.options:
+            flags = " ".join(f"-l {f[2:]}" if f.startswith("--") else f"-s {f[1:]}" for f in o.flags)
+            lines.append(f"complete -c anholon -n '__fish_seen_subcommand_from {c.words}' {flags}{' -r' if o.value else ''} -d {quoted(o.text)}")
+    return "\n".join(lines) + "\n"
+
+
+def check(program, top, page):
+    """Nothing of the help is missing, and bash completes words."""
+    plain = page.replace("\\-", "-")
+    for c in all_of(top)[1:]:
+        assert f".SS anholon {c.words}" in plain, c.words
+        block = plain.split(f".SS anholon {c.words}\n")[1].split("\n.SS ")[0]
+        help_text = subprocess.run([program, *c.words.split(), "--help"], capture_output=True, text=True, check=True).stdout
+        flags = {f for line in help_text.splitlines() if (m := OPTION.match(line)) for f in m.group(1).split(",")}
+        assert flags == {f for o in c.options for f in o.flags}, (c.words, flags)
+        assert all(f in block for f in flags), c.words
+        assert all(f in zsh(top) for f in flags) or " " in c.words, c.words
+    with tempfile.TemporaryDirectory() as scratch:
+        file = pathlib.Path(scratch) / "anholon"
+        file.write_text(bash(top), encoding="utf-8")
+        for words, expected in (("anholon si", "simulate"), ("anholon simulate --tol", "--tolerance"), ("anholon sweep coll", "collect"), ("anholon sweep collect --par", "--partial"), ("anholon check chaplygin-sl", "chaplygin-sleigh")):
+            split = words.split()
+            script = f'source {file}\nanholon() {{ "{program}" "$@"; }}\nCOMP_WORDS=({words})\nCOMP_CWORD={len(split) - 1}\n_anholon\nprintf "%s\\n" "${{COMPREPLY[@]}}"\n'
+            done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=False)
+            assert expected in done.stdout.split(), f"{words}: {done.stdout}{done.stderr}"
+            assert all(line.startswith(split[-1]) for line in done.stdout.split()), done.stdout
+    print(f"{len(all_of(top)) - 1} commands, {sum(len(c.options) for c in all_of(top))} options")
+
+
+def main(program, target):
+    program = str(pathlib.Path(program).resolve())
+    top = command(program)
+    version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.split()[-1]
+    page = manual(top, version)
+    if target == "--check":
+        check(program, top, page)
+        return
+    share = pathlib.Path(target) / "share"
+    files = {"bash-completion/completions/anholon": bash(top), "zsh/vendor-completions/_anholon": zsh(top), "fish/vendor_completions.d/anholon.fish": fish(top)}
+    for name, text in files.items():
+        (share / name).parent.mkdir(parents=True, exist_ok=True)
+        (share / name).write_text(text, encoding="utf-8")
+    (share / "man" / "man1").mkdir(parents=True, exist_ok=True)
+    (share / "man" / "man1" / "anholon.1.gz").write_bytes(gzip.compress(page.encode(), mtime=0))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
