@@ -52,7 +52,7 @@ static std::size_t rod_modes(long double friction, long double spin) {
   rows.normal_rate = s * spin * spin;
   rows.friction = rows.static_friction = friction;
   rows.rough = rows.moves = true;
-  rows.direction = {1, 0};
+  rows.direction = {-1, 0};  // the sense in which friction presses the rod into the floor
   p.contacts = {rows};
   return consistent_modes(p).size();
 }
