@@ -8,6 +8,7 @@
 #include "formula/units.h"
 #include "modelfile/check/dimensions.h"
 #include "modelfile/check/values.h"
+#include "modelfile/contacts.h"
 #include "modelfile/mechanical/bodies.h"
 #include "modelfile/mechanical/constraints.h"
 #include "modelfile/mechanical/control.h"
@@ -99,6 +100,7 @@ class Reader {  // its references are used only while it runs
     if (const Item* m = table(root, "monitor")) read_monitors(*m, scope_, model_, diagnostics_);
     read_events(root, scope_, model_, diagnostics_);
     read_outputs(root, scope_, model_, diagnostics_);
+    contacts_ = read_contacts(root, scope_, model_, diagnostics_);
     if (const Item* n = table(root, "notation")) {
       std::vector<std::string> declared;
       for (const auto& [name, d] : scope_.declarations()) declared.push_back(name);
@@ -123,6 +125,7 @@ class Reader {  // its references are used only while it runs
 
   Model& model() { return model_; }
   Scope& scope() { return scope_; }
+  const std::vector<Contact>& contacts() const { return contacts_; }
 
  private:
   bool guard(const std::function<void()>& f, Span place = {}) { return collect(diagnostics_, f, place); }
@@ -337,6 +340,7 @@ class Reader {  // its references are used only while it runs
   Item root_;  // referenced by the scope
   Model model_;
   Scope scope_;
+  std::vector<Contact> contacts_;
 };
 
 // The names of the file, and those of the derived equations.
@@ -362,6 +366,7 @@ class DerivedNames final : public Names {
   std::optional<Vector> point(const BodyName& body, Span use) override { return scope_.point(body, use); }
   std::optional<Rotation> frame(const BodyName& body, Span use) override { return scope_.frame(body, use); }
   std::string body_name(const BodyName& body) const override { return scope_.body_name(body); }
+  const std::vector<Contact>& contacts() const { return reader_->contacts(); }
   bool declares(const std::string& name) const override {
     return scope_.declarations().count(name) > 0 || scope_.find_body(name) != nullptr;
   }
@@ -403,5 +408,7 @@ std::optional<OpenModel> open_model(const SourceText& source, Diagnostics& diagn
   if (!reader->run()) return std::nullopt;
   return OpenModel{std::shared_ptr<const Model>(reader, &reader->model()), std::make_shared<DerivedNames>(reader)};
 }
+
+const std::vector<Contact>& contacts(const Names& names) { return dynamic_cast<const DerivedNames&>(names).contacts(); }
 
 }  // namespace anholon

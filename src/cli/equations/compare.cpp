@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "base/json.h"
+#include "cli/contacts.h"
 #include "cli/input.h"
 #include "cli/say.h"
 #include "published/findings/finding.h"
@@ -89,6 +90,7 @@ int compare(const Options& o) {
     throw UsageError{
         "error: no equations are named\nhint: anholon compare MODEL EQUATIONS, a file with one equation per line\n"};
   const Reader in = read(o);
+  without_contacts(in, "compare");
   const Model& model = *in.model;
   const SourceText source = equation_text(o.equations, ANHOLON_MODELS_DIR);
   Subject subject({in.model, in.names}, state_choice(o, model));

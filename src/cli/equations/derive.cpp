@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <map>
 
+#include "cli/contacts.h"
 #include "cli/input.h"
 #include "cli/models/show.h"
 #include "cli/say.h"
@@ -75,6 +76,7 @@ int derive(const Options& asked) {
   Options o = asked;
   o.format = format_of_equations(asked);
   const Reader in = read(o);
+  without_contacts(in, "derive");
   const Model& model = *in.model;
   if (o.format != "text" && o.format != "latex" && o.format != "mathml" && o.format != "c" && o.format != "python" &&
       o.format != "json")

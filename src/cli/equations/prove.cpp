@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "base/json.h"
+#include "cli/contacts.h"
 #include "cli/input.h"
 #include "cli/say.h"
 #include "modelfile/hash.h"
@@ -128,6 +129,7 @@ void must_be_written(const std::string& why) {
 int prove(const Options& o) {
   const auto start = std::chrono::steady_clock::now();
   const Reader in = read(o);
+  without_contacts(in, "prove");
   const Model& model = *in.model;
   if (!o.output.empty()) must_be_written(obstacle_to_writing(o.output));
   const Mechanics m = mechanics(model);

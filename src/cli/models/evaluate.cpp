@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "base/json.h"
+#include "cli/contacts.h"
 #include "cli/input.h"
 #include "cli/models/show.h"
 #include "cli/say.h"
@@ -105,6 +106,7 @@ int evaluate(const Options& o) {
   if (o.motion.numbers == "double")
     throw UsageError{"error: a state is evaluated in long double at least\nhint: --numbers long-double or quad\n"};
   const Reader in = read(o);
+  without_contacts(in, "evaluate");
   const StateChoice choice = state_choice(o, *in.model);
   Scenario s;
   Outcome outcome = ready(in, form(o, *in.model), choice, s);

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "base/json.h"
+#include "cli/contacts.h"
 #include "cli/input.h"
 #include "cli/models/show.h"
 #include "cli/say.h"
@@ -290,6 +291,7 @@ void print_csv(const Scenario& s, const Linearization& l, const std::optional<Pa
 int linearize(const Options& o) {
   if (o.json && o.csv) throw UsageError{"error: --json and --csv are two formats\nhint: leave out one of them\n"};
   const Reader in = read(o);
+  without_contacts(in, "linearize");
   LinearRequest request;
   if (!o.vary.empty()) request.range = read_range(o.vary, *in.model, "--vary: ");
   request.form = &form(o, *in.model);

@@ -16,6 +16,7 @@
 #include "cli/motions/run_info.h"
 #include "cli/motions/saved.h"
 #include "cli/say.h"
+#include "contact/hybrid.h"
 #include "modelfile/hash.h"
 #include "result/file.h"
 #include "result/format.h"
@@ -49,12 +50,16 @@ class Saver {
   const MotionSettings& settings_;
 };
 
-SimulationReport run(Workspace& s, const SimulationOptions& options, RowSink& rows, Told* told) {
+SimulationReport run(Workspace& s, const Reader& in, const SimulationOptions& options, RowSink& rows, Told* told) {
+  const std::vector<Contact>& touching = contacts(*in.names);
+  const auto motion = [&](RowSink& to) {
+    return touching.empty() ? simulate_in(s, options, to) : simulate_with_contacts(s, touching, options, to);
+  };
   try {
-    if (!told) return simulate_in(s, options, rows);
+    if (!told) return motion(rows);
     RunSink kept(told->run);
     TwoSinks both(rows, kept);
-    return simulate_in(s, options, both);
+    return motion(both);
   } catch (const Failure& e) {
     throw UsageError{"error: " + e.diagnostic.message + "\nhint: " + e.diagnostic.hint + "\n"};
   }
@@ -145,7 +150,7 @@ class Writer {
     if (!has_started(w)) return w;
     RunSink rows(told_->run);
     if (!o_.save.empty()) options_.save = std::ref(saver_);
-    w.report = run(s_, options_, rows, nullptr);
+    w.report = run(s_, in_, options_, rows, nullptr);
     return w;
   }
 
@@ -182,7 +187,7 @@ class Writer {
         saver_(saved);
       };
     options_.rows_lost = [&rows] { return !rows.error().empty(); };
-    w.report = run(s_, options_, rows, told_);
+    w.report = run(s_, in_, options_, rows, told_);
   }
 
   const Options& o_;

@@ -3,6 +3,7 @@
 #include <deque>
 
 #include "base/read_file.h"
+#include "cli/contacts.h"
 #include "cli/input.h"
 #include "cli/models/show.h"
 #include "cli/motions/progress.h"
@@ -102,6 +103,7 @@ Reductions reductions_of(const Options& o, const Reader& in) {
 // Returns false if --show has printed what was asked for.
 bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   p.in = read(p.asked);
+  without_contacts(p.in, "sweep");
   const Options o = p.asked = with_form(p.asked, p.in);
   p.variation = variation_of(o, *p.in.model, table, !p.word.empty());
   EnsembleOptions& e = p.options;

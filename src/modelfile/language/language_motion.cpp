@@ -62,6 +62,47 @@ set = {stage = "stage + 1"}
 
 - A number that only events change. `--set stage=2` is for parameters, not for modes: a case changes where a mode starts.
 )md"},
+      {"contact",
+       Form::elements,
+       any,
+       {{"name", name, "for events and columns; `contact1`, … without it"},
+        {"gap", formula, "the distance, a formula of coordinates and time that is not negative"},
+        {"slip", any, "the relative tangential velocity: a number, a list of two, or a vector with `along`"},
+        {"along", any, "the tangential directions of a vector `slip`, as in a constraint"},
+        {"friction", number, "Coulomb's coefficient while it slips; 0 without it"},
+        {"static_friction", number, "the coefficient while it sticks; `friction` without it"},
+        {"restitution", number, "Newton's coefficient of impacts, 0 to 1; 0 without it"}},
+       R"md(```toml
+[[contact]]
+name = "floor"
+gap  = "P.y - R"                   # the plate is a wheel of radius R on the floor y = 0
+slip = "vel(plate, P - R*ey)"      # of the material point that touches it
+along = ["ex"]
+friction = 0.3
+static_friction = 0.4
+restitution = 0.5
+[initial]
+y = 1
+```
+
+- A contact pushes and does not pull: it is open, sticks or slips. The normal force N acts along the gradient of the gap, friction against the slip velocity:
+  μN while it slips, at most the static coefficient times N while it sticks. Without `slip` there is no friction.
+- Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. Rows have the columns `NAME.mode` (0 open,
+  1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
+- Impacts follow Newton's law in Moreau's form. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
+- At most four contacts. `simulate` knows them; sweeps, derivations, linear models and the library refuse a model with contacts. They do
+  not go with events that set values, nor with servo constraints.
+
+```toml
+[[contact]]
+name = "floor"
+gap = "P.y"
+friction = 0.3
+```
+```text
+error: the contact 'floor' has friction and no slip velocity
+```
+)md"},
       {"event",
        Form::elements,
        any,

@@ -1,0 +1,15 @@
+// Refuses models with contacts where a command does not know them.
+#pragma once
+#include "cli/input.h"
+#include "modelfile/contacts.h"
+
+namespace anholon::cli {
+
+// Throws UsageError if the model has contacts.
+inline void without_contacts(const Reader& in, const std::string& command) {
+  if (const std::vector<Contact>& list = contacts(*in.names); !list.empty())
+    throw UsageError{"error: '" + command + "' knows no contacts, and the model has '" + list.front().name +
+                     "'\nhint: 'simulate' does; write what touches as a [[constraint]] for the others\n"};
+}
+
+}  // namespace anholon::cli

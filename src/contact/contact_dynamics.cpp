@@ -1,0 +1,145 @@
+#include "contact/contact_dynamics.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace anholon {
+
+namespace {
+
+void check_constraints(const Scenario& s) {
+  for (const std::size_t r : s.independent) {
+    const Constraint& c = s.model->constraints[r];
+    if (c.order > 1)
+      throw Failure(c.span, "contacts go with constraints of positions and velocities, and '" + c.name +
+                                "' holds accelerations");
+    if (c.by) throw Failure(c.span, "contacts do not go with servo constraints, as '" + c.name + "' is");
+  }
+}
+
+// In the order in which ContactDynamics::go reads them.
+Column formulas(Workspace& s, const std::vector<Contact>& contacts) {
+  const Mechanics& m = *s.mechanics;
+  Column es;
+  const auto add_row = [&](const Column& row) { es.insert(es.end(), row.begin(), row.end()); };
+  const Column left = newton_left_side(m), given = forces(m);
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const Expr e = put_masses(*s.model, left[i] - given[i]);
+    add_row(gradient(e, m.qdd));
+    es.push_back(e);
+  }
+  for (const std::size_t r : s.independent) {
+    const int order = m.order[r];
+    const Expr phi = put_masses(*s.model, m.phi[r]);
+    add_row(gradient(phi, order == 0 ? m.q : m.qd));
+    es.push_back(total_derivative(phi, static_cast<unsigned>(2 - order)));
+  }
+  for (const Contact& c : contacts) {
+    es.push_back(c.gap);
+    es.push_back(total_derivative(c.gap));
+    add_row(gradient(c.gap, m.q));
+    es.push_back(total_derivative(c.gap, 2));
+    for (const Expr v : c.slip) {
+      es.push_back(v);
+      add_row(gradient(v, m.qd));
+      es.push_back(total_derivative(v));
+    }
+    es.insert(es.end(), {c.friction, c.static_friction, c.restitution});
+  }
+  return es;
+}
+
+std::vector<Contact> owned(Workspace& s, std::vector<Contact> contacts) {
+  for (Contact& c : contacts) {
+    for (Expr* e : {&c.gap, &c.friction, &c.static_friction, &c.restitution}) *e = s.graph().own(*e);
+    for (Expr& v : c.slip) v = s.graph().own(v);
+  }
+  check_constraints(s);
+  return contacts;
+}
+
+}  // namespace
+
+ContactDynamics::ContactDynamics(Workspace& s, const std::vector<Contact>& contacts)
+    : n_(s.mechanics->q.size()), independent_(s.independent), contacts_(owned(s, contacts)), graph_(s.graph()),
+      tape_(compile(formulas(s, contacts_))), machine_(tape_, 0, parameter_values<long double>(*s.model)) {}
+
+void ContactDynamics::go(const ContactState& at) {
+  bind(machine_, graph_, [&](const Node& n, NodeId) -> long double {
+    if (n.kind == Kind::time) return at.t.get_d();
+    if (n.kind == Kind::jet) return n.order == 0 ? at.q[n.index] : n.order == 1 ? at.qd[n.index] : 0;
+    return n.kind == Kind::state && n.order == 0 ? at.states[n.index] : 0;
+  });
+  machine_.evaluate();
+  std::size_t k = 0;
+  const auto next = [&] { return machine_.value(k++); };
+  const auto row = [&] {
+    std::vector<long double> list;
+    for (std::size_t i = 0; i < n_; ++i) list.push_back(next());
+    return list;
+  };
+  problem_ = {};
+  places_.clear();
+  for (std::size_t i = 0; i < n_; ++i) problem_.A.push_back(row()), problem_.b.push_back(next());
+  for (std::size_t r = 0; r < independent_.size(); ++r) problem_.Phi.push_back(row()), problem_.beta.push_back(next());
+  speed_ = 0;
+  for (double v : at.qd) speed_ = std::max(speed_, static_cast<long double>(std::abs(v)));
+  for (const Contact& c : contacts_) {
+    Place place;
+    ContactRows rows;
+    place.gap = next();
+    place.gap_rate = next();
+    rows.normal = row();
+    rows.normal_rate = next();
+    for (std::size_t a = 0; a < c.slip.size(); ++a) {
+      place.slip[a] = next();
+      rows.tangential.push_back(row());
+      rows.tangential_rate[a] = next();
+    }
+    rows.friction = next();
+    rows.static_friction = next();
+    place.restitution = next();
+    rows.rough = c.rough();
+    const long double size = std::hypot(place.slip[0], place.slip[1]);
+    rows.direction = size > 0 ? std::array<long double, 2>{place.slip[0] / size, place.slip[1] / size}
+                              : std::array<long double, 2>{1, 0};
+    // A velocity within round-off of the state is zero.
+    constexpr long double kZero = 1e-13L;
+    long double scale = 0;
+    for (const auto& t : rows.tangential)
+      for (std::size_t i = 0; i < n_; ++i) scale = std::max(scale, std::abs(t[i] * at.qd[i]));
+    rows.moves = size > kZero * scale && size > 0;
+    problem_.contacts.push_back(std::move(rows));
+    places_.push_back(place);
+  }
+}
+
+ContactProblem ContactDynamics::impact(const std::vector<bool>& touches, const std::vector<bool>& gentle) const {
+  ContactProblem p;
+  p.A = problem_.A;
+  p.Phi = problem_.Phi;
+  p.b.assign(n_, 0);
+  p.beta.assign(problem_.beta.size(), 0);
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    ContactRows rows = problem_.contacts[c];
+    const Place& place = places_[c];
+    const long double e = gentle[c] ? 0 : place.restitution;
+    rows.normal_rate = (1 + e) * place.gap_rate;
+    rows.tangential_rate = place.slip;
+    rows.static_friction = rows.friction;  // of impulses there is one coefficient
+    rows.moves = false;
+    rows.may_touch = touches[c];
+    if (!touches[c]) rows.normal.assign(n_, 0), rows.normal_rate = 0;
+    p.contacts.push_back(std::move(rows));
+  }
+  return p;
+}
+
+long double ContactDynamics::energy(const std::vector<long double>& qd) const {
+  long double twice = 0;
+  for (std::size_t i = 0; i < n_; ++i)
+    for (std::size_t j = 0; j < n_; ++j) twice += problem_.A[i][j] * qd[i] * qd[j];
+  return twice / 2;
+}
+
+}  // namespace anholon

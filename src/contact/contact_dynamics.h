@@ -1,0 +1,42 @@
+// The equations of the contacts at a state, as numbers: accelerations and impulses, gaps and slip velocities.
+#pragma once
+#include "contact/contact_law.h"
+#include "contact/mode_model.h"
+#include "setup/scenario.h"
+
+namespace anholon {
+
+class ContactDynamics {
+ public:
+  // `s`: the model with all contacts open. Constraints of order above 1, and those kept by inputs, are refused (Failure).
+  ContactDynamics(Workspace& s, const std::vector<Contact>& contacts);
+
+  struct Place {
+    long double gap = 0, gap_rate = 0;
+    std::array<long double, 2> slip{};
+    long double restitution = 0;
+  };
+  // Evaluates all formulas at a state.
+  void go(const ContactState& at);
+  const Place& place(std::size_t contact) const { return places_[contact]; }
+  long double speed() const { return speed_; }  // the largest velocity of a coordinate
+  // The accelerations; `moves` and `direction` of the contacts are those of their slip velocities.
+  const ContactProblem& accelerations() const { return problem_; }
+  // The jumps of the velocities at an impact by Newton's law in Moreau's form. gentle: contacts whose restitution is 0.
+  ContactProblem impact(const std::vector<bool>& touches, const std::vector<bool>& gentle) const;
+  // The kinetic energy of velocities, in which the mass matrix is that of the state.
+  long double energy(const std::vector<long double>& qd) const;
+
+ private:
+  std::size_t n_;
+  std::vector<std::size_t> independent_;
+  std::vector<Contact> contacts_;
+  Graph& graph_;
+  Tape tape_;
+  Machine<long double> machine_;
+  ContactProblem problem_;
+  std::vector<Place> places_;
+  long double speed_ = 0;
+};
+
+}  // namespace anholon

@@ -1,0 +1,231 @@
+#include "contact/contact_law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace anholon {
+
+namespace {
+
+using Real = long double;
+using Numbers = std::vector<Real>;
+
+// Solutions that differ by less, in relation to their size, are the same; a pivot below it is zero.
+constexpr Real kSame = 1e-10L;
+
+Real dot(const Numbers& a, const Numbers& b) {
+  Real sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+Real largest(const Numbers& a) {
+  Real most = 0;
+  for (Real x : a) most = std::max(most, std::abs(x));
+  return most;
+}
+
+// By Gauss with complete pivoting, rows scaled to 1; nullopt if the matrix is singular.
+std::optional<Numbers> solve(std::vector<Numbers> m, Numbers right) {
+  const std::size_t n = right.size();
+  std::vector<std::size_t> column(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    column[i] = i;
+    const Real scale = largest(m[i]);
+    if (!(scale > 0)) return std::nullopt;
+    for (Real& x : m[i]) x /= scale;
+    right[i] /= scale;
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t row = k, best = k;
+    for (std::size_t i = k; i < n; ++i)
+      for (std::size_t j = k; j < n; ++j)
+        if (std::abs(m[i][j]) > std::abs(m[row][best])) row = i, best = j;
+    if (!(std::abs(m[row][best]) > kSame)) return std::nullopt;
+    std::swap(m[k], m[row]), std::swap(right[k], right[row]);
+    for (Numbers& r : m) std::swap(r[k], r[best]);
+    std::swap(column[k], column[best]);
+    for (std::size_t i = k + 1; i < n; ++i) {
+      const Real factor = m[i][k] / m[k][k];
+      if (factor == 0) continue;
+      for (std::size_t j = k; j < n; ++j) m[i][j] -= factor * m[k][j];
+      right[i] -= factor * right[k];
+    }
+  }
+  Numbers x(n);
+  for (std::size_t k = n; k-- > 0;) {
+    Real sum = right[k];
+    for (std::size_t j = k + 1; j < n; ++j) sum -= m[k][j] * x[column[j]];
+    x[column[k]] = sum / m[k][k];
+  }
+  return x;
+}
+
+struct Forces {
+  ContactSolution solution;
+  std::vector<std::array<Real, 2>> friction;
+};
+
+// The linear equations of given modes. Columns: x, lambda, then N and T of each contact.
+std::optional<Forces> solve(const ContactProblem& p, const ContactModes& modes) {
+  const std::size_t n = p.b.size(), s = p.beta.size();
+  std::vector<std::size_t> first;
+  std::size_t size = n + s;
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    first.push_back(size);
+    if (modes[c].touch == Touch::open) continue;
+    size += 1 + (modes[c].touch == Touch::sticks && !modes[c].free ? p.contacts[c].tangential.size() : 0);
+  }
+  std::vector<Numbers> m(size, Numbers(size, 0));
+  Numbers right(size, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) m[i][j] = p.A[i][j];
+    for (std::size_t r = 0; r < s; ++r) m[i][n + r] = -p.Phi[r][i], m[n + r][i] = p.Phi[r][i];
+    right[i] = -p.b[i];
+  }
+  for (std::size_t r = 0; r < s; ++r) right[n + r] = -p.beta[r];
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    const ContactRows& rows = p.contacts[c];
+    if (modes[c].touch == Touch::open) continue;
+    const std::size_t k = first[c];
+    for (std::size_t i = 0; i < n; ++i) {
+      m[k][i] = rows.normal[i];
+      m[i][k] = -rows.normal[i];
+      for (std::size_t a = 0; a < rows.tangential.size(); ++a) {
+        if (modes[c].touch == Touch::slips)
+          m[i][k] += rows.friction * modes[c].direction[a] * rows.tangential[a][i];
+        else if (!modes[c].free)
+          m[k + 1 + a][i] = rows.tangential[a][i], m[i][k + 1 + a] = -rows.tangential[a][i];
+      }
+    }
+    right[k] = -rows.normal_rate;
+    if (modes[c].touch == Touch::sticks && !modes[c].free)
+      for (std::size_t a = 0; a < rows.tangential.size(); ++a) right[k + 1 + a] = -rows.tangential_rate[a];
+  }
+  const auto found = solve(std::move(m), std::move(right));
+  if (!found) return std::nullopt;
+  Forces f;
+  f.solution.modes = modes;
+  f.solution.x.assign(found->begin(), found->begin() + static_cast<std::ptrdiff_t>(n));
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    const bool open = modes[c].touch == Touch::open;
+    f.solution.normal.push_back(open ? 0 : (*found)[first[c]]);
+    std::array<Real, 2> t{};
+    if (modes[c].touch == Touch::sticks && !modes[c].free)
+      for (std::size_t a = 0; a < p.contacts[c].tangential.size(); ++a) t[a] = (*found)[first[c] + 1 + a];
+    f.friction.push_back(t);
+  }
+  return f;
+}
+
+std::array<Real, 2> slip_rate(const ContactRows& rows, const Numbers& x) {
+  std::array<Real, 2> v{};
+  for (std::size_t a = 0; a < rows.tangential.size(); ++a) v[a] = dot(rows.tangential[a], x) + rows.tangential_rate[a];
+  return v;
+}
+
+// Directions of slip that begins are those of the slip rates that follow from them: a fixed point.
+std::optional<Forces> with_directions(const ContactProblem& p, ContactModes modes) {
+  constexpr int kMost = 200;
+  for (int k = 0; k < kMost; ++k) {
+    auto f = solve(p, modes);
+    if (!f) return f;
+    bool changed = false;
+    for (std::size_t c = 0; c < modes.size(); ++c) {
+      const ContactRows& rows = p.contacts[c];
+      if (modes[c].touch != Touch::slips || rows.moves || rows.tangential.size() < 2 || !rows.rough) continue;
+      const auto v = slip_rate(rows, f->solution.x);
+      const Real size = std::hypot(v[0], v[1]);
+      if (!(size > 0)) continue;
+      const std::array<Real, 2> d{v[0] / size, v[1] / size};
+      if (std::hypot(d[0] - modes[c].direction[0], d[1] - modes[c].direction[1]) > 1e-17L) changed = true;
+      modes[c].direction = d;
+    }
+    if (!changed) return f;
+  }
+  return solve(p, modes);
+}
+
+bool consistent(const ContactProblem& p, const Forces& f) {
+  const Real force = largest(p.b), size = std::max(largest(f.solution.x), Real(1e-300L));
+  for (std::size_t c = 0; c < p.contacts.size(); ++c) {
+    const ContactRows& rows = p.contacts[c];
+    const ContactMode& mode = f.solution.modes[c];
+    const Real scale = kSame * (largest(rows.normal) * size + std::abs(rows.normal_rate));
+    const Real N = f.solution.normal[c];
+    if (mode.touch == Touch::open) {
+      if (dot(rows.normal, f.solution.x) + rows.normal_rate < -scale) return false;
+      continue;
+    }
+    const Real forces = kSame * std::max(force, std::abs(N));
+    if (N < -forces) return false;
+    if (!rows.rough) continue;
+    const auto v = slip_rate(rows, f.solution.x);
+    Real span = 0;
+    for (std::size_t a = 0; a < rows.tangential.size(); ++a)
+      span = std::max(span, kSame * (largest(rows.tangential[a]) * size + std::abs(rows.tangential_rate[a])));
+    if (mode.touch == Touch::sticks) {
+      if (mode.free ? std::hypot(v[0], v[1]) > span
+                    : std::hypot(f.friction[c][0], f.friction[c][1]) > rows.static_friction * N + forces)
+        return false;
+    } else if (!rows.moves && v[0] * mode.direction[0] + v[1] * mode.direction[1] < -span) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// The modes that one contact may take, those that touch first.
+ContactModes choices(const ContactRows& rows) {
+  ContactModes list;
+  if (rows.may_touch) {
+    if (rows.rough && !rows.moves && rows.may_stick) list.push_back({Touch::sticks, {}, false});
+    if (!rows.rough || rows.moves || rows.tangential.size() > 1) {
+      list.push_back({Touch::slips, rows.direction, false});
+    } else {
+      list.push_back({Touch::slips, {1, 0}, false});
+      list.push_back({Touch::slips, {-1, 0}, false});
+    }
+    if (rows.rough && !rows.moves && rows.may_stick) list.push_back({Touch::sticks, {}, true});
+  }
+  if (rows.may_open) list.push_back({});
+  return list;
+}
+
+// Sticking is the way in which a contact that may stick goes on, whether or not it could begin to slip as well.
+bool alternatives(const ContactSolution& a, const ContactSolution& b) {
+  bool open = false;
+  for (std::size_t c = 0; c < a.modes.size(); ++c)
+    open = open || (a.modes[c].touch == Touch::open) != (b.modes[c].touch == Touch::open);
+  return open;
+}
+
+}  // namespace
+
+std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
+  std::vector<ContactModes> each;
+  std::size_t count = 1;
+  for (const ContactRows& rows : p.contacts) each.push_back(choices(rows)), count *= each.back().size();
+  std::vector<ContactSolution> list;
+  for (std::size_t k = 0; k < count; ++k) {
+    ContactModes modes;
+    for (std::size_t c = 0, rest = k; c < each.size(); ++c) {
+      modes.push_back(each[c][rest % each[c].size()]);
+      rest /= each[c].size();
+    }
+    const auto f = with_directions(p, modes);
+    if (!f || !consistent(p, *f)) continue;
+    const bool known = std::any_of(list.begin(), list.end(), [&](const ContactSolution& o) {
+      Real difference = 0;
+      for (std::size_t i = 0; i < o.x.size(); ++i)
+        difference = std::max(difference, std::abs(o.x[i] - f->solution.x[i]));
+      return difference <= 100 * kSame * std::max(largest(o.x), largest(f->solution.x)) ||
+             !alternatives(o, f->solution);
+    });
+    if (!known) list.push_back(f->solution);
+  }
+  return list;
+}
+
+}  // namespace anholon

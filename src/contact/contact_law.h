@@ -1,0 +1,52 @@
+// Which mode of the contacts is consistent at a state, on the level of accelerations or of impulses (theory: contact).
+//
+//   A x + b = Phi^T lambda + sum (n N + t^T T),   Phi x + beta = 0,
+//   open:   N = 0, T = 0, n x + n0 >= 0
+//   sticks: n x + n0 = 0, t x + t0 = 0, N >= 0, |T| <= mu_s N
+//   slips:  n x + n0 = 0, T = -mu N d, N >= 0, where d is the direction of the slip velocity, or at rest that of t x + t0
+//
+// x are the accelerations, or the jumps of the velocities. All modes are tried; there are at most four contacts.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace anholon {
+
+enum class Touch : std::uint8_t { open, slips, sticks };
+
+struct ContactMode {
+  Touch touch = Touch::open;
+  std::array<long double, 2> direction{};  // of the slip, of length 1
+  bool free = false;                       // sticks without friction of its own, as other contacts hold it
+};
+using ContactModes = std::vector<ContactMode>;
+
+struct ContactRows {
+  std::vector<long double> normal;                   // n
+  std::vector<std::vector<long double>> tangential;  // t
+  long double normal_rate = 0;                       // n0
+  std::array<long double, 2> tangential_rate{};      // t0
+  long double friction = 0, static_friction = 0;
+  bool rough = false;
+  bool may_open = true, may_touch = true, may_stick = true;
+  bool moves = false;                      // it slips already, in `direction`
+  std::array<long double, 2> direction{};  // without `moves`: a first guess
+};
+
+struct ContactProblem {
+  std::vector<std::vector<long double>> A, Phi;
+  std::vector<long double> b, beta;
+  std::vector<ContactRows> contacts;
+};
+
+struct ContactSolution {
+  ContactModes modes;
+  std::vector<long double> x;
+  std::vector<long double> normal;  // N
+};
+
+// The consistent modes whose accelerations differ. Modes that give the same x are one; the first of them touches most.
+std::vector<ContactSolution> consistent_modes(const ContactProblem& problem);
+
+}  // namespace anholon

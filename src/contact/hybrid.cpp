@@ -1,0 +1,290 @@
+#include "contact/hybrid.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "contact/contact_dynamics.h"
+#include "contact/joined_report.h"
+#include "contact/segment_rows.h"
+#include "numeric/number.h"
+#include "simulation/request.h"
+
+namespace anholon {
+
+namespace {
+
+void refuse(const SimulationOptions& o, const Scenario& s) {
+  const auto no = [](const std::string& what, const std::string& hint) {
+    throw Failure({}, "a motion with contacts " + what, hint);
+  };
+  if (o.precision != Precision::real || o.digits > 16) no("is computed in doubles", "leave out --digits and --numbers");
+  if (o.save || o.resume) no("is not saved", "leave out --save and --continue");
+  if (o.rigorous) no("has no enclosure", "leave out --rigorous");
+  if (o.integrator != Method::taylor) no("is computed by Taylor's method", "leave out --integrator");
+  if (!o.followed.empty() || o.dense) no("has no polynomials", "leave out the dense output");
+  if (s.system.form->eliminates()) no("needs a form with multipliers", "--form routh");
+  if (sets_values(*s.model)) no("does not go with events that set values", "leave out 'set'");
+}
+
+class HybridMotion {
+ public:
+  HybridMotion(Workspace& s, const std::vector<Contact>& contacts, const SimulationOptions& o, RowSink& sink)
+      : s_(s), contacts_(contacts), o_(o), dynamics_(s, contacts), rows_(sink, contacts), joined_(*s.model),
+        gentle_(contacts.size(), false), impacts_(contacts.size()) {
+    at_.t = o.state.t ? *o.state.t : Rational(s.state.t);
+    at_.q = s.state.q, at_.qd = s.state.qd, at_.states = s.state.states;
+    end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
+    if (end_ < at_.t) throw Failure({}, "a motion with contacts goes forwards only", "an end after the start");
+    times_ = o.at;
+    if (o.every)
+      for (Rational t = at_.t; t < end_; t += *o.every) times_.push_back(t);
+    if (!times_.empty() && times_.back() != end_) times_.push_back(end_);
+    rows_.only_at(times_);
+  }
+
+  SimulationReport go() {
+    excluded_.assign(contacts_.size(), {});
+    Outcome outcome = open_at_start();
+    constexpr std::size_t kMostSegments = 100'000;
+    for (std::size_t k = 0; outcome.ok() && at_.t < end_; ++k) {
+      if (k == kMostSegments)
+        outcome = {OutcomeKind::interrupted, "more than 100000 changes of the contacts" + when(),
+                   "end the motion earlier"};
+      else
+        outcome = choose();
+      if (outcome.ok() && !segment(outcome)) break;
+    }
+    return joined_.report(std::move(outcome), at_.t.get_d(), rows_.rows());
+  }
+
+ private:
+  struct Excluded {
+    bool touch = false, stick = false;
+  };
+  // The last impacts of a contact, from which it is seen that they accumulate.
+  struct Impacts {
+    double last = 0, interval = 0, ratio = 0;
+    std::size_t alike = 0, count = 0;
+  };
+
+  std::string when() const { return " at t = " + number_text(at_.t.get_d(), 12); }
+
+  // A gap of this size is none: the state is rounded to doubles.
+  bool closed(std::size_t c) const {
+    constexpr long double kClosed = 1e-12L;
+    long double size = 1e-300L;
+    for (std::size_t a = 0; a < at_.q.size(); ++a)
+      size = std::max(size, std::abs(dynamics_.accelerations().contacts[c].normal[a]) * (1 + std::abs(at_.q[a])));
+    return dynamics_.place(c).gap <= kClosed * size;
+  }
+  // The velocity of the gap, 0 within round-off.
+  long double gap_rate(std::size_t c) const {
+    constexpr long double kZero = 1e-12L;
+    const long double v = dynamics_.place(c).gap_rate;
+    long double size = 0;
+    for (std::size_t a = 0; a < at_.q.size(); ++a)
+      size = std::max(size, std::abs(dynamics_.accelerations().contacts[c].normal[a] * at_.qd[a]));
+    return std::abs(v) <= kZero * size ? 0 : v;
+  }
+
+  Outcome open_at_start() {
+    dynamics_.go(at_);
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      if (dynamics_.place(c).gap < 0 && !negligible(c))
+        return {OutcomeKind::inconsistent,
+                "the gap of contact '" + contacts_[c].name + "' is " +
+                    number_text(static_cast<double>(dynamics_.place(c).gap), 6) +
+                    " at the start, and a gap is not negative",
+                "start at a position where the gap is zero or positive"};
+    return {};
+  }
+  bool negligible(std::size_t c) const {
+    constexpr long double kRounded = 1e-8L;
+    return dynamics_.place(c).gap > -kRounded;
+  }
+
+  // Impacts where a closed gap shrinks, then the modes by the accelerations.
+  Outcome choose() {
+    dynamics_.go(at_);
+    bool hits = false;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) hits = hits || (closed(c) && gap_rate(c) < 0);
+    if (hits)
+      if (Outcome o = impact(); !o.ok()) return o;
+    ContactProblem p = dynamics_.accelerations();
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      ContactRows& rows = p.contacts[c];
+      rows.may_touch = closed(c) && gap_rate(c) == 0 && !excluded_[c].touch;
+      rows.may_stick = !excluded_[c].stick;
+      // A gap that is open, or opens, is not bounded by its acceleration.
+      if (!closed(c) || gap_rate(c) > 0) rows.normal.assign(at_.q.size(), 0), rows.normal_rate = 0;
+    }
+    const std::vector<ContactSolution> list = consistent_modes(p);
+    if (list.size() != 1) return undecided(list);
+    modes_ = list[0].modes;
+    start_slip();
+    return {};
+  }
+
+  Outcome undecided(const std::vector<ContactSolution>& list) const {
+    std::string names;
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      if (closed(c)) names += (names.empty() ? "'" : ", '") + contacts_[c].name + "'";
+    if (list.empty())
+      return {OutcomeKind::inconsistent,
+              "no mode of the contacts " + names + " is consistent (Painlevé's paradox)" + when(),
+              "rigid bodies with this friction have no motion here: take less friction, or end the motion before"};
+    return {OutcomeKind::inconsistent,
+            std::to_string(list.size()) + " modes of the contacts " + names + " are consistent (Painlevé's paradox)" +
+                when(),
+            "rigid bodies with this friction have several motions here: take less friction, or end the motion before"};
+  }
+
+  Outcome impact() {
+    const std::size_t n = at_.q.size();
+    std::vector<bool> touches;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) touches.push_back(closed(c) && gap_rate(c) <= 0);
+    const bool rests = accumulate(touches);
+    const std::vector<ContactSolution> list = consistent_modes(dynamics_.impact(touches, gentle_));
+    if (list.size() != 1) return undecided(list);
+    std::vector<long double> before(at_.qd.begin(), at_.qd.end()), after = before;
+    for (std::size_t a = 0; a < n; ++a) after[a] += list[0].x[a];
+    constexpr long double kGrows = 1e-12L;
+    // Formulas that hold t move a wall, which may give energy.
+    if (!moving_walls() && dynamics_.energy(after) > dynamics_.energy(before) * (1 + kGrows))
+      return {OutcomeKind::inconsistent, "the impact would raise the energy" + when(),
+              "Newton's law of impacts with friction does so for this direction: take a smaller restitution"};
+    std::vector<EventReport::Change> changes;
+    for (std::size_t a = 0; a < n; ++a) {
+      const auto v = static_cast<double>(after[a]);
+      if (v != at_.qd[a]) changes.push_back({s_.model->coordinates[a].name + "'", {at_.qd[a], ""}, {v, ""}});
+      at_.qd[a] = v;
+    }
+    joined_.set(at_.t.get_d(), changes);
+    if (rests) joined_.event(rest_name_, rest_time_);
+    for (std::size_t c = 0; c < contacts_.size(); ++c) gentle_[c] = false, excluded_[c] = {};
+    dynamics_.go(at_);
+    // What the impact made zero is zero.
+    return {};
+  }
+
+  bool moving_walls() const {
+    return std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) {
+      const std::vector<NodeId> all = symbols({&c.gap, 1});
+      return std::any_of(all.begin(), all.end(), [&](NodeId id) { return c.gap.graph->node(id).kind == Kind::time; });
+    });
+  }
+
+  // Intervals that shrink by one ratio r add up to a limit: t + interval r/(1 - r). So near to it that the rest of the
+  // motion is below round-off, the impact has no restitution. Returns whether a contact comes to rest.
+  bool accumulate(const std::vector<bool>& touches) {
+    constexpr double kRatio = 1e-4, kLeft = 1e-9;
+    constexpr std::size_t kAlike = 4;
+    bool rests = false;
+    const double t = at_.t.get_d();
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      if (!touches[c] || gap_rate(c) == 0) continue;
+      Impacts& i = impacts_[c];
+      const double interval = i.count > 0 ? t - i.last : 0, ratio = i.count > 1 ? interval / i.interval : 0;
+      i.alike = i.count > 2 && ratio < 1 && std::abs(ratio - i.ratio) < kRatio ? i.alike + 1 : 0;
+      const double left = ratio > 0 && ratio < 1 ? interval * ratio / (1 - ratio) : 0;
+      // Near the limit an interval has few digits; the ratio is that of before.
+      if (i.alike >= kAlike && left < kLeft * std::max(1.0, t)) {
+        gentle_[c] = rests = true;
+        rest_name_ = contacts_[c].name + ".rests";
+        rest_time_ = t + left;
+        i = {};
+        continue;
+      }
+      i.last = t, i.interval = interval, i.ratio = ratio, ++i.count;
+    }
+    return rests;
+  }
+
+  // A slip velocity with two components has no direction where it begins: it begins with a velocity of 1e-10 of the
+  // others along the direction of its rate.
+  void start_slip() {
+    constexpr long double kSeed = 1e-10L;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      const ContactRows& rows = dynamics_.accelerations().contacts[c];
+      if (modes_[c].touch != Touch::slips || !rows.rough || rows.moves || rows.tangential.size() < 2) continue;
+      ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), false), gentle_);
+      for (std::size_t k = 0; k < contacts_.size(); ++k) p.contacts[k].may_touch = false;
+      const long double v = kSeed * std::max(dynamics_.speed(), 1.0L);
+      // The constraint of sticking, moved by the seed, gives the jump of least change.
+      p.contacts[c] = rows;
+      p.contacts[c].may_open = false, p.contacts[c].static_friction = 1e30L, p.contacts[c].normal_rate = 0;
+      for (std::size_t a = 0; a < 2; ++a)
+        p.contacts[c].tangential_rate[a] = dynamics_.place(c).slip[a] - v * modes_[c].direction[a];
+      const auto list = consistent_modes(p);
+      if (list.empty()) continue;
+      for (std::size_t a = 0; a < at_.qd.size(); ++a) at_.qd[a] += static_cast<double>(list[0].x[a]);
+    }
+  }
+
+  // Follows the motion in the present modes to their end; returns false if it ends there.
+  bool segment(Outcome& outcome) {
+    const ModeModel mode = mode_model(*s_.model, contacts_, modes_, at_);
+    Scenario scenario;
+    outcome = make_scenario(mode.model, *s_.system.form, {}, scenario);
+    if (!outcome.ok()) return false;
+    Workspace own(scenario);
+    SimulationOptions o = o_;
+    o.state = {};
+    o.to = end_;
+    o.every.reset();
+    o.at_text.clear();
+    o.at.clear();
+    for (const Rational& t : times_)
+      if (joined_.segments() == 0 ? t >= at_.t : t > at_.t) o.at.push_back(t);
+    o.estimate = ErrorEstimate::never;
+    o.conserved.clear();
+    o.note = nullptr;
+    o.state.t = at_.t;
+    rows_.begin_segment();
+    const SimulationReport r = simulate_in(own, o, rows_);
+    outcome = r.outcome;
+    rows_.last_state(at_);
+    const bool every_event_known = joined_.add(r, mode.events);
+    if (!outcome.ok()) return false;
+    for (Excluded& e : excluded_) e = {};
+    bool changed = false;
+    for (const EventReport& e : r.events) {
+      const auto known = mode.events.find(e.name);
+      if (known == mode.events.end()) continue;
+      changed = true;
+      if (known->second.change == ModeChange::leaves) excluded_[known->second.contact].touch = true;
+      if (known->second.change == ModeChange::slips) excluded_[known->second.contact].stick = true;
+    }
+    return changed && every_event_known && at_.t < end_;
+  }
+
+  Workspace& s_;
+  const std::vector<Contact>& contacts_;
+  const SimulationOptions& o_;
+  ContactDynamics dynamics_;
+  SegmentRows rows_;
+  JoinedReport joined_;
+  ContactState at_;
+  Rational end_;
+  std::vector<Rational> times_;
+  ContactModes modes_;
+  std::vector<Excluded> excluded_;
+  std::vector<bool> gentle_;  // contacts whose next impact has no restitution
+  std::vector<Impacts> impacts_;
+  std::string rest_name_;
+  double rest_time_ = 0;
+};
+
+}  // namespace
+
+SimulationReport simulate_with_contacts(Workspace& s, const std::vector<Contact>& contacts,
+                                        const SimulationOptions& options, RowSink& sink) {
+  refuse(options, s);
+  const auto start = std::chrono::steady_clock::now();
+  SimulationReport r = HybridMotion(s, contacts, options, sink).go();
+  r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return r;
+}
+
+}  // namespace anholon

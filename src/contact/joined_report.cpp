@@ -1,0 +1,85 @@
+#include "contact/joined_report.h"
+
+#include <algorithm>
+
+namespace anholon {
+
+JoinedReport::JoinedReport(const Model& model) {
+  all_.model = model.title;
+  all_.looks_for_events = true;
+}
+
+bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, ModeEvent>& contacts) {
+  bool goes_on = true;
+  if (segments_++ == 0) {
+    const SimulationReport first = all_;
+    all_ = r;
+    all_.model = first.model, all_.looks_for_events = true;
+    all_.events.clear(), all_.constraints_each.clear(), all_.monitors.clear();
+  } else {
+    all_.steps += r.steps;
+    all_.rows_looked_at += r.rows_looked_at;
+    all_.order = std::max(all_.order, r.order);
+    for (const auto member : {&SimulationReport::newton, &SimulationReport::projected, &SimulationReport::constraints,
+                              &SimulationReport::constraints_kept, &SimulationReport::power})
+      all_.*member = std::max(all_.*member, r.*member);
+    if (r.smallest_sigma < all_.smallest_sigma)
+      all_.smallest_sigma = r.smallest_sigma, all_.smallest_sigma_t = r.smallest_sigma_t;
+    all_.warnings.insert(all_.warnings.end(), r.warnings.begin(), r.warnings.end());
+    all_.method.taylor_steps += r.method.taylor_steps;
+  }
+  for (const ConstraintReport& c : r.constraints_each) {
+    const auto known = std::find_if(all_.constraints_each.begin(), all_.constraints_each.end(),
+                                    [&](const ConstraintReport& o) { return o.name == c.name; });
+    if (known == all_.constraints_each.end()) {
+      all_.constraints_each.push_back(c);
+      continue;
+    }
+    for (std::size_t k = 0; k < std::min(known->residuals.size(), c.residuals.size()); ++k)
+      known->residuals[k] = std::max(known->residuals[k], c.residuals[k]);
+  }
+  for (const WatchedReport& m : r.monitors) {
+    const auto known = std::find_if(all_.monitors.begin(), all_.monitors.end(),
+                                    [&](const WatchedReport& o) { return o.name == m.name; });
+    if (known == all_.monitors.end()) {
+      all_.monitors.push_back(m);
+      continue;
+    }
+    known->last = m.last;
+    if (m.least.value < known->least.value) known->least = m.least;
+    if (m.greatest.value > known->greatest.value) known->greatest = m.greatest;
+    known->largest_change = std::max(known->largest_change, m.largest_change);
+  }
+  for (EventReport e : r.events) {
+    const auto known = contacts.find(e.name);
+    if (known == contacts.end() && e.stop) goes_on = false;
+    if (known != contacts.end()) {
+      if (known->second.change == ModeChange::turns) continue;  // the formula of friction has another reference
+      e.stop = false;
+      while (!e.name.empty() && e.name.back() == '\'') e.name.pop_back();
+    }
+    all_.events.push_back(std::move(e));
+  }
+  return goes_on;
+}
+
+void JoinedReport::set(double t, const std::vector<EventReport::Change>& changes) {
+  const auto hit = std::find_if(all_.events.rbegin(), all_.events.rend(),
+                                [&](const EventReport& e) { return e.t.value == t && e.changes.empty(); });
+  if (hit != all_.events.rend())
+    hit->changes = changes;
+  else
+    all_.events.push_back({"impact", {t, ""}, changes});
+}
+
+void JoinedReport::event(const std::string& name, double t) { all_.events.push_back({name, {t, ""}, {}}); }
+
+SimulationReport JoinedReport::report(Outcome outcome, double t, std::size_t rows) {
+  all_.outcome = std::move(outcome);
+  all_.t = t;
+  all_.rows = rows;
+  all_.no_error = "a motion with contacts has no estimate of its error";
+  return all_;
+}
+
+}  // namespace anholon

@@ -1,0 +1,24 @@
+// The reports of the segments of a motion with contacts, joined to one.
+#pragma once
+#include "contact/mode_model.h"
+#include "observe/report.h"
+
+namespace anholon {
+
+class JoinedReport {
+ public:
+  explicit JoinedReport(const Model& model);
+  // The report of a segment. Returns false if an event of the model ends the motion.
+  bool add(const SimulationReport& segment, const std::map<std::string, ModeEvent>& contacts);
+  // Velocities that an impact has set, told with the event that led to it.
+  void set(double t, const std::vector<EventReport::Change>& changes);
+  void event(const std::string& name, double t);
+  std::size_t segments() const { return segments_; }
+  SimulationReport report(Outcome outcome, double t, std::size_t rows);
+
+ private:
+  SimulationReport all_;
+  std::size_t segments_ = 0;
+};
+
+}  // namespace anholon

@@ -1,0 +1,137 @@
+#include "contact/mode_model.h"
+
+namespace anholon {
+
+namespace {
+
+class ModeBuilder {
+ public:
+  ModeBuilder(const Model& model, const ContactState& at) : model_(clone(model)), g_(*model_->graph) { begin_at(at); }
+
+  void add(const Contact& of, const ContactMode& mode) {
+    Contact c = of;
+    c.gap = g_.own(c.gap);
+    for (Expr& v : c.slip) v = g_.own(v);
+    c.friction = g_.own(c.friction), c.static_friction = g_.own(c.static_friction);
+    Expr normal = g_.zero(), friction = g_.zero();
+    if (mode.touch == Touch::open) {
+      event(c, ModeChange::hits, c.gap, -1);
+    } else {
+      normal = keep(c.name + ".gap", c.name + ".n", c.gap, 0);
+      act(c, 0, normal, c.gap);
+      event(c, ModeChange::leaves, normal, -1);
+      if (c.rough()) friction = mode.touch == Touch::sticks ? stick(c, mode, normal) : slip(c, mode, normal);
+    }
+    const auto record = [&](const char* what, Expr e) {
+      model_->monitors.push_back({c.name + what, put_masses(*model_, e), c.span});
+    };
+    record(".mode", g_.number(mode.touch == Touch::open ? 0 : mode.touch == Touch::slips ? 1 : 2));
+    record(".gap", c.gap);
+    record(".normal", normal);
+    record(".friction", friction);
+    ++contact_;
+  }
+
+  ModeModel take() { return {std::move(model_), std::move(events_)}; }
+
+ private:
+  void begin_at(const ContactState& at) {
+    InitialData& initial = model_->initial;
+    initial = {};
+    initial.t = g_.number(at.t);
+    for (std::size_t a = 0; a < at.q.size(); ++a) {
+      const auto index = static_cast<std::uint32_t>(a);
+      initial.given.push_back({g_.jet(index, 0), g_.number(Rational(at.q[a])), model_->coordinates[a].span});
+      initial.given.push_back({g_.jet(index, 1), g_.number(Rational(at.qd[a])), model_->coordinates[a].span});
+    }
+    for (std::size_t k = 0; k < at.states.size(); ++k) model_->states[k].initial = g_.number(Rational(at.states[k]));
+  }
+
+  // A constraint that an input keeps; returns the input.
+  Expr keep(const std::string& constraint, const std::string& input, Expr phi, int order) {
+    const std::size_t u = model_->controls.size(), r = model_->constraints.size();
+    model_->controls.push_back({input, std::nullopt, r, {}});
+    model_->names.controls.push_back(input);
+    model_->constraints.push_back({constraint, phi, order, constraint + " = 0", {}, u});
+    model_->names.multipliers.push_back(constraint);
+    return g_.control(static_cast<std::uint32_t>(u), 0);
+  }
+
+  // The generalized force of a force along a gap (order 0) or a slip velocity (order 1): its power is force times the rate.
+  void act(const Contact& c, std::uint32_t order, Expr force, Expr along) {
+    Force f;
+    f.name = c.name;
+    f.span = c.span;
+    f.kind = Force::Kind::generalized;
+    Column jets;
+    for (std::uint32_t a = 0; a < model_->coordinates.size(); ++a) jets.push_back(g_.jet(a, order));
+    const Column d = gradient(along, jets);
+    for (std::size_t a = 0; a < d.size(); ++a)
+      if (!is_zero(d[a])) f.generalized.push_back({a, force * d[a]});
+    model_->forces.push_back(std::move(f));
+  }
+
+  Expr stick(const Contact& c, const ContactMode& mode, Expr normal) {
+    if (mode.free) return g_.zero();
+    std::vector<Expr> forces;
+    for (std::size_t a = 0; a < c.slip.size(); ++a) {
+      const std::string tag = std::to_string(a + 1);
+      forces.push_back(keep(c.name + ".slip" + tag, c.name + ".t" + tag, c.slip[a], 1));
+      act(c, 1, forces.back(), c.slip[a]);
+    }
+    const Expr most = c.static_friction * normal;
+    if (forces.size() == 1) {
+      event(c, ModeChange::slips, forces[0] - most, 1);
+      event(c, ModeChange::slips, g_.number(-1) * forces[0] - most, 1);
+      return forces[0];
+    }
+    const Expr square = forces[0] * forces[0] + forces[1] * forces[1];
+    event(c, ModeChange::slips, square - most * most, 1);
+    return pow(square, Rational(1, 2));
+  }
+
+  // d = v/|v| by the ratio r of the components across and along the direction e in which it slips at the start: (e + r
+  // e')/sqrt(1 + r^2) is analytic where v passes zero on a straight line.
+  Expr slip(const Contact& c, const ContactMode& mode, Expr normal) {
+    const Expr force = g_.number(-1) * c.friction * normal;
+    const auto number = [&](long double x) { return g_.number(Rational(static_cast<double>(x))); };
+    if (c.slip.size() == 1) {
+      const Expr sign = number(mode.direction[0]);
+      act(c, 1, force * sign, c.slip[0]);
+      event(c, ModeChange::sticks, sign * c.slip[0], -1);
+      return force * sign;
+    }
+    const Expr e1 = number(mode.direction[0]), e2 = number(mode.direction[1]);
+    const Expr along = c.slip[0] * e1 + c.slip[1] * e2, across = c.slip[1] * e1 - c.slip[0] * e2;
+    const Expr r = across * pow(along, Rational(-1)), length = pow(g_.one() + r * r, Rational(-1, 2));
+    act(c, 1, force * (e1 - r * e2) * length, c.slip[0]);
+    act(c, 1, force * (e2 + r * e1) * length, c.slip[1]);
+    event(c, ModeChange::sticks, along, -1);
+    event(c, ModeChange::turns, across * across - along * along, 1);
+    return c.friction * normal;
+  }
+
+  void event(const Contact& c, ModeChange change, Expr when, int direction) {
+    static constexpr const char* kNames[] = {".hits", ".leaves", ".slips", ".sticks", ".turns"};
+    std::string name = c.name + kNames[static_cast<std::size_t>(change)];
+    while (events_.count(name)) name += "'";
+    events_[name] = {contact_, change};
+    model_->events.push_back({name, put_masses(*model_, when), direction, {}, true, c.span});
+  }
+
+  std::shared_ptr<Model> model_;
+  Graph& g_;
+  std::map<std::string, ModeEvent> events_;
+  std::size_t contact_ = 0;
+};
+
+}  // namespace
+
+ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes,
+                     const ContactState& at) {
+  ModeBuilder builder(model, at);
+  for (std::size_t c = 0; c < contacts.size(); ++c) builder.add(contacts[c], modes[c]);
+  return builder.take();
+}
+
+}  // namespace anholon

@@ -1,0 +1,34 @@
+// The model of one mode of the contacts: a contact that touches is a constraint gap = 0 that a normal force keeps as an
+// input, one that sticks has slip = 0 as well, kept by its friction; friction of a contact that slips is -mu N d.
+#pragma once
+#include <map>
+#include <optional>
+
+#include "contact/contact_law.h"
+#include "modelfile/contacts.h"
+
+namespace anholon {
+
+// The state in which a mode begins.
+struct ContactState {
+  Rational t;
+  std::vector<double> q, qd, states;
+};
+
+// Why a mode ends.
+enum class ModeChange : std::uint8_t { hits, leaves, slips, sticks, turns };
+struct ModeEvent {
+  std::size_t contact = 0;
+  ModeChange change = ModeChange::hits;
+};
+
+struct ModeModel {
+  std::shared_ptr<Model> model;
+  std::map<std::string, ModeEvent> events;  // by their names
+};
+
+// direction: of the slip, to which the formula of friction refers.
+ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes,
+                     const ContactState& at);
+
+}  // namespace anholon

@@ -1,0 +1,56 @@
+#include "contact/segment_rows.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace anholon {
+
+void SegmentRows::only_at(const std::vector<Rational>& times) {
+  for (const Rational& t : times) times_.push_back(t.get_d());
+}
+
+// The forces and constraints of a contact differ from mode to mode; its monitors do not.
+bool SegmentRows::of_contact(const RunColumn& column) const {
+  return column.kind != ColumnKind::monitor && std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
+           const std::string prefix = c.name + ".";
+           return column.name.rfind(prefix, 0) == 0 || column.name.rfind("lambda." + prefix, 0) == 0;
+         });
+}
+
+void SegmentRows::columns(const std::vector<RunColumn>& columns) {
+  own_ = columns;
+  if (joint_.empty()) {
+    for (const RunColumn& c : columns)
+      if (!of_contact(c)) joint_.push_back(c);
+    to_.columns(joint_);
+  }
+  places_.clear();
+  for (const RunColumn& j : joint_) {
+    const auto it = std::find_if(columns.begin(), columns.end(), [&](const RunColumn& c) { return c.name == j.name; });
+    places_.push_back(it == columns.end() ? std::nullopt
+                                          : std::optional(static_cast<std::size_t>(it - columns.begin())));
+  }
+}
+
+void SegmentRows::row(const Row& row) {
+  last_.assign(row.values.begin(), row.values.end());
+  if (!times_.empty() && !std::binary_search(times_.begin(), times_.end(), row.values[0])) return;
+  std::vector<double> values;
+  for (const auto& place : places_)
+    values.push_back(place ? row.values[*place] : std::numeric_limits<double>::quiet_NaN());
+  to_.row({values, {}});
+  ++count_;
+}
+
+void SegmentRows::last_state(ContactState& state) const {
+  if (last_.empty()) return;
+  for (std::size_t k = 0; k < own_.size(); ++k) {
+    const RunColumn& c = own_[k];
+    if (c.kind == ColumnKind::time) state.t = Rational(last_[k]);
+    if (c.kind == ColumnKind::coordinate) state.q[c.index] = last_[k];
+    if (c.kind == ColumnKind::velocity) state.qd[c.index] = last_[k];
+    if (c.kind == ColumnKind::state && c.order == 0) state.states[c.index] = last_[k];
+  }
+}
+
+}  // namespace anholon

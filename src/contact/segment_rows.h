@@ -1,0 +1,36 @@
+// The rows of the segments of a motion with contacts, in the columns that all segments have.
+#pragma once
+#include "contact/mode_model.h"
+#include "result/rows.h"
+
+namespace anholon {
+
+class SegmentRows final : public RowSink {
+ public:
+  SegmentRows(RowSink& to, const std::vector<Contact>& contacts) : to_(to), contacts_(contacts) {}
+  // Rows at these times alone, if there are any; the ends of segments are no rows.
+  void only_at(const std::vector<Rational>& times);
+  void begin_segment() { places_.clear(); }
+
+  void columns(const std::vector<RunColumn>& columns) override;
+  void row(const Row& row) override;
+  void step(double t) override { to_.step(t); }
+
+  // The state of the last row.
+  void last_state(ContactState& state) const;
+  std::size_t rows() const { return count_; }
+
+ private:
+  bool of_contact(const RunColumn& column) const;
+
+  RowSink& to_;
+  const std::vector<Contact>& contacts_;
+  std::vector<double> times_;
+  std::vector<RunColumn> joint_;                    // the columns that are written
+  std::vector<RunColumn> own_;                      // those of the segment
+  std::vector<std::optional<std::size_t>> places_;  // of each joint column among those of the segment
+  std::vector<double> last_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace anholon

@@ -1,0 +1,10 @@
+// The contacts of a model file that has been opened.
+#pragma once
+#include "modelfile/mechanical/contacts.h"
+
+namespace anholon {
+
+// names: those of open_model(). The expressions belong to the graph of its model.
+const std::vector<Contact>& contacts(const Names& names);
+
+}  // namespace anholon

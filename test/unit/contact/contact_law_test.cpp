@@ -1,0 +1,69 @@
+#include <gtest/gtest.h>
+
+#include "contact/contact_law.h"
+
+namespace anholon {
+
+// A block of mass 1 on a floor under gravity g = 10, pushed along the floor by `push`.
+static ContactProblem block(long double push, long double friction) {
+  ContactProblem p;
+  p.A = {{1, 0}, {0, 1}};
+  p.b = {-push, 10};
+  ContactRows rows;
+  rows.normal = {0, 1};
+  rows.tangential = {{1, 0}};
+  rows.friction = rows.static_friction = friction;
+  rows.rough = true;
+  p.contacts = {rows};
+  return p;
+}
+
+TEST(ContactLaw, BlockSticksOrSlipsByTheConeOfFriction) {
+  const auto sticks = consistent_modes(block(2, 0.25L));
+  ASSERT_EQ(sticks.size(), 1U);
+  EXPECT_EQ(sticks[0].modes[0].touch, Touch::sticks);
+  EXPECT_EQ(sticks[0].x[0], 0);
+  const auto slips = consistent_modes(block(3, 0.25L));
+  ASSERT_EQ(slips.size(), 1U);
+  EXPECT_EQ(slips[0].modes[0].touch, Touch::slips);
+  EXPECT_NEAR(static_cast<double>(slips[0].x[0]), 0.5, 1e-15);
+  // The mutant: with another coefficient the same push does not slip.
+  EXPECT_EQ(consistent_modes(block(3, 0.35L))[0].modes[0].touch, Touch::sticks);
+}
+
+TEST(ContactLaw, BlockThatIsLiftedOpens) {
+  ContactProblem p = block(0, 0.25L);
+  p.b[1] = -1;
+  const auto list = consistent_modes(p);
+  ASSERT_EQ(list.size(), 1U);
+  EXPECT_EQ(list[0].modes[0].touch, Touch::open);
+}
+
+// Painlevé's rod of mass 1 and length 2 that slides at the angle theta: beyond the critical friction the effective mass
+// is negative, and no mode, or several, are consistent.
+static std::size_t rod_modes(long double friction, long double spin) {
+  const long double c = 0.6L, s = 0.8L;  // cos and sin of theta
+  ContactProblem p;
+  p.A = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1.0L / 3}};
+  p.b = {0, 10, 0};
+  ContactRows rows;
+  rows.normal = {0, 1, -c};
+  rows.tangential = {{1, 0, s}};
+  rows.normal_rate = s * spin * spin;
+  rows.friction = rows.static_friction = friction;
+  rows.rough = rows.moves = true;
+  rows.direction = {-1, 0};  // the sense in which friction presses the rod into the floor
+  p.contacts = {rows};
+  return consistent_modes(p).size();
+}
+
+TEST(ContactLaw, PainleveRodHasOneMotionBelowTheCriticalFriction) {
+  // 1 + 3 c^2 - 3 mu c s = 0
+  const long double critical = (1 + 3 * 0.36L) / (3 * 0.48L);
+  EXPECT_EQ(rod_modes(critical - 1e-3L, 0), 1U);
+  EXPECT_EQ(rod_modes(critical + 1e-3L, 0), 0U);
+  EXPECT_EQ(rod_modes(critical + 1e-3L, 5), 2U);
+  EXPECT_EQ(rod_modes(critical - 1e-3L, 5), 1U);
+}
+
+}  // namespace anholon
