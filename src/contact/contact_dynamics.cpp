@@ -83,7 +83,11 @@ void ContactDynamics::go(const ContactState& at) {
   for (std::size_t i = 0; i < n_; ++i) problem_.A.push_back(row()), problem_.b.push_back(next());
   for (std::size_t r = 0; r < independent_.size(); ++r) problem_.Phi.push_back(row()), problem_.beta.push_back(next());
   speed_ = 0;
-  for (double v : at.qd) speed_ = std::max(speed_, static_cast<long double>(std::abs(v)));
+  most_.resize(n_, 0);
+  for (std::size_t a = 0; a < n_; ++a) {
+    most_[a] = std::max(most_[a], static_cast<long double>(std::abs(at.qd[a])));
+    speed_ = std::max(speed_, static_cast<long double>(std::abs(at.qd[a])));
+  }
   for (const Contact& c : contacts_) {
     Place place;
     ContactRows rows;
@@ -103,11 +107,11 @@ void ContactDynamics::go(const ContactState& at) {
     const long double size = std::hypot(place.slip[0], place.slip[1]);
     rows.direction = size > 0 ? std::array<long double, 2>{place.slip[0] / size, place.slip[1] / size}
                               : std::array<long double, 2>{1, 0};
-    // A velocity within round-off of the state is zero.
+    // A velocity within round-off of those that the motion had is zero.
     constexpr long double kZero = 1e-13L;
     long double scale = 0;
     for (const auto& t : rows.tangential)
-      for (std::size_t i = 0; i < n_; ++i) scale = std::max(scale, std::abs(t[i] * at.qd[i]));
+      for (std::size_t i = 0; i < n_; ++i) scale = std::max(scale, std::abs(t[i] * most_[i]));
     rows.moves = size > kZero * scale && size > 0;
     problem_.contacts.push_back(std::move(rows));
     places_.push_back(place);

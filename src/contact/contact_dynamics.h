@@ -20,6 +20,7 @@ class ContactDynamics {
   void go(const ContactState& at);
   const Place& place(std::size_t contact) const { return places_[contact]; }
   long double speed() const { return speed_; }  // the largest velocity of a coordinate
+  long double most(std::size_t coordinate) const { return most_[coordinate]; }  // its largest velocity up to now
   // The accelerations; `moves` and `direction` of the contacts are those of their slip velocities.
   const ContactProblem& accelerations() const { return problem_; }
   // The jumps of the velocities at an impact by Newton's law in Moreau's form. gentle: contacts whose restitution is 0.
@@ -37,6 +38,7 @@ class ContactDynamics {
   ContactProblem problem_;
   std::vector<Place> places_;
   long double speed_ = 0;
+  std::vector<long double> most_;
 };
 
 }  // namespace anholon

@@ -78,13 +78,13 @@ class HybridMotion {
       size = std::max(size, std::abs(dynamics_.accelerations().contacts[c].normal[a]) * (1 + std::abs(at_.q[a])));
     return dynamics_.place(c).gap <= kClosed * size;
   }
-  // The velocity of the gap, 0 within round-off.
+  // The velocity of the gap, 0 within round-off of the velocities that the motion had.
   long double gap_rate(std::size_t c) const {
     constexpr long double kZero = 1e-12L;
     const long double v = dynamics_.place(c).gap_rate;
     long double size = 0;
     for (std::size_t a = 0; a < at_.q.size(); ++a)
-      size = std::max(size, std::abs(dynamics_.accelerations().contacts[c].normal[a] * at_.qd[a]));
+      size = std::max(size, std::abs(dynamics_.accelerations().contacts[c].normal[a] * dynamics_.most(a)));
     return std::abs(v) <= kZero * size ? 0 : v;
   }
 
@@ -175,10 +175,11 @@ class HybridMotion {
     });
   }
 
-  // Intervals that shrink by one ratio r add up to a limit: t + interval r/(1 - r). So near to it that the rest of the
-  // motion is below round-off, the impact has no restitution. Returns whether a contact comes to rest.
+  // Intervals that shrink by one ratio r add up to a limit: t + interval r/(1 - r). From kLeft before the limit on the
+  // impact has no restitution: what the gap would still open is of the order of kLeft^2, which is below round-off.
+  // Returns whether a contact comes to rest.
   bool accumulate(const std::vector<bool>& touches) {
-    constexpr double kRatio = 1e-4, kLeft = 1e-9;
+    constexpr double kRatio = 1e-3, kNoise = 0.1, kLeft = 1e-7;
     constexpr std::size_t kAlike = 4;
     bool rests = false;
     const double t = at_.t.get_d();
@@ -186,17 +187,19 @@ class HybridMotion {
       if (!touches[c] || gap_rate(c) == 0) continue;
       Impacts& i = impacts_[c];
       const double interval = i.count > 0 ? t - i.last : 0, ratio = i.count > 1 ? interval / i.interval : 0;
-      i.alike = i.count > 2 && ratio < 1 && std::abs(ratio - i.ratio) < kRatio ? i.alike + 1 : 0;
-      const double left = ratio > 0 && ratio < 1 ? interval * ratio / (1 - ratio) : 0;
-      // Near the limit an interval has few digits; the ratio is that of before.
-      if (i.alike >= kAlike && left < kLeft * std::max(1.0, t)) {
+      // Near the limit an interval has few digits, and the ratio stays that of before.
+      const bool known = i.alike >= kAlike, alike = std::abs(ratio - i.ratio) < (known ? kNoise : kRatio);
+      i.alike = i.count > 2 && ratio < 1 && alike ? i.alike + 1 : 0;
+      const double r = known && alike ? i.ratio : ratio;
+      const double left = r > 0 && r < 1 ? interval * r / (1 - r) : 0;
+      if (i.alike >= kAlike && left < kLeft) {
         gentle_[c] = rests = true;
         rest_name_ = contacts_[c].name + ".rests";
         rest_time_ = t + left;
         i = {};
         continue;
       }
-      i.last = t, i.interval = interval, i.ratio = ratio, ++i.count;
+      i.last = t, i.interval = interval, i.ratio = r, ++i.count;
     }
     return rests;
   }
