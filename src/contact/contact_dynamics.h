@@ -19,7 +19,7 @@ class ContactDynamics {
   // Evaluates all formulas at a state.
   void go(const ContactState& at);
   const Place& place(std::size_t contact) const { return places_[contact]; }
-  long double speed() const { return speed_; }  // the largest velocity of a coordinate
+  long double speed() const { return speed_; }                                  // the largest velocity of a coordinate
   long double most(std::size_t coordinate) const { return most_[coordinate]; }  // its largest velocity up to now
   // The accelerations; `moves` and `direction` of the contacts are those of their slip velocities.
   const ContactProblem& accelerations() const { return problem_; }
