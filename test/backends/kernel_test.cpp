@@ -31,7 +31,7 @@ const Reasons kWithoutKernel{{"zoo/constant-acceleration", kNonlinear},
                              {"zoo/constant-jerk-central", kNonlinear},
                              {"zoo/rheonomic-order-2", kNonlinear},
                              {"zoo/rheonomic-order-3", kNonlinear}};
-const Reasons kNotCompiled{{"zoo/launcher", kLooked}, {"zoo/whipple", kLarge}};
+const Reasons kNotCompiled{{"zoo/launcher", kLooked}, {"zoo/whipple", kLarge}, {"asked/uneven-street", kLarge}};
 
 // Models whose code takes seconds to compile: in lanes, their motions are compared under ANHOLON_LONG=1 only.
 const std::set<std::string> kLongest{"zoo/rattleback", "zoo/spherical-robot", "papers/luo-zhao-example-1"};
