@@ -31,7 +31,6 @@ OUTSIDE = {
     "libz.so.1": "zlib1g",
     "libzstd.so.1": "libzstd1",
 }
-IN_ARCHIVE = {"libc.so.6", "libm.so.6", "ld-linux-x86-64.so.2", "libstdc++.so.6", "libgcc_s.so.1", "libz.so.1", "libzstd.so.1"}
 
 
 def run(*words, **options):

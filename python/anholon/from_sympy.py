@@ -11,138 +11,26 @@ the terms of Lagrange's equations that these lack; the energies in its reports a
 from __future__ import annotations
 
 import contextlib
-import importlib
 import json
 import random
 import re
 import warnings
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
 from ._errors import ModelError
 from ._numbers import Number, text_of
+from ._sympy_parts import Parts, center_of, is_particle, mechanics_module, parts_of, sympy_module, vanish
 from .model import Model, loads
 
 _RESERVED = {"t", "pi", "ex", "ey", "ez", "e", "i", "D", "lambda"}
 
 
-def _sympy() -> Any:
-    return importlib.import_module("sympy")
-
-
-def _mechanics() -> Any:
-    return importlib.import_module("sympy.physics.mechanics")
-
-
-def _is_particle(body: Any) -> bool:
-    """Whether a body has no inertia; a ``Body`` is both a RigidBody and a Particle, and says which it is."""
-    return not getattr(body, "is_rigidbody", isinstance(body, _mechanics().RigidBody))
-
-
-def _center_of(body: Any) -> Any:
-    """The mass centre of a body or particle."""
-    return body.masscenter if hasattr(body, "masscenter") else body.point
-
-
-@dataclass
-class _Parts:
-    """What the objects of SymPy have in common."""
-
-    frame: Any
-    q: list[Any]
-    u: list[Any]
-    kinematic: list[Any]  # expressions that vanish
-    bodies: list[Any]
-    loads: list[Any]
-    holonomic: list[Any] = field(default_factory=list)
-    velocity: list[Any] = field(default_factory=list)
-    auxiliary: list[Any] = field(default_factory=list)  # speeds that are zero
-    lagrangian: Any = None  # where no bodies tell the inertia
-
-
-def _parts_of(method: Any) -> _Parts:
-    mechanics = _mechanics()
-
-    if isinstance(method, mechanics.KanesMethod):
-        return _parts_of_kane(method)
-    if isinstance(method, mechanics.LagrangesMethod):
-        return _parts_of_lagrange(method)
-    if isinstance(method, mechanics.System):
-        return _Parts(
-            method.frame,
-            list(method.q),
-            list(method.u),
-            list(method.kdes),
-            list(method.bodies),
-            list(method.loads) + [load for actuator in method.actuators for load in actuator.to_loads()],
-            list(method.holonomic_constraints),
-            list(method.velocity_constraints or method.nonholonomic_constraints),
-            list(method.u_aux),
-        )
-    raise TypeError(f"from_sympy reads a KanesMethod, LagrangesMethod or System, not a {type(method).__name__}")
-
-
-def _parts_of_kane(method: Any) -> _Parts:
-    velocity = list(method._k_nh * method.u + method._f_nh) if method._k_nh else []
-    rates = _sympy().Matrix([q.diff(_mechanics().dynamicsymbols._t) for q in method.q])
-    # The equations as they were written; solved for the rates they may have denominators.
-    kinematic = method._k_kqdot_implicit * rates + method._k_ku_implicit * method.u + method._f_k_implicit
-    return _Parts(
-        method._inertial,
-        list(method.q),
-        list(method.u),
-        list(kinematic),
-        list(method.bodies),
-        list(method.loads or []),
-        list(method._f_h or []),
-        velocity,
-        list(method._uaux or []),
-    )
-
-
-def _parts_of_lagrange(method: Any) -> _Parts:
-    sm = _sympy()
-
-    holonomic = list(method._hol_coneqs or [])
-    # The velocity constraints of a LagrangesMethod begin with the rates of the holonomic ones.
-    every = [] if method.coneqs is None or len(method.coneqs) == 0 else list(method.coneqs)
-    parts = _Parts(method.inertial, list(method.q), [], [], list(method.bodies or []), list(method.loads or []), holonomic, every[len(holonomic) :])
-    energy = method._L[0] if isinstance(method._L, sm.MatrixBase) else method._L
-    if parts.frame is not None and parts.bodies:
-        potential = sum((body.potential_energy for body in parts.bodies), sm.Integer(0))
-        kinetic = sum((body.kinetic_energy(parts.frame) for body in parts.bodies), sm.Integer(0))
-        if _vanish([energy - kinetic + potential], {}):
-            parts.loads += [(q, -sm.diff(potential, q)) for q in parts.q]
-            return parts
-    parts.bodies, parts.lagrangian = [], energy
-    return parts
-
-
-def _vanish(expressions: Iterable[Any], near: Mapping[Any, Any]) -> bool:
-    """Whether expressions vanish, with 30 digits, at random values of all that is in them, and at those of ``near``."""
-    import mpmath
-
-    sm, time, draw = _sympy(), _mechanics().dynamicsymbols._t, random.Random(1)
-    expressions = list(expressions)
-    atoms: set[Any] = {time}
-    for e in expressions:
-        atoms |= e.atoms(sm.Derivative) | e.atoms(sm.core.function.AppliedUndef) | e.free_symbols
-    listed = sorted(atoms, key=str)
-    with mpmath.workdps(40):
-        values = sm.lambdify(listed, expressions, "mpmath", cse=True, dummify=True)
-        for _ in range(1 if near else 3):
-            at = [near[a] if a in near else mpmath.mpf(draw.uniform(0.3, 1.3)) for a in listed]
-            if any(abs(x) > 1e-20 for x in values(*at)):
-                return False
-    return True
-
-
 class _Writer:
     """Writes expressions of SymPy as formulas of a model file, and gives every symbol a name."""
 
-    def __init__(self, parts: _Parts) -> None:
-        sm, dynamicsymbols = _sympy(), _mechanics().dynamicsymbols
+    def __init__(self, parts: Parts) -> None:
+        sm, dynamicsymbols = sympy_module(), mechanics_module().dynamicsymbols
 
         self._sm = sm
         self.time = dynamicsymbols._t
@@ -225,11 +113,11 @@ class _Import:
     """One import: the parts with speeds replaced by rates, and the text that is made of them."""
 
     def __init__(self, method: Any) -> None:
-        sm = _sympy()
+        sm = sympy_module()
 
         self.sm = sm
-        self.parts = parts = _parts_of(method)
-        self.time = _mechanics().dynamicsymbols._t
+        self.parts = parts = parts_of(method)
+        self.time = mechanics_module().dynamicsymbols._t
         self._without_auxiliary()
         known = [u for u in parts.u if any(e.has(u) for e in parts.kinematic)]
         self.speeds: dict[Any, Any] = {}  # in coordinates and their rates
@@ -276,7 +164,7 @@ class _Import:
         taken = {str(q.func) for q in self.parts.q} | _RESERVED
         while wish in taken:
             wish += "_"
-        q = _mechanics().dynamicsymbols(wish)
+        q = mechanics_module().dynamicsymbols(wish)
         self.parts.q.append(q)
         self.writer.add(q)
         return q
@@ -287,7 +175,7 @@ class _Import:
         open_equations: list[Any] = []
         names: list[str] = []
         for body in self.parts.bodies:
-            point = _center_of(body)
+            point = center_of(body)
             if point in self._places:
                 continue
             velocity = self.components(point.vel(self.parts.frame))
@@ -345,7 +233,7 @@ class _Import:
             whole += part - part.subs(plain[c], 0)
             done[c] = sm.Integer(0)
         whole = whole.xreplace({d: c for c, d in plain.items()})
-        return whole if _vanish([whole.diff(self.time) - rate], {}) else None
+        return whole if vanish([whole.diff(self.time) - rate], {}) else None
 
     def in_rates(self, e: Any) -> Any:
         """An expression without generalized speeds, and without their rates."""
@@ -359,7 +247,7 @@ class _Import:
 
     def _vanishes(self, expressions: Iterable[Any]) -> bool:
         """Whether expressions vanish with 30 digits where the constraints hold."""
-        return _vanish(expressions, self._on_constraints())
+        return vanish(expressions, self._on_constraints())
 
     def _on_constraints(self) -> dict[Any, Any]:
         """Random values of all coordinates and rates, with 40 digits, that satisfy the constraints, and the values of the
@@ -455,8 +343,8 @@ class _Import:
 
     def body(self, body: Any) -> str:
         """The entry of a body or particle."""
-        point = _center_of(body)
-        spin = [] if _is_particle(body) else self.components(body.frame.ang_vel_in(self.parts.frame))
+        point = center_of(body)
+        spin = [] if is_particle(body) else self.components(body.frame.ang_vel_in(self.parts.frame))
         if not any(spin):
             # What does not turn has no use for an inertia, what rests none for a mass.
             if not any(self.components(point.vel(self.parts.frame))):
@@ -477,7 +365,7 @@ class _Import:
         matrix = "matrix([" + ", ".join("[" + ", ".join(row) + "]" for row in turned) + "])"
         return (
             f"[[body]]\nname = {json.dumps(name)}\nmass = {json.dumps(self.writer.formula(body.mass))}\n"
-            f"inertia = {json.dumps(inertia)}\ncenter = {json.dumps(self.center(_center_of(body)))}\norientation = {json.dumps(matrix)}\n"
+            f"inertia = {json.dumps(inertia)}\ncenter = {json.dumps(self.center(center_of(body)))}\norientation = {json.dumps(matrix)}\n"
         )
 
     def _inertia_of(self, q: Any) -> Any:
@@ -508,7 +396,7 @@ class _Import:
 
     def generalized_forces(self) -> dict[Any, Any]:
         """The sum of all loads, by coordinate."""
-        Point, ReferenceFrame = _mechanics().Point, _mechanics().ReferenceFrame
+        Point, ReferenceFrame = mechanics_module().Point, mechanics_module().ReferenceFrame
 
         sm, frame = self.sm, self.parts.frame
         sums: dict[Any, Any] = self._lagrange_terms() if self.parts.lagrangian is not None else {}

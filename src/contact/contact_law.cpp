@@ -176,18 +176,18 @@ bool consistent(const ContactProblem& p, const Forces& f) {
   return true;
 }
 
-// The modes that one contact may take, those that touch first.
+// The modes that one contact may take, those that touch first, and of them those that stick.
 ContactModes choices(const ContactRows& rows) {
   ContactModes list;
   if (rows.may_touch) {
-    if (rows.rough && !rows.moves && rows.may_stick) list.push_back({Touch::sticks, {}, false});
+    if (rows.rough && !rows.moves && rows.may_stick)
+      for (const bool free : {false, true}) list.push_back({Touch::sticks, {}, free});
     if (!rows.rough || rows.moves || rows.tangential.size() > 1) {
       list.push_back({Touch::slips, rows.direction, false});
     } else {
       list.push_back({Touch::slips, {1, 0}, false});
       list.push_back({Touch::slips, {-1, 0}, false});
     }
-    if (rows.rough && !rows.moves && rows.may_stick) list.push_back({Touch::sticks, {}, true});
   }
   if (rows.may_open) list.push_back({});
   return list;

@@ -1,0 +1,120 @@
+"""What the objects of ``sympy.physics.mechanics`` have in common, read from a KanesMethod, LagrangesMethod or System."""
+
+from __future__ import annotations
+
+import importlib
+import random
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+
+def sympy_module() -> Any:
+    return importlib.import_module("sympy")
+
+
+def mechanics_module() -> Any:
+    return importlib.import_module("sympy.physics.mechanics")
+
+
+def is_particle(body: Any) -> bool:
+    """Whether a body has no inertia; a ``Body`` is both a RigidBody and a Particle, and says which it is."""
+    return not getattr(body, "is_rigidbody", isinstance(body, mechanics_module().RigidBody))
+
+
+def center_of(body: Any) -> Any:
+    """The mass centre of a body or particle."""
+    return body.masscenter if hasattr(body, "masscenter") else body.point
+
+
+@dataclass
+class Parts:
+    """What the objects of SymPy have in common."""
+
+    frame: Any
+    q: list[Any]
+    u: list[Any]
+    kinematic: list[Any]  # expressions that vanish
+    bodies: list[Any]
+    loads: list[Any]
+    holonomic: list[Any] = field(default_factory=list)
+    velocity: list[Any] = field(default_factory=list)
+    auxiliary: list[Any] = field(default_factory=list)  # speeds that are zero
+    lagrangian: Any = None  # where no bodies tell the inertia
+
+
+def parts_of(method: Any) -> Parts:
+    mechanics = mechanics_module()
+
+    if isinstance(method, mechanics.KanesMethod):
+        return _parts_of_kane(method)
+    if isinstance(method, mechanics.LagrangesMethod):
+        return _parts_of_lagrange(method)
+    if isinstance(method, mechanics.System):
+        return Parts(
+            method.frame,
+            list(method.q),
+            list(method.u),
+            list(method.kdes),
+            list(method.bodies),
+            list(method.loads) + [load for actuator in method.actuators for load in actuator.to_loads()],
+            list(method.holonomic_constraints),
+            list(method.velocity_constraints or method.nonholonomic_constraints),
+            list(method.u_aux),
+        )
+    raise TypeError(f"from_sympy reads a KanesMethod, LagrangesMethod or System, not a {type(method).__name__}")
+
+
+def _parts_of_kane(method: Any) -> Parts:
+    velocity = list(method._k_nh * method.u + method._f_nh) if method._k_nh else []
+    rates = sympy_module().Matrix([q.diff(mechanics_module().dynamicsymbols._t) for q in method.q])
+    # The equations as they were written; solved for the rates they may have denominators.
+    kinematic = method._k_kqdot_implicit * rates + method._k_ku_implicit * method.u + method._f_k_implicit
+    return Parts(
+        method._inertial,
+        list(method.q),
+        list(method.u),
+        list(kinematic),
+        list(method.bodies),
+        list(method.loads or []),
+        list(method._f_h or []),
+        velocity,
+        list(method._uaux or []),
+    )
+
+
+def _parts_of_lagrange(method: Any) -> Parts:
+    sm = sympy_module()
+
+    holonomic = list(method._hol_coneqs or [])
+    # The velocity constraints of a LagrangesMethod begin with the rates of the holonomic ones.
+    every = [] if method.coneqs is None or len(method.coneqs) == 0 else list(method.coneqs)
+    parts = Parts(method.inertial, list(method.q), [], [], list(method.bodies or []), list(method.loads or []), holonomic, every[len(holonomic) :])
+    energy = method._L[0] if isinstance(method._L, sm.MatrixBase) else method._L
+    if parts.frame is not None and parts.bodies:
+        potential = sum((body.potential_energy for body in parts.bodies), sm.Integer(0))
+        kinetic = sum((body.kinetic_energy(parts.frame) for body in parts.bodies), sm.Integer(0))
+        if vanish([energy - kinetic + potential], {}):
+            parts.loads += [(q, -sm.diff(potential, q)) for q in parts.q]
+            return parts
+    parts.bodies, parts.lagrangian = [], energy
+    return parts
+
+
+def vanish(expressions: Iterable[Any], near: Mapping[Any, Any]) -> bool:
+    """Whether expressions vanish, with 30 digits, at random values of all that is in them, and at those of ``near``."""
+    import mpmath
+
+    sm, time, draw = sympy_module(), mechanics_module().dynamicsymbols._t, random.Random(1)
+    expressions = list(expressions)
+    atoms: set[Any] = {time}
+    for e in expressions:
+        atoms |= e.atoms(sm.Derivative) | e.atoms(sm.core.function.AppliedUndef) | e.free_symbols
+    listed = sorted(atoms, key=str)
+    with mpmath.workdps(40):
+        values = sm.lambdify(listed, expressions, "mpmath", cse=True, dummify=True)
+        for _ in range(1 if near else 3):
+            at = [near[a] if a in near else mpmath.mpf(draw.uniform(0.3, 1.3)) for a in listed]
+            if any(abs(x) > 1e-20 for x in values(*at)):
+                return False
+    return True
