@@ -1,5 +1,6 @@
 """Systems of sympy.physics.mechanics come in, and have the accelerations that SymPy finds for them."""
 
+import contextlib
 from collections.abc import Callable
 from typing import Any
 
@@ -346,8 +347,17 @@ def accelerations_of_sympy(method: Any, made: _Import, values: dict[Any, Any], s
 
 
 def consistent(made: _Import, values: dict[Any, Any]) -> dict[Any, Any]:
-    """A random state that satisfies the constraints: coordinates, and rates by q'."""
-    draw = np.random.default_rng(3)
+    """A random state that satisfies the constraints: coordinates, and rates by q'. Newton's method may miss a loop that
+    cannot be closed from where it starts; another draw starts elsewhere."""
+    for seed in range(3, 12):
+        with contextlib.suppress(ValueError, ZeroDivisionError):
+            return drawn(made, values, seed)
+    raise AssertionError("no state satisfies the holonomic constraints")
+
+
+def drawn(made: _Import, values: dict[Any, Any], seed: int) -> dict[Any, Any]:
+    """A random state of a seed."""
+    draw = np.random.default_rng(seed)
     q = made.writer.q
     state = {c: float(x) for c, x in zip(q, draw.uniform(0.3, 0.9, len(q)), strict=True)}
     numbers = {k: sm.Float(str(v), 40) for k, v in values.items()}
