@@ -171,7 +171,7 @@ class _Import:
 
     def _place_centers(self, unknown: list[Any]) -> None:
         """Finds where mass centres are. One that has a velocity only gets coordinates with that velocity, from which
-        speeds without a kinematic equation follow; such a speed that is left becomes the rate of an angle."""
+        speeds without a kinematic equation follow. A speed that turns a body, or is left, becomes the rate of an angle."""
         open_equations: list[Any] = []
         names: list[str] = []
         for body in self.parts.bodies:
@@ -191,7 +191,8 @@ class _Import:
                         names.append(str(whole.func))
                     place.append(whole)
             self._places[point] = place
-        joined = [u for u in unknown if any(e.has(u) for e in open_equations)]
+        spins = [x for b in self.parts.bodies if not is_particle(b) for x in self.components(b.frame.ang_vel_in(self.parts.frame))]
+        joined = [u for u in unknown if any(e.has(u) for e in open_equations) and not any(x.has(u) for x in spins)]
         for u in [u for u in unknown if u not in joined]:
             self.speeds[u] = self._add_coordinate(f"{u.func}_angle").diff(self.time)
         open_equations = [self.in_rates(e) for e in open_equations]
