@@ -7,7 +7,8 @@ Prints the time of a batch and of one call. SymPy is used as people use it: (a) 
 forcing_full, then numpy.linalg.solve; (b) lambdify of an explicit right side, simplified, with common subexpressions.
 anholon: the compiled function; the formulas of the same function as they run in NumPy; and the program of
 `derive --format python`, by its rates in independent velocities and by its rhs in all coordinates and velocities with
-multipliers. The last three need no compiler. SymPy's functions have six rates, ours eight: also those of the place.
+multipliers. The last three need no compiler. SymPy's functions have six rates, ours eight: also those of the place, which (c),
+(b) with two rates more, has too.
 """
 
 import sys
@@ -40,9 +41,13 @@ def kane():
     return method, [*q, *u], {r: 0.5, m: 1, g: 9.81}
 
 
-def explicit(method, states, values):
+def explicit(method, states, values, place=False):
+    """x' as simplified formulas; with place also the two rates of the point of contact, as our model has them."""
     right = method.mass_matrix_full.LUsolve(method.forcing_full).subs(values)
-    return sm.lambdify(states, [sm.simplify(x) for x in right], "numpy", cse=True)
+    rates = [sm.simplify(x) for x in right]
+    if place:
+        rates += [-0.5 * sm.cos(states[0]) * rates[2], -0.5 * sm.sin(states[0]) * rates[2]]
+    return sm.lambdify(states, rates, "numpy", cse=True)
 
 
 def solved(method, states, values):
@@ -81,6 +86,7 @@ def main(states):
     exec(compile(disc.python_code(), "disc.py", "exec"), program)
     method, symbols, values = kane()
     peers = {"lambdify, solve": solved(method, symbols, values), "lambdify, explicit": explicit(method, symbols, values)}
+    peers["lambdify, place"] = explicit(method, symbols, values, place=True)
     draw = np.random.default_rng(0)
     x = f.start[:, None] * (1 + 0.01 * draw.standard_normal((len(f.start), states)))
     y = draw.uniform(0.3, 0.9, (6, states))
@@ -93,7 +99,8 @@ def main(states):
     rows = {"anholon, NumPy": (lambda: by_numpy(0.0, x), lambda: by_numpy(0.0, one))}
     full = program["START"][:, None] * (1 + 0.01 * draw.standard_normal((len(program["START"]), states)))
     first = full[:, 0].copy()
-    rows["anholon, rates"] = (lambda: program["rates"](0.0, x), lambda: program["rates"](0.0, one))
+    numbers = one.tolist()  # numbers of Python, as lambdify's function takes them
+    rows["anholon, rates"] = (lambda: program["rates"](0.0, x), lambda: program["rates"](0.0, numbers))
     rows["anholon, program"] = (lambda: program["rhs"](0.0, full), lambda: program["rhs"](0.0, first))
     rows |= {name: (lambda peer=peer: peer(*y), lambda peer=peer: peer(*single)) for name, peer in peers.items()}
     for name, (many, alone) in rows.items():

@@ -27,17 +27,20 @@ def compare(name: str, text: str) -> bool:
     assert list(made["X"]) == [state.name for state in f.states]
     np.testing.assert_allclose(made["X_START"], f.start, rtol=1e-15)
     draw = np.random.default_rng(1)
-    x = f.start[:, None] + 0.1 * draw.standard_normal((len(f.start), 5000))
+    x = f.start[:, None] + 0.1 * draw.standard_normal((len(f.start), 10000))
     rates, many = f(f.t0, x), made["rates"](f.t0, x)
     # Relative to the largest number of a state, since terms cancel.
     size = 1 + np.abs(rates).max(axis=0)
     np.testing.assert_allclose(many / size, rates / size, rtol=0, atol=1e-12)
-    for k in (0, 1, 4095, 4096, 4999):
+    for k in (0, 1, 8191, 8192, 9999):
         np.testing.assert_allclose(made["rates"](f.t0, x[:, k].copy()) / size[k], many[:, k] / size[k], rtol=0, atol=1e-14)
+        by_list = made["rates"](f.t0, x[:, k].tolist())
+        assert type(by_list) is list
+        np.testing.assert_array_equal(by_list, made["rates"](f.t0, x[:, k].copy()))
     out = np.empty_like(x)
-    assert made["rates"](np.full(5000, f.t0), x, out=out) is out
+    assert made["rates"](np.full(10000, f.t0), x, out=out) is out
     np.testing.assert_array_equal(out, many)
-    each = np.repeat(made["DEFAULTS"][:, None], 5000, axis=1)
+    each = np.repeat(made["DEFAULTS"][:, None], 10000, axis=1)
     np.testing.assert_allclose(made["rates"](f.t0, x, each) / size, many / size, rtol=0, atol=1e-14)
     return True
 

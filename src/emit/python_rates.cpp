@@ -9,7 +9,8 @@ namespace anholon::emit {
 
 namespace {
 
-// @FREE: the parameters that others do not determine; @COUNT: the constants; @CONSTANTS, @RATES: the statements.
+// @FREE: the parameters that others do not determine; @COUNT: the constants; @SIZE: the numbers of a state; @CONSTANTS, @RATES:
+// the statements.
 constexpr const char* kRates = R"(
 
 def _rate_constants(np, p):
@@ -31,13 +32,21 @@ def rates(t, x, p=None, out=None):
 
     x is one state, or many: x[:, k] at time t[k] or t, with p[:, k] or p. out, an array like x, takes the result. The
     constraints hold by themselves and there are no multipliers. Numbers are nan or infinite where a formula has no value.
+    A list of floats is one state, too; its rates are a list, which is the fastest call for one state.
     """
+    if type(x) is list and p is None and out is None:
+        try:
+            numbers = [0.0] * @SIZE
+            _rates(_One, t, x, _RATE_CONSTANTS, numbers)
+            return numbers
+        except (ArithmeticError, ValueError, TypeError):
+            return rates(t, np.asarray(x, dtype=float)).tolist()
     x = np.asarray(x, dtype=float)
     p = None if p is None else np.asarray(p, dtype=float)
     out = np.empty_like(x) if out is None else out
     if x.ndim == 1:
         try:
-            numbers = [0.0] * len(X)
+            numbers = [0.0] * @SIZE
             _rates(_One, float(t), x.tolist(), _RATE_CONSTANTS if p is None else _rate_constants(_One, p.tolist()), numbers)
             out[:] = numbers
         except (ArithmeticError, ValueError, TypeError):
@@ -53,8 +62,8 @@ def rates(t, x, p=None, out=None):
     with np.errstate(all="ignore"):
         c = None if each else _RATE_CONSTANTS if p is None else _rate_constants(np, p)
         # A block of this size stays in the processor's cache.
-        for first in range(0, flat.shape[1], 4096):
-            block = slice(first, first + 4096)
+        for first in range(0, flat.shape[1], 8192):
+            block = slice(first, first + 8192)
             _rates(np, times if times.ndim == 0 else times[block], flat[:, block],
                    _rate_constants(np, p[:, block]) if each else c, result[:, block])
     if not np.may_share_memory(result, out):
@@ -79,6 +88,7 @@ std::string python_rates(const RateFormulas& f) {
   std::string free = "(";
   for (const Expr e : f.p.symbols) free += std::to_string(f.model->graph->node(e.id).index) + ", ";
   std::string text = put(kRates, "@FREE", free + ")");
+  for (int k = 0; k < 2; ++k) text = put(text, "@SIZE", std::to_string(f.x.size()));
   text = put(text, "@COUNT", std::to_string(rates.constant_count()));
   text = put(text, "@CONSTANTS", rates.constants());
   const std::string statements = rates.statements(false);
