@@ -308,7 +308,7 @@ Outcome Expansion<N>::extend() {
   const Program& p = *program_;
   // J and the partial derivatives at the computed leading derivatives (they may enter nonlinearly).
   jacobian();
-  if (!lu_.factor(j_)) return singular();
+  if (!lu_.factors(j_) && !lu_.factor(j_)) return singular();
   for (int stage = 1; stage <= stages_; ++stage) {
     for (std::size_t j = 0; j < p.unknowns(); ++j) x_(j, p.d[j] + stage) = N(0);
     sweep(stage);
