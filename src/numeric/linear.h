@@ -29,24 +29,10 @@ template <Number N>
 class Lu {
  public:
   // Returns false if a pivot vanishes or is NaN; the factors are then unusable.
-  bool factor(const Matrix<N>& a) {
-    original_ = a;
-    lu_ = a;
-    const std::size_t n = a.rows;
-    order_.resize(n);
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-    row_scale_.assign(n, N(0));
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j)
-        if (N v = abs(a(i, j)); v > row_scale_[i]) row_scale_[i] = v;
-    for (std::size_t first = 0; first < n; first += kPanel) {
-      const std::size_t end = std::min(first + kPanel, n);
-      for (std::size_t k = first; k < end; ++k)
-        if (!eliminate_in_panel(k, end)) return false;
-      update_beyond_panel(first, end);
-    }
-    return true;
-  }
+  bool factor(const Matrix<N>& a) { return regular_ = eliminate(a); }
+
+  // Whether these are the factors of `a`.
+  bool factors(const Matrix<N>& a) const { return regular_ && a.data == original_.data; }
 
   std::size_t size() const { return order_.size(); }
 
@@ -126,6 +112,25 @@ class Lu {
   // the bits do not depend on these numbers.
   static constexpr std::size_t kPanel = 32, kTile = 32, kAtOnce = 4;
 
+  bool eliminate(const Matrix<N>& a) {
+    original_ = a;
+    lu_ = a;
+    const std::size_t n = a.rows;
+    order_.resize(n);
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    row_scale_.assign(n, N(0));
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j)
+        if (N v = abs(a(i, j)); v > row_scale_[i]) row_scale_[i] = v;
+    for (std::size_t first = 0; first < n; first += kPanel) {
+      const std::size_t end = std::min(first + kPanel, n);
+      for (std::size_t k = first; k < end; ++k)
+        if (!eliminate_in_panel(k, end)) return false;
+      update_beyond_panel(first, end);
+    }
+    return true;
+  }
+
   // Chooses pivot k and updates the columns before `end`. Returns false if there is no pivot.
   bool eliminate_in_panel(std::size_t k, std::size_t end) {
     const std::size_t n = order_.size();
@@ -173,6 +178,7 @@ class Lu {
   }
 
   Matrix<N> original_, lu_;
+  bool regular_ = false;
   std::vector<std::size_t> order_;
   std::vector<N> row_scale_;
   mutable std::vector<N> residual_, correction_;

@@ -308,15 +308,15 @@ Outcome Expansion<N>::extend() {
   const Program& p = *program_;
   // J and the partial derivatives at the computed leading derivatives (they may enter nonlinearly).
   jacobian();
-  if (!lu_.factor(j_)) return singular();
+  if (!lu_.factors(j_) && !lu_.factor(j_)) return singular();
   for (int stage = 1; stage <= stages_; ++stage) {
     for (std::size_t j = 0; j < p.unknowns(); ++j) x_(j, p.d[j] + stage) = N(0);
     sweep(stage);
     const std::size_t s = static_cast<std::size_t>(stage);
-    // The second pass is the step of iterative refinement. Its residual comes from the tape itself, not from J: if J is
-    // nearly singular (Euler angles near their singularity), the tape still contains the small difference of two rates
-    // whose squares J has rounded away.
-    for (int pass = 0; pass < 2; ++pass) {
+    // The passes after the first are steps of iterative refinement. Their residual comes from the tape itself, not from
+    // J: if J is nearly singular (Euler angles near their singularity), the tape still contains the small difference of
+    // two rates whose squares J has rounded away.
+    for (int pass = 0; pass < lu_.passes(); ++pass) {
       for (std::size_t i = 0; i < p.unknowns(); ++i) {
         const std::size_t order = s + static_cast<std::size_t>(p.c[i]);
         r_[i] = -(machine_.series(p.tape.roots[i])[order] * rising<N>(s, order));

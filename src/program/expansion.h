@@ -12,6 +12,7 @@
 #include "numeric/balance.h"
 #include "program/program.h"
 #include "program/sensitivity.h"
+#include "program/system_lu.h"
 #include "program/unknown_coefficients.h"
 
 namespace anholon {
@@ -87,7 +88,7 @@ class Expansion {
   const std::vector<N>& parameters() const { return parameters_; }
   const Machine<N>& machine() const { return machine_; }
   const Matrix<N>& system_jacobian() const { return j_; }
-  const Lu<N>& lu() const { return lu_; }
+  const SystemLu<N>& lu() const { return lu_; }
   // Coefficients of all stages 1..stages().
   Outcome extend();
   // Replaces extend() if formulas have no derivatives: the polynomials end with these leading derivatives, and all
@@ -152,7 +153,7 @@ class Expansion {
   UnknownCoefficients<N> x_;
   Sensitivity<N> sensitivity_;
   Matrix<N> j_;
-  Lu<N> lu_;
+  SystemLu<N> lu_;
   std::vector<N> delta_x_, r_, y_, direction_;
   N constraint_residual_{0}, drift_{0}, equation_residual_{0};
   HiddenResiduals<N> hidden_;

@@ -21,12 +21,23 @@ constexpr double kNoDependence = 1e-11;
 class Probe {
  public:
   Probe(const System& s, const Tape& equations, const std::vector<double>& parameters)
-      : tape_(equations), machine_(tape_, 0, parameters), system_(s) {}
+      : tape_(equations), machine_(tape_, 0, parameters), system_(s), variable_of_(tape_.inputs.size(), 0),
+        order_of_(tape_.inputs.size(), kAbsent) {
+    for (std::uint32_t k = 0; k < tape_.inputs.size(); ++k) {
+      const NodeId symbol = tape_.inputs[k].symbol;
+      const auto j = s.variable(symbol);
+      if (!j) continue;
+      variable_of_[k] = *j;
+      order_of_[k] = static_cast<int>(s.model->graph->node(symbol).order);
+      columns_.push_back(k);
+    }
+    std::stable_sort(columns_.begin(), columns_.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return order_of_[a] > order_of_[b]; });
+  }
 
-  const std::vector<Input>& inputs() const { return tape_.inputs; }
-
-  // False if a formula has no value at the point.
-  bool measure(const ProbeHints& hints, std::mt19937_64& random, std::vector<std::vector<double>>& largest) {
+  // Raises sigma[i][j] to the highest derivative of unknown j that occurs in equation i at a point. False if a formula has
+  // no value at the point; `sigma` is then of no use.
+  bool measure(const ProbeHints& hints, std::mt19937_64& random, std::vector<std::vector<int>>& sigma) {
     constexpr double kLeast = 0.05, kMost = 0.35;
     // A distribution of the standard library has other bits in other libraries.
     const auto spread = [&] { return static_cast<double>(random()) * 0x1p-64 * (kMost - kLeast) + kLeast; };
@@ -43,25 +54,43 @@ class Probe {
     machine_.evaluate();
     partials_.clear();
     for (std::uint32_t s = 0; s < tape_.code.size(); ++s) partials_.push_back(machine_.partials(s));
-    // A few columns at a time: all columns would take slots times inputs of memory, and these stay in the caches.
+    // A few columns at a time: all columns would take slots times inputs of memory, and these stay in the caches. The
+    // highest derivatives come first, as lower ones tell nothing where these occur.
     constexpr std::size_t kColumns = 8;
-    for (std::size_t from = 0; from < tape_.inputs.size(); from += kColumns)
-      if (!columns(from, std::min(kColumns, tape_.inputs.size() - from), largest)) return false;
+    std::vector<std::uint32_t> next;
+    for (auto column = columns_.begin(); column != columns_.end();) {
+      next.clear();
+      for (; column != columns_.end() && next.size() < kColumns &&
+             (next.empty() || order_of_[*column] == order_of_[next.front()]);
+           ++column)
+        if (tells(*column, sigma)) next.push_back(*column);
+      if (!next.empty() && !measure(next, sigma)) return false;
+    }
     return true;
   }
 
+  // Whether the derivative with respect to any input can still raise an entry of `sigma`.
+  bool any_tells(const std::vector<std::vector<int>>& sigma) const {
+    return std::any_of(columns_.begin(), columns_.end(), [&](std::uint32_t k) { return tells(k, sigma); });
+  }
+
  private:
-  // The derivatives with respect to the inputs [from, from + cols).
-  bool columns(std::size_t from, std::size_t cols, std::vector<std::vector<double>>& largest) {
-    const std::size_t size = tape_.code.size() * cols;
-    tangent_.assign(size, 0.0), terms_.assign(size, 0.0), zero_.assign(tape_.code.size(), true);
-    std::size_t next_input = 0;
+  bool tells(std::uint32_t input, const std::vector<std::vector<int>>& sigma) const {
+    return std::any_of(sigma.begin(), sigma.end(),
+                       [&](const std::vector<int>& row) { return row[variable_of_[input]] < order_of_[input]; });
+  }
+
+  // The derivatives with respect to some inputs.
+  bool measure(const std::vector<std::uint32_t>& inputs, std::vector<std::vector<int>>& sigma) {
+    const std::size_t cols = inputs.size(), size = tape_.code.size() * cols;
+    tangent_.assign(size, 0.0), terms_.assign(size, 0.0), zero_.assign(tape_.code.size(), 1);
+    std::uint32_t next_input = 0;
     for (std::uint32_t s = 0; s < tape_.code.size(); ++s) {
       const Instruction& in = tape_.code[s];
       double *row = &tangent_[s * cols], *row_terms = &terms_[s * cols];
       const auto add = [&](std::uint32_t operand, double factor) {
         if (zero_[operand] && std::isfinite(factor)) return;
-        zero_[s] = false;
+        zero_[s] = 0;
         const double *below = &tangent_[operand * cols], *below_terms = &terms_[operand * cols];
         for (std::size_t k = 0; k < cols; ++k) {
           row[k] += factor * below[k];
@@ -83,9 +112,9 @@ class Probe {
         }
         break;
       case Op::input:
-        if (next_input >= from && next_input < from + cols) {
-          row[next_input - from] = row_terms[next_input - from] = 1;
-          zero_[s] = false;
+        if (const auto at = std::find(inputs.begin(), inputs.end(), next_input); at != inputs.end()) {
+          row[at - inputs.begin()] = row_terms[at - inputs.begin()] = 1;
+          zero_[s] = 0;
         }
         ++next_input;
         break;
@@ -113,7 +142,8 @@ class Probe {
       for (std::size_t k = 0; k < cols; ++k) {
         const double v = std::abs(tangent_[tape_.roots[i] * cols + k]), all = terms_[tape_.roots[i] * cols + k];
         if (!std::isfinite(v)) return false;
-        if (v > kNoDependence * all) largest[i][from + k] = std::max(largest[i][from + k], v);
+        int& highest = sigma[i][variable_of_[inputs[k]]];
+        if (v > kNoDependence * all) highest = std::max(highest, order_of_[inputs[k]]);
       }
     return true;
   }
@@ -122,12 +152,16 @@ class Probe {
   Machine<double> machine_;
   std::vector<Machine<double>::Partials> partials_;
   std::vector<double> tangent_, terms_;  // of each slot, for the present columns
-  std::vector<bool> zero_;               // the slots without an entry there
+  std::vector<unsigned char> zero_;      // whether a slot has no entry there
   const System& system_;
+  std::vector<std::size_t> variable_of_;  // of each input that is an unknown or a derivative of one
+  std::vector<int> order_of_;
+  std::vector<std::uint32_t> columns_;  // these inputs, the highest derivatives first
 };
 
 // The assignment of variables to equations with the greatest sum of sigma (Hungarian method with
-// potentials); an entry -1 of `sigma` is forbidden. Empty if there is none.
+// potentials); an entry -1 of `sigma` is forbidden. Empty if there is none. Of columns that are equally near, one without
+// a row is taken: where all entries are equal, the assignment of the rows before then is not searched.
 std::vector<int> highest_transversal(const std::vector<std::vector<int>>& sigma) {
   const std::size_t n = sigma.size();
   const double inf = std::numeric_limits<double>::infinity(), forbidden = 1e9;
@@ -140,9 +174,9 @@ std::vector<int> highest_transversal(const std::vector<std::vector<int>>& sigma)
     row_of[0] = i;
     std::size_t j0 = 0;
     std::vector<double> least(n + 1, inf);
-    std::vector<bool> used(n + 1, false);
+    std::vector<unsigned char> used(n + 1, 0);
     do {
-      used[j0] = true;
+      used[j0] = 1;
       const std::size_t i0 = row_of[j0];
       std::size_t j1 = 0;
       double delta = inf;
@@ -150,7 +184,7 @@ std::vector<int> highest_transversal(const std::vector<std::vector<int>>& sigma)
         if (used[j]) continue;
         const double reduced = cost(i0, j) - u[i0] - v[j];
         if (reduced < least[j]) least[j] = reduced, way[j] = j0;
-        if (least[j] < delta) delta = least[j], j1 = j;
+        if (least[j] < delta || (least[j] == delta && row_of[j] == 0 && row_of[j1] != 0)) delta = least[j], j1 = j;
       }
       for (std::size_t j = 0; j <= n; ++j) {
         if (used[j])
@@ -200,23 +234,16 @@ std::string without_inertia(const System& s, const std::vector<std::vector<int>>
 std::optional<std::vector<std::vector<int>>> signature(const System& s, const Tape& equations,
                                                        const std::vector<double>& parameters, const ProbeHints& hints) {
   const std::size_t n = s.size();
-  const Graph& g = *s.model->graph;
   Probe probe(s, equations, parameters);
-  std::vector<std::vector<double>> largest(n, std::vector<double>(probe.inputs().size(), 0));
+  std::vector<std::vector<int>> sigma(n, std::vector<int>(n, kAbsent));
   std::mt19937_64 random(20261121);
   int measured = 0;
   for (int attempt = 0; attempt < 20 && measured < kProbes; ++attempt) {
-    auto trial = largest;
-    if (probe.measure(hints, random, trial)) largest = std::move(trial), ++measured;
+    if (measured > 0 && !probe.any_tells(sigma)) break;
+    auto trial = sigma;
+    if (probe.measure(hints, random, trial)) sigma = std::move(trial), ++measured;
   }
   if (measured == 0) return std::nullopt;
-  std::vector<std::vector<int>> sigma(n, std::vector<int>(n, kAbsent));
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t k = 0; k < probe.inputs().size(); ++k) {
-      const auto j = s.variable(probe.inputs()[k].symbol);
-      if (!j || !(largest[i][k] > 0)) continue;
-      sigma[i][*j] = std::max(sigma[i][*j], static_cast<int>(g.node(probe.inputs()[k].symbol).order));
-    }
   return sigma;
 }
 
