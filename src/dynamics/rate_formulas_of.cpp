@@ -48,7 +48,11 @@ class Builder {
       to.add(parameters[i].name, g.parameter(static_cast<std::uint32_t>(i)));
       values.push_back(static_cast<double>(of_.parameters()[i]));
     };
-    for (const std::size_t i : of_.free_parameters()) add(f_.p, f_.parameters, i);
+    for (const std::size_t i : of_.free_parameters()) {
+      add(f_.p, f_.parameters, i);
+      f_.exact_parameters.push_back(parameters[i].value);
+    }
+    if (f_.model != s_.model) f_.exact_parameters = copied(f_.exact_parameters, g);
     for (std::size_t i = parameters.size() - of_.inputs(); i < parameters.size(); ++i) add(f_.u, f_.inputs, i);
     put_parameters();
     leave_out();

@@ -23,6 +23,7 @@ struct RateFormulas {
   std::shared_ptr<const Model> model;  // whose graph has the expressions, and whose names print them
   std::string title;
   Symbols x, u, p, lead;              // p: the parameters that do not follow from others
+  Column exact_parameters;            // the values of p in the model
   std::vector<std::string> meanings;  // of x: what an independent velocity is; empty for the others
   Column rates;                       // of x, one by one
   Column equations;                   // one for each of lead
