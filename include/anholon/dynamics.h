@@ -9,7 +9,8 @@ namespace anholon::v1 {
 
 struct DynamicsOptions {
   // In independent velocities, which satisfy the constraints whatever their values are (theory: quasi-velocities), if
-  // the equations have them; else in all velocities.
+  // the equations have them; else in the state of the motion: all coordinates and velocities, and higher derivatives
+  // where constraints of order 2 and more ask for them.
   bool minimal = true;
   // Whether inputs of the model are arguments u: all that can be set, or those named. Else their formulas stand in f.
   bool inputs = false;
@@ -23,7 +24,7 @@ struct DynamicsOptions {
 };
 
 struct StateName {
-  std::string name;     // "x", "x'", an independent velocity "u1", a state of the model
+  std::string name;     // "x", "x'", "x''", an independent velocity "u1", a state of the model
   std::string meaning;  // of an independent velocity: its formula in coordinates and velocities; else empty
 };
 
@@ -31,12 +32,16 @@ struct StateName {
 // others. Immutable, cheap to copy, and safe to use from many threads. All numbers are in SI units.
 class ANHOLON_API Dynamics {
  public:
-  // What x holds: coordinates, velocities, then the model's states.
+  // What x holds: coordinates, velocities, higher derivatives, then the model's states.
   const std::vector<StateName>& states() const;
   std::vector<std::string> inputs() const;      // what u holds
   std::vector<std::string> parameters() const;  // what p holds
   std::vector<std::string> outputs() const;     // what y holds: monitors and outputs of the model
   bool minimal() const;
+  // Whether the equations are linear in what they are solved for. Where they are not, they may have several solutions: the
+  // rates are those of the solution that joins the one at the start, followed along the straight line from there, and NaN
+  // where it ends.
+  bool linear() const;
   double start_time() const;
   const std::vector<double>& start() const;      // x at the initial state
   std::vector<double> start_inputs() const;      // u there
@@ -71,19 +76,24 @@ class ANHOLON_API Dynamics {
 
   // The linear equations that are solved at `count` states for accelerations, multipliers and rates of the model's
   // states: matrix unknowns = right, the matrix row by row, with the numbers of all states one after the other as in a
-  // Jacobian. REQUIRES: not minimal; the sizes fit.
+  // Jacobian. REQUIRES: not minimal; linear; the sizes fit.
   struct Equations {
     std::vector<std::string> unknowns;
     std::vector<double> matrix, right;
   };
   Equations equations(double t, std::span<const double> x, std::size_t count, const Given& given) const;
 
+  // What the equations of one state are solved for, unknown by unknown. Empty if minimal. REQUIRES: the sizes fit.
+  std::vector<double> leading(double t, const std::vector<double>& x, const Given& given) const;
+
   // The function as source text: a C file with name_rhs and, in CasADi's external interface, name and jac_name; a Python
   // module whose functions take the library for arrays as an argument.
+  // REQUIRES: linear, for C.
   enum class Source : std::uint8_t { casadi, formulas };
   std::string source(Source kind, const std::string& name = "motion") const;
 
-  // One state from coordinates q, velocities qdot and the model's states z, and back. REQUIRES: the sizes fit.
+  // One state from coordinates q, velocities qdot (followed by the higher derivatives of states()) and the model's states
+  // z, and back. REQUIRES: the sizes fit.
   std::vector<double> from_motion(double t, const std::vector<double>& q, const std::vector<double>& qdot,
                                   const std::vector<double>& z = {}) const;
   struct Motion {
@@ -98,8 +108,8 @@ class ANHOLON_API Dynamics {
   std::shared_ptr<const Data> data_;
 };
 
-// Errors: equations that are not solved for accelerations alone, as constraints of order 2 and more ask for, redundant
-// constraints, formulas that kernels do not know (diagnostics that say which), an input that cannot be set.
+// Redundant constraints take no part. Errors: equations without a solution at the start, a form that eliminates
+// coordinates, an input that cannot be set, an output that is not known.
 ANHOLON_API Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options = {});
 
 }  // namespace anholon::v1

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Union
 
 from . import _core
 from ._errors import ModelError
-from .formulas import Formulas, compile_c
+from .formulas import NOT_LINEAR, Formulas, compile_c
 
 if TYPE_CHECKING:
     import numpy as np
@@ -43,7 +43,8 @@ class Dynamics:
 
     @property
     def states(self) -> list[_core.StateName]:
-        """What x holds: coordinates, velocities (or independent ones, with their formulas), then the model's states."""
+        """What x holds: coordinates, velocities (or independent ones, with their formulas), higher derivatives where
+        constraints of order 2 and more ask for them, then the model's states."""
         return self._core.states
 
     @property
@@ -66,6 +67,15 @@ class Dynamics:
     def minimal(self) -> bool:
         """Whether the velocities are independent ones."""
         return self._core.minimal
+
+    @property
+    def linear(self) -> bool:
+        """Whether the equations are linear in what they are solved for (accelerations, multipliers, …).
+
+        Where they are not, they may have several solutions. f(t, x, u, p) then follows the solution at the start along the
+        straight line from the start to (t, x, u, p); it is NaN where that solution ends.
+        """
+        return self._core.linear
 
     @property
     def t0(self) -> float:
@@ -244,6 +254,12 @@ class Dynamics:
     def _equations(self, t: float, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array]:
         if self.minimal:
             raise ModelError("in independent velocities there is no mass matrix\nhint: dynamics(minimal=False)")
+        names = [c.name for c in self.model.coordinates]
+        if [s.name for s in self.states] != [*names, *(n + "'" for n in names), *self.model.states] or not self.linear:
+            raise ModelError(
+                "the equations are not solved for accelerations alone, so no mass matrix times accelerations is in them\n"
+                "hint: model.equations() shows what they are; f.jac has the derivatives of the rates"
+            )
         state, some, others, batch = self._states(x, u, p)
         matrix: Array
         right: Array
@@ -286,7 +302,13 @@ class Dynamics:
 
     def c_code(self, name: str = "motion") -> str:
         """A C file that stands by itself: ``name_rhs(t, x, u, p, dx)``, and in CasADi's external interface ``name``,
-        (t, x, u, p) -> (dx, y), with the sparse Jacobian ``jac_name``. CasADi and acados load it compiled as it is."""
+        (t, x, u, p) -> (dx, y), with the sparse Jacobian ``jac_name``. CasADi and acados load it compiled as it is.
+
+        Raises:
+            ModelError: the equations are not :attr:`linear` in what they are solved for.
+        """
+        if not self.linear:
+            raise ModelError(NOT_LINEAR)
         return self._core.source(True, name)
 
     def casadi(self, name: str = "motion") -> Any:
@@ -304,35 +326,38 @@ class Dynamics:
     def state(self, t: float | None = None, *, q: Mapping[str, float], qdot: Mapping[str, float], z: Mapping[str, float] | None = None) -> Array:
         """x from values of coordinates, velocities ("x'") and states of the model by name; 0 for those left out.
 
-        Velocities that violate the constraints lose what violates them. The shape is (states,), in SI units.
+        Higher derivatives that belong to the state ("x''") are given with the velocities. In independent velocities, those
+        that violate the constraints lose what violates them. The shape is (states,), in SI units.
 
         Raises:
             KeyError: a name is none of the coordinates, velocities or states.
         """
         import numpy as np
 
-        names = [c.name for c in self.model.coordinates]
-        known = {**dict.fromkeys(names, 0.0), **q}, {**{name + "'": 0.0 for name in names}, **qdot}, {**dict.fromkeys(self.model.states, 0.0), **(z or {})}
-        for have, expected in zip(known, (names, [name + "'" for name in names], self.model.states), strict=True):
+        names = self._names()
+        given = (q, qdot, z or {})
+        for have, expected in zip(given, names, strict=True):
             for name in have:
                 if name not in expected:
                     raise KeyError(f"there is no {name!r}; there are {', '.join(expected)}")
         at = self.t0 if t is None else t
-        return np.array(
-            self._core.from_motion(at, [known[0][n] for n in names], [known[1][n + "'"] for n in names], [known[2][n] for n in self.model.states])
-        )
+        return np.array(self._core.from_motion(at, *([have.get(n, 0.0) for n in expected] for have, expected in zip(given, names, strict=True))))
 
     def motion(self, x: npt.ArrayLike, t: float | None = None) -> dict[str, float]:
-        """Coordinates, velocities and states of the model of one state x, by name."""
+        """Coordinates, velocities (and higher derivatives of the state) and states of the model of one state x, by name."""
         import numpy as np
 
-        q, qdot, z = self._core.to_motion(self.t0 if t is None else t, np.asarray(x, dtype=np.float64).tolist())
-        names = [c.name for c in self.model.coordinates]
-        return {
-            **dict(zip(names, q, strict=True)),
-            **{name + "'": v for name, v in zip(names, qdot, strict=True)},
-            **dict(zip(self.model.states, z, strict=True)),
-        }
+        parts = self._core.to_motion(self.t0 if t is None else t, np.asarray(x, dtype=np.float64).tolist())
+        return {n: v for names, values in zip(self._names(), parts, strict=True) for n, v in zip(names, values, strict=True)}
+
+    def _names(self) -> tuple[list[str], list[str], list[str]]:
+        """Names of coordinates; of velocities and higher derivatives; of the model's states."""
+        states = list(self.model.states)
+        if self.minimal:
+            coordinates = [c.name for c in self.model.coordinates]
+            return coordinates, [name + "'" for name in coordinates], states
+        mechanical = [state.name for state in self.states][: self._count - len(states)]
+        return [n for n in mechanical if not n.endswith("'")], [n for n in mechanical if n.endswith("'")], states
 
     def __repr__(self) -> str:
         return f"<f(t, x) of {self.model.title!r}: x = {', '.join(s.name for s in self.states)}>"

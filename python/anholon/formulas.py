@@ -17,8 +17,17 @@ from ._errors import ModelError
 if TYPE_CHECKING:
     from .dynamics import Dynamics
 
+NOT_LINEAR = (
+    "the equations are not linear in what they are solved for, so no formula gives the rates\n"
+    "hint: f(t, x) and f.jac(t, x) compute them; f.formulas.mpmath has more digits"
+)
+
 # NumPy's names of elementary functions, and those of other libraries where they differ.
 _SHORT = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh"}
+
+
+# From the digits of a double, each of these doubles them.
+_CORRECTIONS = 6
 
 
 class _Library:
@@ -102,6 +111,7 @@ class Formulas:
         u: Any,
         p: Any,
         number: Callable[[str], Any] | None = None,
+        lead: Sequence[Any] | None = None,
     ) -> tuple[list[Any], list[Any]]:
         """Rates and outputs with the functions of any library.
 
@@ -111,10 +121,19 @@ class Formulas:
             t: the time, s.
             x: the state, u: the inputs, p: the parameters; anything with an index.
             number: makes the numbers in the formulas of their decimals; they are floats without it.
+            lead: nearly what nonlinear equations are solved for, in numbers; Newton's method corrects it.
+
+        Raises:
+            ModelError: the equations are nonlinear in what they are solved for, and there is no `lead`.
         """
         module = self._module if number is None else self._with_numbers(number)
-        lead = None
-        if module["LEAD"]:
+        if module["LEAD"] and not module["LINEAR"]:
+            if lead is None:
+                raise ModelError(NOT_LINEAR)
+            for _ in range(_CORRECTIONS):
+                matrix, right = module["equations"](library, t, x, u, p, lead)
+                lead = [a + b for a, b in zip(lead, solve(matrix, right), strict=True)]
+        elif module["LEAD"]:
             matrix, right = module["equations"](library, t, x, u, p)
             lead = solve(matrix, right)
         return module["rates"](library, t, x, u, p, lead), module["outputs"](library, t, x, u, p, lead)
@@ -197,7 +216,10 @@ class Formulas:
             return list(mpmath.lu_solve(mpmath.matrix(matrix), mpmath.matrix(right)))
 
         library = _Library(mpmath, _SHORT | {"abs": "fabs"}, lambda condition, a, b: a if condition else b)
-        return self.evaluate(library, solve, mpmath.mpf(t), x, u, self._module["DEFAULTS"] if p is None else p, mpmath.mpf)
+        lead = None
+        if not self._module["LINEAR"]:
+            lead = self.dynamics._core.leading(float(t), *([float(v) for v in values] for values in (x, u, [] if p is None else p)))
+        return self.evaluate(library, solve, mpmath.mpf(t), x, u, self._module["DEFAULTS"] if p is None else p, mpmath.mpf, lead)
 
 
 class SymPyRates:
@@ -210,6 +232,8 @@ class SymPyRates:
         import sympy
 
         module = formulas._with_numbers(sympy.Rational)
+        if not module["LINEAR"]:
+            raise ModelError(NOT_LINEAR)
         self.t: Any = sympy.Symbol("t")
         self.x, self.u, self.p, self.lead = (
             [sympy.Symbol(name, real=True) for name in module[key]] for key in ("STATES", "INPUTS", "PARAMETERS", "LEAD")

@@ -575,7 +575,8 @@ class Model:
 
         Args:
             minimal: in independent velocities, which satisfy the constraints whatever they are, if the equations have
-                them; else in all coordinates and velocities.
+                them; else in the state of the motion: all coordinates and velocities, and higher derivatives where
+                constraints of order 2 and more ask for them.
             inputs: which inputs of the model are arguments u: all that can be set, those named, or none. The formulas
                 of the others stand in f.
             outputs: instead of all monitors and outputs of the model: some of them, formulas in its names, or
@@ -584,8 +585,8 @@ class Model:
             initial: values instead of those of the file, for ``f.start``.
 
         Raises:
-            ModelError: the equations are not solved for accelerations alone (constraints of order 2 and more),
-                constraints are redundant, an input cannot be set from outside, or an output is not known.
+            ModelError: the equations have no solution at the start, an input cannot be set from outside, or an output
+                is not known.
 
         Example:
             >>> import anholon as an, numpy as np

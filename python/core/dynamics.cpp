@@ -45,6 +45,7 @@ void bind_dynamics(nb::module_& m) {
       .def_prop_ro("parameters", &Dynamics::parameters)
       .def_prop_ro("outputs", [](const Dynamics& f) { return f.outputs(); })
       .def_prop_ro("minimal", &Dynamics::minimal)
+      .def_prop_ro("linear", &Dynamics::linear)
       .def_prop_ro("start_time", &Dynamics::start_time)
       .def_prop_ro("start", &Dynamics::start)
       .def_prop_ro("start_inputs", &Dynamics::start_inputs)
@@ -62,6 +63,12 @@ void bind_dynamics(nb::module_& m) {
           "inputs_at",
           [](const Dynamics& f, double t, const Doubles& x, const Doubles& p) { return f.inputs(t, x, p); }, "t"_a,
           "x"_a, "p"_a)
+      .def(
+          "leading",
+          [](const Dynamics& f, double t, const Doubles& x, const Doubles& u, const Doubles& p) {
+            return f.leading(t, x, {u, p});
+          },
+          "t"_a, "x"_a, "u"_a, "p"_a)
       .def(
           "jacobian",
           [](const Dynamics& f, double t, const In& x, const Some& u, const Some& p) {

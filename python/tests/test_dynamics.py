@@ -64,7 +64,8 @@ def by_differences(f: an.Dynamics, t: float, x: Any, u: Any, p: Any, directions:
         return np.array(columns).T
 
 
-CASES = [(name, minimal) for name in [*MODELS, "rocket", "trailers", "snake"] for minimal in (True, False)] + [("whipple", False)]
+HIGHER = ["constant-acceleration", "constant-jerk", "constant-jerk-central", "rheonomic-order-2", "rheonomic-order-3", "tether-by-servo", "third-order-linear"]
+CASES = [(name, False) for name in HIGHER] + [(name, minimal) for name in [*MODELS, "rocket", "trailers", "snake"] for minimal in (True, False)] + [("whipple", False)]
 
 
 @pytest.mark.parametrize(("name", "minimal"), CASES)
@@ -244,9 +245,68 @@ def test_threads_share_a_function() -> None:
     assert len(same) == 200 and all(same)
 
 
+@pytest.mark.parametrize("name", HIGHER)
+def test_constraints_of_higher_order_have_rates_too(name: str) -> None:
+    model = an.load(name)
+    end = 0.75
+    run = model.simulate(to=end, every="0.25", error_estimate=False).expect()
+    f = model.dynamics()
+    names = [state.name for state in f.states]
+    x = np.array([run[n] for n in names])
+    for row, t in enumerate(run.t):
+        rates = f(t, x[:, row])
+        # The run has all derivatives that the equations are solved for.
+        np.testing.assert_allclose(rates, [run[n + "'"][row] for n in names], rtol=1e-12, atol=1e-13)
+    many = f.start[:, None] * (1 + 0.001 * np.random.default_rng(2).standard_normal((len(names), 100)))
+    together = f(f.t0, many)
+    for k in (0, 1, 15, 16, 99):
+        np.testing.assert_array_equal(together[:, k], f(f.t0, many[:, k]))
+    there = f.motion(x[:, -1])
+    z = {n: there.pop(n) for n in model.states}
+    q, qdot = ({n: v for n, v in there.items() if n.endswith("'") == dashed} for dashed in (False, True))
+    np.testing.assert_array_equal(f.state(q=q, qdot=qdot, z=z), x[:, -1])
+    with pytest.raises(an.ModelError, match="not solved for accelerations alone"):
+        f.mass_matrix(0, f.start)
+
+
+def test_a_solution_stays_on_its_branch() -> None:
+    """An acceleration of given magnitude has two directions: the one at the start is followed, and others are not taken."""
+    model = an.load("constant-acceleration")
+    f = model.dynamics()
+    assert not f.linear
+    run = model.simulate(to=2, every="0.05", error_estimate=False).expect()
+    for row, t in enumerate(run.t):
+        x = [run[state.name][row] for state in f.states]
+        np.testing.assert_allclose(f(t, x)[3:], [run[n][row] for n in ("x''", "y''", "z''")], rtol=1e-12, atol=1e-12)
+    for formula in (f.formulas.sympy, f.c_code, f.casadi):
+        with pytest.raises(an.ModelError, match="not linear in what they are solved for"):
+            formula()
+    with pytest.raises(an.ModelError, match="not linear in what they are solved for"):
+        f.formulas.numpy()(0, f.start)
+    # The straight line from the start may cross a state that has no solution.
+    assert np.isnan(f(0, np.full(len(f.start), np.nan))[3:]).all()
+
+
+def test_a_constraint_that_follows_from_others_takes_no_part() -> None:
+    text = """
+        coordinates = ["x", "y"]
+        particle = [{name = "a", mass = 2, position = ["x", "y", 0]}]
+        force = [{on = "a", vector = "-3*ex - 5*y*ey"}]
+        constraint = [{name = "slope", equation = "y' = 2*x'"}%s]
+        [initial]
+        q = {x = 1, y = 0.5}
+        qdot = {x = 1}
+        """
+    once, twice = (an.loads(text % more).dynamics(minimal=False) for more in ("", ', {name = "again", equation = "3*y\' = 6*x\'"}'))
+    np.testing.assert_allclose(twice(0, twice.start), once(0, once.start), rtol=1e-14)
+    np.testing.assert_allclose(twice.jac(0, twice.start), once.jac(0, once.start), rtol=1e-14, atol=1e-15)
+    # 2 (x'' + 4 x'') = -3 - 10 y
+    assert once(0, once.start)[2] == pytest.approx(-0.8, rel=1e-15)
+
+
 def test_who_has_no_such_function_says_why() -> None:
-    with pytest.raises(an.ModelError, match=r"no function x' = f\(t, x\)"):
-        an.load("rheonomic-order-3").dynamics()
+    with pytest.raises(an.ModelError, match="the given function 'm' has no formula"):
+        an.load("luo-zhao-example-1-symbolic").dynamics()
 
 
 def batch_of(f: an.Dynamics, count: int) -> np.ndarray:

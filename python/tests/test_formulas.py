@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 # Explicit rates, a linear system, inputs, formulas with cases, roots.
-MODELS = [("disc", True), ("disc", False), ("trailers", True), ("snake", False), ("fourbar", False), ("snakeboard", True)]
+MODELS = [("disc", True), ("disc", False), ("trailers", True), ("snake", False), ("fourbar", False), ("snakeboard", True),
+          ("tether-by-servo", True), ("third-order-linear", False)]  # fmt: skip
 
 
 # XLA takes up to half a minute to compile long formulas: ANHOLON_LONG=1 does all.

@@ -27,21 +27,30 @@ def compare(name: str, text: str) -> bool:
     assert list(made["X"]) == [state.name for state in f.states]
     np.testing.assert_allclose(made["X_START"], f.start, rtol=1e-15)
     draw = np.random.default_rng(1)
-    x = f.start[:, None] + 0.1 * draw.standard_normal((len(f.start), 10000))
+    x = f.start[:, None] + 0.1 * draw.standard_normal((len(f.start), 5000))
     rates, many = f(f.t0, x), made["rates"](f.t0, x)
     # Relative to the largest number of a state, since terms cancel.
     size = 1 + np.abs(rates).max(axis=0)
     np.testing.assert_allclose(many / size, rates / size, rtol=0, atol=1e-12)
-    for k in (0, 1, 8191, 8192, 9999):
+    # One state, as an array and as a list.
+    for k in (0, 4095, 4096, 4999):
+        one = made["rates"](f.t0, x[:, k].tolist())
+        assert isinstance(one, list)
+        np.testing.assert_array_equal(made["rates"](f.t0, x[:, k].copy()), one)
+    for k in (0, 1, 4095, 4096, 4999):
         np.testing.assert_allclose(made["rates"](f.t0, x[:, k].copy()) / size[k], many[:, k] / size[k], rtol=0, atol=1e-14)
-        by_list = made["rates"](f.t0, x[:, k].tolist())
-        assert type(by_list) is list
-        np.testing.assert_array_equal(by_list, made["rates"](f.t0, x[:, k].copy()))
     out = np.empty_like(x)
-    assert made["rates"](np.full(10000, f.t0), x, out=out) is out
+    assert made["rates"](np.full(5000, f.t0), x, out=out) is out
     np.testing.assert_array_equal(out, many)
-    each = np.repeat(made["DEFAULTS"][:, None], 10000, axis=1)
-    np.testing.assert_allclose(made["rates"](f.t0, x, each) / size, many / size, rtol=0, atol=1e-14)
+    # The result may take the place of the states.
+    own = x.copy()
+    assert made["rates"](f.t0, own, out=own) is own
+    np.testing.assert_array_equal(own, many)
+    # Given parameters take another writing of the formulas.
+    each = np.repeat(made["DEFAULTS"][:, None], 5000, axis=1)
+    given = made["rates"](f.t0, x, each)
+    np.testing.assert_allclose(given / size, rates / size, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(made["rates"](f.t0, x, made["DEFAULTS"]) / size, given / size, rtol=0, atol=1e-14)
     return True
 
 
@@ -53,6 +62,50 @@ def test_rates_are_those_of_dynamics(program: Callable[..., str]) -> None:
 
 def test_a_wrong_sign_is_found(program: Callable[..., str]) -> None:
     text = program("derive", "disc", "--format", "python")
-    wrong = re.sub(r"(out\[6\] = )", r"\1-", text.split("def _rates", 1)[1], count=1)
-    with pytest.raises(AssertionError):
-        compare("disc", text.split("def _rates", 1)[0] + "def _rates" + wrong)
+    # In the rates of given parameters, of one state and of many.
+    for found, wrong in ((r"(out\[6\] = )", r"\1-"), (r"return \[", r"return [-"), (r"_add\(x6, o4", r"_subtract(x6, o4")):
+        before, after = text.split("def _rates", 1)
+        changed = re.sub(found, wrong, after, count=1)
+        assert changed != after
+        with pytest.raises(AssertionError):
+            compare("disc", before + "def _rates" + changed)
+
+
+FORMULAS = """
+coordinates = ["x", "y", "z"]
+particle = [{name = "a", mass = 2, position = ["x", "y", "z"]}]
+force = [{on = "a", vector = "(%s)*ex - (3*x + abs(y))*ey"}]
+constraint = [{name = "c", equation = "y' = x*z'"}]
+[parameters]
+k = 3
+n = "k^2"
+[initial]
+q = {x = 0.5, y = 0.3}
+qdot = {x = 0.2, z = 0.4}
+"""
+
+
+@pytest.mark.parametrize(
+    "force",
+    ["-n*x^3/(1 + y^2)", "sqrt(2 + x^2)*cos(3*t)", "(2 + x)^(1/3)*atan2(y, x)", "exp(-x)*pi/k*x' + x'*y'*x + x*x'", "piecewise(x > y, k*x, y^2)", "sign(x)*tanh(t)",
+     "(x' - y')*(x' - y')/k + sin(x)*cos(x) + cos(x)", "1/(x*y) + 1/x^2 + y/x + x^5", "0*x", "sin(y)*sin(y) - k"],
+)  # fmt: skip
+def test_formulas_of_all_kinds(force: str) -> None:
+    model = an.loads(FORMULAS % force)
+    made, f = run(model.python_code()), model.dynamics()
+    assert list(made["X"]) == [state.name for state in f.states]
+    x = f.start[:, None] + 0.1 * np.random.default_rng(4).standard_normal((5, 50))
+    expected = f(0.7, x)
+    np.testing.assert_allclose(made["rates"](0.7, x), expected, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(made["rates"](np.full(50, 0.7), x), expected, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(made["rates"](0.7, x, made["DEFAULTS"]), expected, rtol=1e-12, atol=1e-12)
+    for k in (0, 49):
+        np.testing.assert_allclose(made["rates"](0.7, x[:, k].tolist()), expected[:, k], rtol=1e-12, atol=1e-12)
+
+
+def test_where_a_formula_has_no_value_there_is_nan() -> None:
+    made = run(an.loads(FORMULAS % "x/y").python_code())
+    for p in (None, made["DEFAULTS"]):
+        assert np.isnan(made["rates"](0, [0.0] * 5, p)[3])
+        many = made["rates"](0, np.array([[0.0, 1.0, 1.0], [0.0, 0.0, 1.0], *[[0.0] * 3] * 3]), p)
+        assert np.isnan(many[3, 0]) and np.isinf(many[3, 1]) and np.isfinite(many[:, 2]).all()

@@ -219,6 +219,12 @@ Dynamics::Equations Dynamics::equations(double t, std::span<const double> x, std
   return out;
 }
 
+bool Dynamics::linear() const { return data_->function->linear(); }
+
+std::vector<double> Dynamics::leading(double t, const std::vector<double>& x, const Given& given) const {
+  return data_->solved(t, x, given, true).lead;
+}
+
 std::string Dynamics::source(Source kind, const std::string& name) const {
   const inner::RateFormulas& f = data_->values().formulas();
   return kind == Source::formulas ? inner::emit_formulas(f)

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <thread>
 
 #include "kernel/plan/planner.h"
@@ -17,6 +18,37 @@ namespace {
 // Below these numbers of states, code for lanes, and further threads, do not pay.
 constexpr std::size_t kManyLanes = 16, kManyThreads = 4096;
 
+// Newton's method is on its branch while each correction is at most this part of the one before; a line is followed in
+// steps down to this one.
+constexpr long double kContraction = 0.25L, kLeastStep = 1.0L / 4096;
+constexpr int kMostCorrections = 40;
+// Corrections of this size, relative to the largest number, are round-off of sums of larger terms: far below a double's.
+constexpr long double kSettled = 1e-17L;
+
+// Corrects `leading` by Newton's method. Returns false if it does not contract.
+bool contracts(Expansion<long double>& point, long double t, const std::vector<long double>& state,
+               std::vector<long double>& leading) {
+  std::vector<long double> residual, correction;
+  long double before = std::numeric_limits<long double>::infinity();
+  for (int k = 0; k < kMostCorrections; ++k) {
+    point.load(t, state, leading);
+    if (!point.prepare().ok()) return false;
+    point.equations(residual);
+    point.lu().solve(residual, correction);
+    long double size = 0, of = 0;
+    for (std::size_t j = 0; j < leading.size(); ++j) {
+      leading[j] -= correction[j];
+      size = std::max(size, std::abs(correction[j])), of = std::max(of, std::abs(leading[j]));
+    }
+    if (!std::isfinite(size)) return false;
+    // What is left is round-off of the largest number, which does not contract.
+    if (size <= kQuietRoundoffs * std::numeric_limits<long double>::epsilon() * of) return true;
+    if (size > kContraction * before) return size <= kSettled * of;
+    before = size;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice, const Choice& wanted,
@@ -27,60 +59,80 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
   };
   if (!s.elimination.pivots().empty())
     return no("the form eliminates coordinates, whose choice holds in a part of the motion");
-  if (!s.redundant.empty()) return no("constraints are redundant");
   const std::size_t n = s.system.coordinates, all = s.system.size(), mechanical = s.system.mechanical();
-  for (std::size_t j = 0; j < all; ++j)
-    if (s.structure.d[j] != (j < n ? 2 : j < mechanical ? 0 : 1))
-      return no("the equations are not solved for accelerations: constraints of order 2 and more, or coordinates "
-                "without mass");
-  const auto program = std::make_shared<const Program>(anholon::program(s.system, s.structure));
-  if (std::string reason = no_plan(*program); !reason.empty()) return no(std::move(reason));
+  // Whether x holds coordinates, their velocities and the model's states.
+  bool ordinary = true;
+  for (std::size_t j = 0; j < all; ++j) ordinary = ordinary && s.structure.d[j] == (j < n ? 2 : j < mechanical ? 0 : 1);
+  std::unique_ptr<Dynamics> made(new Dynamics);
+  made->program_ = std::make_shared<const Program>(anholon::program(s.system, s.structure));
   Start<long double> here;
   if (const Outcome o = initial_state(s, choice, here); !o.ok()) return no(o.message);
-  std::unique_ptr<Dynamics> made(new Dynamics);
   made->parameters_ = parameter_values<long double>(*s.model);
   made->find_free_parameters(*s.model, wanted.inputs);
   const std::vector<double>& state = made->motion_start_ = {here.state.begin(), here.state.end()};
   const double t = made->start_time_ = static_cast<double>(here.t);
-  made->derived_ = KernelPlan::make(program, 1, made->parameters_, t, state, Company::in_lanes);
-  if (!made->derived_) return no("the equations are singular at the start");
-  const std::vector<Representation> list = representations(
-      {made->derived_, s.structure, {}, made->parameters_, t, state, s.mechanics.get()}, WritingEffort::long_motion);
-  const auto quasi = std::find_if(list.begin(), list.end(), [](const Representation& r) { return r.plan->map(); });
-  const bool mapped = wanted.minimal && quasi != list.end();
-  const Representation& best = mapped ? *quasi : cheapest_unmapped(list);
-  made->plan_ = best.plan;
   made->coordinates_ = n;
   made->model_states_ = all - mechanical;
-  const std::vector<std::string>& names = s.system.variable_names;
-  std::size_t at = 0;
-  for (std::size_t a = 0; a < n; ++a, ++at) made->states_.push_back({names[a], {}});
-  const std::size_t velocities = mapped ? best.plan->map()->velocities() : n;
-  for (std::size_t i = 0; i < velocities; ++i)
-    made->states_.push_back(mapped ? State{"u" + std::to_string(i + 1), best.velocities[i]}
-                                   : State{names[i] + "'", {}});
-  for (std::size_t z = mechanical; z < all; ++z) made->states_.push_back({names[z], {}});
-  if (mapped) {
-    made->map_ = std::shared_ptr<const StateMap>(best.plan, best.plan->map());
-    // The kernel's unknowns: coordinates, the model's states, then velocities.
-    for (std::size_t j = 0; j < best.plan->plan().x.size(); ++j) {
-      const std::size_t place = j < n ? j : j < n + made->model_states_ ? velocities + j : j - made->model_states_;
-      made->unknowns_.push_back({place, place, 1});
-    }
+  std::vector<Representation> list;
+  if (no_plan(*made->program_).empty()) {
+    const auto derived = KernelPlan::make(made->program_, 1, made->parameters_, t, state, Company::in_lanes);
+    if (!derived) return no("the equations are singular at the start");
+    list = representations({derived, s.structure, {}, made->parameters_, t, state, s.mechanics.get()},
+                           WritingEffort::long_motion);
   } else {
-    for (std::size_t j = 0; j < all; ++j) {
-      const std::size_t place = j < n ? j : j - mechanical + 2 * n;
-      made->unknowns_.push_back(j < n            ? Unknown{j, n + j, 2}
-                                : j < mechanical ? Unknown{0, 0, 0}
-                                                 : Unknown{place, place, 1});
-    }
+    Expansion<long double> point(*made->program_, made->parameters_, 1);
+    point.load(here.t, here.state, here.leading);
+    Outcome o = point.prepare();
+    if (o.ok()) o = point.solve();
+    if (!o.ok()) return no(o.message);
+    point.leading(made->start_leading_);
   }
-  std::vector<double> q, qd, z;
-  for (std::size_t a = 0; a < n; ++a) q.push_back(state[2 * a]), qd.push_back(state[2 * a + 1]);
-  z.assign(state.begin() + static_cast<std::ptrdiff_t>(2 * n), state.end());
-  made->start_ = made->from_motion(t, q, qd, z);
-  made->plan_->compile(code_cache());
+  const auto quasi = std::find_if(list.begin(), list.end(), [](const Representation& r) { return r.plan->map(); });
+  const Representation* mapped = ordinary && wanted.minimal && quasi != list.end() ? &*quasi : nullptr;
+  if (!list.empty()) made->plan_ = (mapped ? *mapped : cheapest_unmapped(list)).plan;
+  if (mapped)
+    made->put_independent_velocities(s.system, *mapped);
+  else
+    made->put_state_of_motion(s.system, s.structure.d);
+  if (made->plan_) made->plan_->compile(code_cache());
   return made;
+}
+
+// x: coordinates, independent velocities, the model's states. The kernel's unknowns: coordinates, the model's states, then
+// velocities.
+void Dynamics::put_independent_velocities(const System& s, const Representation& mapped) {
+  const std::size_t n = coordinates_, velocities = mapped.plan->map()->velocities();
+  map_ = std::shared_ptr<const StateMap>(mapped.plan, mapped.plan->map());
+  values_ = n;
+  for (std::size_t a = 0; a < n; ++a) states_.push_back({s.variable_names[a], {}});
+  for (std::size_t i = 0; i < velocities; ++i) states_.push_back({"u" + std::to_string(i + 1), mapped.velocities[i]});
+  for (std::size_t z = s.mechanical(); z < s.size(); ++z) states_.push_back({s.variable_names[z], {}});
+  for (std::size_t j = 0; j < mapped.plan->plan().x.size(); ++j)
+    unknowns_.push_back({{j < n ? j : j < n + model_states_ ? velocities + j : j - model_states_}});
+  std::vector<double> q, qd;
+  for (std::size_t a = 0; a < n; ++a) q.push_back(motion_start_[2 * a]), qd.push_back(motion_start_[2 * a + 1]);
+  start_ = from_motion(start_time_, q, qd,
+                       {motion_start_.begin() + static_cast<std::ptrdiff_t>(2 * n), motion_start_.end()});
+}
+
+// x: what is below the leading derivatives d, by order and then by variable; the model's states come last.
+void Dynamics::put_state_of_motion(const System& s, const std::vector<int>& d) {
+  unknowns_.resize(s.size());
+  std::vector<std::size_t> offset{0};  // in the state of the motion
+  for (const int order : d) offset.push_back(offset.back() + static_cast<std::size_t>(order));
+  const auto add = [&](std::size_t j, int k) {
+    unknowns_[j].places.push_back(states_.size());
+    states_.push_back({derivative_name(s.variable_names[j], static_cast<unsigned>(k), Format::text), {}});
+    start_.push_back(motion_start_[offset[j] + static_cast<std::size_t>(k)]);
+  };
+  const int highest = *std::max_element(d.begin(), d.end());
+  for (int k = 0; k < highest; ++k) {
+    for (std::size_t j = 0; j < s.mechanical(); ++j)
+      if (k < d[j]) add(j, k);
+    if (k == 0) values_ = states_.size();
+  }
+  for (std::size_t j = s.mechanical(); j < s.size(); ++j)
+    for (int k = 0; k < d[j]; ++k) add(j, k);
 }
 
 // Parameters that follow from others are those whose values hold symbols; the inputs are the last ones.
@@ -155,21 +207,74 @@ void Dynamics::with_kernel(int lanes, const Call& call, const F& f) const {
   pool.push_back(std::move(worker));
 }
 
+// The state of the motion, unknown by unknown.
+std::vector<long double> Dynamics::entries(const std::function<double(std::size_t)>& state) const {
+  std::vector<long double> out;
+  for (const Unknown& u : unknowns_)
+    for (const std::size_t place : u.places) out.push_back(state(place));
+  return out;
+}
+
 // What leads one state by the reference; NaN where the equations have no solution.
 std::vector<double> Dynamics::by_reference(double t, const std::function<double(std::size_t)>& state,
                                            const std::vector<long double>& parameters) const {
-  Expansion<long double> point(plan_->program(), parameters, 1);
-  std::vector<long double> entries;
-  for (const Unknown& u : unknowns_)
-    for (int k = 0; k < u.order; ++k) entries.push_back(state(k == 0 ? u.value : u.rate));
-  point.load(t, entries, {});
+  if (!linear()) return along_branch(t, state, parameters);
+  const Program& program = plan_ ? plan_->program() : *program_;
+  Expansion<long double> point(program, parameters, 1);
+  point.load(t, entries(state), {});
   Outcome o = point.prepare();
   if (o.ok()) o = point.solve();
   std::vector<double> solved;
   for (std::size_t j = 0; j < unknowns_.size(); ++j)
-    solved.push_back(o.ok() ? static_cast<double>(point.derivative(j, unknowns_[j].order))
+    solved.push_back(o.ok() ? static_cast<double>(point.derivative(j, unknowns_[j].order()))
                             : std::numeric_limits<double>::quiet_NaN());
   return solved;
+}
+
+// Follows the solution from the start along a straight line in time, state and parameters, by steps in which Newton's
+// method contracts from its first iteration on, so that it stays on its branch; NaN where such steps become tiny.
+std::vector<double> Dynamics::along_branch(double t, const std::function<double(std::size_t)>& state,
+                                           const std::vector<long double>& parameters) const {
+  const std::vector<long double> to = entries(state), from(motion_start_.begin(), motion_start_.end());
+  const auto between = [](long double a, long double b, long double s) { return s == 1 ? b : a + s * (b - a); };
+  const auto all_between = [&](const std::vector<long double>& a, const std::vector<long double>& b, long double s) {
+    std::vector<long double> out(a.size());
+    for (std::size_t i = 0; i < a.size(); ++i) out[i] = between(a[i], b[i], s);
+    return out;
+  };
+  std::vector<long double> leading = start_leading_;
+  std::optional<Expansion<long double>> point;
+  for (long double s = 0, step = 1; s < 1;) {
+    const long double next = std::min(1.0L, s + step);
+    if (!point || parameters != parameters_) point.emplace(*program_, all_between(parameters_, parameters, next), 1);
+    std::vector<long double> found = leading;
+    if (contracts(*point, between(start_time_, t, next), all_between(from, to, next), found)) {
+      s = next, step *= 2;
+      leading = std::move(found);
+    } else if ((step /= 2) < kLeastStep) {
+      return std::vector<double>(unknowns_.size(), std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  return {leading.begin(), leading.end()};
+}
+
+// Puts the rates of state k: what the state holds, and what leads it, solved(unknown).
+template <class Solved>
+void Dynamics::put_rates(const Call& call, std::size_t k, const Solved& solved) const {
+  for (std::size_t j = 0; j < unknowns_.size(); ++j) {
+    const std::vector<std::size_t>& places = unknowns_[j].places;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      call.rates[places[i] * call.count + k] =
+          i + 1 < places.size() ? call.x[places[i + 1] * call.count + k] : solved(j);
+  }
+}
+
+void Dynamics::compute_by_reference(const Call& call, std::size_t from, std::size_t to) const {
+  for (std::size_t k = from; k < to; ++k) {
+    const std::vector<double> solved = by_reference(
+        call.t, [&](std::size_t i) { return call.x[i * call.count + k]; }, parameters(call.given, call.count, k));
+    put_rates(call, k, [&](std::size_t j) { return solved[j]; });
+  }
 }
 
 // The states from..to, as many at once as the kernel has lanes; what is left over of them holds the last one.
@@ -187,29 +292,23 @@ void Dynamics::compute(Kernel& kernel, const Call& call, std::size_t from, std::
                                 parameters(call.given, count, first + std::min(lane, some - 1)));
     kernel.load_point(call.t, [&](std::size_t j, int k, std::size_t lane) {
       const Unknown& u = unknowns_[j];
-      return k < u.order ? state(k == 0 ? u.value : u.rate, lane) : 0;
+      return k < u.order() ? state(u.places[static_cast<std::size_t>(k)], lane) : 0;
     });
     kernel.solve_point();
     for (std::size_t lane = 0; lane < some; ++lane) {
       // The pivots were chosen at the start: where they are small, the reference chooses others.
-      const bool healthy = kernel.pivots(static_cast<int>(lane)).health > kHealthy;
-      const std::size_t k = first + lane;
-      const std::vector<double> solved =
-          healthy
-              ? std::vector<double>()
-              : by_reference(call.t, [&](std::size_t i) { return state(i, lane); }, parameters(call.given, count, k));
-      for (std::size_t j = 0; j < unknowns_.size(); ++j) {
-        const Unknown& u = unknowns_[j];
-        if (u.order == 0) continue;
-        if (u.order == 2) call.rates[u.value * count + k] = state(u.rate, lane);
-        call.rates[u.rate * count + k] = healthy ? kernel.derivative(j, u.order, static_cast<int>(lane)) : solved[j];
-      }
+      if (kernel.pivots(static_cast<int>(lane)).health > kHealthy)
+        put_rates(call, first + lane,
+                  [&](std::size_t j) { return kernel.derivative(j, unknowns_[j].order(), static_cast<int>(lane)); });
+      else
+        compute_by_reference(call, first + lane, first + lane + 1);
     }
   }
 }
 
 void Dynamics::rates(double t, const double* x, std::size_t count, double* rates, InputsAndParameters given) const {
   const Call call{t, x, count, rates, given};
+  if (!plan_) return rates_by_reference(call);
   if (count < kManyLanes) {
     with_kernel(1, call, [&](Kernel& k) { compute(k, call, 0, count); });
     return;
@@ -229,14 +328,27 @@ void Dynamics::rates(double t, const double* x, std::size_t count, double* rates
   work();
 }
 
+void Dynamics::rates_by_reference(const Call& call) const {
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t from; (from = next.fetch_add(kManyLanes)) < call.count;)
+      compute_by_reference(call, from, std::min(call.count, from + kManyLanes));
+  };
+  std::vector<std::jthread> others;
+  const std::size_t threads = std::min<std::size_t>(std::thread::hardware_concurrency(), call.count / kManyLanes);
+  while (others.size() + 1 < threads) others.emplace_back(work);
+  work();
+}
+
 std::vector<double> Dynamics::leading(double t, const std::vector<double>& x, InputsAndParameters given) const {
+  const auto state = [&](std::size_t i) { return x[i]; };
+  if (!plan_) return by_reference(t, state, parameters(given, 1, 0));
   std::vector<double> list(unknowns_.size()), rates(x.size());
   const Call call{t, x.data(), 1, rates.data(), given};
   with_kernel(1, call, [&](Kernel& k) {
     compute(k, call, 0, 1);
-    for (std::size_t j = 0; j < list.size(); ++j) list[j] = k.derivative(j, unknowns_[j].order);
-    if (!(k.pivots(0).health > kHealthy))
-      list = by_reference(t, [&](std::size_t i) { return x[i]; }, parameters(given, 1, 0));
+    for (std::size_t j = 0; j < list.size(); ++j) list[j] = k.derivative(j, unknowns_[j].order());
+    if (!(k.pivots(0).health > kHealthy)) list = by_reference(t, state, parameters(given, 1, 0));
   });
   return list;
 }
@@ -258,7 +370,7 @@ std::vector<double> Dynamics::from_motion(double t, const std::vector<double>& q
 }
 
 Dynamics::Full Dynamics::to_motion(double t, const std::vector<double>& x) const {
-  const auto n = static_cast<std::ptrdiff_t>(coordinates_), states = static_cast<std::ptrdiff_t>(model_states_);
+  const auto n = static_cast<std::ptrdiff_t>(values_), states = static_cast<std::ptrdiff_t>(model_states_);
   Full full{{x.begin(), x.begin() + n}, {x.begin() + n, x.end() - states}, {x.end() - states, x.end()}};
   if (!map_) return full;
   std::vector<long double> own(full.q.begin(), full.q.end()), state;

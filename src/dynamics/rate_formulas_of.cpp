@@ -1,5 +1,6 @@
 #include "dynamics/rate_formulas_of.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -47,7 +48,11 @@ class Builder {
       to.add(parameters[i].name, g.parameter(static_cast<std::uint32_t>(i)));
       values.push_back(static_cast<double>(of_.parameters()[i]));
     };
-    for (const std::size_t i : of_.free_parameters()) add(f_.p, f_.parameters, i);
+    for (const std::size_t i : of_.free_parameters()) {
+      add(f_.p, f_.parameters, i);
+      f_.exact_parameters.push_back(parameters[i].value);
+    }
+    if (f_.model != s_.model) f_.exact_parameters = copied(f_.exact_parameters, g);
     for (std::size_t i = parameters.size() - of_.inputs(); i < parameters.size(); ++i) add(f_.u, f_.inputs, i);
     put_parameters();
     leave_out();
@@ -56,22 +61,25 @@ class Builder {
   }
 
  private:
-  // x = q, q', z; lead: what the system is solved for.
+  // x: the state of the motion, in the order of Dynamics::put_state_of_motion; lead: what the system is solved for.
   void in_all_velocities() {
     const System& s = s_.system;
+    const std::vector<int>& d = s_.structure.d;
     f_.model = s_.model;
-    const std::size_t n = s.coordinates;
+    f_.linear = of_.linear();
     for (std::size_t j = 0; j < s.size(); ++j)
-      f_.lead.add(motion_.leading_names[j], s.symbol(j, static_cast<unsigned>(s_.structure.d[j])));
-    for (unsigned k = 0; k < 2; ++k)
-      for (std::size_t a = 0; a < n; ++a) {
-        f_.x.symbols.push_back(s.symbol(a, k));
-        f_.rates.push_back(s.symbol(a, k + 1));
-      }
-    for (std::size_t j = s.mechanical(); j < s.size(); ++j) {
-      f_.x.symbols.push_back(s.symbol(j, 0));
-      f_.rates.push_back(s.symbol(j, 1));
-    }
+      f_.lead.add(motion_.leading_names[j], s.symbol(j, static_cast<unsigned>(d[j])));
+    const auto add = [&](std::size_t j, int k) {
+      f_.x.symbols.push_back(s.symbol(j, static_cast<unsigned>(k)));
+      f_.rates.push_back(s.symbol(j, static_cast<unsigned>(k + 1)));
+    };
+    const int highest = *std::max_element(d.begin(), d.end());
+    for (int k = 0; k < highest; ++k)
+      for (std::size_t j = 0; j < s.mechanical(); ++j)
+        if (k < d[j]) add(j, k);
+    for (std::size_t j = s.mechanical(); j < s.size(); ++j)
+      for (int k = 0; k < d[j]; ++k) add(j, k);
+    ANHOLON_ASSERT(f_.x.symbols.size() == of_.states().size());
     f_.equations = motion_.residual;
     f_.input_formulas = input_formulas_;
   }
@@ -142,7 +150,7 @@ class Builder {
   // By the values of the matrix around the start.
   void choose_pivots() {
     const std::size_t n = f_.lead.size();
-    if (n == 0) return;
+    if (n == 0 || !f_.linear) return;
     const Column entries = emit::entries(f_.matrix());
     const CompiledFormulas matrix(f_, entries);
     CompiledFormulas::Work work;

@@ -55,7 +55,7 @@ class FormulaValues {
   };
   std::vector<double> inputs(const Point& at, Work& work) const;
   std::vector<double> outputs(const Point& at, Work& work) const;
-  // matrix lead = right: the matrix row by row. REQUIRES: rates are not explicit; no lead is needed.
+  // matrix lead = right: the matrix row by row. REQUIRES: rates are not explicit, and the equations are linear.
   struct Equations {
     std::vector<double> matrix, right;
   };

@@ -31,16 +31,18 @@ class FormulaModule {
     std::string out = "\"\"\"" + code_string(f_.title.empty() ? "A motion" : f_.title) + "\n" + R"(
 The rates x' = f(t, x, u, p) and outputs y, in SI units. `np` is the library for arrays: numpy, jax.numpy, …; each function
 returns a list with a number or an array for each row. Where LEAD is not empty, solve matrix lead = right of equations()
-for lead first.
+for lead first; where LINEAR is false, equations() takes lead, too, and the solution is Newton's correction of it.
 """
 
 )" + tuple("STATES", f_.x.names) +
                       tuple("MEANINGS", f_.meanings) + tuple("INPUTS", f_.u.names) + tuple("PARAMETERS", f_.p.names) +
                       tuple("LEAD", f_.lead.names) + tuple("OUTPUTS", f_.output_names) +
-                      tuple("LEFT_OUT", f_.left_out) + "T0 = " + number_text(f_.t) + "\n" + tuple("START", f_.start) +
+                      tuple("LEFT_OUT", f_.left_out) + "LINEAR = " + (f_.linear ? "True" : "False") +
+                      "\nT0 = " + number_text(f_.t) + "\n" + tuple("START", f_.start) +
                       tuple("DEFAULTS", f_.parameters) + tuple("START_INPUTS", f_.inputs);
     if (!f_.explicit_rates())
-      out += "\n\ndef equations(np, t, x, u, p):\n    \"\"\"The matrix, row by row, and the right side.\"\"\"\n" +
+      out += std::string("\n\ndef equations(np, t, x, u, p") + (f_.linear ? "" : ", lead") +
+             "):\n    \"\"\"The matrix, row by row, and the right side.\"\"\"\n" +
              list("matrix", entries(f_.matrix())) + list("right", f_.right()) +
              "    n = len(LEAD)\n    return [matrix[k * n:(k + 1) * n] for k in range(n)], right\n";
     const std::string lead = f_.explicit_rates() ? "lead=None" : "lead";

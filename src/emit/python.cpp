@@ -49,7 +49,7 @@ def _newton(t, state, p, lead@GIVEN):
 // module math has under the names of C.
 constexpr const char* kScalars = R"(class _One:
     """What NumPy has, for single numbers."""
-    pi, abs, sqrt, arctan2 = math.pi, abs, math.sqrt, math.atan2
+    pi, abs, sqrt, power, arctan2 = math.pi, abs, math.sqrt, math.pow, math.atan2
 @FUNCTIONS
     @staticmethod
     def sign(x):

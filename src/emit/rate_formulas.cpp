@@ -9,6 +9,7 @@ std::vector<Column> RateFormulas::matrix() const {
 }
 
 Column RateFormulas::right() const {
+  if (!linear) return -equations;
   Graph& g = *model->graph;
   return -substitute(equations, [&](NodeId id) {
     for (Expr s : lead.symbols)

@@ -1,7 +1,7 @@
 // The motion as formulas  x' = f(t, x, u, p),  y = h(t, x, u, p)  for programs of others.
 //
 // Rates are explicit in independent velocities (theory: quasi-velocities). Otherwise they hold further unknowns `lead`:
-// accelerations, multipliers and rates of states, of which  equations(t, x, u, p, lead) = 0,  linear in them.
+// accelerations, multipliers and rates of states, of which  equations(t, x, u, p, lead) = 0.
 #pragma once
 #include <memory>
 
@@ -23,9 +23,11 @@ struct RateFormulas {
   std::shared_ptr<const Model> model;  // whose graph has the expressions, and whose names print them
   std::string title;
   Symbols x, u, p, lead;              // p: the parameters that do not follow from others
+  Column exact_parameters;            // the values of p in the model
   std::vector<std::string> meanings;  // of x: what an independent velocity is; empty for the others
   Column rates;                       // of x, one by one
   Column equations;                   // one for each of lead
+  bool linear = true;                 // in lead
   Column input_formulas;              // u as the model has it, in t, x, p; empty where some hold what is solved for
   std::vector<std::string> output_names;
   Column outputs;
@@ -38,7 +40,8 @@ struct RateFormulas {
   std::vector<double> start, parameters, inputs;
 
   bool explicit_rates() const { return lead.size() == 0; }
-  // d equations / d lead, row by row, and  right = -equations at lead = 0:  matrix lead = right.
+  // d equations / d lead, row by row, and  right = -equations at lead = 0:  matrix lead = right. Nonlinear equations:
+  // right = -equations, so that  matrix correction = right  is a step of Newton's method.
   std::vector<Column> matrix() const;
   Column right() const;
 };
@@ -48,7 +51,7 @@ struct RateFormulas {
 std::string emit_formulas(const RateFormulas& formulas);
 
 // The rates as a C file: name_rhs(t, x, u, p, dx), and name with its Jacobian jac_name in CasADi's external interface,
-// (t, x, u, p) -> (dx, y).
+// (t, x, u, p) -> (dx, y). REQUIRES: the equations are linear.
 std::string emit_casadi(const RateFormulas& formulas, const std::string& name, const std::string& made_by);
 
 }  // namespace anholon

@@ -1,0 +1,19 @@
+// Arithmetic as statements of Python: for one state in Python's own numbers, and for a block of states in arrays of
+// NumPy, whose results go to rows that exist (`out=`: a new array for each operation takes several times as long).
+#pragma once
+#include <string>
+
+#include "emit/arithmetic.h"
+
+namespace anholon::emit {
+
+// The body of a function of t and the list x, which returns the list of roots. Functions are those of _One.
+std::string python_of_one(const Arithmetic& arithmetic, std::size_t states);
+
+struct PythonOfMany {
+  std::string text;      // the body of a function of t, the rows x, out and w
+  std::size_t rows = 0;  // how many w has to have
+};
+PythonOfMany python_of_many(const Arithmetic& arithmetic);
+
+}  // namespace anholon::emit
