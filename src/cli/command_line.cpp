@@ -295,7 +295,8 @@ class CommandLine {
         "\"phi'(0),min*,max*\"\n"
         "          anholon sweep disc --cases cases.csv --at 1,2,5 -o rows.h5\n"
         "          anholon sweep disc --vary \"phi'=1:7:1000000\" --to 3 -o falls/        goes on after a kill\n"
-        "          anholon sweep disc --vary \"phi'=1:7:1000000\" --to 3 -o falls/ --shard 3/8");
+        "          anholon sweep disc --vary \"phi'=1:7:1000000\" --to 3 -o falls/ --shard 3/8\n"
+        "          anholon sweep disc --vary \"phi'=1:7:61\" --vary theta=0.2:1.4:49 --to 3 -o falls/ --refine 4");
     parameters(c), state(c), form_option(c);
     c->add_option("--vary", o_.varied,
                   "NAME=FROM:TO:COUNT, NAME=A,B,…, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO)")
@@ -333,6 +334,14 @@ class CommandLine {
     c->add_option("--chunk", o_.chunk,
                   "with a new FOLDER/: cases in each of its files (default: as many as take some seconds)")
         ->type_name("N");
+    c->add_option(
+         "--refine", o_.refine,
+         "with -o FOLDER/: so many further generations of cases, which halve the grid where neighbours ended in "
+         "different ways")
+        ->type_name("N");
+    c->add_option("--refine-by", o_.refine_by,
+                  "halve the grid, too, where the numbers of neighbours in this column differ by more than the bound")
+        ->type_name("COLUMN:BOUND");
     add_sweep_folder(c);
   }
 

@@ -29,7 +29,8 @@ struct Options {
   std::string case_count, case_table, draw;
   std::vector<std::string> reduce;
   std::string shard, chunk, folder;  // of sweeps in folders
-  bool watch = false;                // of sweep status
+  std::string refine, refine_by;
+  bool watch = false;  // of sweep status
   bool partial = false;
   int threads = 0;
   int proof_digits = 308;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Sweeps in folders: whatever happens to the processes, what is collected has the bytes of one quiet sweep.
 
-    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model part status plot watched
+    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model part status plot watched refine
     folders.py --self-test                                  a part with other numbers is found
 
 Kills come at random moments. Nothing is lost but parts under way, and nothing is left behind that a later process does not clear.
@@ -198,7 +198,78 @@ class Folders:
         self.check()
 
 
-PARTS = ["kill", "stop", "two", "shards", "disk", "model", "part", "status", "plot", "watched"]
+    REFINED = ["sweep", "disc", "--vary", "phi'=1:7:13", "--vary", "theta=0.2:1.4:9", "--to", "3", "--quiet"]
+
+    def refined(self, folder, *words, rule="theta:0.5"):
+        return [*self.REFINED, "-o", str(folder) + "/", *words, *(["--refine-by", rule] if rule else [])]
+
+    def refine(self):
+        """Generations at borders: the same cases after kills, with other parts, threads and shares, and those of a single sweep."""
+        quiet, all_of = self.place / "quiet", self.place / "refined.csv"
+        self.run(*self.refined(quiet, "--refine", "3", "--chunk", "1000"), status=0)
+
+        def collected(folder):
+            self.run("sweep", "collect", str(folder), "--quiet", "-o", str(all_of), status=0)
+            return self.hash(all_of)
+
+        expected = collected(quiet)
+        small = ["--refine", "3", "--chunk", "5", "--threads", "1"]
+        for _ in range(self.kills):
+            process = self.begin(*self.refined(self.folder, *small))
+            time.sleep(random.uniform(0, 0.25))
+            process.kill()
+            process.communicate()
+        self.run(*self.refined(self.folder, *small), status=0)
+        must(collected(self.folder) == expected, "after kills the cases are others")
+        names = os.listdir(self.folder)
+        must(not any(name.startswith(".tmp") for name in names) and sum(name.startswith("_gen") for name in names) == 3, f"{sorted(names)}")
+        told = json.loads(self.run("sweep", "status", str(self.folder), "--json", status=0)[0])
+        generations = told["generations"]
+        must(len(generations) == 4 and generations[0]["cases"] == 117 and all(g["parts"] == g["all_parts"] > 0 for g in generations), str(told))
+        must(sum(g["cases"] for g in generations) == told["cases"] and generations[1]["first_case"] == 117, str(told))
+        shutil.rmtree(self.folder)
+
+        # Each share goes as far as it can; the next round begins the next generation.
+        for _ in range(4):
+            for share in ("1/2", "2/2"):
+                self.run(*self.refined(self.folder, "--refine", "3", "--chunk", "7", "--shard", share))
+        must(collected(self.folder) == expected, "shares have other cases")
+
+        # The last case is that of its own numbers.
+        header, *rows = all_of.read_text().splitlines()
+        table, alone = self.place / "one.csv", self.place / "one-out.csv"
+        table.write_text("phi',theta\n" + ",".join(rows[-1].split(",")[1:3]) + "\n")
+        self.run("sweep", "disc", "--cases", str(table), "--to", "3", "--quiet", "--error-estimate", "never", "-o", str(alone), status=0)
+        must(alone.read_text().splitlines()[1].split(",")[1:] == rows[-1].split(",")[1:], "a refined case has other numbers than alone")
+
+        # Another rule, no grid, a plan that was changed.
+        _, error = self.run(*self.refined(self.folder, "--refine", "4", rule="theta:0.4"), status=2)
+        must("refined by 'theta:0.5', not by 'theta:0.4'" in error, error)
+        for words, rule, message in [
+            (["--vary", "m~normal(1,0.1)", "-n", "200"], "", "lies no grid"),
+            (["--vary", "m=1,3,2"], "", "neither ascend nor descend"),
+            (["--columns", "theta"], "", "without the column 'outcome'"),
+            (["--columns", "theta"], "theta:1", None),
+            (["--columns", "phi"], "theta:1", "keeps no column 'theta'"),
+            ([], "thta:1", "did you mean 'theta'"),
+            ([], "theta", "COLUMN:BOUND"),
+            (["--refine", "31"], "", "--refine takes a number of generations"),
+        ]:
+            shutil.rmtree(self.place / "no", ignore_errors=True)
+            generations = [] if "--refine" in words else ["--refine", "1"]
+            _, error = self.run(*self.refined(self.place / "no", *generations, *words, rule=rule), status=2 if message else 0)
+            must(message is None or message in error, error)
+        plan = self.folder / "_generation-02.parquet"
+        text = bytearray(plan.read_bytes())
+        text[40] ^= 1
+        plan.write_bytes(text)
+        (self.folder / "part-000020.parquet").unlink()
+        _, error = self.run(*self.refined(self.folder, "--refine", "3"), status=2)
+        must("_generation-02.parquet" in error, error)
+        shutil.rmtree(self.folder)
+
+
+PARTS = ["kill", "stop", "two", "shards", "disk", "model", "part", "status", "plot", "watched", "refine"]
 
 
 def run_parts(arguments):

@@ -123,35 +123,30 @@ RunFile over_one(const NamedColumn& x, const NamedColumn& of) {
 bool is_sweep_folder(const std::string& path) { return SweepStore::is_there(path); }
 
 SweepPicture picture_of_sweep(const Options& o) {
-  try {
-    const SweepData data(o.model);
-    std::vector<std::string> axes;
-    for (const std::string& given : {o.abscissa, o.ordinate})
-      if (!given.empty()) axes.push_back(given);
-    for (const std::string& name : data.varied())
-      if (axes.size() < 2 && std::find(axes.begin(), axes.end(), name) == axes.end()) axes.push_back(name);
-    if (axes.empty())
-      throw Failure({}, "the columns of the sweep do not tell what varies", "--x and --y name columns of the sweep");
-    const std::vector<std::string> asked = split(o.columns);
-    if (asked.size() > 1)
-      throw Failure({}, "a figure of a sweep shows one column", "one name, or none for the outcomes");
-    const std::string shown = asked.empty() ? "outcome" : asked[0];
-    std::vector<std::string> words;
-    std::vector<NamedColumn> of = data.read({shown}, words), at = data.read(axes, words);
-    SweepPicture picture;
-    if (at.size() == 1) {
-      if (!words.empty())
-        throw Failure({}, "one variation shows numbers, and '" + shown + "' holds words", "name a column of numbers");
-      picture.table = over_one(at[0], of[0]);
-      picture.abscissa = at[0].name;
-      return picture;
-    }
-    picture.map = make_heat_map(std::move(at[0]), std::move(at[1]), of[0], std::move(words));
-    picture.map->title = o.title;
+  const SweepData data(o.model);
+  std::vector<std::string> axes;
+  for (const std::string& given : {o.abscissa, o.ordinate})
+    if (!given.empty()) axes.push_back(given);
+  for (const std::string& name : data.varied())
+    if (axes.size() < 2 && std::find(axes.begin(), axes.end(), name) == axes.end()) axes.push_back(name);
+  if (axes.empty())
+    throw Failure({}, "the columns of the sweep do not tell what varies", "--x and --y name columns of the sweep");
+  const std::vector<std::string> asked = split(o.columns);
+  if (asked.size() > 1) throw Failure({}, "a figure of a sweep shows one column", "one name, or none for the outcomes");
+  const std::string shown = asked.empty() ? "outcome" : asked[0];
+  std::vector<std::string> words;
+  std::vector<NamedColumn> of = data.read({shown}, words), at = data.read(axes, words);
+  SweepPicture picture;
+  if (at.size() == 1) {
+    if (!words.empty())
+      throw Failure({}, "one variation shows numbers, and '" + shown + "' holds words", "name a column of numbers");
+    picture.table = over_one(at[0], of[0]);
+    picture.abscissa = at[0].name;
     return picture;
-  } catch (const Failure& e) {
-    throw UsageError{print(e.diagnostic, {})};
   }
+  picture.map = make_heat_map(std::move(at[0]), std::move(at[1]), of[0], std::move(words));
+  picture.map->title = o.title;
+  return picture;
 }
 
 }  // namespace anholon::cli

@@ -16,7 +16,7 @@ struct SweepPicture {
 };
 
 // What a sweep in a folder shows: the column that --column names (default: how the cases ended) over --x and --y
-// (default: the first two that vary). Throws UsageError.
+// (default: the first two that vary). Throws Failure without a place.
 SweepPicture picture_of_sweep(const Options& o);
 
 }  // namespace anholon::cli
