@@ -494,15 +494,19 @@ class CommandLine {
                           "          anholon plot run.h5 theta \"theta'\" --each --from 2 --to 5\n"
                           "          anholon plot run.h5 y --x x --title \"path of the contact\"\n"
                           "          anholon plot run.h5 'lambda.*' -o forces.pdf --size 8cmx5cm\n"
-                          "          anholon plot falls/ outcome -o falls.svg       cells over the two that vary",
+                          "          anholon plot falls/ outcome -o falls.svg       cells over the two that vary\n"
+                          "          anholon plot cases.csv --histogram theta -o theta.svg",
                           true);
     c->add_option("RUN", o_.model,
-                  "a run: " + known_files("FILE") + ", or - for what comes through a pipe; or the folder of a sweep")
+                  "a run: " + known_files("FILE") +
+                      ", or - for what comes through a pipe; or a sweep: a folder, a .csv or .parquet file")
         ->required();
     c->add_option("COLUMN", o_.columns, "names of columns, or patterns");
     c->add_option("--x", o_.abscissa, "the column along the horizontal axis (default: t)")->type_name("COLUMN");
     c->add_option("--y", o_.ordinate,
                   "of a sweep: the column along the vertical axis (default: the second that varies)")
+        ->type_name("COLUMN");
+    c->add_option("--histogram", o_.histogram, "of a sweep: how often the numbers or words of this column occur")
         ->type_name("COLUMN");
     c->add_option("--from", o_.from, "no rows before this time")->type_name("T");
     c->add_option("--to", o_.until, "no rows after this time")->type_name("T");

@@ -39,6 +39,7 @@ struct Options {
   unsigned long long seed = 0;
   std::vector<std::string> files;
   std::vector<std::string> columns;  // of plot and sweep
+  std::string histogram;             // of plot
   std::string abscissa, ordinate, from, until, size, title, labels = "unicode";
   std::string fps, seconds, picture_at, frame;  // of render
   bool dark = false;

@@ -61,7 +61,7 @@ class Folders:
     def check(self):
         """The folder holds the whole sweep and nothing else, with the right numbers."""
         names = sorted(os.listdir(self.folder))
-        must(names == [f"part-{k:06}.parquet" for k in range(20)] + ["sweep.json"], f"in the folder: {names}")
+        must(names == ["_judgement.json"] + [f"part-{k:06}.parquet" for k in range(20)] + ["sweep.json"], f"in the folder: {names}")
         collected = self.place / "all.csv"
         self.run("sweep", "collect", str(self.folder), "--quiet", "-o", str(collected), status=0)
         must(self.hash(collected) == self.expected, "what was collected has other bytes")
@@ -159,9 +159,16 @@ class Folders:
         out, _ = self.run("sweep", "status", str(self.folder), "--json", status=1)
         told = json.loads(out)
         must(told["parts"] == 10 and told["all_parts"] == 20 and told["cases"] == 80, out)
-        must(sum(told["outcomes"].values()) == 80 and set(told["outcomes"]) >= {"finished"}, out)
+        must(sum(told["outcomes"].values()) == 80 and set(told["outcomes"]) >= {"finished"} and "judgement" not in told, out)
         self.run(*self.into())
         self.run("sweep", "status", str(self.folder), status=0)
+        # The judgement is that of a sweep without a folder.
+        told = json.loads(self.run("sweep", "status", str(self.folder), "--json", status=0)[0])["judgement"]
+        alone = json.loads(self.run(*[w for w in SWEEP if w != "--quiet"], "--json")[0])
+        must(told["error_estimate"] == alone["error_estimate"] and told["residuals"] == alone["residuals"], f"{told}\n{alone['residuals']}")
+        must(told["residuals"]["checked"] and told["residuals"]["newton"]["worst"] < 1e-9, str(told))
+        collected = json.loads(self.run("sweep", "collect", str(self.folder), "--json", status=0)[0])
+        must(collected["report"]["judgement"] == told if "report" in collected else collected["judgement"] == told, str(list(collected)))
         self.check()
 
 
@@ -176,10 +183,20 @@ class Folders:
                 pictures.append(path.read_text())
         must(pictures[0] == pictures[1] and pictures[2] == pictures[3] != pictures[0], "the pictures differ")
         must("finished" in pictures[0] and pictures[0].count("<rect") >= 4, "no cells, or no legend")
+        # The files of a sweep show the same, but for units, which the model tells.
+        for name in ("cases.csv", "cases.parquet"):
+            self.run("sweep", "collect", str(self.folder), "--quiet", "-o", str(self.place / name), status=0)
+            self.run("plot", str(self.place / name), "theta", "-o", str(self.place / "file.svg"), status=0)
+            cells = [text[text.index("<rect") : text.rindex("<rect")] for text in (pictures[2], (self.place / "file.svg").read_text())]
+            must(cells[0] == cells[1], f"{name} has other cells than the folder")
+            self.run("plot", str(self.place / name), "--histogram", "outcome", "-o", str(self.place / "h.svg"), status=0)
+            must("finished" in (self.place / "h.svg").read_text(), "the histogram names no outcome")
         for words, message in [
             (["lean", "-o", "x.svg"], "has no column 'lean'"),
             (["outcome"], "a sweep is drawn as .svg"),
             (["outcome", "--y", "mass", "-o", "x.svg"], "has no column 'mass'"),
+            (["--histogram", "lean", "-o", "x.svg"], "has no column 'lean'"),
+            (["theta", "--histogram", "x", "-o", "x.svg"], "a histogram shows one column"),
         ]:
             _, error = self.run("plot", str(self.folder), *words, status=2)
             must(message in error, error)

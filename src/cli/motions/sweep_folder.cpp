@@ -12,6 +12,7 @@
 #include "cli/motions/progress.h"
 #include "cli/motions/sweep_output.h"
 #include "cli/say.h"
+#include "ensemble/parts/judgement.h"
 #include "ensemble/refine/refine.h"
 #include "result/file.h"
 #include "result/parquet/parquet_sweep.h"
@@ -108,6 +109,20 @@ std::string generation_list(const SweepStore& store) {
   return list + " cases";
 }
 
+// The sentences that say how far the cases can be trusted.
+void say_judgement(const SweepStore& store, std::FILE* to) {
+  for (const std::string& line : judgement_text(store.judgement())) say(to, "%s\n", line.c_str());
+}
+
+// A JSON object, to which the judgement of the folder is added.
+std::string with_judgement(std::string object, const SweepStore& store) {
+  const std::string judgement = store.judgement();
+  if (judgement_text(judgement).empty()) return object;
+  object.resize(object.rfind('}'));
+  while (object.ends_with('\n') || object.ends_with(' ')) object.pop_back();
+  return object + ",\n  \"judgement\": " + judgement.substr(0, judgement.find_last_not_of('\n') + 1) + "\n}";
+}
+
 void say_progress(const SweepStore& store, const SweepStore::Progress& p) {
   say(stderr, "%s: %zu of %zu parts, %zu of %zu cases%s%s\n", store.folder().c_str(), p.parts, p.all_parts, p.cases,
       p.all_cases, p.outcomes.empty() ? "" : ": ", outcome_list(p.outcomes).c_str());
@@ -164,6 +179,27 @@ Missing fill_missing(const Options& o, const FolderSweep& sweep, const SweepStor
   return {filled.parts == fill_options.parts.size(), kStopped};
 }
 
+// Judges some cases of a complete folder, once. Returns false after Ctrl-C.
+bool judge(const FolderSweep& sweep, const SweepStore& store) {
+  if (!store.judgement().empty()) return true;
+  EnsembleReport all;
+  bool asked = false;
+  for (const SweepPiece& piece : sweep.pieces) {
+    add_report(all, judge_piece(piece, stop_requested));
+    asked = asked || piece.options->estimate != ErrorEstimate::never;
+    if (!all.outcome.ok()) return false;
+  }
+  if (!asked) return true;
+  JsonWriter lines;
+  lines.open_array();
+  for (const std::string& line : judgement_lines(all)) lines.string(line);
+  const std::string error = store.add_judgement("{\n  \"error_estimate\": " + error_json(all.error) +
+                                                ",\n  \"residuals\": " + residuals_json(all.residuals) +
+                                                ",\n  \"text\": " + lines.close().text() + "\n}\n");
+  if (!error.empty()) say(stderr, "error: %s\n", error.c_str());
+  return true;
+}
+
 int stopped_early(const Options& o, const SweepStore& store) {
   if (!o.quiet) say_progress(store, store.progress());
   print_outcome({OutcomeKind::interrupted, "interrupted", "the same command goes on where this one stopped"});
@@ -198,7 +234,8 @@ int sweep_into_folder(const Options& o, const FolderSweep& sweep) {
     if (ended) break;
   }
   const SweepStore::Progress p = store.progress();
-  if (!o.quiet) say_progress(store, p);
+  if (p.parts == p.all_parts && !judge(sweep, store)) return stopped_early(o, store);
+  if (!o.quiet) say_progress(store, p), say_judgement(store, stderr);
   if (!o.quiet && p.parts < p.all_parts)
     say(stderr, "this share is complete; the others are missing: %zu parts\n", p.all_parts - p.parts);
   if (waits && shard.of > 1) {
@@ -265,13 +302,14 @@ int sweep_status(const Options& o) {
       count("parts", p.parts_there[g]), count("all_parts", of.parts);
       j.close();
     }
-    hand_out(j.close().close().text() + "\n");
+    hand_out(with_judgement(j.close().close().text(), store) + "\n");
     return p.parts == p.all_parts ? kOk : kStopped;
   }
   say(stdout, "%s: %zu of %zu parts, %zu of %zu cases\n", store.folder().c_str(), p.parts, p.all_parts, p.cases,
       p.all_cases);
   if (const std::string list = generation_list(store); !list.empty()) say(stdout, "generations: %s\n", list.c_str());
   if (!p.outcomes.empty()) say(stdout, "outcomes: %s\n", outcome_list(p.outcomes).c_str());
+  say_judgement(store, stdout);
   if (p.parts < p.all_parts && p.cases_per_second > 0)
     say(stdout, "lately %.3g cases per second; %s left\n", p.cases_per_second, duration(left(p)).c_str());
   if (p.unfinished > 0)
@@ -311,11 +349,11 @@ int sweep_collect(const Options& o) {
   JsonWriter j;
   j.open_object().key("cases").integer(static_cast<long long>(cases)).key("outcomes").open_object();
   for (const auto& [outcome, count] : p.outcomes) j.key(outcome).integer(static_cast<long long>(count));
-  if (const std::string why = file->close(j.close().close().text()); !why.empty()) {
+  if (const std::string why = file->close(with_judgement(j.close().close().text(), store)); !why.empty()) {
     say(stderr, "error: %s\n", why.c_str());
     return kBadInput;
   }
-  if (!o.quiet) say_progress(store, p);
+  if (!o.quiet) say_progress(store, p), say_judgement(store, stderr);
   return kOk;
 }
 

@@ -13,6 +13,7 @@
 #include "cli/motions/result_file.h"
 #include "cli/motions/run_formulas.h"
 #include "cli/pictures/plot_sweep.h"
+#include "cli/pictures/sweep_cases.h"
 #include "cli/say.h"
 #include "plot/drawing.h"
 #include "plot/terminal.h"
@@ -180,19 +181,25 @@ int plot(const Options& o) {
   given.rows = 0;
   take_size(o.size, t, options, given);
 
-  const bool of_sweep = is_sweep_folder(o.model);
+  const bool of_sweep = SweepCases::are_in(o.model);
   if (!of_sweep && !o.ordinate.empty())
-    throw UsageError{"error: --y belongs to the folder of a sweep\nhint: anholon plot run.h5 NAME\n"};
+    throw UsageError{"error: --y belongs to a sweep\nhint: anholon plot run.h5 NAME\n"};
+  if (!of_sweep && !o.histogram.empty())
+    throw UsageError{
+        "error: --histogram belongs to a sweep\nhint: anholon plot falls/ --histogram theta -o theta.svg\n"};
   RunFile run;
   if (of_sweep) {
     if (t == Target::terminal || t == Target::tex)
       throw UsageError{"error: a sweep is drawn as .svg, .pdf or .png\nhint: -o falls.svg\n"};
     SweepPicture picture = picture_of_sweep(o);
-    if (picture.map) {
-      picture.map->labels = options.labels;
-      if (!o.size.empty()) picture.map->width = options.width, picture.map->height = options.height;
-      if (const std::string why = write_drawing(lay_out(*picture.map), o.title, t, o.output); !why.empty())
-        throw UsageError{"error: " + why + "\n"};
+    if (picture.map || picture.histogram) {
+      const auto draw = [&](auto& drawn) {
+        drawn.labels = options.labels;
+        if (!o.size.empty()) drawn.width = options.width, drawn.height = options.height;
+        if (const std::string why = write_drawing(lay_out(drawn), o.title, t, o.output); !why.empty())
+          throw UsageError{"error: " + why + "\n"};
+      };
+      picture.map ? draw(*picture.map) : draw(*picture.histogram);
       return kOk;
     }
     run = std::move(picture.table);

@@ -59,4 +59,15 @@ SweepRequest request_of(const std::string& text, const std::string& path) {
   return r;
 }
 
+std::vector<std::string> judgement_text(const std::string& json) {
+  using Json = nlohmann::ordered_json;
+  std::vector<std::string> lines;
+  const Json j = Json::parse(json, nullptr, false);
+  if (!j.is_object()) return lines;
+  if (const auto text = j.find("text"); text != j.end() && text->is_array())
+    for (const Json& line : *text)
+      if (line.is_string()) lines.push_back(line.get<std::string>());
+  return lines;
+}
+
 }  // namespace anholon

@@ -23,4 +23,7 @@ std::string request_json(const SweepRequest& request, const std::string& program
 // Throws Failure without a place; `path` names the file in messages.
 SweepRequest request_of(const std::string& json, const std::string& path);
 
+// The sentences of a judgement, which is kept as JSON; empty if the text holds none.
+std::vector<std::string> judgement_text(const std::string& json);
+
 }  // namespace anholon

@@ -28,6 +28,7 @@ constexpr const char *kSweepNote = "anholon.sweep", *kFirstNote = "anholon.first
                      *kRuleNote = "anholon.rule";
 // Readers of a folder as one table leave out names that begin so.
 constexpr const char* kPlan = "_generation-";
+constexpr const char* kJudgement = "_judgement.json";
 constexpr const char* kRemove = "remove it; the same command of the sweep computes it again";
 
 // Differences in a long text are not printed.
@@ -327,6 +328,15 @@ ParquetTable SweepStore::read(std::size_t part) const {
     if (f.diagnostic.message.starts_with(path)) throw;
     throw Failure({}, path + ": " + f.diagnostic.message, kRemove);
   }
+}
+
+std::string SweepStore::judgement() const {
+  std::string text;
+  return read_file(folder_ + "/" + kJudgement, text, nullptr) ? text : std::string();
+}
+
+std::string SweepStore::add_judgement(const std::string& json) const {
+  return commit_file(folder_, kJudgement, json).error;
 }
 
 SweepStore::Progress SweepStore::progress() const {

@@ -79,6 +79,11 @@ class SweepStore {
 
   std::string path_of(std::size_t part) const;
 
+  // How far the cases can be trusted, a JSON object; empty if the folder does not say so. The first text that is added
+  // stays. Returns an empty string, or the reason why it could not be written.
+  std::string judgement() const;
+  std::string add_judgement(const std::string& json) const;
+
  private:
   SweepStore(std::string folder, SweepRequest request);
   void add(std::size_t cases, std::string rule);
