@@ -523,7 +523,11 @@ class CommandLine {
                   "of a figure: 8cmx5cm (cm, mm, in, pt; default 16cmx9cm); in the terminal: 100x30, columns and rows")
         ->type_name("WxH");
     c->add_flag("--json", o_.json, "JSON on the standard output: what is drawn, and between which numbers");
-    c->add_option("-o,--output", o_.output, "FILE.svg, FILE.pdf, FILE.png or FILE.tex (pgfplots)")->type_name("FILE");
+    c->add_option(
+         "-o,--output", o_.output,
+         "FILE.svg, FILE.pdf, FILE.png or FILE.tex (pgfplots); of a sweep FILE.html, too, whose cells tell their "
+         "cases")
+        ->type_name("FILE");
   }
 
   void add_convert() {

@@ -296,6 +296,20 @@ HeatMap make_heat_map(NamedColumn x, NamedColumn y, const NamedColumn& of, std::
   return m;
 }
 
+std::vector<HeatMap::Finer> cells_of_cases(const NamedColumn& x, const NamedColumn& y,
+                                           const std::vector<unsigned>& generations) {
+  NamedColumn first_x = first_generation(x, generations), first_y = first_generation(y, generations);
+  cells_along(first_x), cells_along(first_y);
+  std::vector<HeatMap::Finer> cells;
+  for (std::size_t row = 0; row < x.values.size(); ++row) {
+    const unsigned g = generations.empty() ? 0 : generations[row];
+    const auto [left, right] = around(first_x.values, x.values[row], g);
+    const auto [low, high] = around(first_y.values, y.values[row], g);
+    cells.push_back({{left, low}, {right, high}, 0});
+  }
+  return cells;
+}
+
 Drawing lay_out(const HeatMap& map) { return MapLayout(map).make(); }
 
 }  // namespace anholon::plot

@@ -40,6 +40,10 @@ inline constexpr std::size_t kMostCells = 256;
 HeatMap make_heat_map(NamedColumn x, NamedColumn y, const NamedColumn& of, std::vector<std::string> words,
                       const std::vector<unsigned>& generations = {});
 
+// The cell of each case by itself, of value 0: at its place, with the size of its generation.
+std::vector<HeatMap::Finer> cells_of_cases(const NamedColumn& x, const NamedColumn& y,
+                                           const std::vector<unsigned>& generations);
+
 Drawing lay_out(const HeatMap& map);
 
 }  // namespace anholon::plot

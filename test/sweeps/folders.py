@@ -1,20 +1,24 @@
 #!/usr/bin/env python3
 """Sweeps in folders: whatever happens to the processes, what is collected has the bytes of one quiet sweep.
 
-    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model part status plot watched refine
+    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model part status plot watched refine page
     folders.py --self-test                                  a part with other numbers is found
 
 Kills come at random moments. Nothing is lost but parts under way, and nothing is left behind that a later process does not clear.
 """
 
 import argparse
+import base64
 import hashlib
+import html
 import json
 import os
 import pathlib
 import random
+import shlex
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -286,7 +290,46 @@ class Folders:
         shutil.rmtree(self.folder)
 
 
-PARTS = ["kill", "stop", "two", "shards", "disk", "model", "part", "status", "plot", "watched", "refine"]
+    def page(self):
+        """The page of a refined folder holds the numbers of all cases; the command that a click shows computes the motion of its case."""
+        spin = ["--set", "m=2", "--qdot", "psi=0.1"]
+        self.run(*self.refined(self.folder, "--refine", "1", *spin), status=0)
+        page, all_of = self.place / "page.html", self.place / "cases.csv"
+        self.run("plot", str(self.folder), "theta", "-o", str(page), status=0)
+        self.run("sweep", "collect", str(self.folder), "--quiet", "-o", str(all_of), status=0)
+        text = page.read_text()
+        must("http://" not in text and "https://" not in text, "the page refers to a network")
+        data = json.loads(text.split('<script type="application/json" id="data">')[1].split("</script>")[0])
+        header, *rows = [line.split(",") for line in all_of.read_text().splitlines()]
+        for k, name in enumerate(header):
+            column = data["columns"][k]
+            values = struct.unpack(f"<{len(rows)}d", base64.b64decode(column["data"]))
+            written = [column["words"][int(v)] for v in values] if column["words"] else list(values)
+            must(column["name"] == name and written == [row[k] if column["words"] else float(row[k]) for row in rows], f"{name} differs")
+        cells = struct.unpack(f"<{4 * len(rows)}d", base64.b64decode(data["cells"]))
+        must(abs((cells[-3] - cells[-4]) * 2 - (cells[1] - cells[0])) < 1e-12, "the cells of the last generation are not half as wide")
+        browser = shutil.which("chromium")
+        if not browser:
+            print("page: chromium is missing, so that no cell is clicked")
+        else:
+            click = """<script>setTimeout(() => { const c = document.querySelector("canvas"), r = c.getBoundingClientRect();
+              c.dispatchEvent(new MouseEvent("click", {clientX: r.left + 150, clientY: r.top + 60})); }, 300)</script></body>"""
+            page.write_text(text.replace("</body>", click))
+            words = [browser, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=3000", "--dump-dom", page.as_uri()]
+            shown = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE, check=False).stdout
+            must("<pre>anholon report disc" in shown, f"no command: {shown[-500:]}")
+            words = shlex.split(html.unescape(shown.split("<pre>")[1].split("</pre>")[0]))
+            number = int(words[-1].removeprefix("case-").removesuffix(".html"))
+            motion = self.place / "motion.csv"
+            self.run("simulate", *words[2:-2], "--at", "3", "-o", str(motion), status=0)
+            alone = dict(zip(*[line.split(",") for line in motion.read_text().splitlines()]))
+            row = dict(zip(header, rows[number]))
+            must(all(abs(float(alone[name]) - float(row[name])) < 1e-6 for name in ("theta", "x", "psi'")), f"{alone}\n{row}")
+            must(float(row["phi'(0)"]) < 4 and float(row["theta(0)"]) > 1, "another cell was clicked")
+        shutil.rmtree(self.folder)
+
+
+PARTS = ["kill", "stop", "two", "shards", "disk", "model", "part", "status", "plot", "watched", "refine", "page"]
 
 
 def run_parts(arguments):

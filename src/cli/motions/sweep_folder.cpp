@@ -212,6 +212,7 @@ int sweep_into_folder(const Options& o, const FolderSweep& sweep) {
   const Shard shard = shard_of(o.shard);
   SweepRequest request{
       sweep.asked, {}, sweep.cases, o.chunk.empty() ? 0 : count_asked("--chunk", "cases", o.chunk, 1, kMostInPart)};
+  request.model_name = o.model;
   for (const SweepColumn& c : sweep.pieces.front().table->columns()) request.columns.push_back(c.name);
   const Refinement refinement = refinement_of(o, sweep, request.columns);
   if (request.chunk == 0) request.chunk = SweepStore::is_there(o.output) ? 1 : cases_in_part(sweep.pieces);

@@ -14,6 +14,7 @@
 #include "cli/motions/run_formulas.h"
 #include "cli/pictures/plot_sweep.h"
 #include "cli/pictures/sweep_cases.h"
+#include "cli/pictures/sweep_page.h"
 #include "cli/say.h"
 #include "plot/drawing.h"
 #include "plot/terminal.h"
@@ -25,14 +26,17 @@ namespace {
 
 using namespace anholon::plot;
 
-enum class Target { terminal, svg, pdf, png, tex };
+enum class Target { terminal, svg, pdf, png, tex, html };
 
 Target target(const std::string& path) {
   if (path.empty()) return Target::terminal;
   const std::size_t dot = path.rfind('.');
   const std::string end = dot == std::string::npos ? "" : path.substr(dot + 1);
-  for (const auto& [name, t] :
-       {std::pair{"svg", Target::svg}, {"pdf", Target::pdf}, {"png", Target::png}, {"tex", Target::tex}})
+  for (const auto& [name, t] : {std::pair{"svg", Target::svg},
+                                {"pdf", Target::pdf},
+                                {"png", Target::png},
+                                {"tex", Target::tex},
+                                {"html", Target::html}})
     if (end == name) return t;
   throw UsageError{"error: a figure '" + path +
                    "' cannot be drawn\nhint: a name that ends in .svg, .pdf, .png or .tex\n"};
@@ -187,10 +191,18 @@ int plot(const Options& o) {
   if (!of_sweep && !o.histogram.empty())
     throw UsageError{
         "error: --histogram belongs to a sweep\nhint: anholon plot falls/ --histogram theta -o theta.svg\n"};
+  if (!of_sweep && t == Target::html)
+    throw UsageError{
+        "error: a page shows a sweep, or the motion of a model\nhint: anholon report MODEL -o page.html\n"};
   RunFile run;
   if (of_sweep) {
     if (t == Target::terminal || t == Target::tex)
-      throw UsageError{"error: a sweep is drawn as .svg, .pdf or .png\nhint: -o falls.svg\n"};
+      throw UsageError{"error: a sweep is drawn as .svg, .pdf, .png or .html\nhint: -o falls.svg\n"};
+    if (t == Target::html) {
+      if (const std::string why = write_whole(o.output, page_of_sweep(o)); !why.empty())
+        throw UsageError{"error: " + why + "\n"};
+      return kOk;
+    }
     SweepPicture picture = picture_of_sweep(o);
     if (picture.map || picture.histogram) {
       const auto draw = [&](auto& drawn) {

@@ -25,6 +25,9 @@ class SweepCases {
   std::vector<plot::NamedColumn> read(const std::vector<std::string>& names, std::vector<std::string>& words) const;
   // The generation of each row that `read` returns; empty if there is one generation.
   std::vector<unsigned> generations() const;
+  // The command that computes the motion of a case, without the numbers of the case; empty for a file, which does not
+  // tell the model. A model that is known by its text alone is model.toml.
+  std::string command() const;
 
  private:
   void read_model();

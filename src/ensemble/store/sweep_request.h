@@ -16,6 +16,8 @@ struct SweepRequest {
   std::size_t chunk = 0;  // cases of a part
   // How a program makes the request again, in words of its own; it does not distinguish sweeps.
   std::string recipe = {};
+  // The name by which a command found the model; it does not distinguish sweeps either.
+  std::string model_name = {};
 };
 
 // The version of the program is told and does not distinguish sweeps.

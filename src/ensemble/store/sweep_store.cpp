@@ -149,7 +149,7 @@ FileEnd end_of(const std::string& path) {
 SweepStore::SweepStore(std::string folder, SweepRequest request)
     : folder_(std::move(folder)), request_(std::move(request)) {
   SweepRequest distinguished = request_;
-  distinguished.recipe.clear();
+  distinguished.recipe.clear(), distinguished.model_name.clear();
   id_ = sha256_text(request_json(distinguished, ""));
   add(request_.cases, {});
 }
