@@ -6,11 +6,18 @@
 
 namespace anholon::v1 {
 
+// Cases that were planned together: the first generation is what was asked for, each further one refines borders between
+// the cases before it.
+struct FolderGeneration {
+  std::size_t first_case = 0, cases = 0, parts = 0, all_parts = 0;
+};
+
 struct FolderProgress {
   std::size_t parts = 0, all_parts = 0, cases = 0, all_cases = 0;
   std::size_t unfinished = 0;                   // files of parts under way, or of processes that were killed
   std::map<std::string, std::size_t> outcomes;  // cases by the name of their outcome
   double cases_per_second = 0;                  // by the times at which the last parts were written; 0: unknown
+  std::vector<FolderGeneration> generations = {};
 };
 
 // A column over all cases of the parts that are there. `number` is a double that may be NaN.
@@ -40,7 +47,7 @@ struct FolderDone {
 class ANHOLON_API SweepFolder {
  public:
   const std::string& path() const;
-  std::size_t cases() const;
+  std::size_t cases() const;  // of all generations that are planned, as are the parts
   std::size_t parts() const;
   std::size_t chunk() const;  // cases of a part
   const std::vector<std::string>& columns() const;
@@ -59,6 +66,13 @@ class ANHOLON_API SweepFolder {
   // Computes parts that are missing. All calls share the equations, and the calls of several threads may overlap. Errors:
   // the folder was opened by its name alone.
   Result<FolderDone> fill(const FolderWork& work = {}) const;
+  // Plans the next generation: it halves the grid where neighbours ended in different ways, and, if a rule COLUMN:BOUND is
+  // given, where their numbers in a column differ by more than a bound. Returns how many cases it adds, 0 if there is no
+  // border. Errors: parts are missing, what varies is no grid, an earlier generation followed another rule, or the folder
+  // was opened by its name alone.
+  Result<std::size_t> refine(const std::string& rule = {}) const;
+  // The numbers of a case by the names that vary, as exact text. Errors: there is no such case, or as `fill`.
+  Result<std::vector<std::pair<std::string, std::string>>> numbers(std::size_t number) const;
 
   struct Data;
   explicit SweepFolder(std::shared_ptr<const Data> data) : data_(std::move(data)) {}

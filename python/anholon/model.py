@@ -479,6 +479,8 @@ class Model:
         on: Client | str | None = None,
         chunk: int | None = None,
         share: tuple[int, int] = (1, 1),
+        refine: int = 0,
+        refine_by: tuple[str, float] | None = None,
     ) -> SweepFolder: ...
 
     def sweep(
@@ -503,6 +505,8 @@ class Model:
         on: Client | str | None = None,
         chunk: int | None = None,
         share: tuple[int, int] = (1, 1),
+        refine: int = 0,
+        refine_by: tuple[str, float] | None = None,
     ) -> Sweep | SweepFolder:
         """Many motions, on all cores: all combinations of the values, the last name varying fastest.
 
@@ -533,6 +537,9 @@ class Model:
                 They need anholon and the folder, nothing else; a part whose worker died is computed by another one.
             chunk: cases of a part of a new folder; None: as many as take some seconds.
             share: (i, n): the i-th of n shares, for n processes on one folder.
+            refine: with ``out``, so many further generations of cases, which halve the grid where neighbours ended in
+                different ways.
+            refine_by: (column, bound): halves it, too, where the numbers of neighbours differ by more than the bound.
 
         Raises:
             ModelError: an argument makes no sense; the folder holds another sweep or other files.
@@ -549,10 +556,10 @@ class Model:
         words: Words = (values, laws, cases, seed, draw, together, end, relative, list_of(at), list(columns), list(reduce))
         if out is not None:
             return SweepRequest(self, form, texts_of(initial), words).fill(
-                os.fspath(out), chunk or 0, on=on, share=share, threads=threads, stop=stop, progress=progress
+                os.fspath(out), chunk or 0, on=on, share=share, threads=threads, stop=stop, progress=progress, refine=refine, refine_by=refine_by
             )
-        if on is not None or chunk is not None or share != (1, 1):
-            raise ModelError('on, chunk and share belong to a sweep in a folder\nhint: out="falls/"')
+        if on is not None or chunk is not None or share != (1, 1) or refine or refine_by is not None:
+            raise ModelError('on, chunk, share and refine belong to a sweep in a folder\nhint: out="falls/"')
         system = self._system(form, texts_of(initial), ())
         with Shown(progress, self.title, _count(values, laws, cases, together), unit="cases") as tell:
             core, raised = _core.sweep(system, words, threads, stop, tell)

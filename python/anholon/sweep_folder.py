@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from distributed import Client
 
     from .model import Model
+    from .run import Run
 
 Words = tuple[
     list[tuple[str, list[str]]],
@@ -63,6 +64,13 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         >>> os.remove(place + "/falls/part-000001.parquet")
         >>> opened.missing, opened.fill().missing, opened.to_arrow(["theta"]).num_rows
         ([1], [], 3)
+
+        Chosen cases, and the whole motion of one:
+
+        >>> opened.where({"outcome": "finished", "phi'(0)": (5.5, 7)}).tolist()
+        [1, 2]
+        >>> bool(abs(opened.run(2)["theta"][-1] - falls["theta"][2]) < 1e-9)
+        True
     """
 
     def __init__(self, core: _core.SweepFolder) -> None:
@@ -122,6 +130,66 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
             raise KeyError(f"there is no column {name!r}; there are {', '.join(self._core.columns)}")
         return _array(self._core.read([name])[0][1])
 
+    @property
+    def generations(self) -> list[int]:
+        """The cases of each generation that is planned: what was asked for, then those that refine borders."""
+        return self._core.progress().generations
+
+    @property
+    def varied(self) -> list[str]:
+        """The names of the columns of what varies."""
+        names = self._core.columns
+        end = names.index("outcome") if "outcome" in names else 0
+        return [name for name in names[:end] if name not in ("case", "t", "case_name")]
+
+    def where(self, conditions: Mapping[str, Any]) -> npt.NDArray[Any]:
+        """The numbers of the cases for which each column has the value given, or lies within the pair given, ends included.
+
+        Raises:
+            KeyError: there is no such column.
+        """
+        import numpy as np
+
+        numbers = self["case"]
+        chosen = np.ones(numbers.shape, dtype=bool)
+        for name, wanted in conditions.items():
+            column = self[name]
+            chosen &= (column >= wanted[0]) & (column <= wanted[1]) if isinstance(wanted, tuple) else column == wanted
+        return np.unique(numbers[chosen])
+
+    def run(self, case: int, **options: Any) -> Run:
+        """The whole motion of a case, computed anew with the numbers of the case.
+
+        Args:
+            case: its number, as in the column ``case``.
+            options: as in :meth:`Model.simulate`: ``every=0.01``, ``to=20``.
+
+        Raises:
+            IndexError: there is no such case.
+            ModelError: the folder was made by the command line, and does not keep what varies or the files of the model.
+        """
+        import numpy as np
+
+        from ._sweep_case import run_of
+
+        if not 0 <= case < self.cases:
+            raise IndexError(f"there are {self.cases} cases")
+        row: dict[str, float] = {}
+        if not self._core.recipe:
+            if not self.varied:
+                raise ModelError(f"{self.path} does not keep what varies\nhint: a sweep without --columns keeps it")
+            at = np.flatnonzero(self["case"] == case)
+            if at.size == 0:
+                raise IndexError(f"the part of case {case} is missing")
+            row = {name: float(self[name][at[0]]) for name in self.varied}
+        return run_of(self._core, lambda: _computing(self.path), case, row, options)
+
+    def scan(self) -> polars.LazyFrame:
+        """A lazy frame of polars over the parts that are there: it reads the columns and rows that are asked for. Needs polars."""
+        import polars
+
+        return polars.scan_parquet([os.path.join(self.path, f"part-{part:06}.parquet") for part in self._core.present()])
+
     def __iter__(self) -> Iterator[str]:
         return iter(self._core.columns)
 
@@ -168,6 +236,8 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         threads: int = 0,
         stop: Callable[[], bool] | None = None,
         progress: Progress = None,
+        refine: int = 0,
+        refine_by: tuple[str, float] | None = None,
     ) -> SweepFolder:
         """Computes what is missing, as :meth:`Model.sweep` with the same arguments does; it returns this object.
 
@@ -177,7 +247,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
             Interrupted: Ctrl-C; the complete parts are kept.
         """
         core = _computing(self.path)
-        return _fill(core, on=on, share=share, threads=threads, stop=stop, progress=progress)
+        return _fill(core, on=on, share=share, threads=threads, stop=stop, progress=progress, refine=refine, refine_by=refine_by)
 
     def _repr_html_(self) -> str:
         import html
@@ -226,11 +296,13 @@ class SweepRequest:
         threads: int,
         stop: Callable[[], bool] | None,
         progress: Progress,
+        refine: int,
+        refine_by: tuple[str, float] | None,
     ) -> SweepFolder:
         """Opens the folder or makes it, and computes what is missing there."""
         core = self.open(folder, chunk)
         _opened[_key(core.path)] = core
-        return _fill(core, on=on, share=share, threads=threads, stop=stop, progress=progress)
+        return _fill(core, on=on, share=share, threads=threads, stop=stop, progress=progress, refine=refine, refine_by=refine_by)
 
     def open(self, folder: str, chunk: int) -> _core.SweepFolder:
         """Opens the folder or makes it."""
@@ -274,11 +346,10 @@ def _computing(folder: str) -> _core.SweepFolder:
     if key not in _opened:
         if not looked_at.recipe:
             raise ModelError(f"{looked_at.path} was made by the command line\nhint: its command goes on, or anholon sweep … -o {looked_at.path}/")
-        from .model import load, loads
+        from ._sweep_case import model_of
 
         recipe = json.loads(looked_at.recipe)
-        given = {"set": recipe["set"], "case": recipe["case"]}
-        model = load(recipe["path"], **given) if recipe["path"] else loads(looked_at.asked("model"), **given)
+        model = model_of(looked_at, recipe)
         words = recipe["words"]
         words[0] = [(name, values) for name, values in words[0]]
         while len(_opened) >= 4:
@@ -288,6 +359,28 @@ def _computing(folder: str) -> _core.SweepFolder:
 
 
 def _fill(
+    core: _core.SweepFolder,
+    *,
+    on: Client | str | None,
+    share: tuple[int, int],
+    threads: int,
+    stop: Callable[[], bool] | None,
+    progress: Progress,
+    refine: int = 0,
+    refine_by: tuple[str, float] | None = None,
+) -> SweepFolder:
+    """Computes what is missing, and plans generations until there are `refine` of them after the first, or no border is left."""
+    rule = "" if refine_by is None else f"{refine_by[0]}:{float(refine_by[1])!r}"
+    if refine_by is not None and refine < 1:
+        raise ModelError("refine_by tells what a border is, and refine how often it is refined\nhint: refine=4")
+    while True:
+        folder = _fill_generation(core, on=on, share=share, threads=threads, stop=stop, progress=progress)
+        # Other shares may have parts to compute before the borders are known.
+        if refine < 1 or core.missing() or len(core.progress().generations) > refine or not core.refine(rule):
+            return folder
+
+
+def _fill_generation(
     core: _core.SweepFolder, *, on: Client | str | None, share: tuple[int, int], threads: int, stop: Callable[[], bool] | None, progress: Progress
 ) -> SweepFolder:
     folder = SweepFolder(core)

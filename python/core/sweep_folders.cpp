@@ -36,6 +36,14 @@ void bind_sweep_folders(nb::module_& m) {
       .def_ro("outcomes", &FolderProgress::outcomes, "How many cases ended in which way.")
       .def_ro("cases_per_second", &FolderProgress::cases_per_second,
               "By the times at which the last parts were written; 0: unknown.")
+      .def_prop_ro(
+          "generations",
+          [](const FolderProgress& p) {
+            std::vector<std::size_t> cases;
+            for (const FolderGeneration& g : p.generations) cases.push_back(g.cases);
+            return cases;
+          },
+          "The cases of each generation that is planned; the first one is what was asked for.")
       .def("__repr__", [](const FolderProgress& p) {
         return nb::cast<std::string>(
             nb::str("{} of {} parts, {} of {} cases").format(p.parts, p.all_parts, p.cases, p.all_cases));
@@ -51,6 +59,18 @@ void bind_sweep_folders(nb::module_& m) {
       .def("missing", [](const SweepFolder& f) { return value_of(unlocked([&] { return f.missing(); })); })
       .def("present", [](const SweepFolder& f) { return value_of(unlocked([&] { return f.present(); })); })
       .def("progress", [](const SweepFolder& f) { return value_of(unlocked([&] { return f.progress(); })); })
+      .def(
+          "refine",
+          [](const SweepFolder& f, const std::string& rule) {
+            return value_of(unlocked([&] { return f.refine(rule); }));
+          },
+          "rule"_a)
+      .def(
+          "numbers",
+          [](const SweepFolder& f, std::size_t number) {
+            return value_of(unlocked([&] { return f.numbers(number); }));
+          },
+          "number"_a)
       .def(
           "read",
           [](const SweepFolder& f, const std::vector<std::string>& names) {

@@ -129,6 +129,70 @@ def test_foreign_folders_and_changed_parts_are_named(quiet: pathlib.Path, tmp_pa
     assert disc.sweep({"phi'": SPINS}, to=1, out=folder).complete and hashes(folder) == hashes(quiet)
 
 
+GRID: dict[str, list[float]] = {"phi'": [1 + 0.5 * k for k in range(13)], "theta": [0.2 + 0.15 * k for k in range(9)]}
+
+
+def test_borders_are_refined_whoever_computes(tmp_path: pathlib.Path, disc: an.Model) -> None:
+    once = disc.sweep(GRID, to=3, out=tmp_path / "once", chunk=20, refine=2, refine_by=("theta", 0.5))
+    assert once.complete and once.generations[0] == 117 and len(once.generations) == 3 and once.cases == sum(once.generations)
+    bit_by_bit = disc.sweep(GRID, to=3, out=tmp_path / "bits", chunk=20)
+    assert bit_by_bit.generations == [117]
+    for number in (1, 2):
+        for share in (1, 2):
+            bit_by_bit.fill(share=(share, 2), threads=1, refine=number, refine_by=("theta", 0.5))
+        bit_by_bit.fill(refine=number, refine_by=("theta", 0.5))
+    assert hashes(tmp_path / "bits") == hashes(tmp_path / "once")
+    # The grid is halved between neighbours, and only at some places.
+    spins = np.unique(once["phi'(0)"])
+    assert np.isclose(np.diff(spins).min(), 0.125) and once.cases < 49 * 33 / 2
+    with pytest.raises(an.ModelError, match="was refined by 'theta:0.5'"):
+        once.fill(refine=3, refine_by=("theta", 0.25))
+    with pytest.raises(an.ModelError, match="lies no grid"):
+        disc.sweep({"m": [1, 3, 2]}, to=1, out=tmp_path / "none", refine=1)
+
+
+def test_refined_by_workers_of_dask(client: Any, tmp_path: pathlib.Path, disc: an.Model) -> None:
+    disc.sweep(GRID, to=3, out=tmp_path / "here", chunk=20, refine=2, refine_by=("theta", 0.5))
+    disc.sweep(GRID, to=3, out=tmp_path / "there", chunk=20, refine=2, refine_by=("theta", 0.5), on=client)
+    assert hashes(tmp_path / "here") == hashes(tmp_path / "there")
+
+
+def test_chosen_cases_and_their_motions(tmp_path: pathlib.Path, disc: an.Model) -> None:
+    folder = disc.with_(m=2).sweep(GRID, to=3, initial={"psi'": 0.1}, out=tmp_path / "f", refine=1, refine_by=("theta", 0.5))
+    chosen = folder.where({"outcome": "finished", "phi'(0)": (1.2, 1.3)})
+    assert chosen.size > 0 and all(1.2 <= folder["phi'(0)"][case] <= 1.3 for case in chosen)
+    for case in (0, int(chosen[0]), folder.cases - 1):
+        run = an.open_sweep(folder.path).run(case, every="0.5")
+        assert len(run) == 7 and run["phi'"][0] == folder["phi'(0)"][case]
+        for name in ("theta", "x", "phi'"):
+            # A disc that nearly lies flat enlarges the last digits, in which a shared plan differs.
+            assert np.isclose(run[name][-1], folder[name][case], rtol=1e-7, atol=1e-7)
+    assert not np.isclose(folder.run(0)["theta"][-1], folder["theta"][1])
+    with pytest.raises(IndexError, match="cases"):
+        folder.run(10**9)
+    with pytest.raises(KeyError, match="there is no column 'lean'"):
+        folder.where({"lean": 1})
+
+
+def test_motions_of_a_folder_of_the_command_line(tmp_path: pathlib.Path) -> None:
+    import os
+    import subprocess
+
+    words = ["--vary", "phi'=1:7:7", "--set", "m=2", "--qdot", "psi=0.1", "--to", "3", "--quiet", "-o", str(tmp_path / "f") + "/"]
+    subprocess.run([os.environ["ANHOLON_PROGRAM"], "sweep", "disc", *words], check=True)
+    folder = an.open_sweep(tmp_path / "f")
+    for case in (0, 6):
+        assert np.isclose(folder.run(case)["theta"][-1], folder["theta"][case], rtol=1e-10)
+    assert folder.run(0).model.parameters["m"] == 2
+
+
+def test_a_lazy_frame_reads_what_is_asked(quiet: pathlib.Path) -> None:
+    polars = pytest.importorskip("polars")
+    folder = an.open_sweep(quiet)
+    some = folder.scan().filter(polars.col("case") > 50).select("theta").collect()
+    assert some["theta"].to_list() == folder["theta"][51:].tolist()
+
+
 def test_arguments_without_a_folder(disc: an.Model) -> None:
     with pytest.raises(an.ModelError, match="belong to a sweep in a folder"):
         disc.sweep({"phi'": SPINS}, to=1, share=(1, 2))  # type: ignore[call-overload]

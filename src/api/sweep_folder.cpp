@@ -5,6 +5,7 @@
 #include "api/sweep_request.h"
 #include "base/json.h"
 #include "ensemble/parts/fill.h"
+#include "ensemble/refine/refine.h"
 #include "result/choose_columns.h"
 
 namespace anholon::v1 {
@@ -15,6 +16,12 @@ struct SweepFolder::Data {
   std::optional<System> system;
   std::shared_ptr<const PreparedSweep> prepared;
   std::vector<std::string> asked_columns;
+  // The folder with the generations that it has now. Throws Failure.
+  inner::SweepStore now() const {
+    inner::SweepStore fresh = store;
+    fresh.look_for_generations();
+    return fresh;
+  }
 };
 
 namespace {
@@ -110,24 +117,37 @@ FolderColumn empty_column(const inner::ParquetColumn& like) {
 }  // namespace
 
 const std::string& SweepFolder::path() const { return data_->store.folder(); }
-std::size_t SweepFolder::cases() const { return data_->store.request().cases; }
-std::size_t SweepFolder::parts() const { return data_->store.parts(); }
+// A damaged plan is an error of the functions that return a Result; these tell what is there without it.
+std::size_t SweepFolder::cases() const {
+  const auto now = told([&]() -> Result<std::size_t> { return data_->now().cases(); });
+  return now ? *now : data_->store.cases();
+}
+std::size_t SweepFolder::parts() const {
+  const auto now = told([&]() -> Result<std::size_t> { return data_->now().parts(); });
+  return now ? *now : data_->store.parts();
+}
 std::size_t SweepFolder::chunk() const { return data_->store.request().chunk; }
 const std::vector<std::string>& SweepFolder::columns() const { return data_->store.request().columns; }
 const std::string& SweepFolder::recipe() const { return data_->store.request().recipe; }
 const std::string& SweepFolder::asked(const std::string& name) const { return data_->store.asked(name); }
 
 Result<std::vector<std::size_t>> SweepFolder::missing() const {
-  return told([&]() -> Result<std::vector<std::size_t>> { return data_->store.missing(); });
+  return told([&]() -> Result<std::vector<std::size_t>> { return data_->now().missing(); });
 }
 Result<std::vector<std::size_t>> SweepFolder::present() const {
-  return told([&]() -> Result<std::vector<std::size_t>> { return data_->store.present(); });
+  return told([&]() -> Result<std::vector<std::size_t>> { return data_->now().present(); });
 }
 
 Result<FolderProgress> SweepFolder::progress() const {
   return told([&]() -> Result<FolderProgress> {
-    const inner::SweepStore::Progress p = data_->store.progress();
-    return FolderProgress{p.parts, p.all_parts, p.cases, p.all_cases, p.unfinished, p.outcomes, p.cases_per_second};
+    const inner::SweepStore store = data_->now();
+    const inner::SweepStore::Progress p = store.progress();
+    FolderProgress all{p.parts, p.all_parts, p.cases, p.all_cases, p.unfinished, p.outcomes, p.cases_per_second};
+    for (std::size_t g = 0; g < store.generations().size(); ++g) {
+      const inner::Generation& of = store.generations()[g];
+      all.generations.push_back({of.first_case, of.cases, p.parts_there[g], of.parts});
+    }
+    return all;
   });
 }
 
@@ -136,8 +156,9 @@ Result<std::vector<FolderColumn>> SweepFolder::read(const std::vector<std::strin
     const std::vector<std::size_t> places =
         names.empty() ? chosen_places(names, columns()) : inner::chosen_columns(columns(), names);
     std::vector<FolderColumn> all;
-    for (const std::size_t part : data_->store.present()) {
-      const inner::ParquetTable table = data_->store.read(part);
+    const inner::SweepStore store = data_->now();
+    for (const std::size_t part : store.present()) {
+      const inner::ParquetTable table = store.read(part);
       if (table.columns.size() != columns().size())
         throw inner::Failure({}, data_->store.path_of(part) + " has other columns than the sweep");
       for (std::size_t k = 0; k < places.size(); ++k) {
@@ -150,26 +171,72 @@ Result<std::vector<FolderColumn>> SweepFolder::read(const std::vector<std::strin
   });
 }
 
+// Throws Failure if the folder was opened by its name alone.
+static const PreparedSweep& prepared(const SweepFolder::Data& data) {
+  if (!data.prepared)
+    throw inner::Failure({}, "this sweep was opened to be read", "sweep_into opens it for a computation");
+  return *data.prepared;
+}
+
 Result<FolderDone> SweepFolder::fill(const FolderWork& work) const {
   return told([&]() -> Result<FolderDone> {
-    const PreparedSweep* p = data_->prepared.get();
-    if (!p) return mistake("this sweep was opened to be read", "sweep_into opens it for a computation");
+    const PreparedSweep& p = prepared(*data_);
     if (work.shares == 0 || work.share < 1 || work.share > work.shares)
       return mistake("there is no share " + std::to_string(work.share) + " of " + std::to_string(work.shares),
                      "shares are numbered from 1");
+    const inner::SweepStore store = data_->now();
     inner::FillOptions o;
-    o.parts = work.parts ? *work.parts : parts_to_do(data_->store, work.share, work.shares);
+    o.parts = work.parts ? *work.parts : parts_to_do(store, work.share, work.shares);
     for (const std::size_t part : o.parts)
-      if (part >= parts())
-        return mistake("there is no part " + std::to_string(part), "there are " + std::to_string(parts()) + " parts");
+      if (part >= store.parts())
+        return mistake("there is no part " + std::to_string(part),
+                       "there are " + std::to_string(store.parts()) + " parts");
     if (o.parts.empty()) return FolderDone{0, 0, true, {}};
     o.cancelled = work.cancelled, o.progress = work.progress;
-    inner::EnsembleOptions options = p->options;
+    inner::EnsembleOptions options = p.options;
     options.threads = work.threads;
-    inner::SweepTable table = table_of(*p, data_->asked_columns);
-    const inner::SweepPiece piece{p->scenario, &options, &table, {}};
-    const inner::Filled done = inner::fill(data_->store, {&piece, 1}, o);
+    if (store.generations().size() > 1) {
+      options.cases = store.cases();
+      options.numbers = numbers_of(store, *p.variation);
+    }
+    inner::SweepTable table = table_of(p, data_->asked_columns);
+    const inner::SweepPiece piece{p.scenario, &options, &table, {}};
+    const inner::Filled done = inner::fill(store, {&piece, 1}, o);
     return FolderDone{done.parts, done.report.done, done.parts == o.parts.size(), done.error};
+  });
+}
+
+Result<std::size_t> SweepFolder::refine(const std::string& word) const {
+  return told([&]() -> Result<std::size_t> {
+    const PreparedSweep& p = prepared(*data_);
+    inner::SweepStore store = data_->now();
+    inner::RefineRule rule;
+    try {
+      rule = inner::refine_rule(word);
+    } catch (const inner::MistakeInWord& m) {
+      throw inner::Failure({}, "refine by " + m.word + ": " + m.diagnostic.message, "COLUMN:BOUND, such as theta:0.1");
+    }
+    must_be_refinable(*p.variation, columns(), rule);
+    if (const std::size_t missing = store.missing().size(); missing > 0)
+      return mistake(std::to_string(missing) + " parts are missing, and borders follow from all cases",
+                     "fill() computes them");
+    return add_generation(store, *p.variation, rule);
+  });
+}
+
+Result<std::vector<std::pair<std::string, std::string>>> SweepFolder::numbers(std::size_t number) const {
+  using Numbers = std::vector<std::pair<std::string, std::string>>;
+  return told([&]() -> Result<Numbers> {
+    const PreparedSweep& p = prepared(*data_);
+    const inner::SweepStore store = data_->now();
+    if (number >= store.cases())
+      return mistake("there is no case " + std::to_string(number),
+                     "the cases are numbered from 0 to " + std::to_string(store.cases() - 1));
+    const inner::EnsembleCase of = numbers_of(store, *p.variation)(number);
+    Numbers list;
+    for (std::size_t k = 0; k < of.values.size(); ++k)
+      list.emplace_back(p.options.varied[k].name, of.values[k].get_str());
+    return list;
   });
 }
 

@@ -295,7 +295,8 @@ class CommandLine {
         "\"phi'(0),min*,max*\"\n"
         "          anholon sweep disc --cases cases.csv --at 1,2,5 -o rows.h5\n"
         "          anholon sweep disc --vary \"phi'=1:7:1000000\" --to 3 -o falls/        goes on after a kill\n"
-        "          anholon sweep disc --vary \"phi'=1:7:1000000\" --to 3 -o falls/ --shard 3/8");
+        "          anholon sweep disc --vary \"phi'=1:7:1000000\" --to 3 -o falls/ --shard 3/8\n"
+        "          anholon sweep disc --vary \"phi'=1:7:61\" --vary theta=0.2:1.4:49 --to 3 -o falls/ --refine 4");
     parameters(c), state(c), form_option(c);
     c->add_option("--vary", o_.varied,
                   "NAME=FROM:TO:COUNT, NAME=A,B,…, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO)")
@@ -333,6 +334,14 @@ class CommandLine {
     c->add_option("--chunk", o_.chunk,
                   "with a new FOLDER/: cases in each of its files (default: as many as take some seconds)")
         ->type_name("N");
+    c->add_option(
+         "--refine", o_.refine,
+         "with -o FOLDER/: so many further generations of cases, which halve the grid where neighbours ended in "
+         "different ways")
+        ->type_name("N");
+    c->add_option("--refine-by", o_.refine_by,
+                  "halve the grid, too, where the numbers of neighbours in this column differ by more than the bound")
+        ->type_name("COLUMN:BOUND");
     add_sweep_folder(c);
   }
 
@@ -485,15 +494,19 @@ class CommandLine {
                           "          anholon plot run.h5 theta \"theta'\" --each --from 2 --to 5\n"
                           "          anholon plot run.h5 y --x x --title \"path of the contact\"\n"
                           "          anholon plot run.h5 'lambda.*' -o forces.pdf --size 8cmx5cm\n"
-                          "          anholon plot falls/ outcome -o falls.svg       cells over the two that vary",
+                          "          anholon plot falls/ outcome -o falls.svg       cells over the two that vary\n"
+                          "          anholon plot cases.csv --histogram theta -o theta.svg",
                           true);
     c->add_option("RUN", o_.model,
-                  "a run: " + known_files("FILE") + ", or - for what comes through a pipe; or the folder of a sweep")
+                  "a run: " + known_files("FILE") +
+                      ", or - for what comes through a pipe; or a sweep: a folder, a .csv or .parquet file")
         ->required();
     c->add_option("COLUMN", o_.columns, "names of columns, or patterns");
     c->add_option("--x", o_.abscissa, "the column along the horizontal axis (default: t)")->type_name("COLUMN");
     c->add_option("--y", o_.ordinate,
                   "of a sweep: the column along the vertical axis (default: the second that varies)")
+        ->type_name("COLUMN");
+    c->add_option("--histogram", o_.histogram, "of a sweep: how often the numbers or words of this column occur")
         ->type_name("COLUMN");
     c->add_option("--from", o_.from, "no rows before this time")->type_name("T");
     c->add_option("--to", o_.until, "no rows after this time")->type_name("T");
@@ -510,7 +523,11 @@ class CommandLine {
                   "of a figure: 8cmx5cm (cm, mm, in, pt; default 16cmx9cm); in the terminal: 100x30, columns and rows")
         ->type_name("WxH");
     c->add_flag("--json", o_.json, "JSON on the standard output: what is drawn, and between which numbers");
-    c->add_option("-o,--output", o_.output, "FILE.svg, FILE.pdf, FILE.png or FILE.tex (pgfplots)")->type_name("FILE");
+    c->add_option(
+         "-o,--output", o_.output,
+         "FILE.svg, FILE.pdf, FILE.png or FILE.tex (pgfplots); of a sweep FILE.html, too, whose cells tell their "
+         "cases")
+        ->type_name("FILE");
   }
 
   void add_convert() {

@@ -29,7 +29,8 @@ struct Options {
   std::string case_count, case_table, draw;
   std::vector<std::string> reduce;
   std::string shard, chunk, folder;  // of sweeps in folders
-  bool watch = false;                // of sweep status
+  std::string refine, refine_by;
+  bool watch = false;  // of sweep status
   bool partial = false;
   int threads = 0;
   int proof_digits = 308;
@@ -38,6 +39,7 @@ struct Options {
   unsigned long long seed = 0;
   std::vector<std::string> files;
   std::vector<std::string> columns;  // of plot and sweep
+  std::string histogram;             // of plot
   std::string abscissa, ordinate, from, until, size, title, labels = "unicode";
   std::string fps, seconds, picture_at, frame;  // of render
   bool dark = false;

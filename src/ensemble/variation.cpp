@@ -276,6 +276,34 @@ std::vector<Rational> Variation::operator()(std::size_t number) const {
   return out;
 }
 
+void Variation::must_be_a_grid() const {
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    const Values& v = values_[i];
+    const std::string& name = varied_[i].name;
+    if (drawn(v) || v.cell)
+      throw Failure(
+          {}, "between the values of '" + name + "' lies no grid: they are " + (v.cell ? "those of a table" : "drawn"),
+          "refine a grid: " + name + "=0:10:101");
+    for (std::size_t k = 1; k < v.list.size(); ++k)
+      if (cmp(v.list[k], v.list[k - 1]) * cmp(v.list[1], v.list[0]) <= 0)
+        throw Failure({}, "between the values of '" + name + "' lies no grid: they neither ascend nor descend",
+                      "refine a grid, or a list in ascending order");
+  }
+}
+
+std::vector<Rational> Variation::between(std::span<const std::int64_t> places, unsigned halvings) const {
+  std::vector<Rational> out;
+  const std::int64_t fine = std::int64_t{1} << halvings;
+  for (const Values& v : values_) {
+    const std::int64_t place = places[v.axis];
+    const auto k = static_cast<std::size_t>(place / fine);
+    Rational part(place % fine, fine);
+    part.canonicalize();
+    out.push_back(part == 0 ? v.list[k] : v.list[k] + (v.list[k + 1] - v.list[k]) * part);
+  }
+  return out;
+}
+
 void must_not_be_given(const std::vector<Varied>& varied, const StateChoice& state) {
   for (const StateOverride& given : state.overrides)
     for (const Varied& v : varied)

@@ -4,6 +4,8 @@
 // are random, or the points of a Sobol sequence in as many dimensions as names are drawn; these are shifted by the seed,
 // and each point of the grid has the same ones.
 #pragma once
+#include <span>
+
 #include "ensemble/case_table.h"
 #include "ensemble/ensemble.h"
 #include "ensemble/mistake_in_word.h"
@@ -37,6 +39,13 @@ class Variation {
   std::size_t cases() const { return cases_; }
   // The values depend on the number of the case alone. Cases run through the grid, the last name fastest.
   std::vector<Rational> operator()(std::size_t number) const;
+
+  // The number of points of each axis, the last one fastest.
+  const std::vector<std::size_t>& axes() const { return axes_; }
+  // Throws Failure without a place unless all values belong to grids and lists that ascend or descend.
+  void must_be_a_grid() const;
+  // The values at a place of a grid that is 2^halvings times as fine; there are such places if it is a grid.
+  std::vector<Rational> between(std::span<const std::int64_t> places, unsigned halvings) const;
 
  private:
   struct Values {

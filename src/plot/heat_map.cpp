@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 
 #include "base/diagnostic.h"
 
@@ -11,8 +12,7 @@ namespace anholon::plot {
 
 namespace {
 
-constexpr double kMapPointsPerCm = 72 / 2.54, kLabelSize = 9, kMarkSize = 8, kMapGap = 4, kMapTick = 3,
-                 kLetterWidth = 0.62;
+constexpr double kLabelSize = 9, kMarkSize = 8, kMapGap = 4, kMapTick = 3, kLetterWidth = 0.62;
 
 // Points of the colour map viridis, from its least number to its greatest.
 constexpr std::uint32_t kScale[] = {0x440154, 0x482878, 0x3e4989, 0x31688e, 0x26828e,
@@ -28,10 +28,6 @@ std::uint32_t scale_colour(double place) {
     rgb |= static_cast<std::uint32_t>(std::lround(a + (b - a) * (at - static_cast<double>(k)))) << shift;
   }
   return rgb;
-}
-
-std::uint32_t word_colour(std::size_t k) {
-  return static_cast<std::uint32_t>(std::strtoul(kColour[k % kColours] + 1, nullptr, 16));
 }
 
 // The cell of each row along one axis; leaves the middles of the cells in the column.
@@ -73,9 +69,12 @@ std::vector<double> borders(const std::vector<double>& middles) {
 class MapLayout {
  public:
   explicit MapLayout(const HeatMap& m) : m_(m) {
-    d_.width = m.width * kMapPointsPerCm, d_.height = m.height * kMapPointsPerCm;
-    for (const double v : m.values)
+    d_.width = m.width * kPointsInCm, d_.height = m.height * kPointsInCm;
+    const auto see = [&](double v) {
       if (std::isfinite(v)) least_ = std::min(least_, v), greatest_ = std::max(greatest_, v);
+    };
+    for (const double v : m.values) see(v);
+    for (const HeatMap::Finer& f : m.finer) see(f.value);
     if (!(least_ < greatest_)) greatest_ = least_ + 1;
   }
 
@@ -118,7 +117,7 @@ class MapLayout {
       const std::string text = m_.words[k].empty() ? "none" : m_.words[k];
       const double width = kMarkSize + 3 * kMapGap + kLetterWidth * kMarkSize * static_cast<double>(shown_width(text));
       if (x > left_ && x + width > right_) x = left_, y += kMarkSize + kMapGap;
-      d_.patches.push_back({{x, y - 0.8 * kMarkSize}, {x + kMarkSize, y + 0.2 * kMarkSize}, word_colour(k)});
+      d_.patches.push_back({{x, y - 0.8 * kMarkSize}, {x + kMarkSize, y + 0.2 * kMarkSize}, colour_of_word(k)});
       word({x + kMarkSize + kMapGap, y}, {{text}}, kMarkSize, Anchor::start);
       x += width;
     }
@@ -159,8 +158,7 @@ class MapLayout {
           open = false;
           continue;
         }
-        const std::uint32_t rgb = m_.words.empty() ? scale_colour((v - least_) / (greatest_ - least_))
-                                                   : word_colour(static_cast<std::size_t>(v));
+        const std::uint32_t rgb = colour(v);
         if (open && d_.patches.back().rgb == rgb)
           d_.patches.back().to.x = x_at(xs[i + 1]);
         else
@@ -168,6 +166,12 @@ class MapLayout {
         open = true;
       }
     }
+    for (const HeatMap::Finer& f : m_.finer)
+      d_.patches.push_back({{x_at(f.from.x), y_at(f.to.y)}, {x_at(f.to.x), y_at(f.from.y)}, colour(f.value)});
+  }
+  std::uint32_t colour(double v) const {
+    return m_.words.empty() ? scale_colour((v - least_) / (greatest_ - least_))
+                            : colour_of_word(static_cast<std::size_t>(v));
   }
 
   void axes(const Ticks& y_ticks) {
@@ -183,17 +187,10 @@ class MapLayout {
       d_.strokes.push_back({{{left_ - kMapTick, y}, {left_, y}}, Role::axis, 0});
       word({left_ - kMapTick - 2, y + 0.36 * kMarkSize}, {{y_ticks.labels[k]}}, kMarkSize, Anchor::end);
     }
-    const auto named = [&](const NamedColumn& c, const std::string& note) {
-      // An initial value is named as what it is the value of.
-      const bool initial = c.name.ends_with("(0)");
-      RichText label =
-          rich_label(c.name.substr(0, c.name.size() - (initial ? 3 : 0)), initial ? "" : c.unit, m_.labels);
-      if (initial) label.push_back({c.unit.empty() || c.unit == "1" ? "(0)" : "(0) (" + c.unit + ")"});
-      if (!note.empty()) label.push_back({" " + note});
-      return label;
-    };
-    word({(left_ + right_) / 2, d_.height - 1.5 * kMapGap}, named(m_.x, x_ticks.note), kLabelSize, Anchor::middle);
-    word({kMapGap + kLabelSize, (top_ + bottom_) / 2}, named(m_.y, y_ticks.note), kLabelSize, Anchor::middle, true);
+    word({(left_ + right_) / 2, d_.height - 1.5 * kMapGap}, axis_label(m_.x, x_ticks.note, m_.labels), kLabelSize,
+         Anchor::middle);
+    word({kMapGap + kLabelSize, (top_ + bottom_) / 2}, axis_label(m_.y, y_ticks.note, m_.labels), kLabelSize,
+         Anchor::middle, true);
   }
 
   const HeatMap& m_;
@@ -205,29 +202,112 @@ class MapLayout {
 
 }  // namespace
 
-HeatMap make_heat_map(NamedColumn x, NamedColumn y, const NamedColumn& of, std::vector<std::string> words) {
-  HeatMap m;
-  const std::vector<std::size_t> i = cells_along(x), k = cells_along(y);
-  const std::size_t columns = x.values.size(), cells = columns * y.values.size();
-  std::vector<double> sum(cells, 0);
-  std::vector<std::size_t> count(cells, 0);
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> of_word;  // by cell and word
-  for (std::size_t row = 0; row < of.values.size(); ++row) {
-    const double v = of.values[row];
-    if (i[row] >= columns || k[row] >= y.values.size() || !std::isfinite(v)) continue;
-    const std::size_t cell = k[row] * columns + i[row];
-    ++count[cell], sum[cell] += v;
-    if (!words.empty()) ++of_word[{cell, static_cast<std::size_t>(v)}];
+std::uint32_t colour_of_word(std::size_t word) {
+  return static_cast<std::uint32_t>(std::strtoul(kColour[word % kColours] + 1, nullptr, 16));
+}
+
+RichText axis_label(const NamedColumn& c, const std::string& note, LabelStyle style) {
+  const bool initial = c.name.ends_with("(0)");
+  RichText label = rich_label(c.name.substr(0, c.name.size() - (initial ? 3 : 0)), initial ? "" : c.unit, style);
+  if (initial) label.push_back({c.unit.empty() || c.unit == "1" ? "(0)" : "(0) (" + c.unit + ")"});
+  if (!c.meaning.empty()) label.push_back({", " + c.meaning});
+  if (!note.empty()) label.push_back({" " + note});
+  return label;
+}
+
+namespace {
+
+// The mean of the numbers, or the most frequent word, of cases in one place.
+class Summary {
+ public:
+  void add(double v, bool word) {
+    ++count_, sum_ += v;
+    if (word) ++words_[static_cast<std::size_t>(v)];
   }
+  double value() const {
+    if (words_.empty()) return sum_ / static_cast<double>(count_);
+    std::size_t best = words_.begin()->first, most = 0;
+    for (const auto& [word, cases] : words_)
+      if (cases > most) most = cases, best = word;
+    return static_cast<double>(best);
+  }
+
+ private:
+  std::size_t count_ = 0;
+  double sum_ = 0;
+  std::map<std::size_t, std::size_t> words_;
+};
+
+// Half of the width of a cell that is 2^g times as small as the first ones, at each side of its middle.
+std::pair<double, double> around(const std::vector<double>& first, double at, unsigned g) {
+  const auto next = std::upper_bound(first.begin(), first.end(), at);
+  const auto width = [&](std::vector<double>::const_iterator upper) {
+    return std::ldexp(*upper - *(upper - 1), -static_cast<int>(g) - 1);
+  };
+  if (first.size() < 2) return {at - 0.5, at + 0.5};
+  // A value of the first generation has neighbours at distances that may differ.
+  const bool on = next != first.begin() && *(next - 1) == at;
+  const auto right = next == first.end() ? next - 1 : next == first.begin() ? next + 1 : next;
+  const auto left = on && next - 1 != first.begin() ? next - 1 : right;
+  return {at - width(left), at + width(right)};
+}
+
+// The cells of the further generations, the coarse ones first.
+void add_finer(HeatMap& m, const NamedColumn& x, const NamedColumn& y, const NamedColumn& of,
+               const std::vector<unsigned>& generations) {
+  std::map<std::tuple<unsigned, double, double>, Summary> places;
+  for (std::size_t row = 0; row < generations.size(); ++row)
+    if (generations[row] > 0 && std::isfinite(of.values[row]) && std::isfinite(x.values[row]) &&
+        std::isfinite(y.values[row]))
+      places[{generations[row], x.values[row], y.values[row]}].add(of.values[row], !m.words.empty());
+  for (const auto& [place, summary] : places) {
+    const auto& [g, at_x, at_y] = place;
+    const auto [left, right] = around(m.x.values, at_x, g);
+    const auto [low, high] = around(m.y.values, at_y, g);
+    m.finer.push_back({{left, low}, {right, high}, summary.value()});
+  }
+}
+
+NamedColumn first_generation(const NamedColumn& c, const std::vector<unsigned>& generations) {
+  NamedColumn first{c.name, c.unit, {}, c.meaning};
+  for (std::size_t row = 0; row < c.values.size(); ++row)
+    if (generations.empty() || generations[row] == 0) first.values.push_back(c.values[row]);
+  return first;
+}
+
+}  // namespace
+
+HeatMap make_heat_map(NamedColumn x, NamedColumn y, const NamedColumn& of, std::vector<std::string> words,
+                      const std::vector<unsigned>& generations) {
+  HeatMap m;
+  NamedColumn first_x = first_generation(x, generations), first_y = first_generation(y, generations);
+  const NamedColumn first_of = first_generation(of, generations);
+  const std::vector<std::size_t> i = cells_along(first_x), k = cells_along(first_y);
+  const std::size_t columns = first_x.values.size(), cells = columns * first_y.values.size();
+  std::map<std::size_t, Summary> places;
+  for (std::size_t row = 0; row < first_of.values.size(); ++row)
+    if (i[row] < columns && k[row] < first_y.values.size() && std::isfinite(first_of.values[row]))
+      places[k[row] * columns + i[row]].add(first_of.values[row], !words.empty());
   m.values.assign(cells, std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t cell = 0; cell < cells; ++cell)
-    if (words.empty() && count[cell] > 0) m.values[cell] = sum[cell] / static_cast<double>(count[cell]);
-  std::vector<std::size_t> most(words.empty() ? 0 : cells, 0);
-  for (const auto& [at, cases] : of_word)
-    if (cases > most[at.first]) most[at.first] = cases, m.values[at.first] = static_cast<double>(at.second);
-  m.x = std::move(x), m.y = std::move(y), m.words = std::move(words);
+  for (const auto& [cell, summary] : places) m.values[cell] = summary.value();
+  m.x = std::move(first_x), m.y = std::move(first_y), m.words = std::move(words);
   m.name = of.name, m.unit = of.unit;
+  add_finer(m, x, y, of, generations);
   return m;
+}
+
+std::vector<HeatMap::Finer> cells_of_cases(const NamedColumn& x, const NamedColumn& y,
+                                           const std::vector<unsigned>& generations) {
+  NamedColumn first_x = first_generation(x, generations), first_y = first_generation(y, generations);
+  cells_along(first_x), cells_along(first_y);
+  std::vector<HeatMap::Finer> cells;
+  for (std::size_t row = 0; row < x.values.size(); ++row) {
+    const unsigned g = generations.empty() ? 0 : generations[row];
+    const auto [left, right] = around(first_x.values, x.values[row], g);
+    const auto [low, high] = around(first_y.values, y.values[row], g);
+    cells.push_back({{left, low}, {right, high}, 0});
+  }
+  return cells;
 }
 
 Drawing lay_out(const HeatMap& map) { return MapLayout(map).make(); }

@@ -9,13 +9,24 @@ namespace anholon::plot {
 struct NamedColumn {
   std::string name, unit;
   std::vector<double> values;
+  std::string meaning = {};  // in words
 };
+// The label of the axis of a column: "m (kg), mass of the disc". An initial value x(0) is named as what it is the value of.
+RichText axis_label(const NamedColumn& column, const std::string& note, LabelStyle style);
+
+inline constexpr double kPointsInCm = 72 / 2.54;
+std::uint32_t colour_of_word(std::size_t word);
 
 struct HeatMap {
   std::string title;
-  NamedColumn x, y;                // `values`: the middles of the cells, ascending
-  std::string name, unit;          // of what is shown
-  std::vector<double> values;      // of the cell (i, k) at k * x.values.size() + i; NaN if no case lies in it
+  NamedColumn x, y;            // `values`: the middles of the cells, ascending
+  std::string name, unit;      // of what is shown
+  std::vector<double> values;  // of the cell (i, k) at k * x.values.size() + i; NaN if no case lies in it
+  struct Finer {
+    Point from, to;  // corners in units of the axes
+    double value = 0;
+  };
+  std::vector<Finer> finer;        // drawn over the cells, in this order
   std::vector<std::string> words;  // values are indices of these; empty: values are numbers
   LabelStyle labels = LabelStyle::unicode;
   double width = 16, height = 11;  // cm
@@ -23,9 +34,15 @@ struct HeatMap {
 
 // A cell for each pair of values that occurs; of a column with more than kMostCells different values, evenly spaced
 // cells. A cell with several cases has their mean, or their most frequent word. Throws Failure without a place if no case
-// has finite coordinates.
+// has finite coordinates. A case of generation g > 0 (plot of a refined sweep) lies between the values of the first
+// generation and gets a cell that is 2^g times as small; without `generations` all cases are of the first one.
 inline constexpr std::size_t kMostCells = 256;
-HeatMap make_heat_map(NamedColumn x, NamedColumn y, const NamedColumn& of, std::vector<std::string> words);
+HeatMap make_heat_map(NamedColumn x, NamedColumn y, const NamedColumn& of, std::vector<std::string> words,
+                      const std::vector<unsigned>& generations = {});
+
+// The cell of each case by itself, of value 0: at its place, with the size of its generation.
+std::vector<HeatMap::Finer> cells_of_cases(const NamedColumn& x, const NamedColumn& y,
+                                           const std::vector<unsigned>& generations);
 
 Drawing lay_out(const HeatMap& map);
 

@@ -1,20 +1,24 @@
 #!/usr/bin/env python3
 """Sweeps in folders: whatever happens to the processes, what is collected has the bytes of one quiet sweep.
 
-    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model part status plot watched
+    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model part status plot watched refine page
     folders.py --self-test                                  a part with other numbers is found
 
 Kills come at random moments. Nothing is lost but parts under way, and nothing is left behind that a later process does not clear.
 """
 
 import argparse
+import base64
 import hashlib
+import html
 import json
 import os
 import pathlib
 import random
+import shlex
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -61,7 +65,7 @@ class Folders:
     def check(self):
         """The folder holds the whole sweep and nothing else, with the right numbers."""
         names = sorted(os.listdir(self.folder))
-        must(names == [f"part-{k:06}.parquet" for k in range(20)] + ["sweep.json"], f"in the folder: {names}")
+        must(names == ["_judgement.json"] + [f"part-{k:06}.parquet" for k in range(20)] + ["sweep.json"], f"in the folder: {names}")
         collected = self.place / "all.csv"
         self.run("sweep", "collect", str(self.folder), "--quiet", "-o", str(collected), status=0)
         must(self.hash(collected) == self.expected, "what was collected has other bytes")
@@ -159,9 +163,16 @@ class Folders:
         out, _ = self.run("sweep", "status", str(self.folder), "--json", status=1)
         told = json.loads(out)
         must(told["parts"] == 10 and told["all_parts"] == 20 and told["cases"] == 80, out)
-        must(sum(told["outcomes"].values()) == 80 and set(told["outcomes"]) >= {"finished"}, out)
+        must(sum(told["outcomes"].values()) == 80 and set(told["outcomes"]) >= {"finished"} and "judgement" not in told, out)
         self.run(*self.into())
         self.run("sweep", "status", str(self.folder), status=0)
+        # The judgement is that of a sweep without a folder.
+        told = json.loads(self.run("sweep", "status", str(self.folder), "--json", status=0)[0])["judgement"]
+        alone = json.loads(self.run(*[w for w in SWEEP if w != "--quiet"], "--json")[0])
+        must(told["error_estimate"] == alone["error_estimate"] and told["residuals"] == alone["residuals"], f"{told}\n{alone['residuals']}")
+        must(told["residuals"]["checked"] and told["residuals"]["newton"]["worst"] < 1e-9, str(told))
+        collected = json.loads(self.run("sweep", "collect", str(self.folder), "--json", status=0)[0])
+        must(collected["report"]["judgement"] == told if "report" in collected else collected["judgement"] == told, str(list(collected)))
         self.check()
 
 
@@ -176,10 +187,20 @@ class Folders:
                 pictures.append(path.read_text())
         must(pictures[0] == pictures[1] and pictures[2] == pictures[3] != pictures[0], "the pictures differ")
         must("finished" in pictures[0] and pictures[0].count("<rect") >= 4, "no cells, or no legend")
+        # The files of a sweep show the same, but for units, which the model tells.
+        for name in ("cases.csv", "cases.parquet"):
+            self.run("sweep", "collect", str(self.folder), "--quiet", "-o", str(self.place / name), status=0)
+            self.run("plot", str(self.place / name), "theta", "-o", str(self.place / "file.svg"), status=0)
+            cells = [text[text.index("<rect") : text.rindex("<rect")] for text in (pictures[2], (self.place / "file.svg").read_text())]
+            must(cells[0] == cells[1], f"{name} has other cells than the folder")
+            self.run("plot", str(self.place / name), "--histogram", "outcome", "-o", str(self.place / "h.svg"), status=0)
+            must("finished" in (self.place / "h.svg").read_text(), "the histogram names no outcome")
         for words, message in [
             (["lean", "-o", "x.svg"], "has no column 'lean'"),
             (["outcome"], "a sweep is drawn as .svg"),
             (["outcome", "--y", "mass", "-o", "x.svg"], "has no column 'mass'"),
+            (["--histogram", "lean", "-o", "x.svg"], "has no column 'lean'"),
+            (["theta", "--histogram", "x", "-o", "x.svg"], "a histogram shows one column"),
         ]:
             _, error = self.run("plot", str(self.folder), *words, status=2)
             must(message in error, error)
@@ -198,7 +219,117 @@ class Folders:
         self.check()
 
 
-PARTS = ["kill", "stop", "two", "shards", "disk", "model", "part", "status", "plot", "watched"]
+    REFINED = ["sweep", "disc", "--vary", "phi'=1:7:13", "--vary", "theta=0.2:1.4:9", "--to", "3", "--quiet"]
+
+    def refined(self, folder, *words, rule="theta:0.5"):
+        return [*self.REFINED, "-o", str(folder) + "/", *words, *(["--refine-by", rule] if rule else [])]
+
+    def refine(self):
+        """Generations at borders: the same cases after kills, with other parts, threads and shares, and those of a single sweep."""
+        quiet, all_of = self.place / "quiet", self.place / "refined.csv"
+        self.run(*self.refined(quiet, "--refine", "3", "--chunk", "1000"), status=0)
+
+        def collected(folder):
+            self.run("sweep", "collect", str(folder), "--quiet", "-o", str(all_of), status=0)
+            return self.hash(all_of)
+
+        expected = collected(quiet)
+        small = ["--refine", "3", "--chunk", "5", "--threads", "1"]
+        for _ in range(self.kills):
+            process = self.begin(*self.refined(self.folder, *small))
+            time.sleep(random.uniform(0, 0.25))
+            process.kill()
+            process.communicate()
+        self.run(*self.refined(self.folder, *small), status=0)
+        must(collected(self.folder) == expected, "after kills the cases are others")
+        names = os.listdir(self.folder)
+        must(not any(name.startswith(".tmp") for name in names) and sum(name.startswith("_gen") for name in names) == 3, f"{sorted(names)}")
+        told = json.loads(self.run("sweep", "status", str(self.folder), "--json", status=0)[0])
+        generations = told["generations"]
+        must(len(generations) == 4 and generations[0]["cases"] == 117 and all(g["parts"] == g["all_parts"] > 0 for g in generations), str(told))
+        must(sum(g["cases"] for g in generations) == told["cases"] and generations[1]["first_case"] == 117, str(told))
+        shutil.rmtree(self.folder)
+
+        # Each share goes as far as it can; the next round begins the next generation.
+        for _ in range(4):
+            for share in ("1/2", "2/2"):
+                self.run(*self.refined(self.folder, "--refine", "3", "--chunk", "7", "--shard", share))
+        must(collected(self.folder) == expected, "shares have other cases")
+
+        # The last case is that of its own numbers.
+        header, *rows = all_of.read_text().splitlines()
+        table, alone = self.place / "one.csv", self.place / "one-out.csv"
+        table.write_text("phi',theta\n" + ",".join(rows[-1].split(",")[1:3]) + "\n")
+        self.run("sweep", "disc", "--cases", str(table), "--to", "3", "--quiet", "--error-estimate", "never", "-o", str(alone), status=0)
+        must(alone.read_text().splitlines()[1].split(",")[1:] == rows[-1].split(",")[1:], "a refined case has other numbers than alone")
+
+        # Another rule, no grid, a plan that was changed.
+        _, error = self.run(*self.refined(self.folder, "--refine", "4", rule="theta:0.4"), status=2)
+        must("refined by 'theta:0.5', not by 'theta:0.4'" in error, error)
+        for words, rule, message in [
+            (["--vary", "m~normal(1,0.1)", "-n", "200"], "", "lies no grid"),
+            (["--vary", "m=1,3,2"], "", "neither ascend nor descend"),
+            (["--columns", "theta"], "", "without the column 'outcome'"),
+            (["--columns", "theta"], "theta:1", None),
+            (["--columns", "phi"], "theta:1", "keeps no column 'theta'"),
+            ([], "thta:1", "did you mean 'theta'"),
+            ([], "theta", "COLUMN:BOUND"),
+            (["--refine", "31"], "", "--refine takes a number of generations"),
+        ]:
+            shutil.rmtree(self.place / "no", ignore_errors=True)
+            generations = [] if "--refine" in words else ["--refine", "1"]
+            _, error = self.run(*self.refined(self.place / "no", *generations, *words, rule=rule), status=2 if message else 0)
+            must(message is None or message in error, error)
+        plan = self.folder / "_generation-02.parquet"
+        text = bytearray(plan.read_bytes())
+        text[40] ^= 1
+        plan.write_bytes(text)
+        (self.folder / "part-000020.parquet").unlink()
+        _, error = self.run(*self.refined(self.folder, "--refine", "3"), status=2)
+        must("_generation-02.parquet" in error, error)
+        shutil.rmtree(self.folder)
+
+
+    def page(self):
+        """The page of a refined folder holds the numbers of all cases; the command that a click shows computes the motion of its case."""
+        spin = ["--set", "m=2", "--qdot", "psi=0.1"]
+        self.run(*self.refined(self.folder, "--refine", "1", *spin), status=0)
+        page, all_of = self.place / "page.html", self.place / "cases.csv"
+        self.run("plot", str(self.folder), "theta", "-o", str(page), status=0)
+        self.run("sweep", "collect", str(self.folder), "--quiet", "-o", str(all_of), status=0)
+        text = page.read_text()
+        must("http://" not in text and "https://" not in text, "the page refers to a network")
+        data = json.loads(text.split('<script type="application/json" id="data">')[1].split("</script>")[0])
+        header, *rows = [line.split(",") for line in all_of.read_text().splitlines()]
+        for k, name in enumerate(header):
+            column = data["columns"][k]
+            values = struct.unpack(f"<{len(rows)}d", base64.b64decode(column["data"]))
+            written = [column["words"][int(v)] for v in values] if column["words"] else list(values)
+            must(column["name"] == name and written == [row[k] if column["words"] else float(row[k]) for row in rows], f"{name} differs")
+        cells = struct.unpack(f"<{4 * len(rows)}d", base64.b64decode(data["cells"]))
+        must(abs((cells[-3] - cells[-4]) * 2 - (cells[1] - cells[0])) < 1e-12, "the cells of the last generation are not half as wide")
+        browser = shutil.which("chromium")
+        if not browser:
+            print("page: chromium is missing, so that no cell is clicked")
+        else:
+            click = """<script>setTimeout(() => { const c = document.querySelector("canvas"), r = c.getBoundingClientRect();
+              c.dispatchEvent(new MouseEvent("click", {clientX: r.left + 150, clientY: r.top + 60})); }, 300)</script></body>"""
+            page.write_text(text.replace("</body>", click))
+            words = [browser, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=3000", "--dump-dom", page.as_uri()]
+            shown = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE, check=False).stdout
+            must("<pre>anholon report disc" in shown, f"no command: {shown[-500:]}")
+            words = shlex.split(html.unescape(shown.split("<pre>")[1].split("</pre>")[0]))
+            number = int(words[-1].removeprefix("case-").removesuffix(".html"))
+            motion = self.place / "motion.csv"
+            self.run("simulate", *words[2:-2], "--at", "3", "-o", str(motion), status=0)
+            alone = dict(zip(*[line.split(",") for line in motion.read_text().splitlines()]))
+            row = dict(zip(header, rows[number]))
+            must(all(abs(float(alone[name]) - float(row[name])) < 1e-6 for name in ("theta", "x", "psi'")), f"{alone}\n{row}")
+            must(float(row["phi'(0)"]) < 4 and float(row["theta(0)"]) > 1, "another cell was clicked")
+        shutil.rmtree(self.folder)
+
+
+PARTS = ["kill", "stop", "two", "shards", "disk", "model", "part", "status", "plot", "watched", "refine", "page"]
 
 
 def run_parts(arguments):

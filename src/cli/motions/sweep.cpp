@@ -220,9 +220,13 @@ int sweep(const Options& asked) {
   catch_stop(o.output);
   const Part& first = parts.front();
   const RunInfo info = run_info(first.asked, first.in, first.scenario, merged(o.motion, first.in.model->simulate));
-  if (names_folder(o.output)) return sweep_into_folder(o, {pieces_of(parts), asked_of(info, asked, table_text), cases});
-  if (!o.shard.empty() || !o.chunk.empty())
-    throw UsageError{"error: --shard and --chunk belong to a sweep in a folder\nhint: -o falls/\n"};
+  if (names_folder(o.output))
+    return sweep_into_folder(o, {pieces_of(parts), asked_of(info, asked, table_text), cases,
+                                 parts.size() == 1 ? &*first.variation : nullptr});
+  for (const auto& [option, word] :
+       {std::pair{"--shard", &o.shard}, {"--chunk", &o.chunk}, {"--refine", &o.refine}, {"--refine-by", &o.refine_by}})
+    if (!word->empty())
+      throw UsageError{"error: " + std::string(option) + " belongs to a sweep in a folder\nhint: -o falls/\n"};
   SweepOutput out(format, o.output, {info, first.scenario.system.form->name, first.table->columns()});
   const EnsembleReport r = compute(parts, cases, out, o.quiet);
   const std::string write_error = out.close(r);

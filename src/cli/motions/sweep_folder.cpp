@@ -12,6 +12,8 @@
 #include "cli/motions/progress.h"
 #include "cli/motions/sweep_output.h"
 #include "cli/say.h"
+#include "ensemble/parts/judgement.h"
+#include "ensemble/refine/refine.h"
 #include "result/file.h"
 #include "result/parquet/parquet_sweep.h"
 
@@ -20,16 +22,6 @@ namespace anholon::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Throws UsageError for a Failure of a store.
-template <class F>
-auto or_refuse(const F& f) {
-  try {
-    return f();
-  } catch (const Failure& e) {
-    throw UsageError{print(e.diagnostic, {})};
-  }
-}
 
 // --shard i/N: every N-th part, from the i-th on.
 struct Shard {
@@ -51,13 +43,44 @@ Shard shard_of(const std::string& word) {
   return s;
 }
 
-std::size_t chunk_asked(const std::string& word) {
-  std::size_t chunk = 0;
-  const auto [end, why] = std::from_chars(word.data(), word.data() + word.size(), chunk);
-  if (why != std::errc() || end != word.data() + word.size() || chunk < 1 || chunk > kMostInPart)
-    throw UsageError{"error: --chunk takes a number of cases from 1 to " + std::to_string(kMostInPart) + ", not '" +
-                     word + "'\n"};
-  return chunk;
+// A whole number from `least` to `most`.
+std::size_t count_asked(const char* option, const char* what, const std::string& word, std::size_t least,
+                        std::size_t most) {
+  std::size_t count = 0;
+  const auto [end, why] = std::from_chars(word.data(), word.data() + word.size(), count);
+  if (why != std::errc() || end != word.data() + word.size() || count < least || count > most)
+    throw UsageError{"error: " + std::string(option) + " takes a number of " + what + " from " + std::to_string(least) +
+                     " to " + std::to_string(most) + ", not '" + word + "'\n"};
+  return count;
+}
+
+// --refine and --refine-by.
+struct Refinement {
+  std::size_t generations = 0;  // after the first one
+  RefineRule rule;
+};
+
+Refinement refinement_of(const Options& o, const FolderSweep& sweep, const std::vector<std::string>& columns) {
+  constexpr std::size_t kMost = 30;  // a grid that is 10^9 times as fine
+  Refinement r;
+  if (o.refine.empty() && o.refine_by.empty()) return r;
+  if (o.refine.empty())
+    throw UsageError{
+        "error: --refine-by tells what a border is, and --refine how often it is refined\nhint: --refine 4 "
+        "--refine-by " +
+        o.refine_by + "\n"};
+  r.generations = count_asked("--refine", "generations", o.refine, 1, kMost);
+  try {
+    r.rule = refine_rule(o.refine_by);
+  } catch (const MistakeInWord& m) {
+    throw UsageError{print(m.diagnostic, SourceText{"--refine-by", m.word})};
+  }
+  if (!sweep.variation)
+    throw UsageError{
+        "error: the cases of a file are no grid, and --refine has nothing to halve\nhint: a sweep for each "
+        "case: --case NAME\n"};
+  must_be_refinable(*sweep.variation, columns, r.rule);
+  return r;
 }
 
 std::string outcome_list(const std::map<std::string, std::size_t>& outcomes) {
@@ -78,9 +101,32 @@ double left(const SweepStore::Progress& p) {
   return p.cases_per_second > 0 ? static_cast<double>(p.all_cases - p.cases) / p.cases_per_second : 0;
 }
 
+// "160 + 24 + 31 cases", empty if there is one generation.
+std::string generation_list(const SweepStore& store) {
+  std::string list;
+  if (store.generations().size() == 1) return list;
+  for (const Generation& g : store.generations()) list += (list.empty() ? "" : " + ") + std::to_string(g.cases);
+  return list + " cases";
+}
+
+// The sentences that say how far the cases can be trusted.
+void say_judgement(const SweepStore& store, std::FILE* to) {
+  for (const std::string& line : judgement_text(store.judgement())) say(to, "%s\n", line.c_str());
+}
+
+// A JSON object, to which the judgement of the folder is added.
+std::string with_judgement(std::string object, const SweepStore& store) {
+  const std::string judgement = store.judgement();
+  if (judgement_text(judgement).empty()) return object;
+  object.resize(object.rfind('}'));
+  while (object.ends_with('\n') || object.ends_with(' ')) object.pop_back();
+  return object + ",\n  \"judgement\": " + judgement.substr(0, judgement.find_last_not_of('\n') + 1) + "\n}";
+}
+
 void say_progress(const SweepStore& store, const SweepStore::Progress& p) {
   say(stderr, "%s: %zu of %zu parts, %zu of %zu cases%s%s\n", store.folder().c_str(), p.parts, p.all_parts, p.cases,
       p.all_cases, p.outcomes.empty() ? "" : ": ", outcome_list(p.outcomes).c_str());
+  if (const std::string list = generation_list(store); !list.empty()) say(stderr, "generations: %s\n", list.c_str());
 }
 
 bool all_finished(const SweepStore::Progress& p) {
@@ -95,41 +141,110 @@ bool names_folder(const std::string& output) {
   return output.ends_with('/') || fs::is_directory(output, none);
 }
 
-int sweep_into_folder(const Options& o, const FolderSweep& sweep) {
-  const Shard shard = shard_of(o.shard);
-  SweepRequest request{sweep.asked, {}, sweep.cases, o.chunk.empty() ? 0 : chunk_asked(o.chunk)};
-  for (const SweepColumn& c : sweep.pieces.front().table->columns()) request.columns.push_back(c.name);
-  if (request.chunk == 0) request.chunk = SweepStore::is_there(o.output) ? 1 : cases_in_part(sweep.pieces);
-  const SweepStore store = or_refuse([&] { return SweepStore::open(o.output, request, "anholon " ANHOLON_VERSION); });
-  if (!o.chunk.empty() && store.request().chunk != request.chunk)
-    say(stderr, "note: the parts of %s have %zu cases; --chunk holds for new folders\n", store.folder().c_str(),
-        store.request().chunk);
+namespace {
 
+// What `fill_missing` did for one generation.
+struct Missing {
+  bool complete = false;
+  int status = kOk;  // if it is not complete
+};
+
+// Computes the parts of the share that are missing.
+Missing fill_missing(const Options& o, const FolderSweep& sweep, const SweepStore& store, const Shard& shard) {
   FillOptions fill_options;
-  fill_options.parts = or_refuse([&] { return parts_to_do(store, shard.number, shard.of); });
+  fill_options.parts = parts_to_do(store, shard.number, shard.of);
   fill_options.cancelled = stop_requested;
   std::size_t cases = 0;
   for (const std::size_t part : fill_options.parts) cases += store.range(part).second - store.range(part).first;
+  std::vector<SweepPiece> pieces = sweep.pieces;
+  EnsembleOptions of_all = *pieces.front().options;
+  if (store.generations().size() > 1) {
+    if (!sweep.variation) throw UsageError{"error: the sweep in " + store.folder() + " was refined\n"};
+    of_all.cases = store.cases();
+    of_all.numbers = numbers_of(store, *sweep.variation);
+    pieces.front().options = &of_all;
+  }
   Filled filled;
   {
     Progress progress(o.quiet, "case", "cases");
     fill_options.progress = [&](std::size_t done) {
       progress(static_cast<double>(done) / static_cast<double>(cases), static_cast<double>(done), done);
     };
-    if (cases > 0) filled = fill(store, sweep.pieces, fill_options);
+    if (cases > 0) filled = fill(store, pieces, fill_options);
   }
   if (!filled.error.empty()) {
     say(stderr, "error: %s\nhint: the parts before it are kept; the same command goes on\n", filled.error.c_str());
-    return kBadInput;
+    return {false, kBadInput};
   }
-  const SweepStore::Progress p = or_refuse([&] { return store.progress(); });
-  if (!o.quiet) say_progress(store, p);
-  if (filled.parts < fill_options.parts.size()) {
-    print_outcome({OutcomeKind::interrupted, "interrupted", "the same command goes on where this one stopped"});
-    return kStopped;
+  return {filled.parts == fill_options.parts.size(), kStopped};
+}
+
+// Judges some cases of a complete folder, once. Returns false after Ctrl-C.
+bool judge(const FolderSweep& sweep, const SweepStore& store) {
+  if (!store.judgement().empty()) return true;
+  EnsembleReport all;
+  bool asked = false;
+  for (const SweepPiece& piece : sweep.pieces) {
+    add_report(all, judge_piece(piece, stop_requested));
+    asked = asked || piece.options->estimate != ErrorEstimate::never;
+    if (!all.outcome.ok()) return false;
   }
+  if (!asked) return true;
+  JsonWriter lines;
+  lines.open_array();
+  for (const std::string& line : judgement_lines(all)) lines.string(line);
+  const std::string error = store.add_judgement("{\n  \"error_estimate\": " + error_json(all.error) +
+                                                ",\n  \"residuals\": " + residuals_json(all.residuals) +
+                                                ",\n  \"text\": " + lines.close().text() + "\n}\n");
+  if (!error.empty()) say(stderr, "error: %s\n", error.c_str());
+  return true;
+}
+
+int stopped_early(const Options& o, const SweepStore& store) {
+  if (!o.quiet) say_progress(store, store.progress());
+  print_outcome({OutcomeKind::interrupted, "interrupted", "the same command goes on where this one stopped"});
+  return kStopped;
+}
+
+}  // namespace
+
+int sweep_into_folder(const Options& o, const FolderSweep& sweep) {
+  const Shard shard = shard_of(o.shard);
+  SweepRequest request{
+      sweep.asked, {}, sweep.cases, o.chunk.empty() ? 0 : count_asked("--chunk", "cases", o.chunk, 1, kMostInPart)};
+  request.model_name = o.model;
+  for (const SweepColumn& c : sweep.pieces.front().table->columns()) request.columns.push_back(c.name);
+  const Refinement refinement = refinement_of(o, sweep, request.columns);
+  if (request.chunk == 0) request.chunk = SweepStore::is_there(o.output) ? 1 : cases_in_part(sweep.pieces);
+  SweepStore store = SweepStore::open(o.output, request, "anholon " ANHOLON_VERSION);
+  if (!o.chunk.empty() && store.request().chunk != request.chunk)
+    say(stderr, "note: the parts of %s have %zu cases; --chunk holds for new folders\n", store.folder().c_str(),
+        store.request().chunk);
+
+  bool waits = false, ended = false;  // for other shares; without a border
+  for (;;) {
+    const Missing now = fill_missing(o, sweep, store, shard);
+    if (!now.complete) return now.status == kStopped ? stopped_early(o, store) : now.status;
+    if (store.generations().size() > refinement.generations) break;
+    store.look_for_generations();
+    waits = !store.missing().empty();
+    if (waits && shard.of > 1) break;
+    if (waits) continue;
+    if (stop_requested()) return stopped_early(o, store);
+    ended = add_generation(store, *sweep.variation, refinement.rule) == 0;
+    if (ended) break;
+  }
+  const SweepStore::Progress p = store.progress();
+  if (p.parts == p.all_parts && !judge(sweep, store)) return stopped_early(o, store);
+  if (!o.quiet) say_progress(store, p), say_judgement(store, stderr);
   if (!o.quiet && p.parts < p.all_parts)
     say(stderr, "this share is complete; the others are missing: %zu parts\n", p.all_parts - p.parts);
+  if (waits && shard.of > 1) {
+    say(stderr, "generation %zu begins when all shares are complete: then give the same commands again\n",
+        store.generations().size());
+    return kStopped;
+  }
+  if (!o.quiet && ended) say(stderr, "no border is left after generation %zu\n", store.generations().size() - 1);
   return all_finished(p) ? kOk : kStopped;
 }
 
@@ -137,14 +252,15 @@ namespace {
 
 // Prints one line every few seconds until all parts are there, or Ctrl-C. What was written since the last line tells how
 // fast the cases come now.
-void watch(const SweepStore& store) {
+void watch(SweepStore& store) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::seconds kPause{2};
   catch_stop("");
   std::size_t before = 0;
   std::optional<Clock::time_point> last;
   while (!stop_requested()) {
-    const SweepStore::Progress p = or_refuse([&] { return store.progress(); });
+    store.look_for_generations();
+    const SweepStore::Progress p = store.progress();
     const Clock::time_point now = Clock::now();
     const double seconds = last ? std::chrono::duration<double>(now - *last).count() : 0;
     const double speed =
@@ -165,10 +281,10 @@ void watch(const SweepStore& store) {
 }  // namespace
 
 int sweep_status(const Options& o) {
-  const SweepStore store = or_refuse([&] { return SweepStore::open(o.folder); });
+  SweepStore store = SweepStore::open(o.folder);
   if (o.watch && o.json) throw UsageError{"error: --watch and --json exclude each other\n"};
   if (o.watch) watch(store);
-  const SweepStore::Progress p = or_refuse([&] { return store.progress(); });
+  const SweepStore::Progress p = store.progress();
   if (o.json) {
     JsonWriter j;
     j.open_object().key("folder").string(store.folder());
@@ -179,12 +295,22 @@ int sweep_status(const Options& o) {
     j.key("seconds_left").number(number_text(left(p)));
     j.key("outcomes").open_object();
     for (const auto& [outcome, cases] : p.outcomes) count(outcome.c_str(), cases);
-    hand_out(j.close().close().text() + "\n");
+    j.close().key("generations").open_array();
+    for (std::size_t g = 0; g < store.generations().size(); ++g) {
+      const Generation& of = store.generations()[g];
+      j.open_object();
+      count("first_case", of.first_case), count("cases", of.cases), count("first_part", of.first_part);
+      count("parts", p.parts_there[g]), count("all_parts", of.parts);
+      j.close();
+    }
+    hand_out(with_judgement(j.close().close().text(), store) + "\n");
     return p.parts == p.all_parts ? kOk : kStopped;
   }
   say(stdout, "%s: %zu of %zu parts, %zu of %zu cases\n", store.folder().c_str(), p.parts, p.all_parts, p.cases,
       p.all_cases);
+  if (const std::string list = generation_list(store); !list.empty()) say(stdout, "generations: %s\n", list.c_str());
   if (!p.outcomes.empty()) say(stdout, "outcomes: %s\n", outcome_list(p.outcomes).c_str());
+  say_judgement(store, stdout);
   if (p.parts < p.all_parts && p.cases_per_second > 0)
     say(stdout, "lately %.3g cases per second; %s left\n", p.cases_per_second, duration(left(p)).c_str());
   if (p.unfinished > 0)
@@ -194,9 +320,9 @@ int sweep_status(const Options& o) {
 }
 
 int sweep_collect(const Options& o) {
-  const SweepStore store = or_refuse([&] { return SweepStore::open(o.folder); });
+  const SweepStore store = SweepStore::open(o.folder);
   const ResultFormat& format = sweep_format(o);
-  const std::vector<std::size_t> parts = or_refuse([&] { return store.present(); });
+  const std::vector<std::size_t> parts = store.present();
   if (parts.size() < store.parts() && !o.partial)
     throw UsageError{"error: " + std::to_string(store.parts() - parts.size()) + " of " + std::to_string(store.parts()) +
                      " parts are missing in " + store.folder() +
@@ -209,26 +335,26 @@ int sweep_collect(const Options& o) {
   std::unique_ptr<SweepWriter> file;
   std::size_t cases = 0;
   for (const std::size_t part : parts) {
-    const ParquetTable rows = or_refuse([&] { return store.read(part); });
+    const ParquetTable rows = store.read(part);
     if (!file) {
       info.columns = columns_of(rows);
       file = format.open_sweep(o.output, info);
       if (!file->error().empty()) throw UsageError{"error: " + file->error() + "\n"};
     }
-    or_refuse([&] { return give_rows(rows, info.columns, *file), 0; });
+    give_rows(rows, info.columns, *file);
     cases += store.range(part).second - store.range(part).first;
     if (!file->error().empty()) break;
   }
   if (!file) throw UsageError{"error: no part is in " + store.folder() + "\n"};
-  const SweepStore::Progress p = or_refuse([&] { return store.progress(); });
+  const SweepStore::Progress p = store.progress();
   JsonWriter j;
   j.open_object().key("cases").integer(static_cast<long long>(cases)).key("outcomes").open_object();
   for (const auto& [outcome, count] : p.outcomes) j.key(outcome).integer(static_cast<long long>(count));
-  if (const std::string why = file->close(j.close().close().text()); !why.empty()) {
+  if (const std::string why = file->close(with_judgement(j.close().close().text(), store)); !why.empty()) {
     say(stderr, "error: %s\n", why.c_str());
     return kBadInput;
   }
-  if (!o.quiet) say_progress(store, p);
+  if (!o.quiet) say_progress(store, p), say_judgement(store, stderr);
   return kOk;
 }
 

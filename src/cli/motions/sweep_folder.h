@@ -2,6 +2,7 @@
 #pragma once
 #include "cli/input.h"
 #include "ensemble/parts/fill.h"
+#include "ensemble/variation.h"
 
 namespace anholon::cli {
 
@@ -12,6 +13,7 @@ struct FolderSweep {
   std::vector<SweepPiece> pieces;
   std::vector<std::pair<std::string, std::string>> asked;  // as in SweepRequest
   std::size_t cases = 0;
+  const Variation* variation = nullptr;  // of the only piece; null if there are several
 };
 
 // Computes what is missing in the folder, or what is missing in the share that --shard names. Returns the exit status.

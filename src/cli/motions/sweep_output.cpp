@@ -3,50 +3,11 @@
 #include "base/json.h"
 #include "cli/motions/report_text.h"
 #include "cli/say.h"
-#include "simulation/report_json.h"
+#include "ensemble/parts/judgement.h"
 
 namespace anholon::cli {
 
 namespace {
-
-void write_cases(JsonWriter& j, const char* key, const std::vector<std::size_t>& cases) {
-  j.key(key).open_array();
-  for (std::size_t k : cases) j.integer(static_cast<long long>(k));
-  j.close();
-}
-
-// An object that stands in another one.
-std::string within(std::string text) {
-  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3) text.insert(at + 1, "  ");
-  return text;
-}
-
-std::string error_json(const CasesError& e) {
-  JsonWriter j;
-  j.open_object();
-  if (!e.error)
-    return j.key("digits").null().key("reason").string(e.none.empty() ? "not asked for" : e.none).close().text();
-  write_error(j, *e.error);
-  j.key("worst_case").integer(static_cast<long long>(e.worst));
-  write_cases(j, "compared", e.cases);
-  return within(j.close().text());
-}
-
-std::string residuals_json(const CasesResiduals& r) {
-  JsonWriter j;
-  j.open_object();
-  if (r.cases.empty()) {
-    write_cases(j, "checked", r.cases);
-    return within(j.key("reason").string(r.none.empty() ? "not asked for" : r.none).close().text());
-  }
-  for (const auto& [key, worst] :
-       {std::pair{"newton", &r.newton}, std::pair{"constraints", &r.constraints}, std::pair{"power", &r.power}}) {
-    j.key(key).open_object().key("worst").number(number_text(worst->residual));
-    j.key("case").integer(static_cast<long long>(worst->number)).close();
-  }
-  write_cases(j, "checked", r.cases);
-  return within(j.close().text());
-}
 
 std::string list_of(const std::vector<std::size_t>& cases) {
   std::string list;
@@ -134,26 +95,32 @@ void add_report(EnsembleReport& all, const EnsembleReport& next) {
   if (!next.residuals.none.empty()) r.none = next.residuals.none;
 }
 
+std::vector<std::string> judgement_lines(const EnsembleReport& r) {
+  std::vector<std::string> lines;
+  const std::string compared = list_of(r.error.cases);
+  if (r.error.error)
+    lines.push_back("digits to trust" + digits_to_trust(*r.error.error) + "; " +
+                    (r.error.cases.size() == 1
+                         ? "of case " + compared
+                         : "of the cases " + compared + " the worst is " + std::to_string(r.error.worst)));
+  else if (!r.error.none.empty())
+    lines.push_back("digits to trust: not estimated, " + r.error.none);
+  const CasesResiduals& all = r.residuals;
+  if (!all.cases.empty())
+    lines.push_back(std::string("residuals (relative) of the ") + (all.cases.size() == 1 ? "case " : "cases ") +
+                    list_of(all.cases) + ": Newton's law " + worst_text(all, all.newton) + ", constraints " +
+                    worst_text(all, all.constraints) + ", power balance " + worst_text(all, all.power));
+  else if (!all.none.empty())
+    lines.push_back("residuals: not looked at, " + all.none);
+  return lines;
+}
+
 void report_sweep(const EnsembleReport& r, std::size_t cases, const SweepOutput& out) {
   std::string list;
   for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);
   say(stderr, "%zu of %zu cases: %zu finished%s; %.3g s on %zu %s\n", r.done, cases, r.finished, list.c_str(),
       r.seconds, r.threads, r.threads == 1 ? "thread" : "threads");
-  const std::string compared = list_of(r.error.cases);
-  if (r.error.error)
-    say(stderr, "digits to trust%s; %s\n", digits_to_trust(*r.error.error).c_str(),
-        r.error.cases.size() == 1
-            ? ("of case " + compared).c_str()
-            : ("of the cases " + compared + " the worst is " + std::to_string(r.error.worst)).c_str());
-  else if (!r.error.none.empty())
-    say(stderr, "digits to trust: not estimated, %s\n", r.error.none.c_str());
-  const CasesResiduals& all = r.residuals;
-  if (!all.cases.empty())
-    say(stderr, "residuals (relative) of the %s %s: Newton's law %s, constraints %s, power balance %s\n",
-        all.cases.size() == 1 ? "case" : "cases", list_of(all.cases).c_str(), worst_text(all, all.newton).c_str(),
-        worst_text(all, all.constraints).c_str(), worst_text(all, all.power).c_str());
-  else if (!all.none.empty())
-    say(stderr, "residuals: not looked at, %s\n", all.none.c_str());
+  for (const std::string& line : judgement_lines(r)) say(stderr, "%s\n", line.c_str());
 }
 
 void report_stopped(const SweepOutput& out) {

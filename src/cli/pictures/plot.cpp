@@ -13,6 +13,8 @@
 #include "cli/motions/result_file.h"
 #include "cli/motions/run_formulas.h"
 #include "cli/pictures/plot_sweep.h"
+#include "cli/pictures/sweep_cases.h"
+#include "cli/pictures/sweep_page.h"
 #include "cli/say.h"
 #include "plot/drawing.h"
 #include "plot/terminal.h"
@@ -24,14 +26,17 @@ namespace {
 
 using namespace anholon::plot;
 
-enum class Target { terminal, svg, pdf, png, tex };
+enum class Target { terminal, svg, pdf, png, tex, html };
 
 Target target(const std::string& path) {
   if (path.empty()) return Target::terminal;
   const std::size_t dot = path.rfind('.');
   const std::string end = dot == std::string::npos ? "" : path.substr(dot + 1);
-  for (const auto& [name, t] :
-       {std::pair{"svg", Target::svg}, {"pdf", Target::pdf}, {"png", Target::png}, {"tex", Target::tex}})
+  for (const auto& [name, t] : {std::pair{"svg", Target::svg},
+                                {"pdf", Target::pdf},
+                                {"png", Target::png},
+                                {"tex", Target::tex},
+                                {"html", Target::html}})
     if (end == name) return t;
   throw UsageError{"error: a figure '" + path +
                    "' cannot be drawn\nhint: a name that ends in .svg, .pdf, .png or .tex\n"};
@@ -180,19 +185,33 @@ int plot(const Options& o) {
   given.rows = 0;
   take_size(o.size, t, options, given);
 
-  const bool of_sweep = is_sweep_folder(o.model);
+  const bool of_sweep = SweepCases::are_in(o.model);
   if (!of_sweep && !o.ordinate.empty())
-    throw UsageError{"error: --y belongs to the folder of a sweep\nhint: anholon plot run.h5 NAME\n"};
+    throw UsageError{"error: --y belongs to a sweep\nhint: anholon plot run.h5 NAME\n"};
+  if (!of_sweep && !o.histogram.empty())
+    throw UsageError{
+        "error: --histogram belongs to a sweep\nhint: anholon plot falls/ --histogram theta -o theta.svg\n"};
+  if (!of_sweep && t == Target::html)
+    throw UsageError{
+        "error: a page shows a sweep, or the motion of a model\nhint: anholon report MODEL -o page.html\n"};
   RunFile run;
   if (of_sweep) {
     if (t == Target::terminal || t == Target::tex)
-      throw UsageError{"error: a sweep is drawn as .svg, .pdf or .png\nhint: -o falls.svg\n"};
-    SweepPicture picture = picture_of_sweep(o);
-    if (picture.map) {
-      picture.map->labels = options.labels;
-      if (!o.size.empty()) picture.map->width = options.width, picture.map->height = options.height;
-      if (const std::string why = write_drawing(lay_out(*picture.map), o.title, t, o.output); !why.empty())
+      throw UsageError{"error: a sweep is drawn as .svg, .pdf, .png or .html\nhint: -o falls.svg\n"};
+    if (t == Target::html) {
+      if (const std::string why = write_whole(o.output, page_of_sweep(o)); !why.empty())
         throw UsageError{"error: " + why + "\n"};
+      return kOk;
+    }
+    SweepPicture picture = picture_of_sweep(o);
+    if (picture.map || picture.histogram) {
+      const auto draw = [&](auto& drawn) {
+        drawn.labels = options.labels;
+        if (!o.size.empty()) drawn.width = options.width, drawn.height = options.height;
+        if (const std::string why = write_drawing(lay_out(drawn), o.title, t, o.output); !why.empty())
+          throw UsageError{"error: " + why + "\n"};
+      };
+      picture.map ? draw(*picture.map) : draw(*picture.histogram);
       return kOk;
     }
     run = std::move(picture.table);

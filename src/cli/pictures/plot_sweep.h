@@ -2,21 +2,20 @@
 #pragma once
 #include "cli/input.h"
 #include "plot/heat_map.h"
+#include "plot/histogram.h"
 
 namespace anholon::cli {
 
-// Whether a path is the folder of a sweep.
-bool is_sweep_folder(const std::string& path);
-
-// Either a map over two variations or a table over one.
+// A map over two variations, a histogram, or a table over one variation.
 struct SweepPicture {
   std::optional<plot::HeatMap> map;
-  RunFile table;         // without a map: the variation, and what is shown over it
+  std::optional<plot::Histogram> histogram;
+  RunFile table;         // without these: the variation, and what is shown over it
   std::string abscissa;  // of the table
 };
 
-// What a sweep in a folder shows: the column that --column names (default: how the cases ended) over --x and --y
-// (default: the first two that vary). Throws UsageError.
+// What a sweep in a folder or a file shows: the column that --column names (default: how the cases ended) over --x and --y
+// (default: the first two that vary). Throws Failure without a place.
 SweepPicture picture_of_sweep(const Options& o);
 
 }  // namespace anholon::cli

@@ -24,6 +24,7 @@ std::string request_json(const SweepRequest& r, const std::string& program) {
   for (const auto& [name, text] : r.asked) j.key(name).string(text);
   j.close();
   if (!r.recipe.empty()) j.key("recipe").string(r.recipe);
+  if (!r.model_name.empty()) j.key("model_name").string(r.model_name);
   return j.close().text() + "\n";
 }
 
@@ -56,7 +57,20 @@ SweepRequest request_of(const std::string& text, const std::string& path) {
   }
   if (const auto recipe = j.find("recipe"); recipe != j.end() && recipe->is_string())
     r.recipe = recipe->get<std::string>();
+  if (const auto named = j.find("model_name"); named != j.end() && named->is_string())
+    r.model_name = named->get<std::string>();
   return r;
+}
+
+std::vector<std::string> judgement_text(const std::string& json) {
+  using Json = nlohmann::ordered_json;
+  std::vector<std::string> lines;
+  const Json j = Json::parse(json, nullptr, false);
+  if (!j.is_object()) return lines;
+  if (const auto text = j.find("text"); text != j.end() && text->is_array())
+    for (const Json& line : *text)
+      if (line.is_string()) lines.push_back(line.get<std::string>());
+  return lines;
 }
 
 }  // namespace anholon

@@ -16,11 +16,16 @@ struct SweepRequest {
   std::size_t chunk = 0;  // cases of a part
   // How a program makes the request again, in words of its own; it does not distinguish sweeps.
   std::string recipe = {};
+  // The name by which a command found the model; it does not distinguish sweeps either.
+  std::string model_name = {};
 };
 
 // The version of the program is told and does not distinguish sweeps.
 std::string request_json(const SweepRequest& request, const std::string& program);
 // Throws Failure without a place; `path` names the file in messages.
 SweepRequest request_of(const std::string& json, const std::string& path);
+
+// The sentences of a judgement, which is kept as JSON; empty if the text holds none.
+std::vector<std::string> judgement_text(const std::string& json);
 
 }  // namespace anholon

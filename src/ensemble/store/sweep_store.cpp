@@ -24,7 +24,12 @@ namespace fs = std::filesystem;
 
 constexpr const char* kRequest = "sweep.json";
 constexpr std::string_view kPart = "part-", kEnding = ".parquet";
-constexpr const char *kSweepNote = "anholon.sweep", *kFirstNote = "anholon.first", *kOutcomesNote = "anholon.outcomes";
+constexpr const char *kSweepNote = "anholon.sweep", *kFirstNote = "anholon.first", *kOutcomesNote = "anholon.outcomes",
+                     *kRuleNote = "anholon.rule";
+// Readers of a folder as one table leave out names that begin so.
+constexpr const char* kPlan = "_generation-";
+constexpr const char* kJudgement = "_judgement.json";
+constexpr const char* kRemove = "remove it; the same command of the sweep computes it again";
 
 // Differences in a long text are not printed.
 std::string shown(const std::string& text) {
@@ -144,8 +149,9 @@ FileEnd end_of(const std::string& path) {
 SweepStore::SweepStore(std::string folder, SweepRequest request)
     : folder_(std::move(folder)), request_(std::move(request)) {
   SweepRequest distinguished = request_;
-  distinguished.recipe.clear();
+  distinguished.recipe.clear(), distinguished.model_name.clear();
   id_ = sha256_text(request_json(distinguished, ""));
+  add(request_.cases, {});
 }
 
 bool SweepStore::is_there(const std::string& folder) {
@@ -158,7 +164,9 @@ SweepStore SweepStore::open(const std::string& named) {
   if (!is_there(folder))
     throw Failure({}, folder + " is no folder of a sweep: it holds no " + kRequest,
                   "anholon sweep MODEL --vary … -o " + folder + "/ makes one");
-  return {folder, request_of(read_or_fail(folder + "/" + kRequest), folder + "/" + kRequest)};
+  SweepStore store{folder, request_of(read_or_fail(folder + "/" + kRequest), folder + "/" + kRequest)};
+  store.look_for_generations();
+  return store;
 }
 
 SweepStore SweepStore::open(const std::string& named, const SweepRequest& wanted, const std::string& program) {
@@ -189,10 +197,83 @@ const std::string& SweepStore::asked(const std::string& name) const {
   return none;
 }
 
-std::size_t SweepStore::parts() const { return (request_.cases + request_.chunk - 1) / request_.chunk; }
+std::size_t generation_of(const std::vector<Generation>& generations, std::size_t number) {
+  std::size_t g = generations.size() - 1;
+  while (g > 0 && generations[g].first_case > number) --g;
+  return g;
+}
+
+void SweepStore::add(std::size_t cases, std::string rule) {
+  Generation g{0, cases, 0, (cases + request_.chunk - 1) / request_.chunk, std::move(rule)};
+  if (!generations_.empty()) g.first_case = this->cases(), g.first_part = parts();
+  generations_.push_back(std::move(g));
+}
+
+std::string SweepStore::plan_path(std::size_t generation) const {
+  const std::string number = std::to_string(generation);
+  return folder_ + "/" + kPlan + (number.size() < 2 ? "0" : "") + number + std::string(kEnding);
+}
+
+void SweepStore::look_for_generations() {
+  std::error_code none;
+  for (std::string path; fs::exists(path = plan_path(generations_.size()), none);) try {
+      const FileEnd read = end_of(path);
+      const ParquetSummary end = parquet_summary(read.bytes);
+      ParquetTable notes;
+      notes.notes = end.notes;
+      if (notes.note(kSweepNote) != id_ || notes.note(kFirstNote) != std::to_string(cases()) || end.rows == 0)
+        throw Failure({}, "it belongs to another sweep");
+      add(end.rows, std::string(notes.note(kRuleNote)));
+    } catch (const Failure& f) {
+      throw Failure({}, path + ": " + f.diagnostic.message, "remove it; the same command of the sweep plans it again");
+    }
+}
+
+void SweepStore::add_generation(const std::vector<std::int64_t>& places, std::size_t axes, const std::string& rule) {
+  ParquetTable table;
+  for (std::size_t axis = 0; axis < axes; ++axis) {
+    std::vector<std::int64_t> along;
+    for (std::size_t k = axis; k < places.size(); k += axes) along.push_back(places[k]);
+    table.columns.push_back({"axis " + std::to_string(axis + 1), std::move(along)});
+  }
+  table.notes = {{kSweepNote, id_}, {kFirstNote, std::to_string(cases())}, {kRuleNote, rule}};
+  const std::string bytes = parquet_bytes(table), path = plan_path(generations_.size());
+  const Committed done = commit_file(folder_, fs::path(path).filename().string(), bytes);
+  if (done.how == Committed::How::failed) throw Failure({}, done.error);
+  if (done.how == Committed::How::other && read_or_fail(path) != bytes)
+    throw Failure({}, path + " has other points than those planned here",
+                  "another process refines the folder by another rule, or it was changed");
+  add(places.size() / axes, rule);
+}
+
+std::vector<std::int64_t> SweepStore::points_of(std::size_t generation) const {
+  const std::string path = plan_path(generation);
+  const std::string bytes = read_or_fail(path);
+  ParquetTable table;
+  try {
+    table = read_parquet(bytes);
+  } catch (const Failure& f) {
+    throw Failure({}, path + ": " + f.diagnostic.message, "remove it; the same command of the sweep plans it again");
+  }
+  std::vector<std::int64_t> places(table.rows() * table.columns.size());
+  for (std::size_t axis = 0; axis < table.columns.size(); ++axis) {
+    const auto* along = std::get_if<std::vector<std::int64_t>>(&table.columns[axis].values);
+    if (!along) throw Failure({}, path + " holds no points");
+    for (std::size_t k = 0; k < along->size(); ++k) places[k * table.columns.size() + axis] = (*along)[k];
+  }
+  return places;
+}
+
+std::size_t SweepStore::cases() const { return generations_.back().first_case + generations_.back().cases; }
+
+std::size_t SweepStore::parts() const { return generations_.back().first_part + generations_.back().parts; }
 
 std::pair<std::size_t, std::size_t> SweepStore::range(std::size_t part) const {
-  return {part * request_.chunk, std::min(request_.cases, (part + 1) * request_.chunk)};
+  std::size_t g = generations_.size() - 1;
+  while (g > 0 && generations_[g].first_part > part) --g;
+  const Generation& of = generations_[g];
+  const std::size_t from = of.first_case + (part - of.first_part) * request_.chunk;
+  return {from, std::min(of.first_case + of.cases, from + request_.chunk)};
 }
 
 std::string SweepStore::path_of(std::size_t part) const {
@@ -233,7 +314,7 @@ std::string SweepStore::commit(std::size_t part, ParquetTable rows) const {
 void SweepStore::check(std::size_t part, const std::string& path, std::string_view belongs,
                        std::string_view first) const {
   if (belongs != id_ || first != std::to_string(range(part).first))
-    throw Failure({}, path + " belongs to another sweep", "remove it; the same command of the sweep computes it again");
+    throw Failure({}, path + " belongs to another sweep", kRemove);
 }
 
 ParquetTable SweepStore::read(std::size_t part) const {
@@ -245,13 +326,23 @@ ParquetTable SweepStore::read(std::size_t part) const {
     return table;
   } catch (const Failure& f) {
     if (f.diagnostic.message.starts_with(path)) throw;
-    throw Failure({}, path + ": " + f.diagnostic.message, "remove it; the same command of the sweep computes it again");
+    throw Failure({}, path + ": " + f.diagnostic.message, kRemove);
   }
+}
+
+std::string SweepStore::judgement() const {
+  std::string text;
+  return read_file(folder_ + "/" + kJudgement, text, nullptr) ? text : std::string();
+}
+
+std::string SweepStore::add_judgement(const std::string& json) const {
+  return commit_file(folder_, kJudgement, json).error;
 }
 
 SweepStore::Progress SweepStore::progress() const {
   Progress p;
-  p.all_parts = parts(), p.all_cases = request_.cases;
+  p.all_parts = parts(), p.all_cases = cases();
+  p.parts_there.resize(generations_.size());
   std::vector<std::pair<double, std::size_t>> written;  // when, how many cases
   std::vector<std::size_t> there;
   for (const std::string& name : files_of(folder_)) {
@@ -265,14 +356,14 @@ SweepStore::Progress SweepStore::progress() const {
     try {
       end = parquet_summary(read.bytes);
     } catch (const Failure& f) {
-      throw Failure({}, path + ": " + f.diagnostic.message,
-                    "remove it; the same command of the sweep computes it again");
+      throw Failure({}, path + ": " + f.diagnostic.message, kRemove);
     }
     ParquetTable notes;
     notes.notes = std::move(end.notes);
     check(part, path, notes.note(kSweepNote), notes.note(kFirstNote));
     const auto [from, to] = range(part);
     ++p.parts, p.cases += to - from;
+    ++p.parts_there[generation_of(generations_, from)];
     add_outcomes(notes.note(kOutcomesNote), p.outcomes);
     written.emplace_back(read.written, to - from);
   }

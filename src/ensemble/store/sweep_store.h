@@ -16,6 +16,14 @@
 
 namespace anholon {
 
+// Cases that were planned together: the first generation is what was asked for, each further one lies at borders between
+// the cases before it. Its cases and parts are numbered after those of the generations before.
+struct Generation {
+  std::size_t first_case = 0, cases = 0, first_part = 0, parts = 0;
+  std::string rule;  // what a border is
+};
+std::size_t generation_of(const std::vector<Generation>& generations, std::size_t number_of_case);
+
 class SweepStore {
  public:
   // Opens the folder, or creates it; `wanted.chunk` holds for a new folder only. Throws Failure without a place: another
@@ -34,6 +42,18 @@ class SweepStore {
   // The text of something that was asked; empty if it was not.
   const std::string& asked(const std::string& name) const;
 
+  // In their order; the first one is always there.
+  const std::vector<Generation>& generations() const { return generations_; }
+  // Takes up the generations that other processes have added. Throws Failure as `read` does.
+  void look_for_generations();
+  // Adds a generation: the places of its points along so many axes, one point after the other. Throws Failure without a
+  // place if it cannot be written, or if another plan has its name.
+  void add_generation(const std::vector<std::int64_t>& places, std::size_t axes, const std::string& rule);
+  // The places of the points of a generation after the first. Throws Failure as `read` does.
+  std::vector<std::int64_t> points_of(std::size_t generation) const;
+
+  // Of all generations.
+  std::size_t cases() const;
   std::size_t parts() const;
   // The cases of a part: from the first to the one before the second.
   std::pair<std::size_t, std::size_t> range(std::size_t part) const;
@@ -52,19 +72,28 @@ class SweepStore {
     std::map<std::string, std::size_t> outcomes;  // cases by the name of their outcome
     double cases_per_second = 0;                  // by the times at which the last parts were written; 0: unknown
     std::size_t unfinished = 0;                   // files of parts under way, or of processes that were killed
+    std::vector<std::size_t> parts_there;         // of each generation
   };
   // Reads the ends of all parts. Throws Failure as `read` does.
   Progress progress() const;
 
   std::string path_of(std::size_t part) const;
 
+  // How far the cases can be trusted, a JSON object; empty if the folder does not say so. The first text that is added
+  // stays. Returns an empty string, or the reason why it could not be written.
+  std::string judgement() const;
+  std::string add_judgement(const std::string& json) const;
+
  private:
   SweepStore(std::string folder, SweepRequest request);
+  void add(std::size_t cases, std::string rule);
+  std::string plan_path(std::size_t generation) const;
   void check(std::size_t part, const std::string& path, std::string_view belongs, std::string_view first) const;
 
   std::string folder_;
   SweepRequest request_;
   std::string id_;  // hash of the request
+  std::vector<Generation> generations_;
   bool made_here_ = false;
 };
 

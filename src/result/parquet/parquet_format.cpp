@@ -1,4 +1,6 @@
 // The row of Parquet in the table of formats.
+#include <optional>
+
 #include "result/file.h"
 #include "result/format.h"
 #include "result/parquet/parquet_sweep.h"
@@ -52,8 +54,8 @@ RunFile read_run_of_parquet(std::string_view bytes) {
 // Keeps the rows until the end: a Parquet file has its columns one after the other.
 class ParquetRunWriter final : public RunWriter {
  public:
-  explicit ParquetRunWriter(const std::string& path) : path_(path), claim_(path), sink_(run_), error_(claim_.error()) {
-    if (error_.empty()) error_ = obstacle_to_writing(path);
+  explicit ParquetRunWriter(const std::string& path) : path_(path), sink_(run_), error_(obstacle_to_writing(path)) {
+    if (error_.empty()) error_ = claim_.emplace(path).error();
   }
   const std::string& error() const override { return error_; }
   void columns(const std::vector<RunColumn>& columns) override { sink_.columns(columns); }
@@ -62,12 +64,13 @@ class ParquetRunWriter final : public RunWriter {
   std::string close(const std::string& report) override {
     if (!error_.empty()) return error_;
     run_.report = report;
+    claim_.reset();  // the function that writes takes its own
     return error_ = write_table(path_, table_of(run_));
   }
 
  private:
   std::string path_;
-  WritingClaim claim_;
+  std::optional<WritingClaim> claim_;
   RunFile run_;
   RunSink sink_;
   std::string error_;
@@ -76,8 +79,8 @@ class ParquetRunWriter final : public RunWriter {
 class ParquetSweepWriter final : public SweepWriter {
  public:
   ParquetSweepWriter(const std::string& path, const SweepInfo& info)
-      : path_(path), claim_(path), rows_(info.columns), error_(claim_.error()) {
-    if (error_.empty()) error_ = obstacle_to_writing(path);
+      : path_(path), rows_(info.columns), error_(obstacle_to_writing(path)) {
+    if (error_.empty()) error_ = claim_.emplace(path).error();
   }
   const std::string& error() const override { return error_; }
   void row(std::span<const SweepCell> cells) override { rows_.row(cells); }
@@ -85,12 +88,13 @@ class ParquetSweepWriter final : public SweepWriter {
     if (!error_.empty()) return error_;
     ParquetTable table = rows_.take();
     table.notes.emplace_back(kReportNote, report);
+    claim_.reset();
     return error_ = write_table(path_, table);
   }
 
  private:
   std::string path_;
-  WritingClaim claim_;
+  std::optional<WritingClaim> claim_;
   SweepRows rows_;
   std::string error_;
 };

@@ -5,6 +5,7 @@
 
 #include "base/diagnostic.h"
 #include "plot/heat_map.h"
+#include "plot/histogram.h"
 
 namespace anholon::plot::heat_map_test {
 
@@ -34,6 +35,48 @@ TEST(HeatMap, CutsManyValuesIntoCells) {
   const HeatMap m = make_heat_map(x, y, v, {});
   ASSERT_EQ(m.x.values.size(), kMostCells);
   for (std::size_t k = 0; k < kMostCells; ++k) EXPECT_NEAR(m.values[k], m.x.values[k], 1000.0 / kMostCells);
+}
+
+TEST(HeatMap, DrawsFurtherGenerationsAtTheirSizes) {
+  const NamedColumn x{"x", "", {0, 2, 6, 1, 0.5, 4}}, y{"y", "", {0, 1, 0, 0, 0, 0.5}};
+  const HeatMap m = make_heat_map(x, y, {"v", "", {1, 2, 3, 4, 5, 6}}, {}, {0, 0, 0, 1, 2, 1});
+  EXPECT_EQ(m.x.values, (std::vector<double>{0, 2, 6}));
+  ASSERT_EQ(m.finer.size(), 3U);
+  // Generation 1: half of the interval from 0 to 2, and of that from 2 to 6.
+  EXPECT_EQ(m.finer[0].from.x, 0.5);
+  EXPECT_EQ(m.finer[0].to.x, 1.5);
+  EXPECT_EQ(m.finer[0].from.y, -0.25);
+  EXPECT_EQ(m.finer[0].to.y, 0.25);
+  EXPECT_EQ(m.finer[1].from.x, 3);
+  EXPECT_EQ(m.finer[1].to.x, 5);
+  EXPECT_EQ(m.finer[1].value, 6);
+  EXPECT_EQ(m.finer[2].from.x, 0.25);
+  EXPECT_EQ(m.finer[2].to.x, 0.75);
+  const Drawing d = lay_out(m);
+  const Patch& last = d.patches.back();
+  EXPECT_NEAR(last.to.x - last.from.x,
+              (d.patches[d.patches.size() - 3].to.x - d.patches[d.patches.size() - 3].from.x) / 2, 1e-9);
+}
+
+TEST(Histogram, CountsNumbersAndWords) {
+  NamedColumn of{"v", "m", {kNone}};
+  for (int k = 0; k < 1000; ++k) of.values.push_back(k < 900 ? 0.001 * k : 2);
+  const Histogram h = make_histogram(of, {});
+  EXPECT_EQ(h.counts.size(), 20U);
+  EXPECT_EQ(h.left_out, 1U);
+  std::size_t all = 0;
+  for (const std::size_t count : h.counts) all += count;
+  EXPECT_EQ(all, 1000U);
+  EXPECT_EQ(h.counts.back(), 100U);
+  EXPECT_EQ(h.counts[10], 0U);
+  EXPECT_NEAR(static_cast<double>(h.counts[3]), 100, 1);
+  const Histogram words = make_histogram({"outcome", "", {0, 1, 0}}, {"finished", "fell"});
+  EXPECT_EQ(words.counts, (std::vector<std::size_t>{2, 1}));
+  const Drawing d = lay_out(words);
+  ASSERT_EQ(d.patches.size(), 2U);
+  EXPECT_NEAR(d.patches[0].to.y - d.patches[0].from.y, 2 * (d.patches[1].to.y - d.patches[1].from.y), 1e-9);
+  EXPECT_EQ(make_histogram({"v", "", {7, 7}}, {}).from, 3.5);
+  EXPECT_THROW(make_histogram({"v", "", {kNone}}, {}), Failure);
 }
 
 TEST(HeatMap, RefusesColumnsWithoutNumbers) {

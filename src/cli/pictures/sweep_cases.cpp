@@ -1,0 +1,236 @@
+#include "cli/pictures/sweep_cases.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include "base/read_file.h"
+#include "cli/model_options.h"
+#include "model/motion_settings.h"
+#include "modelfile/read.h"
+#include "observe/rows/row_values.h"
+#include "result/table.h"
+
+namespace anholon::cli {
+
+namespace {
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  for (std::size_t from = 0;;) {
+    const std::size_t comma = std::min(line.find(',', from), line.size());
+    cells.push_back(line.substr(from, comma - from));
+    if (comma == line.size()) return cells;
+    from = comma + 1;
+  }
+}
+
+bool heads_a_sweep(const std::vector<std::string>& names) {
+  return !names.empty() && names[0] == "case" && names.size() > 1 && names[1] != "t";
+}
+
+// The table of a CSV file that `anholon sweep` wrote. A column with a cell that is no number holds words.
+ParquetTable table_of_csv(std::string_view text, const std::string& path) {
+  ParquetTable table;
+  std::vector<std::vector<double>> numbers;
+  std::vector<Words> words;
+  std::vector<bool> worded;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.empty()) continue;
+    const std::vector<std::string_view> cells = cells_of(line);
+    if (table.columns.empty()) {
+      for (const std::string_view name : cells) table.columns.push_back({std::string(name), {}});
+      numbers.resize(cells.size()), words.resize(cells.size()), worded.resize(cells.size());
+      continue;
+    }
+    if (cells.size() != table.columns.size())
+      throw Failure({}, path + ", line " + std::to_string(number) + " has " + std::to_string(cells.size()) +
+                            " cells, and the first line names " + std::to_string(table.columns.size()));
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      double value = std::numeric_limits<double>::quiet_NaN();
+      if (!cells[k].empty() && !parse_number(cells[k], value)) worded[k] = true;
+      numbers[k].push_back(value), words[k].add(cells[k]);
+    }
+  }
+  for (std::size_t k = 0; k < table.columns.size(); ++k) {
+    const std::string& name = table.columns[k].name;
+    if (worded[k] || name == "outcome" || name == "event")
+      table.columns[k].values = std::move(words[k]);
+    else
+      table.columns[k].values = std::move(numbers[k]);
+  }
+  return table;
+}
+
+void append(std::vector<double>& to, const ParquetColumn& from, std::vector<std::string>& words) {
+  if (const auto* numbers = std::get_if<std::vector<double>>(&from.values)) {
+    to.insert(to.end(), numbers->begin(), numbers->end());
+  } else if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&from.values)) {
+    to.insert(to.end(), whole->begin(), whole->end());
+  } else {
+    const Words& w = std::get<Words>(from.values);
+    std::vector<double> places;
+    for (const std::string& word : w.different) {
+      const auto at = std::find(words.begin(), words.end(), word);
+      places.push_back(static_cast<double>(at - words.begin()));
+      if (at == words.end()) words.push_back(word);
+    }
+    for (const std::uint32_t k : w.rows) to.push_back(places[k]);
+  }
+}
+
+std::string text_of(const std::string& path) {
+  std::string text, why;
+  if (!read_file(path, text, &why)) throw Failure({}, "cannot read " + path + ": " + why);
+  return text;
+}
+
+}  // namespace
+
+bool SweepCases::are_in(const std::string& path) {
+  if (SweepStore::is_there(path)) return true;
+  if (path.ends_with(".csv")) {
+    std::string line;
+    std::ifstream file(path);
+    std::getline(file, line);
+    std::vector<std::string> names;
+    for (const std::string_view cell : cells_of(line)) names.emplace_back(cell);
+    return heads_a_sweep(names);
+  }
+  if (!path.ends_with(".parquet")) return false;
+  std::string text;
+  if (!read_file(path, text, nullptr)) return false;
+  std::vector<std::string> names;
+  try {
+    for (const ParquetColumn& c : read_parquet(text).columns) names.push_back(c.name);
+  } catch (const Failure&) {
+    return false;  // the reader of runs tells what is wrong
+  }
+  return heads_a_sweep(names);
+}
+
+SweepCases::SweepCases(const std::string& path) {
+  if (SweepStore::is_there(path)) {
+    store_ = SweepStore::open(path);
+    names_ = store_->request().columns;
+    read_model();
+  } else {
+    const std::string text = text_of(path);
+    file_ = path.ends_with(".csv") ? table_of_csv(text, path) : read_parquet(text);
+    for (const ParquetColumn& c : file_.columns) names_.push_back(c.name);
+  }
+  // What varies stands between the number of the case and its outcome.
+  for (const std::string& name : names_) {
+    if (name == "outcome") break;
+    if (name != "case" && name != "t" && name != "case_name") varied_.push_back(name);
+  }
+}
+
+void SweepCases::each_table(const std::function<void(const ParquetTable&)>& take) const {
+  if (!store_) return take(file_);
+  for (const std::size_t part : store_->present()) take(store_->read(part));
+}
+
+std::vector<plot::NamedColumn> SweepCases::read(const std::vector<std::string>& wanted,
+                                                std::vector<std::string>& words) const {
+  std::vector<plot::NamedColumn> all;
+  std::vector<std::size_t> places;
+  for (const std::string& name : wanted) {
+    const auto at = std::find(names_.begin(), names_.end(), name);
+    if (at == names_.end()) {
+      std::string list;
+      for (const std::string& n : names_) list += (list.empty() ? "" : ", ") + n;
+      throw Failure({}, "the sweep has no column '" + name + "'", "its columns are " + list);
+    }
+    places.push_back(static_cast<std::size_t>(at - names_.begin()));
+    const std::string of = name.ends_with("(0)") ? name.substr(0, name.size() - 3) : name;
+    const auto unit = units_.find(of), meaning = meanings_.find(of);
+    all.push_back(
+        {name, unit == units_.end() ? "" : unit->second, {}, meaning == meanings_.end() ? "" : meaning->second});
+  }
+  each_table([&](const ParquetTable& table) {
+    for (std::size_t k = 0; k < all.size(); ++k) append(all[k].values, table.columns.at(places[k]), words);
+  });
+  return all;
+}
+
+std::vector<unsigned> SweepCases::generations() const {
+  std::vector<unsigned> list;
+  if (!store_ || store_->generations().size() == 1) return list;
+  std::vector<std::string> none;
+  const std::vector<plot::NamedColumn> numbers = read({"case"}, none);
+  for (const double number : numbers[0].values)
+    list.push_back(static_cast<unsigned>(generation_of(store_->generations(), static_cast<std::size_t>(number))));
+  return list;
+}
+
+namespace {
+
+// "a=1 b=8 cm" as words of one name each.
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words;
+  std::size_t from = 0;
+  for (std::size_t space = text.find(' '); space != std::string::npos; space = text.find(' ', space + 1)) {
+    const std::size_t sign = text.find('=', space), next = text.find(' ', space + 1);
+    if (sign == std::string::npos || sign > next) continue;
+    words.push_back(text.substr(from, space - from));
+    from = space + 1;
+  }
+  if (from < text.size()) words.push_back(text.substr(from));
+  return words;
+}
+
+std::string quoted(const std::string& word) {
+  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_=.,+-/:") ==
+      std::string::npos)
+    return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+}  // namespace
+
+std::string SweepCases::command() const {
+  if (!store_) return {};
+  const std::string& name = store_->request().model_name;
+  std::string text = "anholon report " + quoted(name.empty() ? "model.toml" : name);
+  const auto add = [&](const std::string& option, const std::string& word) {
+    text += " --" + option + " " + quoted(word);
+  };
+  for (const ModelOption& m : model_options())
+    for (const std::string& word : words_of(store_->asked(m.name))) add(m.name, word);
+  // Python names initial values as a model file does.
+  constexpr const char* kOrders[] = {"q", "qdot", "qddot", "qdddot"};
+  for (const std::string& word : words_of(store_->asked("initial"))) {
+    const auto primes = static_cast<std::size_t>(std::count(word.begin(), word.end(), '\''));
+    std::string plain = word;
+    std::erase(plain, '\'');
+    if (primes < std::size(kOrders)) add(kOrders[primes], plain);
+  }
+  for (const MotionOption& m : motion_options())
+    if (const std::string& word = store_->asked(m.name); !word.empty() && std::string_view(m.name) != "at")
+      add(m.name, word);
+  if (store_->asked("to").empty() && !store_->asked("at").empty()) {
+    const std::string& times = store_->asked("at");
+    add("to", times.substr(times.rfind(' ') + 1));
+  }
+  return text;
+}
+
+// Units and meanings come from the model in the folder; a model that refers to files that are not there has none.
+void SweepCases::read_model() {
+  Diagnostics diagnostics;
+  const auto model = anholon::read_model(SourceText{store_->folder(), store_->asked("model")}, diagnostics);
+  if (!model) return;
+  units_ = column_units(*model);
+  for (std::size_t k = 0; k < std::min(model->parameters.size(), model->parameter_units.size()); ++k) {
+    units_.emplace(model->parameters[k].name, model->parameter_units[k]);
+    meanings_.emplace(model->parameters[k].name, model->parameters[k].doc);
+  }
+}
+
+}  // namespace anholon::cli

@@ -1,0 +1,89 @@
+#include "ensemble/parts/judgement.h"
+
+#include "base/json.h"
+#include "ensemble/cases_error.h"
+#include "simulation/report_json.h"
+
+namespace anholon {
+
+namespace {
+
+// Keeps the results.
+class KeptCases final : public CaseSink {
+ public:
+  void result(const CaseResult& result) override { list.push_back(result); }
+  std::vector<CaseResult> list;
+};
+
+void write_cases(JsonWriter& j, const char* key, const std::vector<std::size_t>& cases) {
+  j.key(key).open_array();
+  for (std::size_t k : cases) j.integer(static_cast<long long>(k));
+  j.close();
+}
+
+// An object that stands in another one.
+std::string within(std::string text) {
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3) text.insert(at + 1, "  ");
+  return text;
+}
+
+}  // namespace
+
+std::string error_json(const CasesError& e) {
+  JsonWriter j;
+  j.open_object();
+  if (!e.error)
+    return j.key("digits").null().key("reason").string(e.none.empty() ? "not asked for" : e.none).close().text();
+  write_error(j, *e.error);
+  j.key("worst_case").integer(static_cast<long long>(e.worst));
+  write_cases(j, "compared", e.cases);
+  return within(j.close().text());
+}
+
+std::string residuals_json(const CasesResiduals& r) {
+  JsonWriter j;
+  j.open_object();
+  if (r.cases.empty()) {
+    write_cases(j, "checked", r.cases);
+    return within(j.key("reason").string(r.none.empty() ? "not asked for" : r.none).close().text());
+  }
+  for (const auto& [key, worst] :
+       {std::pair{"newton", &r.newton}, std::pair{"constraints", &r.constraints}, std::pair{"power", &r.power}}) {
+    j.key(key).open_object().key("worst").number(number_text(worst->residual));
+    j.key("case").integer(static_cast<long long>(worst->number)).close();
+  }
+  write_cases(j, "checked", r.cases);
+  return within(j.close().text());
+}
+
+EnsembleReport judge_piece(const SweepPiece& piece, const std::function<bool()>& cancelled) {
+  const std::vector<std::size_t> numbers = cases_to_compare(piece.options->cases);
+  EnsembleOptions o = *piece.options;
+  o.cases = numbers.size();
+  o.numbers = [&](std::size_t k) { return piece.options->numbers(numbers[k]); };
+  o.cancelled = cancelled;
+  o.progress = {};
+  o.estimate = ErrorEstimate::never;
+  KeptCases kept;
+  EnsembleReport report = ensemble(*piece.scenario, o, kept);
+  if (!report.outcome.ok() || piece.options->estimate == ErrorEstimate::never) return report;
+  o.estimate = piece.options->estimate;
+  const auto one_by_one = [&](std::size_t count, const std::function<void(std::size_t)>& f) {
+    for (std::size_t k = 0; k < count && !(cancelled && cancelled()); ++k) f(k);
+  };
+  judge_cases(*piece.scenario, o, kept.list, one_by_one, report);
+  if (cancelled && cancelled()) report.outcome = {OutcomeKind::interrupted, "interrupted", "the same command goes on"};
+  const auto renumber = [&](std::vector<std::size_t>& list) {
+    for (std::size_t& k : list) k = numbers[k];
+  };
+  renumber(report.error.cases), renumber(report.residuals.cases);
+  if (report.error.error) report.error.worst = numbers[report.error.worst];
+  if (!report.residuals.cases.empty())
+    for (CasesResiduals::Worst* worst :
+         {&report.residuals.newton, &report.residuals.constraints, &report.residuals.power})
+      worst->number = numbers[worst->number];
+  report.done = piece.options->cases;
+  return report;
+}
+
+}  // namespace anholon

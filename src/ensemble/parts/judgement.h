@@ -1,0 +1,15 @@
+// How far a sweep in a folder can be trusted: the error and the residuals of some of its cases, as for a sweep without a
+// folder. They are computed when all parts are there, and kept in a file beside them.  (theory: integrals, certificate)
+#pragma once
+#include "ensemble/parts/fill.h"
+
+namespace anholon {
+
+// Judges the same cases of a piece that a sweep without a folder judges; the numbers in the report are those of the piece.
+EnsembleReport judge_piece(const SweepPiece& piece, const std::function<bool()>& cancelled);
+
+// The values of a report as JSON objects, for an object that holds them.
+std::string error_json(const CasesError& error);
+std::string residuals_json(const CasesResiduals& residuals);
+
+}  // namespace anholon
