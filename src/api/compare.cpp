@@ -30,6 +30,7 @@ Result<std::vector<ComparedEquation>> compared(const Model& model, const inner::
                                                const CompareOptions& options) {
   const Model::Data& data = model.data();
   return guarded(data.source, [&]() -> Result<std::vector<ComparedEquation>> {
+    data.without_contacts("compare");
     inner::Diagnostics of_model, of_equations;
     const auto open = inner::open_model(data.source, of_model, data.overrides, data.cases);
     if (!open) return error_of(of_model, data.source);

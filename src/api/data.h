@@ -1,6 +1,7 @@
 // What stands behind the types of the public headers, and how the trouble of the layers becomes theirs.
 #pragma once
 #include "anholon/motion.h"
+#include "modelfile/contacts.h"
 #include "modelfile/read.h"
 #include "setup/scenario.h"
 
@@ -14,7 +15,10 @@ struct Model::Data {
   std::vector<std::string> cases;
   std::shared_ptr<const inner::Model> model;
   std::vector<Diagnostic> remarks;
+  std::vector<inner::Contact> contacts;  // expressions of the graph of the model
 
+  // Throws Failure if the model has contacts, which `what` does not know.
+  void without_contacts(const std::string& what) const;
   // A copy with an expression graph of its own, in which its holder may build.
   std::shared_ptr<const inner::Model> own_copy() const { return inner::clone(*model); }
 };

@@ -96,6 +96,7 @@ struct Dynamics::Data {
 Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) {
   const System::Data& of = system.data();
   return guarded(of.model->source, [&]() -> Result<Dynamics> {
+    of.model->without_contacts("dynamics");
     auto data = std::make_shared<Dynamics::Data>(system);
     const std::string form = of.scenario.system.form->name;
     if (options.outputs) {

@@ -11,6 +11,7 @@ namespace anholon::v1 {
 
 Result<Equations> derive(const Model& model, const DeriveOptions& options) {
   return guarded(model.data().source, [&]() -> Result<Equations> {
+    model.data().without_contacts("derive");
     const std::vector<std::string> known = {"auto", "none", "paper", "full", "parts"};
     if (std::find(known.begin(), known.end(), options.expand) == known.end())
       return mistake("expand: '" + options.expand + "'", "auto, none, paper, full or parts");

@@ -18,6 +18,7 @@ std::vector<NamedText> named(const inner::StateReport::Named& list) {
 Result<StateReport> evaluate(const System& system, int digits) {
   const System::Data& of = system.data();
   return guarded(of.model->source, [&]() -> Result<StateReport> {
+    of.model->without_contacts("evaluate");
     if (digits < 1) return mistake("digits: " + std::to_string(digits) + " is not positive");
     inner::StateReport r;
     if (const inner::Outcome o = inner::evaluate(of.scenario, of.choice, digits, r); !o.ok()) return error_of(o);

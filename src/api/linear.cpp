@@ -60,6 +60,7 @@ LinearModel model_of(const inner::LinearModel& from, int digits) {
 inner::LinearRequest request_of(const Model& model, const LinearOptions& options) {
   if (options.digits < 1)
     throw inner::Failure({}, "digits: " + std::to_string(options.digits) + " is not positive", "digits=16 or more");
+  model.data().without_contacts("linearize");
   PrepareOptions state;
   state.initial = options.initial, state.eliminate = options.eliminate;
   inner::LinearRequest request;
@@ -93,6 +94,7 @@ Result<LinearModel> linearize(const Model& model, const LinearOptions& options) 
 Result<LinearModel> linearize(const System& system) {
   const System::Data& of = system.data();
   return guarded(of.model->source, [&] {
+    of.model->without_contacts("linearize");
     inner::LinearRequest request;
     request.form = of.scenario.system.form;
     request.choice = of.choice;

@@ -5,7 +5,6 @@
 
 #include "anholon/version.h"
 #include "api/data.h"
-#include "modelfile/contacts.h"
 #include "modelfile/shipped.h"
 
 namespace anholon::v1 {
@@ -19,17 +18,20 @@ Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
   for (const auto& [name, value] : options.set) data->overrides[inner::normal_name(name)] = value.text();
   inner::Diagnostics diagnostics;
   const auto model = inner::open_model(data->source, diagnostics, data->overrides, data->cases);
-  if (model)
-    for (const inner::Contact& c : inner::contacts(*model->names))
-      diagnostics.error(c.span, "the library knows no contacts, and the model has '" + c.name + "'",
-                        "'anholon simulate' does");
   if (diagnostics.has_errors() || !model) return error_of(diagnostics, data->source);
   data->model = model->model;
+  data->contacts = inner::contacts(*model->names);
   for (const inner::Diagnostic& d : diagnostics.list()) data->remarks.push_back(to_public(d, data->model->source_text));
   return Model(std::move(data));
 }
 
 }  // namespace
+
+void Model::Data::without_contacts(const std::string& what) const {
+  if (!contacts.empty())
+    throw inner::Failure({}, what + " knows no contacts, and the model has '" + contacts.front().name + "'",
+                         "simulate and sweep do; write what touches as a [[constraint]] for the others");
+}
 
 const char* version() { return ANHOLON_VERSION; }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "api/run_data.h"
+#include "contact/hybrid.h"
 #include "mechanics/conserved.h"
 #include "report/columns.h"
 #include "result/format.h"
@@ -131,7 +132,9 @@ Result<Run> simulate(const System& system, const MotionOptions& asked) {
     o.progress = asked.progress;
     if (!inner::sets_values(*s.model)) o.conserved = inner::conserved(*s.mechanics);
     RowKeeper rows(*data, *s.model);
-    const inner::SimulationReport r = inner::simulate_in(s, o, rows);
+    const std::vector<inner::Contact>& contacts = of.model->contacts;
+    const inner::SimulationReport r =
+        contacts.empty() ? inner::simulate_in(s, o, rows) : inner::simulate_with_contacts(s, contacts, o, rows);
     data->run.table.values.settle();
     data->outcome = to_public(r.outcome);
     data->report = public_report(r);

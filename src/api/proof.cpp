@@ -19,6 +19,7 @@ bool Proof::all_proved() const {
 
 Result<Proof> prove(const Model& model, const std::vector<std::string>& names) {
   return guarded(model.data().source, [&]() -> Result<Proof> {
+    model.data().without_contacts("prove");
     const std::shared_ptr<const inner::Model> own = model.data().own_copy();
     const inner::Mechanics m = inner::mechanics(*own);
     std::vector<const inner::Formulation*> forms;

@@ -106,7 +106,9 @@ Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
     o.cancelled = asked.cancelled;
     o.progress = asked.progress;
     for (const inner::Rational& t : o.at) data->times.push_back(inner::from_rational<double>(t));
-    CaseKeeper cases(*data, inner::ensemble_columns(*p.scenario->model), o.reductions, asked.columns);
+    std::vector<std::string> names = inner::ensemble_columns(*p.scenario->model);
+    names.insert(names.end(), o.own_columns.begin(), o.own_columns.end());
+    CaseKeeper cases(*data, names, o.reductions, asked.columns);
     cases.hold(o.cases);
     data->outcome = to_public(inner::ensemble(*p.scenario, o, cases).outcome);
     return Sweep(std::move(data));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ensemble/request.h"
+#include "ensemble/with_contacts.h"
 #include "result/choose_columns.h"
 
 namespace anholon::v1 {
@@ -93,6 +94,7 @@ PreparedSweep::PreparedSweep(const System::Data& of, const SweepOptions& asked) 
   settings.error_estimate = "never";
   inner::ask(settings, *scenario, {"", "", [](const std::string&) {}}, options);
   options.threads = asked.threads;
+  move_with(of.model->contacts, options);
 }
 
 }  // namespace anholon::v1

@@ -9,7 +9,7 @@ namespace anholon::cli {
 inline void without_contacts(const Reader& in, const std::string& command) {
   if (const std::vector<Contact>& list = contacts(*in.names); !list.empty())
     throw UsageError{"error: '" + command + "' knows no contacts, and the model has '" + list.front().name +
-                     "'\nhint: 'simulate' does; write what touches as a [[constraint]] for the others\n"};
+                     "'\nhint: 'simulate' and 'sweep' do; write what touches as a [[constraint]] for the others\n"};
 }
 
 }  // namespace anholon::cli

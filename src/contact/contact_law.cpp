@@ -64,7 +64,6 @@ std::optional<Numbers> solve(std::vector<Numbers> m, Numbers right) {
 
 struct Forces {
   ContactSolution solution;
-  std::vector<std::array<Real, 2>> friction;
 };
 
 // The linear equations of given modes. Columns: x, lambda, then N and T of each contact.
@@ -114,7 +113,7 @@ std::optional<Forces> solve(const ContactProblem& p, const ContactModes& modes) 
     std::array<Real, 2> t{};
     if (modes[c].touch == Touch::sticks && !modes[c].free)
       for (std::size_t a = 0; a < p.contacts[c].tangential.size(); ++a) t[a] = (*found)[first[c] + 1 + a];
-    f.friction.push_back(t);
+    f.solution.friction.push_back(t);
   }
   return f;
 }
@@ -166,8 +165,9 @@ bool consistent(const ContactProblem& p, const Forces& f) {
     for (std::size_t a = 0; a < rows.tangential.size(); ++a)
       span = std::max(span, kSame * (largest(rows.tangential[a]) * size + std::abs(rows.tangential_rate[a])));
     if (mode.touch == Touch::sticks) {
-      if (mode.free ? std::hypot(v[0], v[1]) > span
-                    : std::hypot(f.friction[c][0], f.friction[c][1]) > rows.static_friction * N + forces)
+      if (mode.free
+              ? std::hypot(v[0], v[1]) > span
+              : std::hypot(f.solution.friction[c][0], f.solution.friction[c][1]) > rows.static_friction * N + forces)
         return false;
     } else if (!rows.moves && v[0] * mode.direction[0] + v[1] * mode.direction[1] < -span) {
       return false;

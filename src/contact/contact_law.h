@@ -43,7 +43,8 @@ struct ContactProblem {
 struct ContactSolution {
   ContactModes modes;
   std::vector<long double> x;
-  std::vector<long double> normal;  // N
+  std::vector<long double> normal;                   // N
+  std::vector<std::array<long double, 2>> friction;  // T of contacts that stick
 };
 
 // The consistent modes whose accelerations differ. Modes that give the same x are one; the first of them touches most.

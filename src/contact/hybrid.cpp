@@ -1,6 +1,7 @@
 #include "contact/hybrid.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -122,7 +123,8 @@ class HybridMotion {
       // A gap that is open, or opens, is not bounded by its acceleration.
       if (!closed(c) || gap_rate(c) > 0) rows.normal.assign(at_.q.size(), 0), rows.normal_rate = 0;
     }
-    const std::vector<ContactSolution> list = consistent_modes(p);
+    std::vector<ContactSolution> list = consistent_modes(p);
+    if (list.empty() && slips_against_friction(p)) list = consistent_modes(p);
     if (list.size() != 1) return undecided(list);
     modes_ = list[0].modes;
     come_to_rest();
@@ -130,12 +132,36 @@ class HybridMotion {
     return {};
   }
 
-  // Velocities within round-off of those that the motion had are zero: where the modes leave no motion, the remainders
-  // would contradict each other.
+  // Where sticking ends with the friction that slipping has, too, the slip begins with no acceleration that would give
+  // its direction: it is that against the friction of sticking. Returns whether a contact is such.
+  bool slips_against_friction(ContactProblem& p) const {
+    ContactProblem sticks = p;
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      if (excluded_[c].stick) sticks.contacts[c].may_stick = true, sticks.contacts[c].static_friction = 1e30L;
+    const std::vector<ContactSolution> list = consistent_modes(sticks);
+    bool any = false;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      if (list.empty() || !excluded_[c].stick || p.contacts[c].moves || list[0].modes[c].touch != Touch::sticks)
+        continue;
+      const std::array<long double, 2>& t = list[0].friction[c];
+      const long double size = std::hypot(t[0], t[1]);
+      if (!(size > 0)) continue;
+      p.contacts[c].direction = {-t[0] / size, -t[1] / size};
+      p.contacts[c].moves = any = true;
+    }
+    return any;
+  }
+
+  // Velocities within round-off of those that the motion had are zero, and so are coordinates: where the modes leave no
+  // motion, the remainders would contradict each other.
   void come_to_rest() {
-    constexpr long double kZero = 1e-13L;
-    for (std::size_t a = 0; a < at_.qd.size(); ++a)
+    constexpr long double kZero = 1e-13L, kNoPlace = 1e-16L;
+    most_place_.resize(at_.q.size(), 0);
+    for (std::size_t a = 0; a < at_.qd.size(); ++a) {
       if (std::abs(at_.qd[a]) <= kZero * dynamics_.most(a)) at_.qd[a] = 0;
+      most_place_[a] = std::max<long double>(most_place_[a], std::abs(at_.q[a]));
+      if (std::abs(at_.q[a]) <= kNoPlace * most_place_[a]) at_.q[a] = 0;
+    }
   }
 
   Outcome undecided(const std::vector<ContactSolution>& list) const {
@@ -223,18 +249,43 @@ class HybridMotion {
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       const ContactRows& rows = dynamics_.accelerations().contacts[c];
       if (modes_[c].touch != Touch::slips || !rows.rough || rows.moves || rows.tangential.size() < 2) continue;
-      ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), false), gentle_);
-      for (std::size_t k = 0; k < contacts_.size(); ++k) p.contacts[k].may_touch = false;
       const long double v = kSeed * std::max(dynamics_.speed(), 1.0L);
-      // The constraint of sticking, moved by the seed, gives the jump of least change.
-      p.contacts[c] = rows;
-      p.contacts[c].may_open = false, p.contacts[c].static_friction = 1e30L, p.contacts[c].normal_rate = 0;
-      for (std::size_t a = 0; a < 2; ++a)
-        p.contacts[c].tangential_rate[a] = dynamics_.place(c).slip[a] - v * modes_[c].direction[a];
-      const auto list = consistent_modes(p);
-      if (list.empty()) continue;
-      for (std::size_t a = 0; a < at_.qd.size(); ++a) at_.qd[a] += static_cast<double>(list[0].x[a]);
+      set_slip(c, {v * modes_[c].direction[0], v * modes_[c].direction[1]});
     }
+  }
+
+  // Gives a slip velocity by the least change of the velocities, with the constraint of sticking moved by it.
+  void set_slip(std::size_t c, const std::array<long double, 2>& v) {
+    ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), false), gentle_);
+    for (std::size_t k = 0; k < contacts_.size(); ++k) p.contacts[k].may_touch = false;
+    p.contacts[c] = dynamics_.accelerations().contacts[c];
+    p.contacts[c].may_open = p.contacts[c].moves = false;
+    p.contacts[c].static_friction = 1e30L, p.contacts[c].normal_rate = 0;
+    for (std::size_t a = 0; a < 2; ++a) p.contacts[c].tangential_rate[a] = dynamics_.place(c).slip[a] - v[a];
+    const auto list = consistent_modes(p);
+    if (list.empty()) return;
+    for (std::size_t a = 0; a < at_.qd.size(); ++a) at_.qd[a] += static_cast<double>(list[0].x[a]);
+  }
+
+  // A slip velocity with two components that vanishes on a curved line has no Taylor series there, and the steps become
+  // short without end. Returns whether that is how the segment ended; the contact then sticks.
+  bool slip_vanishes() {
+    constexpr long double kVanished = 1e-8L;
+    dynamics_.go(at_);
+    bool any = false;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      const ContactRows& rows = dynamics_.accelerations().contacts[c];
+      if (modes_[c].touch != Touch::slips || !rows.rough || rows.tangential.size() < 2) continue;
+      const auto& slip = dynamics_.place(c).slip;
+      long double size = 0;
+      for (const std::vector<long double>& t : rows.tangential)
+        for (std::size_t a = 0; a < at_.qd.size(); ++a) size = std::max(size, std::abs(t[a] * dynamics_.most(a)));
+      if (std::hypot(slip[0], slip[1]) > kVanished * size) continue;
+      set_slip(c, {});
+      joined_.event(contacts_[c].name + ".sticks", at_.t.get_d());
+      any = true;
+    }
+    return any;
   }
 
   // Follows the motion in the present modes to their end; returns false if it ends there.
@@ -261,6 +312,11 @@ class HybridMotion {
     outcome = r.outcome;
     rows_.last_state(at_);
     const bool every_event_known = joined_.add(r, mode.events);
+    if (outcome.kind == OutcomeKind::step_collapse && slip_vanishes()) {
+      outcome = {};
+      excluded_.assign(contacts_.size(), {});
+      return true;
+    }
     if (!outcome.ok()) return false;
     for (Excluded& e : excluded_) e = {};
     bool changed = false;
@@ -287,6 +343,7 @@ class HybridMotion {
   std::vector<Excluded> excluded_;
   std::vector<bool> gentle_;  // contacts whose next impact has no restitution
   std::vector<Impacts> impacts_;
+  std::vector<long double> most_place_;  // the largest value of each coordinate at a change of mode
   std::string rest_name_;
   double rest_time_ = 0;
 };

@@ -129,6 +129,13 @@ class ModeBuilder {
 
 }  // namespace
 
+std::vector<std::string> contact_columns(const std::vector<Contact>& contacts) {
+  std::vector<std::string> names;
+  for (const Contact& c : contacts)
+    for (const char* what : {".mode", ".gap", ".normal", ".friction"}) names.push_back(c.name + what);
+  return names;
+}
+
 ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes,
                      const ContactState& at) {
   ModeBuilder builder(model, at);

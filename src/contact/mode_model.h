@@ -27,6 +27,9 @@ struct ModeModel {
   std::map<std::string, ModeEvent> events;  // by their names
 };
 
+// The columns of rows that contacts add after those of the model.
+std::vector<std::string> contact_columns(const std::vector<Contact>& contacts);
+
 // direction: of the slip, to which the formula of friction refers.
 ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes,
                      const ContactState& at);

@@ -41,6 +41,10 @@ struct EnsembleOptions {
   std::size_t threads = 0;                        // 0: as many as the machine has
   std::function<void(std::size_t done)> progress;  // by one thread at a time
   std::function<bool()> cancelled;                 // called by many threads at once
+  // Computes the motion of a case in place of `simulate`, if it is set: every case is then put into equations anew, and
+  // its rows have these columns after those of the model.
+  std::function<SimulationReport(Workspace&, const SimulationOptions&, RowSink&)> own_motion;
+  std::vector<std::string> own_columns;
 };
 
 struct CaseResult {

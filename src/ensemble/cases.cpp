@@ -21,7 +21,7 @@ void EnsemblePlan::make() {
   const Graph& g = *model.graph;
   settings = {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
   plain = (o.method == Method::automatic || o.method == Method::taylor) && !s.routh && s.redundant.empty() &&
-          s.elimination.pivots().empty() && model.events.empty() && model.bounds.empty();
+          s.elimination.pivots().empty() && !o.own_motion && model.events.empty() && model.bounds.empty();
   if (!plain) return;
   start.emplace(*s.mechanics, overrides_of(o, nullptr));
   for (std::size_t j = 0; j < s.system.size(); ++j)
@@ -82,6 +82,7 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
   if (r.outcome = plan.parameters.possible(narrow_parameters_); !r.outcome.ok()) return CaseWay::plain;
   if (!ready_) same_structure_ = plan.parameters.same_structure(narrow_parameters_);
   if (!same_structure_) return CaseWay::derivation;
+  if (plan.options.own_motion) return CaseWay::derivation;
   if (!plan.plain) return CaseWay::simulation;
   if (!ready_) {
     stepper_.emplace(*plan.program, narrow_parameters_, parameters_, plan.settings);
@@ -324,7 +325,7 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
     };
   }
   EnsembleRowFilter rows(o.at, r);
-  const SimulationReport report = simulate_in(own, options, rows);
+  const SimulationReport report = o.own_motion ? o.own_motion(own, options, rows) : simulate_in(own, options, rows);
   for (const EventReport& e : report.events)
     if (e.stop) r.event = e.name;
   r.outcome = report.outcome;

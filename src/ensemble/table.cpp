@@ -29,6 +29,7 @@ SweepTable::SweepTable(const Model& model, const EnsembleOptions& o)
   available_.push_back({"t", Holds::numbers});
   available_.push_back({"steps", Holds::whole_numbers});
   for (const std::string& name : ensemble_columns(model)) available_.push_back({name, Holds::numbers}), ++state_;
+  for (const std::string& name : o.own_columns) available_.push_back({name, Holds::numbers}), ++state_;
   for (const Reduction& r : o.reductions.list) available_.push_back({r.name, Holds::numbers});
   for (const Rational& t : o.at) times_.push_back(from_rational<double>(t));
   const bool ends = std::any_of(model.events.begin(), model.events.end(), [](const Event& e) { return e.stop; });

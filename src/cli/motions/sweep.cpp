@@ -3,7 +3,6 @@
 #include <deque>
 
 #include "base/read_file.h"
-#include "cli/contacts.h"
 #include "cli/input.h"
 #include "cli/models/show.h"
 #include "cli/motions/progress.h"
@@ -13,6 +12,8 @@
 #include "cli/say.h"
 #include "ensemble/request.h"
 #include "ensemble/variation.h"
+#include "ensemble/with_contacts.h"
+#include "modelfile/contacts.h"
 #include "result/choose_columns.h"
 
 namespace anholon::cli {
@@ -103,7 +104,6 @@ Reductions reductions_of(const Options& o, const Reader& in) {
 // Returns false if --show has printed what was asked for.
 bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   p.in = read(p.asked);
-  without_contacts(p.in, "sweep");
   const Options o = p.asked = with_form(p.asked, p.in);
   p.variation = variation_of(o, *p.in.model, table, !p.word.empty());
   EnsembleOptions& e = p.options;
@@ -119,6 +119,11 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   if (const auto d = not_integrated(*p.in.model)) throw UsageError{print(*d, p.in.source)};
   if (!o.show.empty()) return false;
   ask(o.motion, p.scenario, asker(o), e);
+  try {
+    move_with(contacts(*p.in.names), e);
+  } catch (const Failure& f) {
+    throw UsageError{"error: " + f.diagnostic.message + "\nhint: " + f.diagnostic.hint + "\n"};
+  }
   p.table.emplace(*p.in.model, e);
   if (const std::vector<std::string> names = split(o.columns); !names.empty()) {
     std::vector<std::string> all;

@@ -205,7 +205,8 @@ damper = "0.2*x'^2/2"              # the force -0.2 x'
        {{"name", name, "its multiplier is `lambda.NAME`; where the constraint is kept by an input, that input is it"},
         {"equation", equation, "of numbers or vectors, of any order"},
         {"along", any, "a vector equation: a frame or a list of vectors, along which components are taken"},
-        {"by", names, "the inputs that keep it (servo constraint), one name or as many as equations"}},
+        {"by", names, "the inputs that keep it (servo constraint), one name or as many as equations"},
+        {"one_sided", truth, "`true`: it pushes and does not pull, so that left − right is not negative: a contact"}},
        R"md(```toml
 [[constraint]]
 name = "edge"
@@ -227,6 +228,8 @@ torque = "u*ez"
 - A vector equation gives `name.x`, `name.y`, `name.z` along ex, ey, ez. With `along = "B"` the components are those along the axes
   of the frame or body B; with `along = ["v1", "v2"]` those along these vectors, `name.1`, `name.2`. Components that vanish identically are dropped with a
   note. `0` is also the zero vector.
+- With `one_sided = true` the left side may become larger than the right one: the constraint opens where its force would pull, and closes again
+  without rebound. It is a [contact](#contact) without friction, with its events and columns (`NAME.leaves`, `NAME.normal`), and has no `lambda.NAME`.
 - With `by` no ideal reaction acts: the input becomes the unknown instead of λ, and its formula is not used. An input keeps one equation only. Forms that
   eliminate do not apply.
 - An input with a formula may occur in a constraint: its formula is put in.

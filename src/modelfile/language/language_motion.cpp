@@ -90,8 +90,8 @@ y = 1
 - Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. Rows have the columns `NAME.mode` (0 open,
   1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
 - Impacts follow Newton's law in Moreau's form. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
-- At most four contacts. `simulate` knows them; sweeps, derivations, linear models and the library refuse a model with contacts. They do
-  not go with events that set values, nor with servo constraints.
+- At most four contacts. Motions, reports and sweeps know them, in the libraries, too; derivations, proofs and linear models refuse a model with
+  contacts. They do not go with events that set values, nor with servo constraints. [Recipes](contact.md).
 
 ```toml
 [[contact]]

@@ -4,6 +4,7 @@
 
 #include "expr/normal.h"
 #include "formula/indices.h"
+#include "modelfile/mechanical/contacts.h"
 #include "modelfile/mechanical/control.h"
 #include "modelfile/names/along.h"
 #include "modelfile/text/collect.h"
@@ -75,6 +76,7 @@ void ConstraintReader::read(const Item& root) {
   }
   for_each_table(*list, "constraint", diagnostics_, [&](const Item& c, std::size_t k) {
     check_keys(c, "a constraint", "constraint", diagnostics_);
+    if (is_one_sided(c)) return;  // it is a contact
     const std::size_t first = model_.constraints.size();
     const auto servo = [&] {
       if (const Item* by = c.find("by")) keep_by(*by, first, scope_, model_);

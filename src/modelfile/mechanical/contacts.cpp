@@ -18,13 +18,7 @@ class ContactReader {
   ContactReader(Scope& scope, const Model& model) : scope_(scope), model_(model) {}
 
   Contact read(const Item& c, std::size_t number) const {
-    Contact contact;
-    const Item* named = c.find("name");
-    if (named && named->kind != Item::Kind::string) throw Failure(named->span, "a name is a text");
-    contact.name = named ? normal_name(named->text()) : "contact" + std::to_string(number + 1);
-    contact.span = named ? named->formula.whole() : c.span;
-    if (!is_element_name(contact.name))
-      throw Failure(contact.span, "'" + contact.name.substr(0, 40) + "' is not a name");
+    Contact contact = begin(c, "contact" + std::to_string(number + 1));
     const Item* gap = c.find("gap");
     if (!gap)
       throw Failure(contact.span, "the contact '" + contact.name + "' has no gap",
@@ -46,7 +40,39 @@ class ContactReader {
     return contact;
   }
 
+  // A constraint with one_sided = true: without friction, and with impacts that do not rebound.
+  Contact read_one_sided(const Item& c, std::size_t number) const {
+    Contact contact = begin(c, "constraint" + std::to_string(number + 1));
+    for (const char* key : {"by", "along"})
+      if (const Item* other = c.find(key))
+        throw Failure(other->key_span, std::string("'") + key + "' does not go with one_sided = true",
+                      "one_sided goes with one equation of coordinates and time; friction needs a [[contact]]");
+    const Item* equation = c.find("equation");
+    if (!equation) throw Failure(c.span, "a constraint has no equation", "equation = \"P.z = 0\"");
+    const std::vector<Syntax> sides = scope_.equation(*equation);
+    const auto side = [&](const Syntax& s) { return evaluate_number(s, scope_); };
+    contact.gap = put_masses(model_, side(sides[0]) - side(sides[1]));
+    if (jet_order(contact.gap) != 0)
+      throw Failure(equation->span,
+                    "a constraint of one side is an equation of coordinates and time, without velocities",
+                    "rolling and friction: a [[contact]] with slip = \"vel(B, P)\"");
+    contact.friction = contact.static_friction = contact.restitution = model_.graph->zero();
+    return contact;
+  }
+
  private:
+  // The name and the place.
+  static Contact begin(const Item& c, const std::string& without_name) {
+    Contact contact;
+    const Item* named = c.find("name");
+    if (named && named->kind != Item::Kind::string) throw Failure(named->span, "a name is a text");
+    contact.name = named ? normal_name(named->text()) : without_name;
+    contact.span = named ? named->formula.whole() : c.span;
+    if (!is_element_name(contact.name))
+      throw Failure(contact.span, "'" + contact.name.substr(0, 40) + "' is not a name");
+    return contact;
+  }
+
   Expr formula(const Item& i, const std::string& what) const {
     if (!i.is_formula()) throw Failure(i.span, what + " is a formula");
     return put_masses(model_, evaluate_number(parse_formula(i.formula), scope_));
@@ -100,24 +126,45 @@ class ContactReader {
 
 }  // namespace
 
+bool is_one_sided(const Item& constraint) {
+  const Item* word = constraint.find("one_sided");
+  if (!word) return false;
+  if (word->kind != Item::Kind::boolean) throw Failure(word->span, "'one_sided' is true or false");
+  return word->truth;
+}
+
 std::vector<Contact> read_contacts(const Item& root, Scope& scope, const Model& model, Diagnostics& diagnostics) {
-  std::vector<Contact> list;
-  const Item* items = root.find("contact");
-  if (!items) return list;
   constexpr std::size_t kMost = 4;  // the modes are enumerated
-  if (items->items.size() > kMost) {
-    diagnostics.error(items->key_span, std::to_string(items->items.size()) + " contacts; at most " +
-                                           std::to_string(kMost) + " are accepted");
-    return list;
-  }
+  std::vector<Contact> list;
   const ContactReader reader(scope, model);
-  for_each_table(*items, "contact", diagnostics, [&](const Item& c, std::size_t k) {
-    check_keys(c, "a contact", "contact", diagnostics);
-    Contact contact = reader.read(c, k);
+  const auto add = [&](Contact contact) {
     if (std::any_of(list.begin(), list.end(), [&](const Contact& o) { return o.name == contact.name; }))
       throw Failure(contact.span, "there are two contacts '" + contact.name + "'");
     list.push_back(std::move(contact));
-  });
+  };
+  const Item *items = root.find("contact"), *constraints = root.find("constraint");
+  if (items && items->items.size() <= kMost)
+    for_each_table(*items, "contact", diagnostics, [&](const Item& c, std::size_t k) {
+      check_keys(c, "a contact", "contact", diagnostics);
+      add(reader.read(c, k));
+    });
+  std::size_t count = items ? items->items.size() : 0;
+  const Item* last = items;
+  if (constraints)
+    for (std::size_t k = 0; k < constraints->items.size(); ++k) {
+      const Item& c = constraints->items[k];
+      if (c.kind != Item::Kind::table) continue;
+      collect(diagnostics, [&] {
+        const Item* word = c.find("one_sided");
+        // A word that is neither true nor false is reported with the constraints.
+        if (!word || word->kind != Item::Kind::boolean || !is_one_sided(c)) return;
+        last = word;
+        if (++count <= kMost) add(reader.read_one_sided(c, k));
+      });
+    }
+  if (count > kMost)
+    diagnostics.error(last->key_span,
+                      std::to_string(count) + " contacts; at most " + std::to_string(kMost) + " are accepted");
   return list;
 }
 

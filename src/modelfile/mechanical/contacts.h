@@ -20,7 +20,11 @@ struct Contact {
   bool rough() const;  // whether there is friction
 };
 
-// Reads the contacts of a file whose names are declared.
+// Whether a [[constraint]] has one_sided = true. Throws Failure if that is neither true nor false.
+bool is_one_sided(const Item& constraint);
+
+// Reads the contacts of a file whose names are declared: its [[contact]]s, then its constraints of one side, whose gaps
+// are left - right.
 std::vector<Contact> read_contacts(const Item& root, Scope& scope, const Model& model, Diagnostics& diagnostics);
 
 }  // namespace anholon
