@@ -45,6 +45,7 @@ class CommandLine {
     add_simulate();
     add_report();
     add_render();
+    add_studio();
     add_sweep();
     add_linearize();
     add_forms();
@@ -275,6 +276,23 @@ class CommandLine {
         ->check(CLI::IsMember({"observer", "inertial"}));
     c->add_flag("--dark", o_.dark, "on a dark ground");
     c->add_option("--rows", o_.rows, "a run of this model, in " + known_formats())->type_name("FILE");
+  }
+
+  void add_studio() {
+    CLI::App* c =
+        command("studio", "edit a model in the browser: equations, proof, plots and animation as you type", cli::studio,
+                "Serves a page on the loopback address alone, whose address has a secret; Ctrl-C ends it. "
+                "'Save' writes the file that was opened.\n"
+                "A shipped model is shown and not written to: anholon new rolling -o mine.toml makes a file.\n"
+                "Examples: anholon studio mine.toml\n"
+                "          anholon studio disc --port 8080 --no-browser");
+    c->add_option("MODEL", o_.model, "a model file, or the name of a shipped model (default: disc)");
+    c->add_option("--port", o_.port, "the port of the page (default: a free one)")
+        ->type_name("N")
+        ->check(CLI::Range(0, 65535));
+    c->add_flag("--no-browser", o_.no_browser, "print the address and open no browser");
+    c->add_flag("--quiet", o_.quiet, "print the address alone");
+    c->add_flag("--worker", o_.studio_worker)->group("");
   }
 
   void add_sweep() {
