@@ -46,6 +46,7 @@ RUN_BY_GOLDEN = ("book", "recipes", "asked", "from")  # their transcripts; tools
 LEAST_EXAMPLES = 300
 RUN_ELSEWHERE = {  # commands that no transcript can run, and the test that does
     "render": "test/house/render_disc.py",  # needs a browser
+    "studio": "test/studio/server.py",  # runs until Ctrl-C
     "sweep status": "test/sweeps/folders.py",  # needs a sweep that other processes compute
     "sweep collect": "test/sweeps/folders.py",
 }

@@ -46,27 +46,35 @@ std::string trouble(const std::string& text, const std::string& hint) {
 // The newest edition of each page of a browser: a computation of an older text is given up.
 class Editions {
  public:
-  void seen(const std::string& page, unsigned long long edition) {
+  // Returns the worker of the edition, 0 or 1. A new edition gets the other one: it need not wait until the process of
+  // the older text is replaced.
+  std::size_t seen(const std::string& page, unsigned long long edition) {
     const std::lock_guard<std::mutex> lock(turn_);
     if (newest_.size() > kMostPages) newest_.clear();
-    unsigned long long& n = newest_[page.substr(0, 64)];
-    n = std::max(n, edition);
+    Newest& n = newest_[page.substr(0, 64)];
+    if (edition > n.edition) n = {edition, 1 - n.worker};
+    return n.worker;
   }
   bool is_old(const std::string& page, unsigned long long edition) {
     const std::lock_guard<std::mutex> lock(turn_);
     const auto it = newest_.find(page.substr(0, 64));
-    return it != newest_.end() && it->second > edition;
+    return it != newest_.end() && it->second.edition > edition;
   }
 
  private:
   static constexpr std::size_t kMostPages = 1000;
   std::mutex turn_;
-  std::map<std::string, unsigned long long> newest_;
+  struct Newest {
+    unsigned long long edition = 0;
+    std::size_t worker = 0;
+  };
+  std::map<std::string, Newest> newest_;
 };
 
 class Studio {
  public:
-  explicit Studio(const StudioOptions& o) : file_(o.source, o.shipped), checker_(o.worker), mover_(o.worker) {}
+  explicit Studio(const StudioOptions& o)
+      : file_(o.source, o.shipped), checker_(o.worker), movers_{Worker(o.worker), Worker(o.worker)} {}
 
   HttpReply handle(const std::string& what, const HttpRequest& request) {
     if (request.head.method == "GET") {
@@ -105,11 +113,12 @@ class Studio {
     const char* end = request.edition.data() + request.edition.size();
     if (std::from_chars(request.edition.data(), end, edition).ptr != end || request.edition.empty())
       return {400, "text/plain; charset=utf-8", "X-Anholon-Edition is the number of the text's edition\n"};
-    editions_.seen(request.page, edition);
+    const std::size_t of_edition = editions_.seen(request.page, edition);
     const auto give_up = [&] { return stopping_ || editions_.is_old(request.page, edition); };
     const SourceText& s = file_.source();
     const Question q{task.name, s.name, s.path, request.body, file_.readable()};
-    const Worker::Answer a = (std::string(task.name) == "check" ? checker_ : mover_).ask(q, task.seconds, give_up);
+    Worker& worker = std::string(task.name) == "check" ? checker_ : movers_[of_edition];
+    const Worker::Answer a = worker.ask(q, task.seconds, give_up);
     switch (a.end) {
     case Worker::End::answered:
       return json_reply(a.text);
@@ -127,7 +136,8 @@ class Studio {
   }
 
   OpenedFile file_;
-  Worker checker_, mover_;
+  Worker checker_;
+  std::array<Worker, 2> movers_;
   Editions editions_;
   std::atomic<bool> stopping_{false};
 };

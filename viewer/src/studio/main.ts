@@ -9,13 +9,13 @@ import type { Answer, Engine, Failed, Problem, Replaced, Store } from './engine.
 import { http_engine } from './http_engine.ts';
 import { Preview } from './preview.ts';
 
-const pause = 60;      // ms without a key before the text is computed
+const pause = 40;      // ms without a key before the text is computed
 
 const failed = <T>(a: Answer<T>): a is Failed => typeof a === 'object' && a !== null && 'error' in a;
 const replaced = <T>(a: Answer<T>): a is Replaced => typeof a === 'object' && a !== null && 'replaced' in a;
 
 class Studio {
-  private edition = 0;
+  private edition = 1;
   private timer: ReturnType<typeof setTimeout> | undefined;
   private saved = '';
   private readonly status = h('span', { class: 'status', role: 'status' });
@@ -70,7 +70,7 @@ class Studio {
 
   // The motion first, which the eye waits for, then the equations, then the proof.
   private async compute(): Promise<void> {
-    const edition = ++this.edition, { text } = this.editor, began = performance.now();
+    const { edition } = this, { text } = this.editor, began = performance.now();
     const old = (a: unknown): boolean => edition !== this.edition || replaced(a as Answer<object>);
     this.say('computing …');
     void this.engine.check(text, edition).then((a) => {

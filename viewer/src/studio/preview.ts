@@ -50,7 +50,7 @@ export class Preview {
     const old = this.main.querySelector('#motion');
     if (picture !== this.picture || !old) {
       const look = this.player?.look ?? null, { time, playing } = this.clock;
-      this.player?.close();
+      const before = this.player;
       this.plots?.close();
       this.clock.pause();
       this.player = this.plots = null;
@@ -58,6 +58,7 @@ export class Preview {
       this.sections(motion.sections);
       this.picture = picture;
       this.mount(JSON.parse(picture) as RawReport, time, playing, look);
+      before?.close();          // after the new one is drawn, which can use its shaders
     } else this.sections(motion.sections.filter((s) => s.id !== 'motion'));
   }
 
