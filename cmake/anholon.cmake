@@ -186,6 +186,7 @@ endfunction()
 # Installs our licence, and those of the libraries that are linked in where the build takes them from tools/static_libraries.py.
 function(anholon_install_licences place component)
   install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${place}" COMPONENT "${component}" RENAME anholon.txt)
+  install(FILES "${PROJECT_SOURCE_DIR}/viewer/dist/licences.txt" DESTINATION "${place}" COMPONENT "${component}" RENAME viewer.txt OPTIONAL)
   set(prefixes ${CMAKE_PREFIX_PATH})
   string(REPLACE ":" ";" more "$ENV{CMAKE_PREFIX_PATH}")
   foreach(prefix IN LISTS prefixes more)

@@ -47,6 +47,7 @@ LEAST_EXAMPLES = 300
 RUN_ELSEWHERE = {  # commands that no transcript can run, and the test that does
     "render": "test/house/render_disc.py",  # needs a browser
     "studio": "test/studio/server.py",  # runs until Ctrl-C
+    "completion": "tools/command_line.py",  # which also sources the script
     "sweep status": "test/sweeps/folders.py",  # needs a sweep that other processes compute
     "sweep collect": "test/sweeps/folders.py",
 }
