@@ -36,6 +36,8 @@ function(anholon_python_module)
   install(FILES "${PROJECT_SOURCE_DIR}/viewer/dist/widget.js" DESTINATION anholon COMPONENT python OPTIONAL)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/models/" DESTINATION anholon/share/anholon/models COMPONENT python)
   anholon_install_licences(anholon/licences python)
+  file(GLOB nanobind_licence "${nanobind_ROOT}/../../nanobind-*.dist-info/licenses/LICENSE")
+  install(FILES ${nanobind_licence} DESTINATION anholon/licences COMPONENT python RENAME nanobind.txt)
   if(TARGET anholon_jit)
     add_dependencies(anholon_python anholon_jit)
     add_custom_command(TARGET anholon_python POST_BUILD

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the manual page and the completions of shells from the help of the program, so that they cannot differ from it.
+"""Makes the manual page from the help of the program, so that they cannot differ, and installs it with the completions of shells.
 
     command_line.py PROGRAM PREFIX      writes PREFIX/share/man/man1/anholon.1.gz, and completions of bash, zsh and fish
     command_line.py PROGRAM --check     checks that both name every command and option, and completes words in bash
@@ -105,57 +105,14 @@ def manual(top, version):
 # ---- completions ----
 
 
-def bash(top):
-    cases = ""
-    for c in all_of(top):
-        words = [i.words.split()[-1] for i in c.inner] + [f for o in c.options for f in o.flags]
-        cases += f'    "{c.words}") words="{" ".join(words)}" ;;\n'
-    names = "|".join(sorted({i.words for c in all_of(top) for i in c.inner}))
-    return f"""# Completion of anholon for bash, made from the help of the program.
-_anholon() {{
-  local current="${{COMP_WORDS[COMP_CWORD]}}" path="" word words="" i
-  for ((i = 1; i < COMP_CWORD; ++i)); do
-    word="${{path:+$path }}${{COMP_WORDS[i]}}"
-    case "$word" in {names.replace(" ", chr(92) + " ")}) path="$word" ;; esac
-  done
-  case "$path" in
-{cases}  esac
-  # Names of models complete the first word that is no option.
-  if [[ -n "$path" && "$current" != -* ]]; then words+=" $("${{COMP_WORDS[0]}}" models 2>/dev/null | sed -n 's/^ *\\([a-z][a-z0-9-]*\\)  .*/\\1/p')"; fi
-  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$current"; [[ -n "$path" && "$current" != -* ]] && compgen -f -- "$current")
-}}
-complete -o filenames -F _anholon anholon
-"""
-
-
-def quoted(text):
-    return "'" + text.replace("'", "'\\''") + "'"
-
-
-def zsh(top):
-    cases = ""
-    for c in top.inner:
-        specifications = []
-        for o in c.options:
-            about = re.sub(r"([\[\]:\\])", r"\\\1", o.text)
-            specifications += [quoted(f"*{flag}[{about}]" + (":value:_files" if o.value else "")) for flag in o.flags]
-        cases += f"    {c.words}) _arguments {' '.join(specifications)} '*:file:_files' ;;\n"
-    names = " ".join(quoted(f"{c.words}:{c.about}") for c in top.inner)
-    return f"#compdef anholon\n# Made from the help of the program.\nlocal -a commands\ncommands=({names})\nif (( CURRENT == 2 )); then\n  _describe command commands\nelse\n  case $words[2] in\n{cases}  esac\nfi\n"
-
-
-def fish(top):
-    lines = ["# Completion of anholon for fish, made from the help of the program."]
-    for c in top.inner:
-        lines.append(f"complete -c anholon -n __fish_use_subcommand -a {c.words} -d {quoted(c.about)}")
-        for o in c.options:
-            flags = " ".join(f"-l {f[2:]}" if f.startswith("--") else f"-s {f[1:]}" for f in o.flags)
-            lines.append(f"complete -c anholon -n '__fish_seen_subcommand_from {c.words}' {flags}{' -r' if o.value else ''} -d {quoted(o.text)}")
-    return "\n".join(lines) + "\n"
+def script(program, shell):
+    """What `anholon completion` prints."""
+    return subprocess.run([program, "completion", shell], capture_output=True, text=True, check=True).stdout
 
 
 def check(program, top, page):
     """Nothing of the help is missing, and bash completes words."""
+    shells = {shell: script(program, shell) for shell in ("bash", "zsh", "fish")}
     plain = page.replace("\\-", "-")
     for c in all_of(top)[1:]:
         assert f".SS anholon {c.words}" in plain, c.words
@@ -164,14 +121,16 @@ def check(program, top, page):
         flags = {f for line in help_text.splitlines() if (m := OPTION.match(line)) for f in m.group(1).split(",")}
         assert flags == {f for o in c.options for f in o.flags}, (c.words, flags)
         assert all(f in block for f in flags), c.words
-        assert all(f in zsh(top) for f in flags) or " " in c.words, c.words
+        if " " not in c.words:  # zsh and fish complete the options of the first command alone
+            assert all(f"*{f}[" in shells["zsh"] and f" -l {f[2:]} " in shells["fish"] for f in flags if f.startswith("--")), c.words
+        assert f'"{c.words}") words=' in shells["bash"], c.words
     with tempfile.TemporaryDirectory() as scratch:
         file = pathlib.Path(scratch) / "anholon"
-        file.write_text(bash(top), encoding="utf-8")
+        file.write_text(shells["bash"], encoding="utf-8")
         for words, expected in (("anholon si", "simulate"), ("anholon simulate --tol", "--tolerance"), ("anholon sweep coll", "collect"), ("anholon sweep collect --par", "--partial"), ("anholon check chaplygin-sl", "chaplygin-sleigh")):
             split = words.split()
-            script = f'source {file}\nanholon() {{ "{program}" "$@"; }}\nCOMP_WORDS=({words})\nCOMP_CWORD={len(split) - 1}\n_anholon\nprintf "%s\\n" "${{COMPREPLY[@]}}"\n'
-            done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=False)
+            lines = f'source {file}\nanholon() {{ "{program}" "$@"; }}\nCOMP_WORDS=({words})\nCOMP_CWORD={len(split) - 1}\n_anholon\nprintf "%s\\n" "${{COMPREPLY[@]}}"\n'
+            done = subprocess.run(["bash", "-c", lines], capture_output=True, text=True, check=False)
             assert expected in done.stdout.split(), f"{words}: {done.stdout}{done.stderr}"
             assert all(line.startswith(split[-1]) for line in done.stdout.split()), done.stdout
     print(f"{len(all_of(top)) - 1} commands, {sum(len(c.options) for c in all_of(top))} options")
@@ -186,7 +145,7 @@ def main(program, target):
         check(program, top, page)
         return
     share = pathlib.Path(target) / "share"
-    files = {"bash-completion/completions/anholon": bash(top), "zsh/vendor-completions/_anholon": zsh(top), "fish/vendor_completions.d/anholon.fish": fish(top)}
+    files = {"bash-completion/completions/anholon": script(program, "bash"), "zsh/vendor-completions/_anholon": script(program, "zsh"), "fish/vendor_completions.d/anholon.fish": script(program, "fish")}
     for name, text in files.items():
         (share / name).parent.mkdir(parents=True, exist_ok=True)
         (share / name).write_text(text, encoding="utf-8")

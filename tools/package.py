@@ -42,6 +42,11 @@ def version():
     return re.search(r"project\(.*VERSION\s+([0-9.]+)", (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")).group(1)
 
 
+def address():
+    """The address of the authors: that of the commit which is packed."""
+    return run("git", "-C", ROOT, "log", "-1", "--format=%ae", capture_output=True, text=True).stdout.strip()
+
+
 def needed(file):
     """The shared libraries that a file names."""
     return set(re.findall(r"\(NEEDED\).*\[(.*)\]", run("readelf", "-d", file, capture_output=True, text=True).stdout))
@@ -88,7 +93,7 @@ def debian_package(prefix, depends, file, scratch):
         f"""Package: anholon
 Version: {version()}
 Architecture: amd64
-Maintainer: The Anholon authors <anholon@localhost>
+Maintainer: The Anholon authors <{address()}>
 Installed-Size: {size}
 Depends: {", ".join(depends)}
 Recommends: libhdf5-103-1

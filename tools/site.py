@@ -46,6 +46,8 @@ RUN_BY_GOLDEN = ("book", "recipes", "asked", "from")  # their transcripts; tools
 LEAST_EXAMPLES = 300
 RUN_ELSEWHERE = {  # commands that no transcript can run, and the test that does
     "render": "test/house/render_disc.py",  # needs a browser
+    "studio": "test/studio/server.py",  # runs until Ctrl-C
+    "completion": "tools/command_line.py",  # which also sources the script
     "sweep status": "test/sweeps/folders.py",  # needs a sweep that other processes compute
     "sweep collect": "test/sweeps/folders.py",
 }
@@ -360,6 +362,30 @@ class Links(html.parser.HTMLParser):
             self.without_text += 1
 
 
+# What the theme leaves out for readers of screens and for keys, in the built pages: (text, its replacement).
+FOR_READERS = [
+    (re.compile(r'<p class="caption" role="heading">'), '<p class="caption" role="heading" aria-level="2">'),
+    (re.compile(r'<aside class="sidebar-drawer">'), '<aside class="sidebar-drawer" aria-label="The site">'),
+    (re.compile(r'<aside class="toc-drawer'), '<aside aria-label="This page" class="toc-drawer'),
+    (re.compile(r"<pre>"), '<pre tabindex="0">'),  # it scrolls
+    (re.compile(r'<div class="(formula|table-wrapper)(?=[" ])'), r'<div tabindex="0" class="\1'),
+    (re.compile(r'<th class="head([^"]*)"><p></p></th>'), r'<td class="head\1"></td>'),
+    (re.compile(r'(<article role="main" id="furo-main-content">)(?=((?!<h1).)*<div id="search-results">)', re.S), r"\1<h1>Search</h1>"),
+]
+
+
+def help_readers(site):
+    """Writes what FOR_READERS lists into the built pages; returns the number of replacements by each."""
+    counts = [0] * len(FOR_READERS)
+    for path in sorted(site.rglob("*.html")):
+        text = path.read_text(encoding="utf-8")
+        for k, (what, by) in enumerate(FOR_READERS):
+            text, n = what.subn(by, text)
+            counts[k] += n
+        path.write_text(text, encoding="utf-8")
+    return counts
+
+
 def check_built(site):
     """-> problems of the built pages: dead links, dead anchors, what is loaded from the network, pictures without a text."""
     pages, problems = {}, []
@@ -454,7 +480,8 @@ def build(program, out, jobs, only_pages):
         return 1
     for svg in (copy / "gallery").glob("*.svg"):
         shutil.copy(svg, out / "gallery")
-    problems = check_built(out)
+    unused = [what.pattern for (what, _), n in zip(FOR_READERS, help_readers(out)) if n == 0]
+    problems = check_built(out) + [f"no page holds {pattern}: has the theme changed?" for pattern in unused]
     for problem in problems:
         print(problem)
     pages = sum(1 for _ in out.rglob("*.html"))

@@ -117,6 +117,8 @@ def licence_table():
         text += f"| {name} | source of {path.rsplit('/', 1)[-1].removesuffix('.dsc')} | {licence} |\n"
     for name, (package, licence, _) in INSTALLED.items():
         text += f"| {name} | {package} | {licence} |\n"
+    text += "| three.js, uPlot, CodeMirror, STIX Two Math (viewer.txt) | npm, viewer/package.json | MIT; SIL OFL |\n"
+    text += "| Boost.Beast (boost.txt), of the program alone | libboost-dev | BSL-1.0 |\n| nanobind (nanobind.txt), of the Python package alone | PyPI | BSD-3-Clause |\n"
     return text + "\nFLINT is built without NTL and gf2x. GMP, MPFR, FLINT and Arb can be exchanged: `tools/static_libraries.py` of the source builds them again.\n"
 
 
@@ -124,6 +126,8 @@ def main(folder):
     prefix = pathlib.Path(folder).resolve()
     wanted = hashlib.sha256(repr((PACKAGES, INSTALLED, FLAGS, TUPLE, str(prefix))).encode()).hexdigest()
     complete = prefix / "complete"
+    (prefix / "licences").mkdir(parents=True, exist_ok=True)
+    (prefix / "licences" / "README.md").write_text(licence_table(), encoding="utf-8")
     if complete.exists() and complete.read_text(encoding="utf-8") == wanted:
         return
     scratch = prefix / "source"
@@ -144,7 +148,6 @@ def main(folder):
             found = subprocess.run(["g++", f"-print-file-name=lib{archive}.a"], capture_output=True, text=True, check=True).stdout.strip()
             shutil.copyfile(found, prefix / "lib" / f"lib{archive}.a")
         shutil.copyfile(copyright_of(name, None), prefix / "licences" / f"{name}.txt")
-    (prefix / "licences" / "README.md").write_text(licence_table(), encoding="utf-8")
     for unwanted in prefix.glob("lib/*.la"):
         unwanted.unlink()
     complete.write_text(wanted, encoding="utf-8")

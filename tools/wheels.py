@@ -88,7 +88,7 @@ def try_wheels(folder, wheels):
         example = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.S).group(1)
         run(python, "-c", example, cwd=scratch, env=environment, stdout=subprocess.DEVNULL)
         licences = list(pathlib.Path(scratch).glob("lib/*/site-packages/anholon/licences/*"))
-        if not {"anholon.txt", "flint.txt", "gmp.txt", "llvm.txt", "README.md"} <= {f.name for f in licences}:
+        if not {"anholon.txt", "flint.txt", "gmp.txt", "llvm.txt", "nanobind.txt", "viewer.txt", "README.md"} <= {f.name for f in licences}:
             raise SystemExit(f"licences are missing: {licences}")
 
 

@@ -13,10 +13,13 @@ uPlot, ${licence('uplot')}
 under the MIT License:
 ${mit}
 */`;
+const studio_banner = banner.replace("Anholon's viewer", "Anholon's studio").replace('uPlot,', `CodeMirror, ${licence('@codemirror/view')}\nLezer, ${licence('@lezer/common')}\nuPlot,`);
 
-// Two programs: the script of a page, and (--mode widget) the module of a notebook's widget, which has its style inside.
+// Three programs: the script of a page; (--mode widget) the module of a notebook's widget, which has its style inside; (--mode studio)
+// the page of the studio.
 const programs = {
   production: { entry: 'src/main.ts', name: 'anholon_viewer', formats: ['iife'], fileName: () => 'viewer.js' },
+  studio: { entry: 'src/studio/main.ts', name: 'anholon_studio', formats: ['iife'], fileName: () => 'studio.js' },
   widget: { entry: 'src/widget.ts', formats: ['es'], fileName: () => 'widget.js' },
 };
 
@@ -37,8 +40,8 @@ export default defineConfig(({ mode }) => ({
     target: 'es2020',
     assetsInlineLimit: 10_000_000,
     lib: programs[mode],
-    emptyOutDir: mode !== 'widget',
-    rollupOptions: { output: { assetFileNames: 'viewer.[ext]', banner: mode === 'widget' ? '' : banner } },
+    emptyOutDir: mode === 'production',
+    rollupOptions: { output: { assetFileNames: mode === 'studio' ? 'studio.[ext]' : 'viewer.[ext]', banner: mode === 'widget' ? '' : mode === 'studio' ? studio_banner : banner } },
     reportCompressedSize: false,
   },
 }));

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "base/diagnostic.h"
+#include "cli/completion.h"
 #include "cli/input.h"
 #include "cli/model_options.h"
 #include "cli/say.h"
@@ -45,6 +46,7 @@ class CommandLine {
     add_simulate();
     add_report();
     add_render();
+    add_studio();
     add_sweep();
     add_linearize();
     add_forms();
@@ -58,6 +60,7 @@ class CommandLine {
     add_convert();
     add_reference();
     add_models();
+    add_completion();
   }
 
   // Runs the command that the words name; returns the exit status.
@@ -70,6 +73,10 @@ class CommandLine {
       const bool known = argc > 1 && argv[1][0] != '-';
       say(stderr, "error: %s\nhint: anholon %s%s--help\n", e.what(), known ? argv[1] : "", known ? " " : "");
       return kBadInput;
+    }
+    if (!shell_.empty()) {
+      hand_out(completion_script(words_of(app_, ""), shell_));
+      return kOk;
     }
     rescue_model(o_);
     if (needs_model_ && o_.model.empty()) {
@@ -97,6 +104,24 @@ class CommandLine {
     c->add_option("MODEL", o_.model, "a model file, or the name of a shipped model");
     c->add_flag("--json", o_.json, "JSON on the standard output");
     c->add_flag("--quiet", o_.quiet, "no progress, no report on stderr");
+    return c;
+  }
+
+  // What a shell completes, from the commands and options themselves. Options without a group are not shown.
+  static CommandWords words_of(const CLI::App& app, const std::string& words) {
+    CommandWords c{words, app.get_description(), {}, {}};
+    for (const CLI::Option* option : app.get_options()) {
+      if (option->get_group().empty()) continue;
+      CommandWords::Flag flag;
+      for (const std::string& name : option->get_snames()) flag.names.push_back("-" + name);
+      for (const std::string& name : option->get_lnames()) flag.names.push_back("--" + name);
+      if (flag.names.empty()) continue;  // a word without a dash
+      flag.takes_value = option->get_type_size_max() > 0;
+      for (const char ch : option->get_description()) flag.about += ch == '\n' ? ' ' : ch;
+      c.flags.push_back(std::move(flag));
+    }
+    for (const CLI::App* inner : app.get_subcommands([](const CLI::App*) { return true; }))
+      c.inner.push_back(words_of(*inner, words.empty() ? inner->get_name() : words + " " + inner->get_name()));
     return c;
   }
 
@@ -275,6 +300,31 @@ class CommandLine {
         ->check(CLI::IsMember({"observer", "inertial"}));
     c->add_flag("--dark", o_.dark, "on a dark ground");
     c->add_option("--rows", o_.rows, "a run of this model, in " + known_formats())->type_name("FILE");
+  }
+
+  void add_studio() {
+    CLI::App* c =
+        command("studio", "edit a model in the browser: equations, proof, plots and animation as you type", cli::studio,
+                "Serves a page on the loopback address alone, whose address has a secret; Ctrl-C ends it. "
+                "'Save' writes the file that was opened.\n"
+                "A shipped model is shown and not written to: anholon new rolling -o mine.toml makes a file.\n"
+                "Examples: anholon studio mine.toml\n"
+                "          anholon studio disc --port 8080 --no-browser");
+    c->add_option("MODEL", o_.model, "a model file, or the name of a shipped model (default: disc)");
+    c->add_option("--port", o_.port, "the port of the page (default: a free one)")
+        ->type_name("N")
+        ->check(CLI::Range(0, 65535));
+    c->add_flag("--no-browser", o_.no_browser, "print the address and open no browser");
+    c->add_flag("--quiet", o_.quiet, "print the address alone");
+    c->add_flag("--worker", o_.studio_worker)->group("");
+  }
+
+  void add_completion() {
+    CLI::App* c = command("completion", "a script with which a shell completes commands, options and models", nullptr,
+                          "Examples: source <(anholon completion bash)\n"
+                          "          anholon completion zsh > ~/.zfunc/_anholon\n"
+                          "          anholon completion fish > ~/.config/fish/completions/anholon.fish");
+    c->add_option("SHELL", shell_, "bash, zsh or fish")->required()->check(CLI::IsMember(shells_with_completion()));
   }
 
   void add_sweep() {
@@ -553,6 +603,7 @@ class CommandLine {
 
   CLI::App app_{"Anholon: the equations of nonholonomic mechanics, their motion, with a residual report."};
   Options o_;
+  std::string shell_;  // of `completion`; empty for other commands
   std::function<int(const Options&)> command_;
   bool needs_model_ = false;
 };

@@ -45,6 +45,8 @@ struct Options {
   bool dark = false;
   bool log_axis = false, each = false, together = false, equal = false;
   bool check_only = false, to_stdout = false, schema = false, markdown = false;
+  int port = 0;  // of the studio
+  bool no_browser = false, studio_worker = false;
   bool json = false, quiet = false, steps = false, reactions = false, csv = false;
 
   int digits() const { return motion.digits.value_or(16); }
@@ -65,6 +67,7 @@ int plot(const Options& o);
 int prove(const Options& o);
 int render(const Options& o);
 int report(const Options& o);
+int studio(const Options& o);
 int compare(const Options& o);
 int papers(const Options& o);
 int verify(const Options& o);

@@ -20,9 +20,10 @@ void rescue_model(Options& o) {
   }
 }
 
-static constexpr const char* kCommands[] = {
-    "check",  "derive", "evaluate", "simulate", "sweep",     "linearize", "forms", "models", "prove", "compare",
-    "papers", "verify", "new",      "fmt",      "reference", "convert",   "plot",  "report", "render"};
+static constexpr const char* kCommands[] = {"check",  "derive", "evaluate",  "simulate", "sweep",  "linearize",
+                                            "forms",  "models", "prove",     "compare",  "papers", "verify",
+                                            "new",    "fmt",    "reference", "convert",  "plot",   "report",
+                                            "render", "studio", "completion"};
 
 // A word that is no command gets an answer of its own.
 void check_command(const char* word) {

@@ -13,8 +13,11 @@ std::string math(const std::string& row) { return "<math>" + row + "</math>"; }
 static std::string row(const std::vector<std::string>& cells, const char* tag) {
   std::string out = "<tr>";
   for (std::size_t k = 0; k < cells.size(); ++k)
-    out += k == 0 && tag[1] == 'd' ? "<th scope=\"row\">" + cells[k] + "</th>"
-                                   : std::string("<") + tag + ">" + cells[k] + "</" + tag + ">";
+    if (cells[k].empty())
+      out += "<td></td>";  // a head without a text would be read out as one
+    else
+      out += k == 0 && tag[1] == 'd' ? "<th scope=\"row\">" + cells[k] + "</th>"
+                                     : std::string("<") + tag + ">" + cells[k] + "</" + tag + ">";
   return out + "</tr>\n";
 }
 

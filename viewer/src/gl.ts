@@ -20,8 +20,12 @@ export function gl(): WebGLRenderer | null {
   return renderer;
 }
 
-const restored: (() => void)[] = [];
-export function on_restored(f: () => void): void { restored.push(f); }
+const restored = new Set<() => void>();
+// Returns what ends the listening.
+export function on_restored(f: () => void): () => void {
+  restored.add(f);
+  return () => { restored.delete(f); };
+}
 
 let width = 0, height = 0;
 

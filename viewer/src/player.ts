@@ -10,7 +10,7 @@ import { fixed, time_decimals, with_unit } from './format.ts';
 import { gl, on_restored } from './gl.ts';
 import type { Frame, SceneModel } from './scene.ts';
 import { css_rgb, on_theme, theme } from './theme.ts';
-import { View } from './view.ts';
+import { View, type Look } from './view.ts';
 
 export class Player {
   readonly views = h('div', { class: 'views' });
@@ -19,6 +19,7 @@ export class Player {
   private active: View[] = [];
   private follow = '';
   private visible = false;
+  private readonly ends: (() => void)[] = [];     // what close() undoes
 
   constructor(readonly place: HTMLElement, private readonly data: Case, readonly model: SceneModel, private readonly clock: Clock) {
     const kinds = new Set(model.items.map((i) => i.kind));
@@ -44,16 +45,30 @@ export class Player {
     this.set_frames(['observer']);
     this.set_follow(this.first_follow());
     clock.listen(() => this.redraw());
-    on_theme(() => { for (const v of this.made.values()) if (v.ready) { v.build(); v.draw(); } });
-    on_restored(() => this.redraw());
+    this.ends.push(on_theme(() => { for (const v of this.made.values()) if (v.ready) { v.build(); v.draw(); } }), on_restored(() => this.redraw()));
     // beforeprint changes the theme first; pictures that were never in sight are drawn for the paper.
-    addEventListener('beforeprint', () => this.wake());
-    new ResizeObserver(() => { if (this.visible) for (const v of this.active) v.resize(); }).observe(this.views);
-    new IntersectionObserver((entries) => {
+    const waking = (): void => this.wake();
+    addEventListener('beforeprint', waking);
+    const sized = new ResizeObserver(() => { if (this.visible) for (const v of this.active) v.resize(); });
+    sized.observe(this.views);
+    const seen = new IntersectionObserver((entries) => {
       this.visible = entries[entries.length - 1].isIntersecting;
       if (this.visible) this.wake();
-    }, { rootMargin: '200px' }).observe(place);
+    }, { rootMargin: '200px' });
+    seen.observe(place);
+    this.ends.push(() => removeEventListener('beforeprint', waking), () => sized.disconnect(), () => seen.disconnect());
   }
+
+  // For a place that gets another player: gives back what the page and the graphics card hold for this one.
+  close(): void {
+    for (const end of this.ends) end();
+    for (const v of this.made.values()) v.close();
+    this.visible = false;
+  }
+
+  // Where the reader has put the camera of the observer's view; null if it was not moved.
+  get look(): Look | null { return this.made.get('observer')?.look ?? null; }
+  set look(look: Look | null) { if (look) this.view('observer').look = look; }
 
   // Built when first seen: a page may have many cases.
   wake(): void {

@@ -13,6 +13,7 @@ export class Plots implements Owner {
   readonly plots: Plot[] = [];
   cursor: Cursor | null = null;
   private pending = false;
+  private readonly ends: (() => void)[] = [];     // what close() undoes
   private last_reading = 0;
   private readonly unzoom = h('button', { type: 'button', class: 'plain', hidden: true, click: () => this.zoom(null) }, 'Whole time');
   private readonly stack = h('div', { class: 'stack' });
@@ -31,21 +32,32 @@ export class Plots implements Owner {
     }
     this.chips();
     clock.listen(() => this.request());
-    on_theme(() => { for (const p of this.plots) p.recolor(); });
+    this.ends.push(on_theme(() => { for (const p of this.plots) p.recolor(); }));
     const seen = new IntersectionObserver((entries) => {
       for (const e of entries) if (e.isIntersecting) this.wake(this.plots.find((p) => p.element === e.target));
     }, { rootMargin: '300px' });
     for (const p of this.plots) seen.observe(p.element);
     this.wake_idly(0);
-    new ResizeObserver(() => this.resize()).observe(this.stack);
-    addEventListener('beforeprint', () => { for (const p of this.plots) this.wake(p); this.resize(print_width); });
-    addEventListener('afterprint', () => this.resize());
+    const sized = new ResizeObserver(() => this.resize());
+    sized.observe(this.stack);
+    const before = (): void => { for (const p of this.plots) this.wake(p); this.resize(print_width); }, after = (): void => this.resize();
+    addEventListener('beforeprint', before);
+    addEventListener('afterprint', after);
+    this.ends.push(() => sized.disconnect(), () => seen.disconnect(), () => removeEventListener('beforeprint', before), () => removeEventListener('afterprint', after));
     this.read();
   }
 
+  // For a place that gets other plots.
+  close(): void {
+    for (const end of this.ends) end();
+    this.closed = true;
+  }
+
+  private closed = false;
+
   // The others one by one when there is nothing else to do.
   private wake_idly(k: number): void {
-    if (k >= this.plots.length) return;
+    if (k >= this.plots.length || this.closed) return;
     const next = (): void => { this.wake(this.plots[k]); this.wake_idly(k + 1); };
     if ('requestIdleCallback' in window) requestIdleCallback(next, { timeout: 1000 }); else setTimeout(next, 200);
   }

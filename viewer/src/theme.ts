@@ -51,10 +51,14 @@ function read(): Theme {
 }
 
 let current: Theme | null = null;
-const listeners: (() => void)[] = [];
+const listeners = new Set<() => void>();
 
 export function theme(): Theme { return (current ??= read()); }
-export function on_theme(f: () => void): void { listeners.push(f); }
+// Returns what ends the listening.
+export function on_theme(f: () => void): () => void {
+  listeners.add(f);
+  return () => { listeners.delete(f); };
+}
 
 function changed(): void {
   current = null;

@@ -19,6 +19,9 @@ import { theme } from './theme.ts';
 
 const fov = 32;
 
+// The eye relative to what is looked at, which may move.
+export interface Look { offset: Vector; shift: Vector; zoom: number }
+
 export class View {
   readonly canvas = h('canvas', { class: 'view', tabindex: '0' });
   readonly note = h('span', { class: 'note grid-note' });
@@ -91,6 +94,30 @@ export class View {
   }
 
   get ready(): boolean { return this.built; }
+
+  close(): void {
+    this.dispose();
+    this.built = false;
+    this.controls.dispose();
+  }
+
+  get look(): Look | null {
+    if (this.untouched) return null;
+    const { target } = this.controls;
+    return {
+      offset: this.camera.position.clone().sub(target).toArray() as Vector,
+      shift: target.clone().sub(new Vector3(...this.anchor.target)).toArray() as Vector, zoom: this.camera.zoom,
+    };
+  }
+  set look(look: Look | null) {
+    if (!look) return;
+    this.reset();
+    this.untouched = false;
+    this.controls.target.set(...this.anchor.target).add(new Vector3(...look.shift));
+    this.camera.position.copy(this.controls.target).add(new Vector3(...look.offset));
+    this.camera.zoom = look.zoom;
+    this.controls.update();
+  }
 
   private ratio(): number { return Math.min(2, devicePixelRatio || 1); }
 

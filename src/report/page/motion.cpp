@@ -43,7 +43,7 @@ class MotionSection {
     if (t.rows() == 0) return "";
     constexpr std::size_t kMostColumns = 64;
     std::string out =
-        "<div class=\"wide\"><table><thead><tr><th></th><th>first row</th><th>last row</th></tr></thead><tbody>\n";
+        "<div class=\"wide\"><table><thead><tr><td></td><th>first row</th><th>last row</th></tr></thead><tbody>\n";
     for (std::size_t k = 0; k < std::min(t.columns.size(), kMostColumns); ++k)
       out += "<tr><th scope=\"row\">" + user(t.columns[k]) + "</th><td>" + markup_escape(t.text(0, k)) + "</td><td>" +
              markup_escape(t.text(t.rows() - 1, k)) + "</td></tr>\n";

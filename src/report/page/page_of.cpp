@@ -1,7 +1,6 @@
 #include "report/page/page_of.h"
 
 #include <algorithm>
-#include <deque>
 #include <map>
 
 #include "modelfile/hash.h"
@@ -123,27 +122,36 @@ Proof add_proof(Page& page, const PageRequest& request, const Model& fresh) {
 
 }  // namespace
 
-std::string page_of(std::vector<PagedRun> runs, const std::shared_ptr<const Model>& model, const PageRequest& request) {
-  Page page;
-  std::deque<Explanation> explanations;
+PageInParts::PageInParts(std::vector<PagedRun> runs, std::shared_ptr<const Model> model, PageRequest request)
+    : model_(std::move(model)), request_(std::move(request)) {
   for (PagedRun& r : runs) {
-    explanations.push_back(explain(*r.scenario));
-    page.cases.push_back({r.name, r.scenario, &explanations.back(), std::move(r.conserved), std::move(r.run)});
+    explanations_.push_back(explain(*r.scenario));
+    page_.cases.push_back({r.name, r.scenario, &explanations_.back(), std::move(r.conserved), std::move(r.run)});
   }
-  page.version = request.version;
-  page.model_hash = model_hash(request.source);
-  page.source = request.source;
-  page.command = request.command;
-  const Workspace& first = *page.cases.front().scenario;
-  const std::size_t size = add_equations(page, request, first);
-  page.no_proof = request.no_proof;
-  if (page.no_proof.empty() && (first.mechanics->q.size() > kMostProved || size > kMostNodesProved))
-    page.no_proof = "For equations of this length a proof takes its time: anholon prove " + request.source.name;
-  if (!page.no_proof.empty()) return html(page);
-  const std::shared_ptr<const Model> fresh = clone(*model);
-  const Proof proof = add_proof(page, request, *fresh);
-  page.proof = &proof;
-  return html(page);
+  page_.version = request_.version;
+  page_.model_hash = model_hash(request_.source);
+  page_.source = request_.source;
+  page_.command = request_.command;
+}
+
+void PageInParts::add_equations() { size_ = anholon::add_equations(page_, request_, *page_.cases.front().scenario); }
+
+void PageInParts::add_proof() {
+  page_.no_proof = request_.no_proof;
+  if (page_.no_proof.empty() &&
+      (page_.cases.front().scenario->mechanics->q.size() > kMostProved || size_ > kMostNodesProved))
+    page_.no_proof = "For equations of this length a proof takes its time: anholon prove " + request_.source.name;
+  if (!page_.no_proof.empty()) return;
+  fresh_ = clone(*model_);
+  proof_ = anholon::add_proof(page_, request_, *fresh_);
+  page_.proof = &*proof_;
+}
+
+std::string page_of(std::vector<PagedRun> runs, const std::shared_ptr<const Model>& model, const PageRequest& request) {
+  PageInParts parts(std::move(runs), model, request);
+  parts.add_equations();
+  parts.add_proof();
+  return html(parts.page());
 }
 
 }  // namespace anholon

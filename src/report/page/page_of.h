@@ -1,5 +1,6 @@
 // The page of a motion, or of several of one model, from the motion alone: which equations are shown, and their proof.
 #pragma once
+#include <deque>
 #include <functional>
 
 #include "report/page/content.h"
@@ -22,6 +23,29 @@ struct PageRequest {
   SourceText source;
   // Told before each proof.
   std::function<void(std::size_t number, std::size_t of, const std::string& form)> progress;
+};
+
+// The content of a page whose parts are added as they are asked for: an editor shows the motion first.
+class PageInParts {
+ public:
+  // The motions without equations and proof. REQUIRES: a run at least.
+  PageInParts(std::vector<PagedRun> runs, std::shared_ptr<const Model> model, PageRequest request);
+  PageInParts(const PageInParts&) = delete;
+  PageInParts& operator=(const PageInParts&) = delete;
+  const Page& page() const { return page_; }
+  // Throws Failure if the eliminations that were asked for are impossible.
+  void add_equations();
+  // The proof, or the reason why there is none. REQUIRES: add_equations() was called.
+  void add_proof();
+
+ private:
+  std::shared_ptr<const Model> model_;
+  PageRequest request_;
+  Page page_;
+  std::deque<Explanation> explanations_;
+  std::shared_ptr<const Model> fresh_;  // the graph of the proof's expressions
+  std::optional<Proof> proof_;
+  std::size_t size_ = 0;  // of the first equations
 };
 
 // The text of the page. REQUIRES: a run at least. Throws Failure if the eliminations that were asked for are impossible.

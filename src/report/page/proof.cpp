@@ -9,7 +9,7 @@ namespace {
 // Every form against every other.
 std::string matrix(const Proof& proof) {
   std::string out = "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Proof matrix\"><table "
-                    "class=\"matrix\"><caption>Proof matrix</caption><thead><tr><th></th><th></th>";
+                    "class=\"matrix\"><caption>Proof matrix</caption><thead><tr><td></td><td></td>";
   for (std::size_t k = 0; k < proof.forms.size(); ++k)
     out += "<th scope=\"col\" title=\"" + markup_escape(proof.forms[k].form->title) + "\">" + std::to_string(k + 1) +
            "</th>";

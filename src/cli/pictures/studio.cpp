@@ -1,0 +1,69 @@
+#include "studio/studio.h"
+
+#include <array>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <stdexcept>
+
+#include <spawn.h>
+
+#include "cli/input.h"
+#include "cli/pictures/child.h"
+#include "cli/say.h"
+
+extern char** environ;
+
+namespace anholon::cli {
+
+namespace {
+
+// Opens the address in the user's browser, if there is a desktop, and does not wait for it.
+void open_browser(const std::string& address) {
+  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
+  const std::string program = find_program({"xdg-open"});
+  if (program.empty()) return;
+  std::array<char*, 3> words = {const_cast<char*>(program.c_str()), const_cast<char*>(address.c_str()), nullptr};
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  for (const int file : {0, 1, 2}) posix_spawn_file_actions_addopen(&files, file, "/dev/null", 2, 0);
+  pid_t child = -1;
+  if (posix_spawn(&child, words[0], &files, nullptr, words.data(), environ) != 0)
+    say(stderr, "note: the browser could not be started\n");
+  posix_spawn_file_actions_destroy(&files);
+  std::signal(SIGCHLD, SIG_DFL);
+}
+
+}  // namespace
+
+int studio(const Options& o) {
+  if (o.studio_worker) {
+    studio_work();
+    return kOk;
+  }
+  if (!has_studio())
+    throw UsageError{"error: this program was built without the viewer, and so without the studio\nhint: ./dev build "
+                     "builds it where there is npm\n"};
+  StudioOptions options;
+  const std::string name = o.model.empty() ? "disc" : o.model;
+  options.source = model_text(name, ANHOLON_MODELS_DIR);
+  std::error_code none;
+  options.shipped = options.source.path != "" || !std::filesystem::is_regular_file(name, none);
+  options.port = o.port;
+  const std::string self = std::filesystem::read_symlink("/proc/self/exe", none).string();
+  options.worker = {self, "studio", "--worker"};
+  options.opened = [&](const std::string& address) {
+    say(stdout, "%s\n", address.c_str());
+    std::fflush(stdout);
+    if (!o.quiet) say(stderr, "The studio is at this address until Ctrl-C. Whoever has the address can use it.\n");
+    if (!o.no_browser) open_browser(address);
+  };
+  try {
+    serve_studio(options);
+  } catch (const std::runtime_error& e) {
+    throw UsageError{std::string("error: ") + e.what() + "\nhint: --port 0 takes a free one\n"};
+  }
+  return kOk;
+}
+
+}  // namespace anholon::cli

@@ -1,0 +1,262 @@
+#include "studio/answers.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "anholon/equations.h"
+#include "anholon/system.h"
+#include "api/run_data.h"
+#include "base/json.h"
+#include "mechanics/conserved.h"
+#include "modelfile/contacts.h"
+#include "report/markup.h"
+#include "report/page/data.h"
+#include "report/page/page_of.h"
+#include "report/page/sections.h"
+#include "simulation/report_json.h"
+#include "simulation/request.h"
+#include "studio/opened_file.h"
+
+namespace anholon {
+
+namespace {
+
+// A motion that takes longer is shown as far as it has come.
+constexpr std::chrono::seconds kLongestMotion{8};
+
+const char* word(Severity severity) {
+  return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "note";
+}
+
+void write(JsonWriter& json, const Diagnostic& d, const SourceText& source) {
+  const SourceText& file = source.of(d.span);
+  json.open_object().key("severity").string(word(d.severity)).key("message").string(d.message);
+  json.key("hint").string(d.hint).key("file").string(&file == &source ? "" : file.name);
+  json.key("line")
+      .integer(d.span.line)
+      .key("column")
+      .integer(d.span.column)
+      .key("length")
+      .integer(d.span.length)
+      .close();
+}
+
+void write(JsonWriter& json, const v1::Error& error, const std::string& name) {
+  json.key("error").open_object();
+  json.key("text").string(!error.diagnostics.empty() ? error.diagnostics.front().message
+                          : error.outcome            ? error.outcome->message
+                                                     : error.text);
+  json.key("hint").string(!error.diagnostics.empty() ? error.diagnostics.front().hint
+                          : error.outcome            ? error.outcome->hint
+                                                     : "");
+  json.key("outcome").string(error.outcome ? v1::name(error.outcome->kind) : "");
+  json.key("diagnostics").open_array();
+  for (const v1::Diagnostic& d : error.diagnostics) {
+    json.open_object().key("severity").string(word(static_cast<Severity>(d.severity)));
+    json.key("message").string(d.message).key("hint").string(d.hint);
+    json.key("file").string(d.file == name ? "" : d.file);
+    json.key("line").integer(d.line).key("column").integer(d.column).key("length").integer(d.length).close();
+  }
+  json.close().close();
+}
+
+void section(JsonWriter& json, const char* id, const char* title, const std::string& body) {
+  if (body.empty()) return;
+  json.open_object().key("id").string(id).key("title").string(title).key("html").string(body).close();
+}
+
+}  // namespace
+
+class Answers::Desk {
+ public:
+  std::string answer(const Question& q) {
+    JsonWriter json;
+    json.open_object();
+    const std::string begun = json.text();
+    try {
+      take_up(q);
+      if (q.command == "check")
+        check(json);
+      else if (q.command == "simulate")
+        simulate(json);
+      else if (q.command == "derive")
+        derive(json);
+      else
+        prove(json);
+      return json.close().text();
+    } catch (const Failure& e) {
+      return troubled(v1::error_of(e, source_));
+    } catch (const std::bad_alloc&) {
+      forget();
+      return troubled(v1::mistake("the model takes more memory than the studio allows", "make the model smaller"));
+    }
+  }
+
+ private:
+  std::string troubled(const v1::Error& error) const {
+    JsonWriter json;
+    json.open_object();
+    anholon::write(json, error, source_.name);
+    return json.close().text();
+  }
+
+  void forget() {
+    parts_.reset(), workspace_.reset(), run_.reset(), model_ = {}, names_ = {};
+    diagnostics_ = {}, known_ = false;
+  }
+
+  // Reads the text unless it is the last one. Only files that the opened model named are read.
+  void take_up(const Question& q) {
+    if (known_ && q.text == source_.text && q.name == source_.name && q.readable == readable_) return;
+    forget();
+    source_ = {q.name, q.text, q.path};
+    readable_ = q.readable;
+    try {
+      for (const NamedFile& f : files_named(source_))
+        if (std::find(readable_.begin(), readable_.end(), f.name) == readable_.end())
+          diagnostics_.error(f.span, "the studio reads only files that the model named when it was opened",
+                             "save the model and start the studio again");
+    } catch (const Failure&) {
+      // open_model reports it.
+    }
+    if (!diagnostics_.has_errors())
+      if (const auto opened = open_model(source_, diagnostics_)) model_ = opened->model, names_ = opened->names;
+    if (model_) source_ = model_->source_text;
+    known_ = true;
+  }
+
+  void check(JsonWriter& json) {
+    json.key("diagnostics").open_array();
+    for (const Diagnostic& d : diagnostics_.list()) anholon::write(json, d, source_);
+    json.close().key("names").open_array();
+    if (model_) names(json);
+    json.close().key("title").string(model_ ? model_->title : "").key("moves").boolean(static_cast<bool>(model_));
+  }
+
+  // Returns false if the text is no model; the answer then says so.
+  bool has_model(JsonWriter& json) const {
+    if (model_) return true;
+    v1::Error error = v1::error_of(diagnostics_, source_);
+    anholon::write(json, error, source_.name);
+    return false;
+  }
+
+  void names(JsonWriter& json) const {
+    const auto add = [&](const std::string& name, const char* what) {
+      json.open_object().key("name").string(name).key("what").string(what).close();
+    };
+    for (const auto& x : model_->coordinates) add(x.name, "coordinate");
+    for (const auto& x : model_->parameters) add(x.name, "parameter");
+    for (const auto& x : model_->bodies) add(x.name, "body");
+    for (const auto& x : model_->states) add(x.name, "state");
+    for (const auto& x : model_->controls) add(x.name, "input");
+    for (const auto& x : model_->monitors) add(x.name, "monitor");
+    for (const auto& x : model_->constraints) add("lambda." + x.name, "multiplier");
+  }
+
+  void simulate(JsonWriter& json) {
+    if (!has_model(json)) return;
+    if (const auto& list = contacts(*names_); !list.empty())
+      return anholon::write(
+          json, v1::mistake("the studio computes no motions with contacts", "anholon simulate " + source_.name),
+          source_.name);
+    if (!move(json)) return;
+    const std::optional<SimulationReport> report = read_report(parts_->page().cases.front().run.report);
+    json.key("title").string(page_title(parts_->page())).key("sections").open_array();
+    section(json, "motion", "Motion", motion_section(parts_->page(), {report}));
+    section(json, "report", "How far the motion can be trusted", trust_section(parts_->page(), {report}));
+    json.close().key("data").string(page_data(parts_->page()));
+  }
+
+  // Computes the motion unless it is there. False if there is none; the answer then says why.
+  bool move(JsonWriter& json) {
+    if (parts_) return true;
+    auto data = std::make_shared<v1::Model::Data>();
+    data->source = source_, data->model = model_;
+    v1::PrepareOptions prepare;
+    prepare.form = model_->simulate.form.value_or("routh");
+    const auto system = v1::prepare(v1::Model(data), prepare);
+    if (!system) return anholon::write(json, system.error(), source_.name), false;
+    v1::MotionOptions options;
+    const auto deadline = std::chrono::steady_clock::now() + kLongestMotion;
+    options.cancelled = [deadline] { return std::chrono::steady_clock::now() > deadline; };
+    const auto run = v1::simulate(*system, options);
+    if (!run) return anholon::write(json, run.error(), source_.name), false;
+    if (run->rows() == 0) {
+      v1::Error none = v1::mistake("the motion has no rows");
+      none.outcome = run->outcome();
+      none.diagnostics.clear();
+      return anholon::write(json, none, source_.name), false;
+    }
+    workspace_.emplace(system->data().scenario);
+    PageRequest request;
+    request.choice = system->data().choice;
+    request.version = "anholon " ANHOLON_VERSION;
+    request.command = "anholon report " + source_.name;
+    request.source = workspace_->model->source_text;
+    std::vector<Conserved> integrals;
+    if (!sets_values(*workspace_->model)) integrals = conserved(*workspace_->mechanics);
+    std::vector<PagedRun> runs;
+    runs.push_back({"", &*workspace_, integrals, run->data().run});
+    parts_.emplace(std::move(runs), model_, request);
+    return true;
+  }
+
+  void derive(JsonWriter& json) {
+    if (!has_model(json)) return;
+    JsonWriter no_motion;
+    no_motion.open_object();
+    if (!contacts(*names_).empty() || !move(no_motion)) return derive_alone(json);
+    add_equations();
+    json.key("sections").open_array();
+    section(json, "system", "System", system_section(parts_->page()));
+    section(json, "equations", "Equations of motion", equations_section(parts_->page()));
+    section(json, "structure", "Structure", structure_section(parts_->page()));
+    json.close();
+  }
+
+  // The equations of a model that has no motion, for want of numbers or of a start.
+  void derive_alone(JsonWriter& json) const {
+    auto data = std::make_shared<v1::Model::Data>();
+    data->source = source_, data->model = model_;
+    v1::DeriveOptions options;
+    options.form = model_->simulate.form.value_or("routh");
+    if (options.form == "auto") options.form = "routh";
+    const auto equations = v1::derive(v1::Model(data), options);
+    if (!equations) return anholon::write(json, equations.error(), source_.name);
+    json.key("sections").open_array();
+    section(json, "equations", "Equations of motion", "<div class=\"wide\">" + equations->mathml + "</div>");
+    json.close();
+  }
+
+  void add_equations() {
+    if (parts_->page().equations.empty()) parts_->add_equations();
+  }
+
+  void prove(JsonWriter& json) {
+    if (!has_model(json)) return;
+    if (!contacts(*names_).empty() || !move(json)) return;
+    add_equations();
+    if (!parts_->page().proof && parts_->page().no_proof.empty()) parts_->add_proof();
+    json.key("sections").open_array();
+    section(json, "proof", "Proof that the forms agree", proof_section(parts_->page()));
+    json.close();
+  }
+
+  SourceText source_;
+  std::vector<std::string> readable_;
+  bool known_ = false;
+  Diagnostics diagnostics_;
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<Names> names_;
+  std::optional<v1::Run> run_;
+  std::optional<Workspace> workspace_;
+  std::optional<PageInParts> parts_;
+};
+
+Answers::Answers() : desk_(std::make_unique<Desk>()) {}
+Answers::~Answers() = default;
+std::string Answers::answer(const Question& question) { return desk_->answer(question); }
+
+}  // namespace anholon

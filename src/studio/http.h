@@ -1,0 +1,51 @@
+// A small HTTP server on the loopback address: one request per connection, with limits of size, time and number.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace anholon {
+
+// The head of a request, before its body is read. A field is empty if the request does not have it or has it twice.
+struct HttpHead {
+  std::string method, target, host, origin, site;  // site: Sec-Fetch-Site
+};
+
+struct HttpRequest {
+  HttpHead head;
+  std::string page, edition;  // X-Anholon-Page, X-Anholon-Edition
+  std::string body;
+};
+
+struct HttpReply {
+  int status = 200;
+  std::string type = "text/plain; charset=utf-8", body;
+};
+
+struct HttpLimits {
+  std::size_t head = 16 << 10, body = 1 << 20;  // bytes
+  int seconds = 10;                             // to send a request, and to take a reply
+  std::size_t connections = 32;
+  int threads = 4;  // that handle requests
+};
+
+class HttpServer {
+ public:
+  // Binds 127.0.0.1; port 0 takes a free one. Throws std::runtime_error that says why it cannot.
+  HttpServer(int port, const HttpLimits& limits);
+  ~HttpServer();
+  int port() const;
+  // Serves until stop(), SIGINT or SIGTERM; `stopping` is called then, before the threads are awaited. `refuse` sees the
+  // head alone and may answer in place of `handle`, which many threads call.
+  void run(std::function<std::optional<HttpReply>(const HttpHead&)> refuse,
+           std::function<HttpReply(const HttpRequest&)> handle, std::function<void()> stopping);
+  // From any thread.
+  void stop();
+
+ private:
+  class Inner;
+  std::unique_ptr<Inner> inner_;
+};
+
+}  // namespace anholon

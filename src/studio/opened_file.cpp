@@ -1,0 +1,56 @@
+#include "studio/opened_file.h"
+
+#include <filesystem>
+
+#include "base/read_file.h"
+#include "modelfile/text/toml.h"
+#include "result/file.h"
+
+namespace anholon {
+
+namespace {
+
+void collect(const Item& item, std::vector<NamedFile>& list) {
+  if (item.kind == Item::Kind::string && (item.key == "base" || item.key == "file"))
+    list.push_back({item.text(), item.span});
+  for (const Item& i : item.items) collect(i, list);
+}
+
+}  // namespace
+
+std::vector<NamedFile> files_named(const SourceText& source) {
+  std::vector<NamedFile> list;
+  collect(read_toml(source), list);
+  return list;
+}
+
+OpenedFile::OpenedFile(SourceText source, bool shipped) : source_(std::move(source)), on_disk_(source_.text) {
+  try {
+    for (const NamedFile& f : files_named(source_)) readable_.push_back(f.name);
+  } catch (const Failure&) {
+    // The page shows the mistake. A file that the text names after it is corrected is readable after a restart.
+  }
+  if (shipped) {
+    no_saving_ = "this model comes with the program and is not changed; copy its text, or open a file of your own";
+    return;
+  }
+  std::error_code error;
+  target_ = std::filesystem::canonical(source_.name, error).string();
+  if (error || !std::filesystem::is_regular_file(target_, error))
+    no_saving_ = "'" + source_.name + "' is not a file that can be written";
+  else
+    no_saving_ = obstacle_to_writing(target_);
+}
+
+OpenedFile::Saving OpenedFile::save(const std::string& text, bool anyway) {
+  const std::lock_guard<std::mutex> turn(turn_);
+  if (!no_saving_.empty()) return {Saved::failed, no_saving_};
+  std::string now;
+  if (!anyway && read_file(target_, now) && now != on_disk_)
+    return {Saved::changed_by_others, "'" + source_.name + "' was changed by another program since it was opened"};
+  if (const std::string why = write_whole(target_, text); !why.empty()) return {Saved::failed, why};
+  on_disk_ = text;
+  return {};
+}
+
+}  // namespace anholon

@@ -1,0 +1,43 @@
+// What the studio asks of the program: functions of a text. The page knows no more of it, so a program compiled to WebAssembly
+// can take the place of the one behind HTTP (http_engine.ts).
+
+export interface Problem {
+  severity: 'error' | 'warning' | 'note';
+  message: string;
+  hint: string;
+  file: string;                            // empty: the text itself
+  line: number; column: number; length: number;      // from 1, in characters; line 0: the text as a whole
+}
+
+export interface Trouble { text: string; hint: string; outcome: string; diagnostics: Problem[] }
+export interface Replaced { replaced: true }         // a newer text came before the answer was ready
+export interface Failed { error: Trouble }
+export type Answer<T> = T | Replaced | Failed;
+
+export interface Name { name: string; what: string }
+export interface Checked { diagnostics: Problem[]; names: Name[]; title: string; moves: boolean }
+export interface Section { id: string; title: string; html: string }       // markup of the program, in which all text of the model is escaped
+export interface Sections { sections: Section[] }
+export interface Motion extends Sections { title: string; data: string }   // data: the JSON of CONTRACT.md
+
+export interface Engine {
+  check(text: string, edition: number): Promise<Answer<Checked>>;
+  simulate(text: string, edition: number): Promise<Answer<Motion>>;
+  derive(text: string, edition: number): Promise<Answer<Sections>>;
+  prove(text: string, edition: number): Promise<Answer<Sections>>;
+}
+
+export interface Key { name: string; meaning: string; choices: string[] }
+export interface Language {
+  sections: { name: string; form: 'top' | 'keys' | 'elements' | 'named' | 'part'; keys: Key[] }[];
+  functions: { name: string; call: string; meaning: string }[];
+  reserved: { name: string; meaning: string }[];
+}
+
+// Where the text comes from and goes to.
+export interface Opened { name: string; text: string; no_saving: string; version: string }
+export interface Store {
+  open(): Promise<Opened>;
+  language(): Promise<Language>;
+  save(text: string, anyway: boolean): Promise<'saved' | { why: string; changed: boolean }>;
+}

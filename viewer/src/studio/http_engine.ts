@@ -1,0 +1,42 @@
+// The program behind HTTP on the loopback address; the token is in the path of the page, so addresses are relative.
+
+import type { Answer, Checked, Engine, Failed, Language, Motion, Opened, Sections, Store } from './engine.ts';
+
+const page = Array.from(crypto.getRandomValues(new Uint8Array(8)), (b) => b.toString(16).padStart(2, '0')).join('');
+
+const lost = (why: string): Failed => ({
+  error: { text: `the program does not answer: ${why}`, hint: 'start anholon studio again', outcome: '', diagnostics: [] },
+});
+
+async function ask<T>(what: string, text: string, edition: number): Promise<Answer<T>> {
+  try {
+    const reply = await fetch(what, { method: 'POST', body: text, headers: { 'X-Anholon-Page': page, 'X-Anholon-Edition': String(edition) } });
+    if (!reply.ok) return lost((await reply.text()).trim() || String(reply.status));
+    return await reply.json() as Answer<T>;
+  } catch (e) { return lost((e as Error).message); }
+}
+
+async function get<T>(what: string): Promise<T> {
+  const reply = await fetch(what);
+  if (!reply.ok) throw new Error((await reply.text()).trim());
+  return await reply.json() as T;
+}
+
+export const http_engine: Engine & Store = {
+  check: (text, edition) => ask<Checked>('check', text, edition),
+  simulate: (text, edition) => ask<Motion>('simulate', text, edition),
+  derive: (text, edition) => ask<Sections>('derive', text, edition),
+  prove: (text, edition) => ask<Sections>('prove', text, edition),
+  open: () => get<Opened>('model'),
+  language: () => get<Language>('language'),
+  async save(text, anyway) {
+    try {
+      const reply = await fetch(anyway ? 'save-anyway' : 'save', { method: 'POST', body: text });
+      if (reply.ok) return 'saved';
+      const body = await reply.text();
+      let why = body.trim();
+      try { why = (JSON.parse(body) as Failed).error.text; } catch { /* plain text */ }
+      return { why, changed: reply.status === 409 };
+    } catch (e) { return { why: `the program does not answer: ${(e as Error).message}`, changed: false }; }
+  },
+};
