@@ -32,9 +32,9 @@ bool of_parameters(Expr e) {
 
 CaseParameters::CaseParameters(Workspace& s, const std::vector<Varied>& varied) : s_(s), varied_(varied) {
   const Model& model = *s.model;
+  any_ = std::any_of(varied.begin(), varied.end(), [](const Varied& v) { return v.kind == Varied::Kind::parameter; });
   if (model.parameters.empty()) return;
   tape_ = parameter_tape(model, varied);
-  any_ = std::any_of(varied.begin(), varied.end(), [](const Varied& v) { return v.kind == Varied::Kind::parameter; });
   if (!any_) return;
   Column es;
   for (const Body& b : model.bodies) {

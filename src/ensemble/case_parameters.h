@@ -9,6 +9,8 @@ class CaseParameters {
  public:
   CaseParameters(Workspace& scenario, const std::vector<Varied>& varied);
 
+  // Whether a parameter is varied; else all cases have the same values.
+  bool varies() const { return any_; }
   // The values of all parameters, those that follow from others included, for these values of the varied numbers.
   template <Number N>
   std::vector<N> values(const std::vector<Rational>& varied) const;

@@ -72,11 +72,13 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
   result_ = nullptr;
   numbers_ = plan.options.numbers(r.number);
   for (const Rational& v : numbers_.values) r.values.push_back(from_rational<double>(v));
-  std::vector<W> parameters = plan.parameters.values<W>(numbers_.values);
-  ready_ = ready_ && parameters == parameters_;
-  if (!ready_) {
-    parameters_ = std::move(parameters);
-    narrow_parameters_ = plan.parameters.values<double>(numbers_.values);
+  if (!ready_ || plan.parameters.varies()) {
+    std::vector<W> parameters = plan.parameters.values<W>(numbers_.values);
+    ready_ = ready_ && parameters == parameters_;
+    if (!ready_) {
+      parameters_ = std::move(parameters);
+      narrow_parameters_ = plan.parameters.values<double>(numbers_.values);
+    }
   }
   r.t = plan.scenario.state.t;
   if (r.outcome = plan.parameters.possible(narrow_parameters_); !r.outcome.ok()) return CaseWay::plain;
@@ -90,6 +92,7 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
       kernel->set_parameters(lane, parameters_);
       stepper_->accelerate(kernel, lane);
     }
+    starts_.emplace(*plan.scenario.mechanics, *plan.start, parameters_);
     point_.emplace(*plan.program, parameters_, std::max(1, plan.stages));
     if (plan.outputs) outputs_.emplace(*plan.outputs, 0, parameters_);
     if (!plan.options.reductions.list.empty()) reducer_.emplace(plan.options.reductions);
@@ -99,7 +102,7 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
   const EnsembleOptions& o = plan.options;
   InitialProblem<W> problem{plan.scenario.mechanics.get(), parameters_, overrides_of(o, &numbers_), o.state.t};
   problem.plan = &*plan.start;
-  r.outcome = consistent_state(problem, named_);
+  r.outcome = consistent_state(problem, *starts_, named_);
   r.t = to_double(named_.t);
   if (!r.outcome.ok()) return CaseWay::plain;
   std::vector<W> state;

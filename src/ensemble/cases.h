@@ -13,6 +13,7 @@
 #include "ensemble/columns.h"
 #include "kernel/kernel.h"
 #include "motion/code_for_long_runs.h"
+#include "structure/start_memory.h"
 
 namespace anholon {
 
@@ -95,7 +96,8 @@ class CaseWalk {
   bool ready_ = false, same_structure_ = true;  // for these parameters
   bool looks_elsewhere_ = false;                // whether the step has to end at another time
   W end_{0};
-  std::vector<W> times_;  // of rows
+  std::vector<W> times_;                  // of rows
+  std::optional<StartMemory<W>> starts_;  // for these parameters
   InitialState<W> named_;
   std::optional<Stepper<double>> stepper_;
   std::optional<Expansion<W>> point_;

@@ -52,9 +52,10 @@ void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double
                            std::optional<double> spent) {
   // Seconds: what is observed before, what the compiler takes to be loaded, and for each step of a stage; it works on
   // another core if there is one.
-  constexpr double kObserved = 0.001, kLoaded = 0.1, kEachStep = 0.002, kLoadedSoon = 0.02, kEachStepSoon = 0.0015;
-  // By so much the better code is faster at least, if it is.
-  constexpr double kBetter = 0.05;
+  constexpr double kObserved = 0.001, kEachStep = 0.002, kLoadedSoon = 0.02, kEachStepSoon = 0.0015;
+  // By so much the better code is faster at least, if it is; in lanes less of the time is spent in it, and the compiler
+  // takes its time from the cases.
+  const double better = lanes == 1 ? 0.05 : 0.02;
   constexpr std::size_t kSometimes = 64;
   if (!first_) first_ = {.at = at};
   const bool known = compilation_.plan == plan;
@@ -71,12 +72,10 @@ void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double
     return elapsed < kObserved ? 0 : elapsed / done * (std::abs(end - at) * times_ + done * (times_ - 1));
   };
   if (!code) {
-    const bool quick = lanes == 1;
-    const double takes = quick ? kLoadedSoon + kEachStepSoon * stage : kLoaded + kEachStep * stage;
-    if (!known && left(*first_, spent) > takes) begin(plan, lanes, quick ? CodeEffort::quick : CodeEffort::full);
+    if (!known && left(*first_, spent) > kLoadedSoon + kEachStepSoon * stage) begin(plan, lanes, CodeEffort::quick);
   } else if (code->effort == CodeEffort::quick) {
     if (!since_quick_) since_quick_ = {.at = at};
-    if (left(*since_quick_, {}) * kBetter > kEachStep * stage) begin(plan, lanes, CodeEffort::full);
+    if (left(*since_quick_, {}) * better > kEachStep * stage) begin(plan, lanes, CodeEffort::full);
   }
 }
 

@@ -236,20 +236,38 @@ RowChoice<N> choose_rows(Matrix<N> a, const N& threshold) {
 //   [ A    0  ] [mu] = [b].
 // A has independent rows and M is positive definite on the kernel of A; false otherwise.
 template <Number N>
-bool least_change(const Matrix<N>& m, const Matrix<N>& a, const std::vector<N>& b, std::vector<N>& x) {
-  const std::size_t n = m.rows, s = a.rows;
-  Matrix<N> k(n + s, n + s);
-  std::vector<N> rhs(n + s, N(0)), solution;
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j) k(i, j) = m(i, j);
-  for (std::size_t i = 0; i < s; ++i) {
-    for (std::size_t j = 0; j < n; ++j) k(n + i, j) = a(i, j), k(j, n + i) = -a(i, j);
-    rhs[n + i] = b[i];
+class LeastChange {
+ public:
+  // Returns false if there is no solution for these matrices.
+  bool factor(const Matrix<N>& m, const Matrix<N>& a) {
+    size_ = m.rows;
+    const std::size_t n = m.rows, s = a.rows;
+    Matrix<N> k(n + s, n + s);
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) k(i, j) = m(i, j);
+    for (std::size_t i = 0; i < s; ++i)
+      for (std::size_t j = 0; j < n; ++j) k(n + i, j) = a(i, j), k(j, n + i) = -a(i, j);
+    return lu_.factor(k);
   }
-  Lu<N> lu;
-  if (!lu.factor(k)) return false;
-  lu.solve(rhs, solution);
-  x.assign(solution.begin(), solution.begin() + static_cast<std::ptrdiff_t>(n));
+  // REQUIRES: the matrices were factored.
+  void solve(const std::vector<N>& b, std::vector<N>& x) {
+    rhs_.assign(size_, N(0));
+    rhs_.insert(rhs_.end(), b.begin(), b.end());
+    lu_.solve(rhs_, solution_);
+    x.assign(solution_.begin(), solution_.begin() + static_cast<std::ptrdiff_t>(size_));
+  }
+
+ private:
+  Lu<N> lu_;
+  std::size_t size_ = 0;
+  std::vector<N> rhs_, solution_;
+};
+
+template <Number N>
+bool least_change(const Matrix<N>& m, const Matrix<N>& a, const std::vector<N>& b, std::vector<N>& x) {
+  LeastChange<N> change;
+  if (!change.factor(m, a)) return false;
+  change.solve(b, x);
   return true;
 }
 

@@ -38,9 +38,13 @@ void StateSolver<N>::states() {
 template <Number N>
 void StateSolver<N>::start_values(const std::function<bool(const Node&)>& wanted) {
   const InitialData& in = model_.initial;
-  const Tape own = p_.plan ? Tape() : initial_values(model_);
-  Machine<N> machine(p_.plan ? p_.plan->values : own, 0, p_.parameters);
-  machine.evaluate();
+  std::optional<Tape> tape;
+  std::optional<Machine<N>> own;
+  if (!memory_) {
+    own.emplace(p_.plan ? p_.plan->values : tape.emplace(initial_values(model_)), 0, p_.parameters);
+    own->evaluate();
+  }
+  const Machine<N>& machine = memory_ ? memory_->values() : *own;
   std::size_t at = 0;
   const N t = machine.value(at++);
   state_.t = p_.t ? from_rational<N>(*p_.t) : t;
@@ -93,7 +97,9 @@ template <Number N>
 Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
   if (!stages) return {};
   const Column& unknowns = stages->unknowns;
-  Stage<N> stage(m_, stages, p_.parameters);
+  Stage<N>* known = memory_ ? memory_->stage(stages) : nullptr;
+  std::optional<Stage<N>> own;
+  Stage<N>& stage = known ? *known : own.emplace(m_, stages, p_.parameters);
   std::vector<std::size_t> free, all;
   const InitialState<N> before = state_;
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
@@ -145,6 +151,11 @@ Outcome consistent_state(const InitialProblem<N>& problem, InitialState<N>& stat
   return StateSolver<N>(problem, state).positions_and_velocities();
 }
 
+template <Number N>
+Outcome consistent_state(const InitialProblem<N>& problem, StartMemory<N>& memory, InitialState<N>& state) {
+  return StateSolver<N>(problem, state, &memory).positions_and_velocities();
+}
+
 #define INSTANTIATE(N)                                                                                                 \
   template void StateSolver<N>::start_values(const std::function<bool(const Node&)>&);                                 \
   template Outcome StateSolver<N>::solve(const StageEquations&, const Column&, unsigned);
@@ -153,6 +164,9 @@ INSTANTIATE(long double)
 INSTANTIATE(Quad)
 INSTANTIATE(Multi)
 #undef INSTANTIATE
+template Outcome consistent_state<double>(const InitialProblem<double>&, StartMemory<double>&, InitialState<double>&);
+template Outcome consistent_state<long double>(const InitialProblem<long double>&, StartMemory<long double>&,
+                                               InitialState<long double>&);
 template Outcome consistent_state<double>(const InitialProblem<double>&, InitialState<double>&);
 template Outcome consistent_state<long double>(const InitialProblem<long double>&, InitialState<long double>&);
 template Outcome consistent_state<Quad>(const InitialProblem<Quad>&, InitialState<Quad>&);

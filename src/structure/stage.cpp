@@ -1,8 +1,8 @@
 #include "structure/stage.h"
 
 #include <algorithm>
-
-#include "tape/bind.h"
+#include <cmath>
+#include <concepts>
 
 namespace anholon {
 
@@ -30,31 +30,87 @@ static Tape compiled(const Mechanics& m, const std::vector<StageEquation>& equat
 StagePlan::StagePlan(const Mechanics& m, std::vector<StageEquation> of, Column in, unsigned measured,
                      const std::vector<Column>* mass)
     : equations(std::move(of)), unknowns(std::move(in)), metric(measured),
-      tape(compiled(m, equations, unknowns, mass, linear)) {}
+      tape(compiled(m, equations, unknowns, mass, linear)) {
+  std::vector<std::uint32_t> slots;
+  for (const Input& input : tape.inputs) {
+    is_unknown.push_back(std::any_of(unknowns.begin(), unknowns.end(), [&](Expr u) { return u.id == input.symbol; }));
+    if (is_unknown.back()) slots.push_back(input.slot);
+  }
+  moving = dependents(tape, slots);
+  mass_moves = std::any_of(tape.roots.begin() + static_cast<std::ptrdiff_t>(equations.size() * (unknowns.size() + 1)),
+                           tape.roots.end(), [&](std::uint32_t root) {
+                             return std::binary_search(moving.begin(), moving.end(), root) ||
+                                    std::find(slots.begin(), slots.end(), root) != slots.end();
+                           });
+}
 
 template <Number N>
 Stage<N>::Stage(const Mechanics& m, std::shared_ptr<const StagePlan> plan, const std::vector<N>& parameters)
     : m_(m), plan_(std::move(plan)), machine_(plan_->tape, 0, parameters) {}
 
+namespace {
+
+// Whether two numbers have the same bits; false in number types that are not compared bit by bit.
+template <Number N>
+bool same_bits(const N& a, const N& b) {
+  if constexpr (std::floating_point<N>)
+    return a == b && std::signbit(a) == std::signbit(b);
+  else
+    return false;
+}
+
+}  // namespace
+
+template <Number N>
+typename Stage<N>::Change Stage<N>::bind_inputs(const InitialState<N>& s) {
+  Change change = known_ ? Change::none : Change::all;
+  const Graph& g = m_.graph();
+  const std::vector<Input>& inputs = plan_->tape.inputs;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const Node& n = g.node(inputs[i].symbol);
+    const N* known = s.value(n);
+    const N value = n.kind == Kind::time ? s.t : known ? *known : N(0);
+    N& input = machine_.series(inputs[i].slot)[0];
+    if (!same_bits(input, value)) change = std::max(change, plan_->is_unknown[i] ? Change::unknowns : Change::all);
+    input = value;
+  }
+  return change;
+}
+
 template <Number N>
 bool Stage<N>::evaluate(const InitialState<N>& s) {
-  bind(machine_, m_.graph(), [&](const Node& n, NodeId) {
-    const N* known = s.value(n);
-    return n.kind == Kind::time ? s.t : known ? *known : N(0);
-  });
-  machine_.evaluate();
-  const std::size_t n = unknowns(), q = m_.q.size();
+  const Change change = bind_inputs(s);
+  // An unknown that occurs in no equation has no input, but moves the scales.
+  const std::size_t n = unknowns();
+  bool moved = change != Change::none || at_.size() != n;
+  for (std::size_t j = 0; j < n && !moved; ++j) moved = !same_bits(at_[j], *s.value(unknown(j)));
+  if (!moved) return true;
+  known_ = false;
+  if (change == Change::all)
+    machine_.evaluate();
+  else if (change == Change::unknowns)
+    machine_.evaluate(plan_->moving);
+  at_.resize(n);
+  for (std::size_t j = 0; j < n; ++j) at_[j] = *s.value(unknown(j));
+  const bool stays = change != Change::all && plan_->linear && !plan_->mass_moves;
+  if (!stays) elimination_.reset();
+  if (!read_equations()) return false;
+  if (!stays && !read_metric()) return false;
+  known_ = true;
+  return true;
+}
+
+template <Number N>
+bool Stage<N>::read_equations() {
+  const std::size_t n = unknowns();
   residual.assign(size(), N(0));
   scale.assign(size(), N(0));
   floor_.assign(size(), N(0));
-  jacobian = Matrix<N>(size(), n);
-  metric = Matrix<N>(n, n);
+  jacobian.rows = size(), jacobian.cols = n;
+  jacobian.data.assign(size() * n, N(0));
   N largest_unknown(1);
-  at_.resize(n);
-  for (std::size_t j = 0; j < n; ++j) {
-    at_[j] = *s.value(unknown(j));
-    if (N v = abs(at_[j]); v > largest_unknown) largest_unknown = v;
-  }
+  for (const N& x : at_)
+    if (N v = abs(x); v > largest_unknown) largest_unknown = v;
   for (std::size_t i = 0; i < size(); ++i) {
     if (!kept_.empty() && !kept_[i]) {
       scale[i] = N(1);
@@ -75,6 +131,14 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
     if (!(scale[i] > N(0))) scale[i] = N(1);
   }
   undefined = size();
+  return true;
+}
+
+template <Number N>
+bool Stage<N>::read_metric() {
+  const std::size_t n = unknowns(), q = m_.q.size();
+  metric.rows = metric.cols = n;
+  metric.data.assign(n * n, N(0));
   const std::size_t first = size() * (n + 1);
   const auto mass = [&](std::size_t a, std::size_t b) -> const N& { return machine_.value(first + a * q + b); };
   N largest(0);
@@ -94,6 +158,25 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
     metric(i, i) += largest * N(1e-12);
   }
   return true;
+}
+
+template <Number N>
+typename Stage<N>::Elimination& Stage<N>::elimination(const std::vector<std::size_t>& free) {
+  if (elimination_ && elimination_->free == free) return *elimination_;
+  Elimination& e = elimination_.emplace();
+  e.a = Matrix<N>(size(), free.size());
+  for (std::size_t i = 0; i < size(); ++i)
+    for (std::size_t j = 0; j < free.size(); ++j) e.a(i, j) = jacobian(i, free[j]);
+  e.rows = choose_rows(e.a, N(kDependent));
+  const std::vector<std::size_t>& rows = e.rows.independent;
+  Matrix<N> ar(rows.size(), free.size()), part(free.size(), free.size());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t j = 0; j < free.size(); ++j) ar(i, j) = e.a(rows[i], j);
+  for (std::size_t i = 0; i < free.size(); ++i)
+    for (std::size_t j = 0; j < free.size(); ++j) part(i, j) = metric(free[i], free[j]);
+  e.possible = !rows.empty() && e.change.factor(part, ar);
+  e.free = free;  // is set last: after an exception the elimination is that of no unknowns
+  return e;
 }
 
 template <Number N>
@@ -158,10 +241,8 @@ class Iteration {
     N last_step(-1);
     bool nudged = false;
     for (int k = 0; k < kMostIterations && !free_.empty(); ++k) {
-      Matrix<N> a(s_.size(), free_.size());
-      for (std::size_t i = 0; i < s_.size(); ++i)
-        for (std::size_t j = 0; j < free_.size(); ++j) a(i, j) = s_.jacobian(i, free_[j]);
-      const RowChoice<N> rows = choose_rows(a, N(kDependent));
+      typename Stage<N>::Elimination& elimination = s_.elimination(free_);
+      const RowChoice<N>& rows = elimination.rows;
       if (rows.dependent.size() && !nudged && s_.worst() > rounding && k == 0) {
         // The guess may be a stationary point of a constraint (the centre of a circle): move away from it.
         nudged = true;
@@ -172,8 +253,9 @@ class Iteration {
         }
       }
       if (rows.independent.empty()) break;
+      if (!elimination.possible) return true;
       std::vector<N> step;
-      if (!least_step(a, rows.independent, nearest, step)) return true;
+      least_step(elimination, nearest, step);
       if (!search(step)) return false;
       if (in_vain_ > kMostInVain) return true;
       N moved(0), size(0);
@@ -195,23 +277,18 @@ class Iteration {
                        [&](std::size_t i) { return abs(s_.residual[i]) > stage_rounding<N>() * s_.scale[i]; });
   }
 
-  bool least_step(const Matrix<N>& a, const std::vector<std::size_t>& rows, bool nearest, std::vector<N>& step) const {
-    const std::size_t r = rows.size(), n = free_.size();
-    Matrix<N> ar(r, n), metric(n, n);
-    std::vector<N> b(r, N(0)), y;
-    for (std::size_t i = 0; i < r; ++i) {
+  void least_step(typename Stage<N>::Elimination& e, bool nearest, std::vector<N>& step) const {
+    const std::vector<std::size_t>& rows = e.rows.independent;
+    const std::size_t n = free_.size();
+    std::vector<N> b(rows.size(), N(0)), y;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
       b[i] = -s_.residual[rows[i]];
-      for (std::size_t j = 0; j < n; ++j) {
-        ar(i, j) = a(rows[i], j);
-        if (nearest) b[i] += ar(i, j) * (*x_[j] - guess_[j]);
-      }
+      if (nearest)
+        for (std::size_t j = 0; j < n; ++j) b[i] += e.a(rows[i], j) * (*x_[j] - guess_[j]);
     }
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j) metric(i, j) = s_.metric(free_[i], free_[j]);
-    if (!least_change(metric, ar, b, y)) return false;
+    e.change.solve(b, y);
     step.resize(n);
     for (std::size_t j = 0; j < n; ++j) step[j] = nearest ? N(guess_[j] + y[j] - *x_[j]) : y[j];
-    return true;
   }
 
   // Goes along the step as long as the residual decreases; `step` is then the step made.
@@ -306,8 +383,9 @@ static void for_each_expression(StageEquation& e, const ExprVisitor& f) {
 }
 
 void for_each_expression(StagePlan& p, const ExprVisitor& f) {
-  auto& [equations, unknowns, metric, linear, tape] = p;
+  auto& [equations, unknowns, metric, linear, tape, moving, mass_moves, is_unknown] = p;
   for_each_expression_of(f, equations, unknowns, metric, linear, tape);
+  static_cast<void>(moving), static_cast<void>(mass_moves), static_cast<void>(is_unknown);  // without handles
 }
 
 }  // namespace anholon

@@ -1,6 +1,7 @@
 // One stage of consistent initial data: equations in some entries of the state, and their solution by least change.
 #pragma once
 #include <memory>
+#include <optional>
 
 #include "base/diagnostic.h"
 #include "expr/handles.h"
@@ -33,6 +34,10 @@ struct StagePlan {
   unsigned metric;
   bool linear = false;  // every equation is linear in the unknowns
   Tape tape;
+  // The slots that depend on the unknowns, and whether the mass matrix is among them.
+  std::vector<std::uint32_t> moving;
+  bool mass_moves = false;
+  std::vector<bool> is_unknown;  // of the tape's inputs
 };
 
 // The handles of a plan (expr/handles.h).
@@ -59,12 +64,26 @@ class Stage {
   const Mechanics& mechanics() const { return m_; }
 
   // Restricts the stage to these equations; the other function takes all again.
-  void keep(std::vector<bool> rows) { kept_ = std::move(rows); }
-  void keep_all() { kept_.clear(); }
+  void keep(std::vector<bool> rows) { kept_ = std::move(rows), known_ = false; }
+  void keep_all() {
+    if (!kept_.empty()) known_ = false;
+    kept_.clear();
+  }
 
   // Values, scales and partial derivatives at a state; false if a formula has no value there (`undefined` is its row,
-  // or the number of equations for an entry of the mass matrix).
+  // or the number of equations for an entry of the mass matrix). In hardware numbers, what depends only on inputs with
+  // the bits that they had at the evaluation before is not computed again.
   bool evaluate(const InitialState<N>& s);
+  // The independent rows of the Jacobian in these unknowns, and the least changes that satisfy them; kept as long as
+  // Jacobian and metric stay.
+  struct Elimination {
+    std::vector<std::size_t> free;
+    Matrix<N> a;  // the Jacobian in the free unknowns
+    RowChoice<N> rows;
+    LeastChange<N> change;
+    bool possible = false;  // whether there are such changes
+  };
+  Elimination& elimination(const std::vector<std::size_t>& free);
   // True if the equations depend on unknown j.
   bool moves(std::size_t j) const {
     for (std::size_t i = 0; i < size(); ++i)
@@ -85,8 +104,16 @@ class Stage {
   std::size_t undefined = 0;
 
  private:
+  // The inputs that differ from those of the last evaluation.
+  enum class Change : std::uint8_t { none, unknowns, all };
+  Change bind_inputs(const InitialState<N>& s);
+  bool read_equations();
+  bool read_metric();
+
   std::vector<N> floor_, at_;  // the values of the unknowns
   std::vector<bool> kept_;     // empty: all
+  bool known_ = false;         // whether the numbers are those of the inputs
+  std::optional<Elimination> elimination_;
 
   const Mechanics& m_;
   std::shared_ptr<const StagePlan> plan_;

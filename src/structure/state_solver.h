@@ -6,7 +6,7 @@
 #include "base/outcome.h"
 #include "structure/branch.h"
 #include "structure/contradiction.h"
-#include "structure/initial_problem.h"
+#include "structure/start_memory.h"
 #include "structure/structure.h"
 
 namespace anholon {
@@ -14,8 +14,8 @@ namespace anholon {
 template <Number N>
 class StateSolver {
  public:
-  StateSolver(const InitialProblem<N>& p, InitialState<N>& state)
-      : p_(p), m_(*p.mechanics), model_(*m_.model), state_(state) {}
+  StateSolver(const InitialProblem<N>& p, InitialState<N>& state, StartMemory<N>* memory = nullptr)
+      : p_(p), m_(*p.mechanics), model_(*m_.model), state_(state), memory_(memory) {}
 
   Outcome positions_and_velocities();
   Outcome complete(const System& s, const Structure& t);
@@ -75,6 +75,7 @@ class StateSolver {
   const Mechanics& m_;
   const Model& model_;
   InitialState<N>& state_;
+  StartMemory<N>* memory_;
   bool clash_is_told_ = false;  // the message names the values and equations of the last stage that failed
 };
 

@@ -85,6 +85,9 @@ Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared =
              std::span<const Expr> rates = {}, std::uint32_t rates_from = 0);
 Tape compile(std::span<const Expr> es);
 
+// The slots, without the inputs, whose coefficients of order 0 depend on one of these slots, in the order of the tape.
+std::vector<std::uint32_t> dependents(const Tape& tape, const std::vector<std::uint32_t>& of);
+
 // The number type of a tape: a floating-point type, or balls, which are never compared. In a machine of balls, the
 // series of a slot encloses its Taylor coefficients for all inputs enclosed by the input series, if the slot is smooth
 // on all of the balls; otherwise its coefficients are not finite.
@@ -105,6 +108,10 @@ class Machine {
   void sweep(int stage, std::uint32_t from, std::uint32_t to);
   // Computes values only: all slots at order 0.
   void evaluate() { sweep(0, 0, static_cast<std::uint32_t>(tape_->code.size())); }
+  // As above, for these slots alone, in this order.
+  void evaluate(const std::vector<std::uint32_t>& slots) {
+    for (const std::uint32_t s : slots) step(tape_->code[s], s, 0);
+  }
 
   // d slot / d operand at order 0, for the operands of an instruction.
   struct Partials {

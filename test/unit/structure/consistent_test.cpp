@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "structure/consistent.h"
+#include "structure/start_memory.h"
 #include "support/models.h"
 
 namespace anholon::consistent_test {
@@ -129,6 +130,59 @@ TEST(ConsistentState, HoldsInAnyPrecision) {
   ASSERT_TRUE(solve<Multi>(text(constraint("x^2 + y^2 = 5"), "x = 1\nguess = {y = 1.9}\n\"x'\" = 0.1\n"), s).ok());
   EXPECT_LE(to_double(abs(Multi(s.q[1] - Multi(2)))), 1e-47);
   EXPECT_LE(to_double(abs(Multi(s.qd[1] + Multi(Rational(1, 20))))), 1e-47);
+}
+
+// One state after the other with a memory, and each by itself.
+struct MemoryCase {
+  const char *constraint, *initial;
+  std::vector<std::vector<StateOverride>> starts;
+};
+
+void same_with_memory(const MemoryCase& c) {
+  using N = long double;
+  const auto model = test::model_of(text(constraint(c.constraint), c.initial));
+  const Mechanics m = mechanics(*model);
+  Column values;
+  for (const Parameter& p : model->parameters) values.push_back(p.value);
+  const std::vector<N> parameters = evaluate_parameters<N>(*model->graph, values);
+  const StartPlan plan(m, c.starts.front());
+  StartMemory<N> memory(m, plan, parameters);
+  std::vector<N> heavier = parameters;
+  heavier[0] *= 2;
+  StartMemory<N> mutant(m, plan, heavier);
+  bool differs = false;
+  for (const std::vector<StateOverride>& overrides : c.starts) {
+    InitialProblem<N> problem{&m, parameters, overrides, std::nullopt};
+    problem.plan = &plan;
+    InitialState<N> alone, kept, wrong;
+    const Outcome a = consistent_state(problem, alone), b = consistent_state(problem, memory, kept);
+    EXPECT_EQ(a.kind, b.kind);
+    EXPECT_EQ(a.message, b.message);
+    EXPECT_EQ(alone.q, kept.q);
+    EXPECT_EQ(alone.qd, kept.qd);
+    EXPECT_EQ(alone.q_origin, kept.q_origin);
+    EXPECT_EQ(alone.qd_origin, kept.qd_origin);
+    EXPECT_EQ(alone.largest_correction, kept.largest_correction);
+    static_cast<void>(consistent_state(problem, mutant, wrong));
+    differs = differs || wrong.qd != alone.qd;
+  }
+  EXPECT_TRUE(differs) << "the mutant: a memory for other parameters";
+}
+
+TEST(ConsistentState, AMemoryLeavesTheBits) {
+  const auto x = [](int number, int by) { return StateOverride{0, 0, Rational(number, by)}; };
+  const auto rate = [](std::size_t of, int number, int by) { return StateOverride{1, of, Rational(number, by)}; };
+  // The rates follow from one linear constraint by least change; a condition gives way to the override of its rate.
+  same_with_memory({"x' + sin(x)*y' = 5",
+                    "x = 0.5\ny = 0\nguess = {\"x'\" = 1}\n",
+                    {{x(1, 2)}, {x(1, 2)}, {x(1, 3)}, {x(0, 1)}, {x(-1, 7)}, {x(1, 2)}}});
+  same_with_memory({"x' + sin(x)*y'*mx = 5",
+                    "x = 0.5\ny = 0\nconditions = [\"y' = 2\"]\n",
+                    {{rate(1, 2, 1)}, {rate(1, 7, 3)}, {rate(1, 0, 1)}, {rate(1, 7, 3)}, {rate(1, 2, 1)}}});
+  // Positions are iterated, too; no point of the circle has x = 6.
+  same_with_memory({"x^2 + mx*y^2 = 25",
+                    "x = 3\nguess = {y = 1}\n\"x'\" = 4\n",
+                    {{x(3, 1)}, {x(4, 1)}, {x(6, 1)}, {x(3, 1)}, {x(-3, 1)}, {x(3, 1)}}});
 }
 
 }  // namespace
