@@ -7,8 +7,10 @@ Prints the time of a batch and of one call. SymPy is used as people use it: (a) 
 forcing_full, then numpy.linalg.solve; (b) lambdify of an explicit right side, simplified, with common subexpressions.
 anholon: the compiled function; the formulas of the same function as they run in NumPy; and the program of
 `derive --format python`, by its rates in independent velocities and by its rhs in all coordinates and velocities with
-multipliers. The last three need no compiler. SymPy's functions have six rates, ours eight: also those of the place, which (c),
-(b) with two rates more, has too.
+multipliers. The last three need no compiler. SymPy's functions have six rates, ours eight: also those of the place.
+
+Then, of more models, the generated rates against lambdify of the very same rates as SymPy expressions, simplified where they are short, with common
+subexpressions.
 """
 
 import sys
@@ -41,13 +43,9 @@ def kane():
     return method, [*q, *u], {r: 0.5, m: 1, g: 9.81}
 
 
-def explicit(method, states, values, place=False):
-    """x' as simplified formulas; with place also the two rates of the point of contact, as our model has them."""
+def explicit(method, states, values):
     right = method.mass_matrix_full.LUsolve(method.forcing_full).subs(values)
-    rates = [sm.simplify(x) for x in right]
-    if place:
-        rates += [-0.5 * sm.cos(states[0]) * rates[2], -0.5 * sm.sin(states[0]) * rates[2]]
-    return sm.lambdify(states, rates, "numpy", cse=True)
+    return sm.lambdify(states, [sm.simplify(x) for x in right], "numpy", cse=True)
 
 
 def solved(method, states, values):
@@ -69,12 +67,40 @@ def solved(method, states, values):
     return f
 
 
-def best(f, rounds):
+SIMPLIFIED = 40  # operations
+MODELS = ("disc", "chaplygin-sleigh", "trailers", "snakeboard", "rolling-coin", "roller-racer", "two-wheeled-pendulum")
+
+
+def same_rates(name, states):
+    """The generated rates of a model against lambdify of the same ones: a line of the table."""
+    model = an.load(name)
+    f = model.dynamics()
+    program: dict = {}
+    exec(compile(model.python_code(), "program.py", "exec"), program)
+    by_sympy = f.formulas.sympy()
+    numbers = dict(zip(by_sympy.p, f.p0.tolist(), strict=True))
+    # SymPy takes minutes to simplify longer ones.
+    right = [sm.simplify(rate) if sm.count_ops(rate) < SIMPLIFIED else rate for rate in by_sympy.rates.subs(numbers)]
+    peer = sm.lambdify([by_sympy.t, *by_sympy.x], right, "numpy", cse=True)
+    x = f.start[:, None] + 0.01 * np.random.default_rng(0).standard_normal((len(f.start), states))
+    few = x[:, :100]
+    np.testing.assert_allclose(np.stack(np.broadcast_arrays(*peer(0.3, *few))), program["rates"](0.3, few), rtol=1e-9, atol=1e-9)
+    one, out = x[:, 0].tolist(), np.empty_like(x)
+    # In turn, since a machine is not equally quick all the time.
+    many, alone = [1e9, 1e9], [1e9, 1e9]
+    for _ in range(5):
+        for k, (batch, call) in enumerate(((lambda: program["rates"](0.3, x, out=out), lambda: program["rates"](0.3, one)), (lambda: peer(0.3, *x), lambda: peer(0.3, *one)))):
+            many[k] = min(many[k], best(batch, 1, time.process_time))
+            alone[k] = min(alone[k], best(lambda call=call: [call() for _ in range(300)], 1, time.process_time) / 300)
+    print(f"{name:20} {states} states {many[0] * 1e3:8.1f} ms, lambdify {many[1] * 1e3:8.1f} ms; one call {alone[0] * 1e6:6.2f} us, lambdify {alone[1] * 1e6:6.2f} us")
+
+
+def best(f, rounds, clock=time.perf_counter):
     times = []
     for _ in range(rounds):
-        begin = time.perf_counter()
+        begin = clock()
         f()
-        times.append(time.perf_counter() - begin)
+        times.append(clock() - begin)
     return min(times)
 
 
@@ -86,7 +112,6 @@ def main(states):
     exec(compile(disc.python_code(), "disc.py", "exec"), program)
     method, symbols, values = kane()
     peers = {"lambdify, solve": solved(method, symbols, values), "lambdify, explicit": explicit(method, symbols, values)}
-    peers["lambdify, place"] = explicit(method, symbols, values, place=True)
     draw = np.random.default_rng(0)
     x = f.start[:, None] * (1 + 0.01 * draw.standard_normal((len(f.start), states)))
     y = draw.uniform(0.3, 0.9, (6, states))
@@ -99,8 +124,8 @@ def main(states):
     rows = {"anholon, NumPy": (lambda: by_numpy(0.0, x), lambda: by_numpy(0.0, one))}
     full = program["START"][:, None] * (1 + 0.01 * draw.standard_normal((len(program["START"]), states)))
     first = full[:, 0].copy()
-    numbers = one.tolist()  # numbers of Python, as lambdify's function takes them
-    rows["anholon, rates"] = (lambda: program["rates"](0.0, x), lambda: program["rates"](0.0, numbers))
+    values = one.tolist()
+    rows["anholon, rates"] = (lambda: program["rates"](0.0, x), lambda: program["rates"](0.0, values))
     rows["anholon, program"] = (lambda: program["rhs"](0.0, full), lambda: program["rhs"](0.0, first))
     rows |= {name: (lambda peer=peer: peer(*y), lambda peer=peer: peer(*single)) for name, peer in peers.items()}
     for name, (many, alone) in rows.items():
@@ -109,4 +134,7 @@ def main(states):
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 1_000_000)
+    count = int(sys.argv[1]) if len(sys.argv) > 1 else 1_000_000
+    main(count)
+    for model in MODELS:
+        same_rates(model, count)

@@ -38,8 +38,21 @@ def text_of(number: Number) -> str:
 
 
 def texts_of(values: Mapping[str, Number] | None) -> dict[str, str]:
-    """The same for values by name."""
-    return {name: text_of(value) for name, value in (values or {}).items()}
+    """The same for values by name.
+
+    Raises:
+        TypeError: `values` is no mapping of names to numbers.
+    """
+    if values is None:
+        return {}
+    if not isinstance(values, Mapping):
+        raise TypeError(f"values are given by name, as {{'theta': 1.3}}, not as a {type(values).__name__}")
+    for name, value in values.items():
+        if not isinstance(name, str):
+            raise TypeError(f"a name is a str, such as 'theta', not a {type(name).__name__}")
+        if not isinstance(value, (numbers.Real, str, Decimal)):
+            raise TypeError(f"{name}: a number is an int, float, Fraction, Decimal or str, not {type(value).__name__}")
+    return {name: text_of(value) for name, value in values.items()}
 
 
 def float_of(text: str | None) -> float | None:

@@ -687,11 +687,11 @@ class Check:
         return _display.check(self)
 
 
-def load(path: str | os.PathLike[str], *, case: str | Sequence[str] = (), set: Mapping[str, Number] | None = None) -> Model:
+def load(path: str | os.PathLike[str] | _core.ShippedModel, *, case: str | Sequence[str] = (), set: Mapping[str, Number] | None = None) -> Model:
     """Reads a model file, or a shipped model by its name.
 
     Args:
-        path: ``"disc"`` or ``"my/robot.toml"``.
+        path: ``"disc"``, ``"my/robot.toml"``, or one of :func:`zoo`.
         case: scenarios [case.NAME] that are laid over the file.
         set: values of parameters instead of those of the file.
 
@@ -703,7 +703,7 @@ def load(path: str | os.PathLike[str], *, case: str | Sequence[str] = (), set: M
         >>> an.load("disc").title
         'Disc rolling on a plane'
     """
-    name = os.fspath(path)
+    name = path.name if isinstance(path, _core.ShippedModel) else os.fspath(path)
     return _read(Source(None, os.path.abspath(name) if os.path.exists(name) else name), set, case)
 
 

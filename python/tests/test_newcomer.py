@@ -68,3 +68,20 @@ def test_mistakes_are_explained(made: Callable[[an.Model, an.Run], object], kind
         made(disc, run)
     for part in said:
         assert part in str(caught.value)
+
+
+def test_values_by_name_have_names_and_numbers() -> None:
+    disc = an.load("disc")
+    for wrong, said in (
+        ([1.3], "values are given by name, as {'theta': 1.3}, not as a list"),
+        ({"theta": [1, 2]}, "theta: a number is an int, float, Fraction, Decimal or str, not list"),
+        ({disc.coordinates[0]: 1}, "a name is a str, such as 'theta'"),
+    ):
+        with pytest.raises(TypeError) as raised:
+            disc.simulate(to=1, initial=wrong)  # type: ignore[arg-type]
+        assert said in str(raised.value)
+
+
+def test_a_shipped_model_of_the_list_is_loaded() -> None:
+    first = an.zoo()[0]
+    assert an.load(first).title == first.title
