@@ -198,7 +198,10 @@ void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) 
     try {
       name(table->names()[k], table->names()[k].size(), model);
     } catch (const MistakeInWord& m) {
-      table->mistake_in_header(k, m.diagnostic.message, m.diagnostic.hint);
+      const bool unit = table->names()[k].find_first_of("([") != std::string::npos;
+      table->mistake_in_header(k, m.diagnostic.message,
+                               unit ? "the first line holds names alone; a unit belongs to each number: 8 cm"
+                                    : m.diagnostic.hint);
     }
     Values& cell = values_.emplace_back();
     cell.cell = k;

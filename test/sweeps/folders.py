@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Sweeps in folders: whatever happens to the processes, what is collected has the bytes of one quiet sweep.
 
-    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model part status plot watched refine page
+    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model part status plot watched refine page outside
     folders.py --self-test                                  a part with other numbers is found
 
 Kills come at random moments. Nothing is lost but parts under way, and nothing is left behind that a later process does not clear.
@@ -329,7 +329,49 @@ class Folders:
         shutil.rmtree(self.folder)
 
 
-PARTS = ["kill", "stop", "two", "shards", "disk", "model", "part", "status", "plot", "watched", "refine", "page"]
+    def outside(self):
+        """Mistakes from outside: each is named, and nothing is overwritten."""
+        self.run(*self.into())
+        part, request = self.folder / "part-000001.parquet", self.folder / "sweep.json"
+        whole, text = part.read_bytes(), request.read_text()
+        for wrong, message in [(whole[:1000], "no whole Parquet file"), (b"", "no whole Parquet file")]:
+            part.write_bytes(wrong)
+            _, error = self.run("sweep", "status", str(self.folder), status=2)
+            must("part-000001.parquet" in error and message in error, error)
+        part.write_bytes((self.folder / "part-000000.parquet").read_bytes())
+        for words in (["status"], ["collect", "-o", str(self.place / "none.csv")]):
+            _, error = self.run("sweep", words[0], str(self.folder), *words[1:], status=2)
+            must("part-000001.parquet belongs to another sweep" in error, error)
+        part.write_bytes(whole)
+        for wrong in ["", "{", "[]", text[:300], '{"format": "anholon sweep", "format_version": 1, "cases": -3, "chunk": 1}']:
+            request.write_text(wrong)
+            for words in (["sweep", "status", str(self.folder)], self.into(), ["plot", str(self.folder), "-o", "x.svg"]):
+                _, error = self.run(*words, status=2)
+                must("sweep.json" in error and ("does not tell of a sweep" in error or "is damaged" in error), error)
+            must(request.read_text() == wrong, "a damaged file was overwritten")
+        request.unlink()
+        _, error = self.run(*self.into(), status=2)
+        must("its sweep.json is missing" in error, error)
+        request.write_text(text)
+        self.check()
+        for share in ("3/2", "0/2", "1/0", "a/b", "1", "-1/2", "1/2/3", "99999999999999999999/2"):
+            _, error = self.run(*self.into(f"--shard={share}"), status=2)
+            must("--shard takes a share" in error, error)
+        _, error = self.run("sweep", "disc", "--vary", "phi'=1:7:1000000", "--vary", "m=1:2:1000000", "--to", "1", "--chunk", "1", "-o", f"{self.folder}/", status=2)
+        must("more than 10000000 parts" in error and not self.folder.exists(), error)
+        table = self.place / "table.csv"
+        for wrong, message in [
+            ("phi',mm\n1,2\n", "did you mean 'm'"),
+            ("phi',m\n1,2\n3\n", "the line has 1 cell"),
+            ("m (kg)\n1\n", "a unit belongs to each number"),
+            ("", "is empty"),
+        ]:
+            table.write_text(wrong)
+            _, error = self.run("sweep", "disc", "--cases", str(table), "--to", "1", "-o", f"{self.folder}/", status=2)
+            must(message in error and not self.folder.exists(), error)
+
+
+PARTS = ["kill", "stop", "two", "shards", "disk", "model", "part", "status", "plot", "watched", "refine", "page", "outside"]
 
 
 def run_parts(arguments):

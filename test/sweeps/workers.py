@@ -228,6 +228,8 @@ class Workers:
         share = f"echo $$ > {self.place}/share-$1; exec {self.program} " + " ".join(f'"{w}"' for w in self.shares("--shard")) + ' "$1/4"'
         script = self.place / "share.sh"
         script.write_text(share)
+        if not shutil.which("parallel"):
+            print("parallel: GNU parallel is missing, xargs takes its place")
         if shutil.which("parallel"):
             begun = subprocess.Popen(["parallel", "-j2", "bash", str(script), ":::", *numbers], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         else:
@@ -373,8 +375,12 @@ def has_dask():
     return True
 
 
-def has_slurm():
-    return all(shutil.which(p) or os.path.exists(f"/usr/sbin/{p}") for p in ("slurmctld", "slurmd", "munged")) and os.geteuid() == 0
+def slurm_lacks():
+    """What the part `slurm` lacks here; empty if it can run."""
+    missing = [p for p in ("slurmctld", "slurmd", "munged", "sbatch") if not shutil.which(p) and not os.path.exists(f"/usr/sbin/{p}")]
+    if missing:
+        return f"missing: {', '.join(missing)}"
+    return "" if os.geteuid() == 0 else "it needs the rights of root"
 
 
 DASK = ["workers", "stopped", "scheduler", "client_killed", "disk", "clients"]
@@ -387,10 +393,10 @@ def run_parts(arguments):
         test = Workers(os.path.abspath(arguments.program), place, arguments.kills)
         for name in arguments.parts or ALL:
             if name in DASK and not has_dask():
-                print(f"{name}: left out, there is no Dask")
+                print(f"{name}: left out, the Python package distributed is missing")
                 continue
-            if name == "slurm" and not (has_slurm() and (LONG or arguments.parts)):
-                print("slurm: left out" + ("" if has_slurm() else ", it is not installed"))
+            if name == "slurm" and not (not slurm_lacks() and (LONG or arguments.parts)):
+                print("slurm: left out, " + (slurm_lacks() or "it needs ANHOLON_LONG"))
                 continue
             begun = time.monotonic()
             try:

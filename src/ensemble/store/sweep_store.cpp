@@ -174,9 +174,18 @@ SweepStore SweepStore::open(const std::string& named, const SweepRequest& wanted
   const std::string folder = without_slash(named);
   bool made = false;
   if (!is_there(folder)) {
+    // More files of one folder are listed in minutes, and their numbers fill the memory.
+    constexpr std::size_t kMostParts = 10'000'000;
+    if (wanted.cases / wanted.chunk > kMostParts)
+      throw Failure({}, std::to_string(wanted.cases) + " cases in parts of " + std::to_string(wanted.chunk) +
+                            " are more than " + std::to_string(kMostParts) + " parts",
+                    "larger parts: --chunk " + std::to_string(wanted.cases / kMostParts + 1));
     if (std::string why = create_folder(folder); !why.empty()) throw Failure({}, why);
     for (const std::string& name : files_of(folder))
-      if (!name.starts_with(".tmp-") && name != kRequest)
+      if (part_of(name) || name.starts_with(kPlan) || name == kJudgement)
+        throw Failure({}, "the folder " + folder + " holds parts of a sweep, and its " + kRequest + " is missing",
+                      "give another folder, or put " + std::string(kRequest) + " back");
+      else if (!name.starts_with(".tmp-") && name != kRequest)
         throw Failure({}, "the folder " + folder + " holds other files ('" + name + "') and no sweep",
                       "give the name of a new folder, or of an empty one");
     const Committed done = commit_file(folder, kRequest, request_json(wanted, program));
@@ -314,7 +323,7 @@ std::string SweepStore::commit(std::size_t part, ParquetTable rows) const {
 void SweepStore::check(std::size_t part, const std::string& path, std::string_view belongs,
                        std::string_view first) const {
   if (belongs != id_ || first != std::to_string(range(part).first))
-    throw Failure({}, path + " belongs to another sweep", kRemove);
+    throw Failure({}, path + " belongs to another sweep, or " + kRequest + " was changed", kRemove);
 }
 
 ParquetTable SweepStore::read(std::size_t part) const {
