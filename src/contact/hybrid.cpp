@@ -61,9 +61,12 @@ class HybridMotion {
   }
 
  private:
+  // A slip velocity with two components ends at kRest and begins at kSeed of the velocities: at zero it has no direction.
+  static constexpr long double kRest = 1e-12L, kSeed = 1e-10L;
   static constexpr const char* kPassed = "rows before that are inside, too: the contact was missed; please report it";
+  // What the event at which the last segment ended excludes.
   struct Excluded {
-    bool touch = false, stick = false;
+    bool touch = false, stick = false, slips = false;
   };
   // The last impacts of a contact, from which it is seen that they accumulate.
   struct Impacts {
@@ -119,14 +122,26 @@ class HybridMotion {
       ContactRows& rows = p.contacts[c];
       rows.may_touch = closed(c) && gap_rate(c) == 0 && !excluded_[c].touch;
       rows.may_stick = !excluded_[c].stick;
+      rows.moves = rows.moves && !excluded_[c].slips;
       // A gap that is open, or opens, is not bounded by its acceleration.
       if (!closed(c) || gap_rate(c) > 0) rows.normal.assign(at_.q.size(), 0), rows.normal_rate = 0;
     }
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      if (excluded_[c].stick && contacts_[c].slip.size() == 2) against_friction(p, c);
     const std::vector<ContactSolution> list = consistent_modes(p);
     if (list.size() != 1) return undecided(list);
     modes_ = list[0].modes;
     come_to_rest();
-    start_slip();
+    long double force = 0;
+    for (const long double b : p.b) force = std::max(force, std::abs(b));
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      modes_[c].rest = kRest * dynamics_.place(c).slip_scale;
+      modes_[c].slack = kRest * (force > 0 ? force : 1);
+      if (contacts_[c].slip.size() < 2 || modes_[c].free) continue;
+      const bool begins = modes_[c].touch == Touch::slips && contacts_[c].rough() && !p.contacts[c].moves;
+      if (begins) set_slip(c, modes_[c].direction, kSeed * std::max(dynamics_.speed(), 1.0L));
+      if (modes_[c].touch == Touch::sticks && excluded_[c].slips) set_slip(c, {}, 0);
+    }
     return {};
   }
 
@@ -216,25 +231,26 @@ class HybridMotion {
     return rests;
   }
 
-  // A slip velocity with two components has no direction where it begins: it begins with a velocity of 1e-10 of the
-  // others along the direction of its rate.
-  void start_slip() {
-    constexpr long double kSeed = 1e-10L;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      const ContactRows& rows = dynamics_.accelerations().contacts[c];
-      if (modes_[c].touch != Touch::slips || !rows.rough || rows.moves || rows.tangential.size() < 2) continue;
-      ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), false), gentle_);
-      for (std::size_t k = 0; k < contacts_.size(); ++k) p.contacts[k].may_touch = false;
-      const long double v = kSeed * std::max(dynamics_.speed(), 1.0L);
-      // The constraint of sticking, moved by the seed, gives the jump of least change.
-      p.contacts[c] = rows;
-      p.contacts[c].may_open = false, p.contacts[c].static_friction = 1e30L, p.contacts[c].normal_rate = 0;
-      for (std::size_t a = 0; a < 2; ++a)
-        p.contacts[c].tangential_rate[a] = dynamics_.place(c).slip[a] - v * modes_[c].direction[a];
-      const auto list = consistent_modes(p);
-      if (list.empty()) continue;
-      for (std::size_t a = 0; a < at_.qd.size(); ++a) at_.qd[a] += static_cast<double>(list[0].x[a]);
-    }
+  // A slip that begins where the friction that holds has become too large begins against this friction.
+  static void against_friction(ContactProblem& p, std::size_t c) {
+    ContactModes modes(p.contacts.size());
+    modes[c].touch = Touch::sticks;
+    const auto held = of_modes(p, modes);
+    const long double size = held ? std::hypot(held->friction[c][0], held->friction[c][1]) : 0;
+    if (size > 0) p.contacts[c].direction = {-held->friction[c][0] / size, -held->friction[c][1] / size};
+  }
+
+  // The jump of least change that gives a contact the slip velocity v along d.
+  void set_slip(std::size_t c, const std::array<long double, 2>& d, long double v) {
+    ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), false), gentle_);
+    ContactModes modes(contacts_.size());
+    modes[c].touch = Touch::sticks;
+    p.contacts[c] = dynamics_.accelerations().contacts[c];
+    p.contacts[c].normal_rate = 0;
+    for (std::size_t a = 0; a < 2; ++a) p.contacts[c].tangential_rate[a] = dynamics_.place(c).slip[a] - v * d[a];
+    const auto jump = of_modes(p, modes);
+    if (!jump) return;
+    for (std::size_t a = 0; a < at_.qd.size(); ++a) at_.qd[a] += static_cast<double>(jump->x[a]);
   }
 
   // Follows the motion in the present modes to their end; returns false if it ends there.
@@ -250,8 +266,8 @@ class HybridMotion {
     o.every.reset();
     o.at_text.clear();
     o.at.clear();
-    for (const Rational& t : times_)
-      if (joined_.segments() == 0 ? t >= at_.t : t > at_.t) o.at.push_back(t);
+    for (std::size_t k = rows_.due(); k < times_.size(); ++k)
+      if (joined_.segments() == 0 ? times_[k] >= at_.t : times_[k] > at_.t) o.at.push_back(times_[k]);
     o.estimate = ErrorEstimate::never;
     o.conserved.clear();
     o.note = nullptr;
@@ -270,6 +286,7 @@ class HybridMotion {
       changed = true;
       if (known->second.change == ModeChange::leaves) excluded_[known->second.contact].touch = true;
       if (known->second.change == ModeChange::slips) excluded_[known->second.contact].stick = true;
+      if (known->second.change == ModeChange::sticks) excluded_[known->second.contact].slips = true;
     }
     return changed && every_event_known && at_.t < end_;
   }

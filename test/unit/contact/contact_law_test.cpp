@@ -31,6 +31,24 @@ TEST(ContactLaw, BlockSticksOrSlipsByTheConeOfFriction) {
   EXPECT_EQ(consistent_modes(block(3, 0.35L))[0].modes[0].touch, Touch::sticks);
 }
 
+TEST(ContactLaw, LargeFrictionIsNotSingular) {
+  ContactProblem p = block(2e10L, 1e9L);
+  const auto list = consistent_modes(p);
+  ASSERT_EQ(list.size(), 1U);
+  EXPECT_EQ(list[0].modes[0].touch, Touch::slips);
+}
+
+// At the limit of friction the acceleration is zero up to the round-off of the forces, of either sign.
+TEST(ContactLaw, BlockAtTheLimitOfFrictionSlips) {
+  for (const long double off : {-1e-17L, 0.0L, 1e-17L}) {
+    ContactProblem p = block(2.5L + off, 0.25L);
+    p.contacts[0].may_stick = false;
+    const auto list = consistent_modes(p);
+    ASSERT_EQ(list.size(), 1U);
+    EXPECT_EQ(list[0].modes[0].direction[0], 1);
+  }
+}
+
 TEST(ContactLaw, BlockThatIsLiftedOpens) {
   ContactProblem p = block(0, 0.25L);
   p.b[1] = -1;
