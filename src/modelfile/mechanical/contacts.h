@@ -21,6 +21,6 @@ struct Contact {
 };
 
 // Reads the contacts of a file whose names are declared.
-std::vector<Contact> read_contacts(const Item& root, Scope& scope, const Model& model, Diagnostics& diagnostics);
+std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
 
 }  // namespace anholon
