@@ -136,11 +136,15 @@ std::array<Real, 2> slip_rate(const ContactRows& rows, const Numbers& x) {
 // Directions of slip that begins are those of the slip rates that follow from them: a fixed point. A rate that is
 // round-off of the accelerations `free` has no direction, and the first guess stays.
 std::optional<ContactSolution> with_directions(const ContactProblem& p, ContactModes modes, Real free) {
-  constexpr int kMost = 200;
+  // From kPlain on the steps are damped, as they may go to and fro about the fixed point.
+  constexpr int kMost = 400, kPlain = 30, kSlow = 100;
+  constexpr Real kFound = 1e-17L, kNear = 1e-9L;
+  Real change = 0;
   for (int k = 0; k < kMost; ++k) {
     auto f = of_modes(p, modes);
     if (!f) return f;
-    bool changed = false;
+    change = 0;
+    const Real step = k < kPlain ? 1 : k < kSlow ? 0.5L : 0.1L;
     for (std::size_t c = 0; c < modes.size(); ++c) {
       const ContactRows& rows = p.contacts[c];
       if (modes[c].touch != Touch::slips || rows.moves || rows.tangential.size() < 2 || !rows.rough) continue;
@@ -148,13 +152,16 @@ std::optional<ContactSolution> with_directions(const ContactProblem& p, ContactM
       const Real size = std::hypot(v[0], v[1]),
                  terms = std::max(largest(rows.tangential[0]), largest(rows.tangential[1]));
       if (!(size > kSame * terms * free)) continue;
-      const std::array<Real, 2> d{v[0] / size, v[1] / size};
-      if (std::hypot(d[0] - modes[c].direction[0], d[1] - modes[c].direction[1]) > 1e-17L) changed = true;
-      modes[c].direction = d;
+      auto& d = modes[c].direction;
+      const std::array<Real, 2> away{v[0] / size - d[0], v[1] / size - d[1]};
+      change = std::max(change, std::hypot(away[0], away[1]));
+      const std::array<Real, 2> next{d[0] + step * away[0], d[1] + step * away[1]};
+      const Real length = std::hypot(next[0], next[1]);
+      if (length > 0) d = {next[0] / length, next[1] / length};
     }
-    if (!changed) return f;
+    if (change <= kFound) return f;
   }
-  return of_modes(p, modes);
+  return change <= kNear ? of_modes(p, modes) : std::nullopt;
 }
 
 // free: the size of the accelerations without contacts. Where the contacts leave no acceleration, those of the modes
