@@ -113,6 +113,7 @@ void ContactDynamics::go(const ContactState& at) {
     for (const auto& t : rows.tangential)
       for (std::size_t i = 0; i < n_; ++i) scale = std::max(scale, std::abs(t[i] * most_[i]));
     rows.moves = size > kZero * scale && size > 0;
+    place.slip_scale = scale;
     problem_.contacts.push_back(std::move(rows));
     places_.push_back(place);
   }

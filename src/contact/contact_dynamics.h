@@ -14,6 +14,7 @@ class ContactDynamics {
   struct Place {
     long double gap = 0, gap_rate = 0;
     std::array<long double, 2> slip{};
+    long double slip_scale = 0;  // the size of the terms of the slip velocity up to now
     long double restitution = 0;
   };
   // Evaluates all formulas at a state.

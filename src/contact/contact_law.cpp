@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace anholon {
 
@@ -26,9 +25,18 @@ Real largest(const Numbers& a) {
   return most;
 }
 
-// By Gauss with complete pivoting, rows scaled to 1; nullopt if the matrix is singular.
+// By Gauss with complete pivoting, rows scaled to 1 and columns to about 1, as friction may be large; nullopt if the
+// matrix is singular.
 std::optional<Numbers> solve(std::vector<Numbers> m, Numbers right) {
   const std::size_t n = right.size();
+  std::vector<int> scales(n, 0);
+  for (std::size_t j = 0; j < n; ++j) {
+    Real most = 0;
+    for (const Numbers& row : m) most = std::max(most, std::abs(row[j]));
+    if (!(most > 0) || !std::isfinite(most)) return std::nullopt;
+    scales[j] = -std::ilogb(most);
+    for (Numbers& row : m) row[j] = std::scalbn(row[j], scales[j]);
+  }
   std::vector<std::size_t> column(n);
   for (std::size_t i = 0; i < n; ++i) {
     column[i] = i;
@@ -59,15 +67,14 @@ std::optional<Numbers> solve(std::vector<Numbers> m, Numbers right) {
     for (std::size_t j = k + 1; j < n; ++j) sum -= m[k][j] * x[column[j]];
     x[column[k]] = sum / m[k][k];
   }
+  for (std::size_t j = 0; j < n; ++j) x[j] = std::scalbn(x[j], scales[j]);
   return x;
 }
 
-struct Forces {
-  ContactSolution solution;
-};
+}  // namespace
 
 // The linear equations of given modes. Columns: x, lambda, then N and T of each contact.
-std::optional<Forces> solve(const ContactProblem& p, const ContactModes& modes) {
+std::optional<ContactSolution> of_modes(const ContactProblem& p, const ContactModes& modes) {
   const std::size_t n = p.b.size(), s = p.beta.size();
   std::vector<std::size_t> first;
   std::size_t size = n + s;
@@ -104,19 +111,21 @@ std::optional<Forces> solve(const ContactProblem& p, const ContactModes& modes) 
   }
   const auto found = solve(std::move(m), std::move(right));
   if (!found) return std::nullopt;
-  Forces f;
-  f.solution.modes = modes;
-  f.solution.x.assign(found->begin(), found->begin() + static_cast<std::ptrdiff_t>(n));
+  ContactSolution f;
+  f.modes = modes;
+  f.x.assign(found->begin(), found->begin() + static_cast<std::ptrdiff_t>(n));
   for (std::size_t c = 0; c < modes.size(); ++c) {
     const bool open = modes[c].touch == Touch::open;
-    f.solution.normal.push_back(open ? 0 : (*found)[first[c]]);
+    f.normal.push_back(open ? 0 : (*found)[first[c]]);
     std::array<Real, 2> t{};
     if (modes[c].touch == Touch::sticks && !modes[c].free)
       for (std::size_t a = 0; a < p.contacts[c].tangential.size(); ++a) t[a] = (*found)[first[c] + 1 + a];
-    f.solution.friction.push_back(t);
+    f.friction.push_back(t);
   }
   return f;
 }
+
+namespace {
 
 std::array<Real, 2> slip_rate(const ContactRows& rows, const Numbers& x) {
   std::array<Real, 2> v{};
@@ -124,50 +133,63 @@ std::array<Real, 2> slip_rate(const ContactRows& rows, const Numbers& x) {
   return v;
 }
 
-// Directions of slip that begins are those of the slip rates that follow from them: a fixed point.
-std::optional<Forces> with_directions(const ContactProblem& p, ContactModes modes) {
-  constexpr int kMost = 200;
+// Directions of slip that begins are those of the slip rates that follow from them: a fixed point. A rate that is
+// round-off of the accelerations `free` has no direction, and the first guess stays.
+std::optional<ContactSolution> with_directions(const ContactProblem& p, ContactModes modes, Real free) {
+  // From kPlain on the steps are damped, as they may go to and fro about the fixed point.
+  constexpr int kMost = 400, kPlain = 30, kSlow = 100;
+  constexpr Real kFound = 1e-17L, kNear = 1e-9L;
+  Real change = 0;
   for (int k = 0; k < kMost; ++k) {
-    auto f = solve(p, modes);
+    auto f = of_modes(p, modes);
     if (!f) return f;
-    bool changed = false;
+    change = 0;
+    const Real step = k < kPlain ? 1 : k < kSlow ? 0.5L : 0.1L;
     for (std::size_t c = 0; c < modes.size(); ++c) {
       const ContactRows& rows = p.contacts[c];
       if (modes[c].touch != Touch::slips || rows.moves || rows.tangential.size() < 2 || !rows.rough) continue;
-      const auto v = slip_rate(rows, f->solution.x);
-      const Real size = std::hypot(v[0], v[1]);
-      if (!(size > 0)) continue;
-      const std::array<Real, 2> d{v[0] / size, v[1] / size};
-      if (std::hypot(d[0] - modes[c].direction[0], d[1] - modes[c].direction[1]) > 1e-17L) changed = true;
-      modes[c].direction = d;
+      const auto v = slip_rate(rows, f->x);
+      const Real size = std::hypot(v[0], v[1]),
+                 terms = std::max(largest(rows.tangential[0]), largest(rows.tangential[1]));
+      if (!(size > kSame * terms * free)) continue;
+      auto& d = modes[c].direction;
+      const std::array<Real, 2> away{v[0] / size - d[0], v[1] / size - d[1]};
+      change = std::max(change, std::hypot(away[0], away[1]));
+      const std::array<Real, 2> next{d[0] + step * away[0], d[1] + step * away[1]};
+      const Real length = std::hypot(next[0], next[1]);
+      if (length > 0) d = {next[0] / length, next[1] / length};
     }
-    if (!changed) return f;
+    if (change <= kFound) return f;
   }
-  return solve(p, modes);
+  return change <= kNear ? of_modes(p, modes) : std::nullopt;
 }
 
-bool consistent(const ContactProblem& p, const Forces& f) {
-  const Real force = largest(p.b), size = std::max(largest(f.solution.x), Real(1e-300L));
+// free: the size of the accelerations without contacts. Where the contacts leave no acceleration, those of the modes
+// are the round-off of this size.
+bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
+  const Real force = largest(p.b), size = std::max(largest(f.x), free);
   for (std::size_t c = 0; c < p.contacts.size(); ++c) {
     const ContactRows& rows = p.contacts[c];
-    const ContactMode& mode = f.solution.modes[c];
+    const ContactMode& mode = f.modes[c];
     const Real scale = kSame * (largest(rows.normal) * size + std::abs(rows.normal_rate));
-    const Real N = f.solution.normal[c];
+    const Real N = f.normal[c];
     if (mode.touch == Touch::open) {
-      if (dot(rows.normal, f.solution.x) + rows.normal_rate < -scale) return false;
+      if (dot(rows.normal, f.x) + rows.normal_rate < -scale) return false;
       continue;
     }
-    const Real forces = kSame * std::max(force, std::abs(N));
+    // Friction multiplies the round-off of N.
+    constexpr Real kRounded = 1e-14L;
+    const Real forces = kSame * std::max(force, std::abs(N)) + kRounded * rows.static_friction * force;
     if (N < -forces) return false;
     if (!rows.rough) continue;
-    const auto v = slip_rate(rows, f.solution.x);
+    const auto v = slip_rate(rows, f.x);
     Real span = 0;
     for (std::size_t a = 0; a < rows.tangential.size(); ++a)
-      span = std::max(span, kSame * (largest(rows.tangential[a]) * size + std::abs(rows.tangential_rate[a])));
+      span = std::max(span, kSame * (largest(rows.tangential[a]) * size + std::abs(rows.tangential_rate[a])) +
+                                kRounded * rows.friction * largest(rows.tangential[a]) * free);
     if (mode.touch == Touch::sticks) {
-      if (mode.free
-              ? std::hypot(v[0], v[1]) > span
-              : std::hypot(f.solution.friction[c][0], f.solution.friction[c][1]) > rows.static_friction * N + forces)
+      if (mode.free ? std::hypot(v[0], v[1]) > span
+                    : std::hypot(f.friction[c][0], f.friction[c][1]) > rows.static_friction * N + forces)
         return false;
     } else if (!rows.moves && v[0] * mode.direction[0] + v[1] * mode.direction[1] < -span) {
       return false;
@@ -208,22 +230,22 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
   std::size_t count = 1;
   for (const ContactRows& rows : p.contacts) each.push_back(choices(rows)), count *= each.back().size();
   std::vector<ContactSolution> list;
+  const auto open = of_modes(p, ContactModes(p.contacts.size()));
+  const Real free = std::max(open ? largest(open->x) : 0, Real(1e-300L));
   for (std::size_t k = 0; k < count; ++k) {
     ContactModes modes;
     for (std::size_t c = 0, rest = k; c < each.size(); ++c) {
       modes.push_back(each[c][rest % each[c].size()]);
       rest /= each[c].size();
     }
-    const auto f = with_directions(p, modes);
-    if (!f || !consistent(p, *f)) continue;
+    const auto f = with_directions(p, modes, free);
+    if (!f || !consistent(p, *f, free)) continue;
     const bool known = std::any_of(list.begin(), list.end(), [&](const ContactSolution& o) {
       Real difference = 0;
-      for (std::size_t i = 0; i < o.x.size(); ++i)
-        difference = std::max(difference, std::abs(o.x[i] - f->solution.x[i]));
-      return difference <= 100 * kSame * std::max(largest(o.x), largest(f->solution.x)) ||
-             !alternatives(o, f->solution);
+      for (std::size_t i = 0; i < o.x.size(); ++i) difference = std::max(difference, std::abs(o.x[i] - f->x[i]));
+      return difference <= 100 * kSame * std::max({largest(o.x), largest(f->x), free}) || !alternatives(o, *f);
     });
-    if (!known) list.push_back(f->solution);
+    if (!known) list.push_back(*f);
   }
   return list;
 }

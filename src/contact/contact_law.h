@@ -9,6 +9,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace anholon {
@@ -19,6 +20,8 @@ struct ContactMode {
   Touch touch = Touch::open;
   std::array<long double, 2> direction{};  // of the slip, of length 1
   bool free = false;                       // sticks without friction of its own, as other contacts hold it
+  long double rest = 0;                    // a slip velocity with two components is zero below it
+  long double slack = 0;                   // forces below it are round-off
 };
 using ContactModes = std::vector<ContactMode>;
 
@@ -44,8 +47,11 @@ struct ContactSolution {
   ContactModes modes;
   std::vector<long double> x;
   std::vector<long double> normal;                   // N
-  std::vector<std::array<long double, 2>> friction;  // T of contacts that stick
+  std::vector<std::array<long double, 2>> friction;  // T of the contacts that stick
 };
+
+// The accelerations and forces of given modes, whether or not they are consistent; nullopt if the equations are singular.
+std::optional<ContactSolution> of_modes(const ContactProblem& problem, const ContactModes& modes);
 
 // The consistent modes whose accelerations differ. Modes that give the same x are one; the first of them touches most.
 std::vector<ContactSolution> consistent_modes(const ContactProblem& problem);

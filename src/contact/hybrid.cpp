@@ -1,7 +1,6 @@
 #include "contact/hybrid.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -62,9 +61,12 @@ class HybridMotion {
   }
 
  private:
+  // A slip velocity with two components ends at kRest and begins at kSeed of the velocities: at zero it has no direction.
+  static constexpr long double kRest = 1e-12L, kSeed = 1e-10L;
   static constexpr const char* kPassed = "rows before that are inside, too: the contact was missed; please report it";
+  // What the event at which the last segment ended excludes.
   struct Excluded {
-    bool touch = false, stick = false;
+    bool touch = false, stick = false, slips = false;
   };
   // The last impacts of a contact, from which it is seen that they accumulate.
   struct Impacts {
@@ -120,36 +122,27 @@ class HybridMotion {
       ContactRows& rows = p.contacts[c];
       rows.may_touch = closed(c) && gap_rate(c) == 0 && !excluded_[c].touch;
       rows.may_stick = !excluded_[c].stick;
+      rows.moves = rows.moves && !excluded_[c].slips;
       // A gap that is open, or opens, is not bounded by its acceleration.
       if (!closed(c) || gap_rate(c) > 0) rows.normal.assign(at_.q.size(), 0), rows.normal_rate = 0;
     }
-    std::vector<ContactSolution> list = consistent_modes(p);
-    if (list.empty() && slips_against_friction(p)) list = consistent_modes(p);
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      if (excluded_[c].stick && contacts_[c].slip.size() == 2) against_friction(p, c);
+    const std::vector<ContactSolution> list = consistent_modes(p);
     if (list.size() != 1) return undecided(list);
     modes_ = list[0].modes;
     come_to_rest();
-    start_slip();
-    return {};
-  }
-
-  // Where sticking ends with the friction that slipping has, too, the slip begins with no acceleration that would give
-  // its direction: it is that against the friction of sticking. Returns whether a contact is such.
-  bool slips_against_friction(ContactProblem& p) const {
-    ContactProblem sticks = p;
-    for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (excluded_[c].stick) sticks.contacts[c].may_stick = true, sticks.contacts[c].static_friction = 1e30L;
-    const std::vector<ContactSolution> list = consistent_modes(sticks);
-    bool any = false;
+    long double force = 0;
+    for (const long double b : p.b) force = std::max(force, std::abs(b));
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      if (list.empty() || !excluded_[c].stick || p.contacts[c].moves || list[0].modes[c].touch != Touch::sticks)
-        continue;
-      const std::array<long double, 2>& t = list[0].friction[c];
-      const long double size = std::hypot(t[0], t[1]);
-      if (!(size > 0)) continue;
-      p.contacts[c].direction = {-t[0] / size, -t[1] / size};
-      p.contacts[c].moves = any = true;
+      modes_[c].rest = kRest * dynamics_.place(c).slip_scale;
+      modes_[c].slack = kRest * (force > 0 ? force : 1);
+      if (contacts_[c].slip.size() < 2 || modes_[c].free) continue;
+      const bool begins = modes_[c].touch == Touch::slips && contacts_[c].rough() && !p.contacts[c].moves;
+      if (begins) set_slip(c, modes_[c].direction, kSeed * std::max(dynamics_.speed(), 1.0L));
+      if (modes_[c].touch == Touch::sticks && excluded_[c].slips) set_slip(c, {}, 0);
     }
-    return any;
+    return {};
   }
 
   // Velocities within round-off of those that the motion had are zero, and so are coordinates: where the modes leave no
@@ -242,29 +235,26 @@ class HybridMotion {
     return rests;
   }
 
-  // A slip velocity with two components has no direction where it begins: it begins with a velocity of 1e-10 of the
-  // others along the direction of its rate.
-  void start_slip() {
-    constexpr long double kSeed = 1e-10L;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      const ContactRows& rows = dynamics_.accelerations().contacts[c];
-      if (modes_[c].touch != Touch::slips || !rows.rough || rows.moves || rows.tangential.size() < 2) continue;
-      const long double v = kSeed * std::max(dynamics_.speed(), 1.0L);
-      set_slip(c, {v * modes_[c].direction[0], v * modes_[c].direction[1]});
-    }
+  // A slip that begins where the friction that holds has become too large begins against this friction.
+  static void against_friction(ContactProblem& p, std::size_t c) {
+    ContactModes modes(p.contacts.size());
+    modes[c].touch = Touch::sticks;
+    const auto held = of_modes(p, modes);
+    const long double size = held ? std::hypot(held->friction[c][0], held->friction[c][1]) : 0;
+    if (size > 0) p.contacts[c].direction = {-held->friction[c][0] / size, -held->friction[c][1] / size};
   }
 
-  // Gives a slip velocity by the least change of the velocities, with the constraint of sticking moved by it.
-  void set_slip(std::size_t c, const std::array<long double, 2>& v) {
+  // The jump of least change that gives a contact the slip velocity v along d.
+  void set_slip(std::size_t c, const std::array<long double, 2>& d, long double v) {
     ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), false), gentle_);
-    for (std::size_t k = 0; k < contacts_.size(); ++k) p.contacts[k].may_touch = false;
+    ContactModes modes(contacts_.size());
+    modes[c].touch = Touch::sticks;
     p.contacts[c] = dynamics_.accelerations().contacts[c];
-    p.contacts[c].may_open = p.contacts[c].moves = false;
-    p.contacts[c].static_friction = 1e30L, p.contacts[c].normal_rate = 0;
-    for (std::size_t a = 0; a < 2; ++a) p.contacts[c].tangential_rate[a] = dynamics_.place(c).slip[a] - v[a];
-    const auto list = consistent_modes(p);
-    if (list.empty()) return;
-    for (std::size_t a = 0; a < at_.qd.size(); ++a) at_.qd[a] += static_cast<double>(list[0].x[a]);
+    p.contacts[c].normal_rate = 0;
+    for (std::size_t a = 0; a < 2; ++a) p.contacts[c].tangential_rate[a] = dynamics_.place(c).slip[a] - v * d[a];
+    const auto jump = of_modes(p, modes);
+    if (!jump) return;
+    for (std::size_t a = 0; a < at_.qd.size(); ++a) at_.qd[a] += static_cast<double>(jump->x[a]);
   }
 
   // A slip velocity with two components that vanishes on a curved line has no Taylor series there, and the steps become
@@ -281,7 +271,7 @@ class HybridMotion {
       for (const std::vector<long double>& t : rows.tangential)
         for (std::size_t a = 0; a < at_.qd.size(); ++a) size = std::max(size, std::abs(t[a] * dynamics_.most(a)));
       if (std::hypot(slip[0], slip[1]) > kVanished * size) continue;
-      set_slip(c, {});
+      set_slip(c, {}, 0);
       joined_.event(contacts_[c].name + ".sticks", at_.t.get_d());
       any = true;
     }
@@ -301,8 +291,8 @@ class HybridMotion {
     o.every.reset();
     o.at_text.clear();
     o.at.clear();
-    for (const Rational& t : times_)
-      if (joined_.segments() == 0 ? t >= at_.t : t > at_.t) o.at.push_back(t);
+    for (std::size_t k = rows_.due(); k < times_.size(); ++k)
+      if (joined_.segments() == 0 ? times_[k] >= at_.t : times_[k] > at_.t) o.at.push_back(times_[k]);
     o.estimate = ErrorEstimate::never;
     o.conserved.clear();
     o.note = nullptr;
@@ -326,6 +316,7 @@ class HybridMotion {
       changed = true;
       if (known->second.change == ModeChange::leaves) excluded_[known->second.contact].touch = true;
       if (known->second.change == ModeChange::slips) excluded_[known->second.contact].stick = true;
+      if (known->second.change == ModeChange::sticks) excluded_[known->second.contact].slips = true;
     }
     return changed && every_event_known && at_.t < end_;
   }

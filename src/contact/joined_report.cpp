@@ -57,6 +57,9 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
       if (known->second.change == ModeChange::turns) continue;  // the formula of friction has another reference
       e.stop = false;
       while (!e.name.empty() && e.name.back() == '\'') e.name.pop_back();
+      // A change has two events where its forces may be zero at the start, and they may fall together.
+      if (!all_.events.empty() && all_.events.back().name == e.name && all_.events.back().t.value == e.t.value)
+        continue;
     }
     all_.events.push_back(std::move(e));
   }

@@ -22,6 +22,8 @@ class ModeBuilder {
       normal = keep(c.name + ".gap", c.name + ".n", c.gap, 0);
       act(c, 0, normal, c.gap);
       event(c, ModeChange::leaves, normal, -1);
+      // A force that is zero at the start passes no zero when it begins to pull.
+      event(c, ModeChange::leaves, normal + slack(mode), -1);
       if (c.rough()) friction = mode.touch == Touch::sticks ? stick(c, mode, normal) : slip(c, mode, normal);
     }
     const auto record = [&](const char* what, Expr e) {
@@ -83,14 +85,19 @@ class ModeBuilder {
     }
     const Expr most = c.static_friction * normal;
     if (forces.size() == 1) {
-      event(c, ModeChange::slips, forces[0] - most, 1);
-      event(c, ModeChange::slips, g_.number(-1) * forces[0] - most, 1);
+      for (const Expr force : {forces[0], g_.number(-1) * forces[0]}) {
+        event(c, ModeChange::slips, force - most, 1);
+        event(c, ModeChange::slips, force - most - slack(mode), 1);
+      }
       return forces[0];
     }
     const Expr square = forces[0] * forces[0] + forces[1] * forces[1];
     event(c, ModeChange::slips, square - most * most, 1);
+    event(c, ModeChange::slips, square - most * most - slack(mode) * slack(mode), 1);
     return pow(square, Rational(1, 2));
   }
+
+  Expr slack(const ContactMode& mode) const { return g_.number(Rational(static_cast<double>(mode.slack))); }
 
   // d = v/|v| by the ratio r of the components across and along the direction e in which it slips at the start: (e + r
   // e')/sqrt(1 + r^2) is analytic where v passes zero on a straight line.
@@ -108,7 +115,8 @@ class ModeBuilder {
     const Expr r = across * pow(along, Rational(-1)), length = pow(g_.one() + r * r, Rational(-1, 2));
     act(c, 1, force * (e1 - r * e2) * length, c.slip[0]);
     act(c, 1, force * (e2 + r * e1) * length, c.slip[1]);
-    event(c, ModeChange::sticks, along, -1);
+    // At v = 0 the direction has no derivatives, unless v passes zero on a straight line.
+    event(c, ModeChange::sticks, along - number(mode.rest), -1);
     event(c, ModeChange::turns, across * across - along * along, 1);
     return c.friction * normal;
   }

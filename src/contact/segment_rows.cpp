@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <limits>
 
+#include "numeric/number.h"
+
 namespace anholon {
 
 void SegmentRows::only_at(const std::vector<Rational>& times) {
-  for (const Rational& t : times) times_.push_back(t.get_d());
+  for (const Rational& t : times) times_.push_back(from_rational<double>(t));
 }
 
 // The forces and constraints of a contact differ from mode to mode; its monitors do not.
@@ -34,7 +36,12 @@ void SegmentRows::columns(const std::vector<RunColumn>& columns) {
 
 void SegmentRows::row(const Row& row) {
   last_.assign(row.values.begin(), row.values.end());
-  if (!times_.empty() && !std::binary_search(times_.begin(), times_.end(), row.values[0])) return;
+  if (!times_.empty()) {
+    while (due_ < times_.size() && times_[due_] < row.values[0]) ++due_;
+    // The end of a segment may be the row that was asked for, and is not written again.
+    if (due_ == times_.size() || times_[due_] != row.values[0]) return;
+    ++due_;
+  }
   std::vector<double> values;
   for (const auto& place : places_)
     values.push_back(place ? row.values[*place] : std::numeric_limits<double>::quiet_NaN());

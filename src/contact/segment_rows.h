@@ -16,6 +16,8 @@ class SegmentRows final : public RowSink {
   void row(const Row& row) override;
   void step(double t) override { to_.step(t); }
 
+  // Of the times of only_at(), the first that has no row yet.
+  std::size_t due() const { return due_; }
   // The state of the last row.
   void last_state(ContactState& state) const;
   std::size_t rows() const { return count_; }
@@ -26,6 +28,7 @@ class SegmentRows final : public RowSink {
   RowSink& to_;
   const std::vector<Contact>& contacts_;
   std::vector<double> times_;
+  std::size_t due_ = 0;
   std::vector<RunColumn> joint_;                    // the columns that are written
   std::vector<RunColumn> own_;                      // those of the segment
   std::vector<std::optional<std::size_t>> places_;  // of each joint column among those of the segment

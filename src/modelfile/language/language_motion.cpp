@@ -69,6 +69,13 @@ set = {stage = "stage + 1"}
         {"gap", formula, "the distance, a formula of coordinates and time that is not negative"},
         {"slip", any, "the relative tangential velocity: a number, a list of two, or a vector with `along`"},
         {"along", any, "the tangential directions of a vector `slip`, as in a constraint"},
+        {"body", name, "instead of `gap` and `slip`: the body that touches, with its shape"},
+        {"shape", text,
+         "what touches: `point`, `ball(R)`, `disc(R)`, `box(a, b, c)`; the shape of the body without it"},
+        {"at", vector, "the place of that point, or the middle of that shape; the centre of the body without it"},
+        {"normal", vector, "of the plane on which it lies; `ez` without it"},
+        {"through", vector, "a point of the plane, or the centre of the ball or bowl; 0 without it"},
+        {"on", text, "not a plane: `ball(R)`, or `bowl(R)`, whose inside is touched"},
         {"friction", number, "Coulomb's coefficient while it slips; 0 without it"},
         {"static_friction", number, "the coefficient while it sticks; `friction` without it"},
         {"restitution", number, "Newton's coefficient of impacts, 0 to 1; 0 without it"}},
@@ -85,12 +92,30 @@ restitution = 0.5
 y = 1
 ```
 
+```toml
+[[contact]]
+body   = "plate"                   # instead of gap and slip
+shape  = "ball(R)"                 # which lies on a plane
+normal = "ey"
+through = "-3*ey"
+friction = 0.3
+
+[[contact]]
+name = "pin"
+body = "plate"
+at   = "P"                         # a point of the body
+on   = "bowl(9)"                   # inside a ball of radius 9 about 0
+```
+
+- With `body` the gap and the slip velocity follow from the shape of the body and the plane. A disc is turned about its axis z and touches with
+  its rim; a box touches with its corners, whose contacts are called `NAME1`, `NAME2`, …; in a plane motion these are four. `at` without `shape` is a point of the body.
+- The normal of a plane does not turn; `through` may move. On a ball the directions of slip are those across `ey`.
 - A contact pushes and does not pull: it is open, sticks or slips. The normal force N acts along the gradient of the gap, friction against the slip velocity:
   μN while it slips, at most the static coefficient times N while it sticks. Without `slip` there is no friction.
 - Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. Rows have the columns `NAME.mode` (0 open,
   1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
 - Impacts follow Newton's law in Moreau's form. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
-- At most four contacts. Motions, reports and sweeps know them, in the libraries, too; derivations, proofs and linear models refuse a model with
+- At most eight contacts; those that touch at one time are few, as all their modes are tried. Motions, reports and sweeps know them, in the libraries, too; derivations, proofs and linear models refuse a model with
   contacts. They do not go with events that set values, nor with servo constraints. [Recipes](contact.md).
 
 ```toml

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "expr/normal.h"
+#include "modelfile/mechanical/contact_shapes.h"
 #include "modelfile/names/along.h"
 #include "modelfile/text/collect.h"
 #include "modelfile/text/keys.h"
@@ -15,29 +16,24 @@ namespace {
 
 class ContactReader {
  public:
-  ContactReader(Scope& scope, const Model& model) : scope_(scope), model_(model) {}
+  ContactReader(Scope& scope, Model& model) : scope_(scope), model_(model) {}
 
-  Contact read(const Item& c, std::size_t number) const {
+  // One contact; of a box those of its corners.
+  std::vector<Contact> read(const Item& c, std::size_t number) const {
     Contact contact = begin(c, "contact" + std::to_string(number + 1));
-    const Item* gap = c.find("gap");
-    if (!gap)
-      throw Failure(contact.span, "the contact '" + contact.name + "' has no gap",
-                    "gap = \"P.z - R\": the distance, which is not negative");
-    contact.gap = formula(*gap, "a gap");
-    if (jet_order(contact.gap) != 0)
-      throw Failure(gap->span, "a gap is a formula of coordinates and time, without velocities");
-    if (const Item* slip = c.find("slip")) contact.slip = velocities(*slip, c.find("along"));
+    if (!c.find("body")) read_formulas(c, contact);
     Graph& g = *model_.graph;
     const Item *friction = c.find("friction"), *fixed = c.find("static_friction"), *e = c.find("restitution");
     contact.friction = friction ? coefficient(*friction) : g.zero();
     contact.static_friction = fixed ? coefficient(*fixed) : contact.friction;
     contact.restitution = e ? coefficient(*e) : g.zero();
+    if (c.find("body")) return by_shape(c, contact);
     if (contact.slip.empty() && (friction || fixed))
       throw Failure(
           (friction ? friction : fixed)->key_span,
           "the contact '" + contact.name + "' has friction and no slip velocity",
           "slip = \"vel(B, P)\", the velocity of the material point at the contact, along = [\"ex\", \"ey\"]");
-    return contact;
+    return {contact};
   }
 
   // A constraint with one_sided = true: without friction, and with impacts that do not rebound.
@@ -71,6 +67,47 @@ class ContactReader {
     if (!is_element_name(contact.name))
       throw Failure(contact.span, "'" + contact.name.substr(0, 40) + "' is not a name");
     return contact;
+  }
+
+  void read_formulas(const Item& c, Contact& contact) const {
+    for (const char* key : {"shape", "at", "on", "normal", "through"})
+      if (const Item* i = c.find(key))
+        throw Failure(i->key_span, "'" + std::string(key) + "' goes with 'body'", "body = \"ball\"");
+    const Item* gap = c.find("gap");
+    if (!gap)
+      throw Failure(contact.span, "the contact '" + contact.name + "' has no gap",
+                    "gap = \"P.z - R\": the distance, which is not negative; or body = \"ball\", whose shape touches");
+    contact.gap = formula(*gap, "a gap");
+    if (jet_order(contact.gap) != 0)
+      throw Failure(gap->span, "a gap is a formula of coordinates and time, without velocities");
+    if (const Item* slip = c.find("slip")) contact.slip = velocities(*slip, c.find("along"));
+  }
+
+  std::vector<Contact> by_shape(const Item& c, const Contact& common) const {
+    const std::vector<Touching> places = read_touching(c, scope_, model_);
+    std::vector<Contact> list;
+    for (const Touching& t : places) {
+      Contact contact = common;
+      if (places.size() > 1) contact.name += std::to_string(list.size() + 1);
+      contact.gap = put_masses(model_, t.gap);
+      if (jet_order(contact.gap) != 0)
+        throw Failure(c.find("body")->span,
+                      "the gap of the contact '" + contact.name + "' does not depend on coordinates",
+                      "a contact is that of a body which moves");
+      std::vector<Direction> across;
+      if (const Item* along = c.find("along"))
+        across = directions(along, scope_);
+      else
+        for (const Vector& d : t.directions) across.push_back({"", d});
+      int index = 0;
+      for (const Direction& d : across) {
+        const Expr v = put_masses(model_, component(t.slip, d, index++));
+        if (!proved_zero(v)) contact.slip.push_back(v);
+      }
+      if (contact.slip.size() > 2) throw Failure(c.find("along")->span, "a slip velocity has one or two components");
+      list.push_back(std::move(contact));
+    }
+    return list;
   }
 
   Expr formula(const Item& i, const std::string& what) const {
@@ -121,7 +158,7 @@ class ContactReader {
   }
 
   Scope& scope_;
-  const Model& model_;
+  Model& model_;
 };
 
 }  // namespace
@@ -133,11 +170,13 @@ bool is_one_sided(const Item& constraint) {
   return word->truth;
 }
 
-std::vector<Contact> read_contacts(const Item& root, Scope& scope, const Model& model, Diagnostics& diagnostics) {
-  constexpr std::size_t kMost = 4;  // the modes are enumerated
+std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
+  constexpr std::size_t kMost = 8;  // the modes of those that touch are enumerated
   std::vector<Contact> list;
   const ContactReader reader(scope, model);
   const auto add = [&](Contact contact) {
+    if (list.size() == kMost)
+      throw Failure(contact.span, "more than " + std::to_string(kMost) + " contacts; a box has one for each corner");
     if (std::any_of(list.begin(), list.end(), [&](const Contact& o) { return o.name == contact.name; }))
       throw Failure(contact.span, "there are two contacts '" + contact.name + "'");
     list.push_back(std::move(contact));
@@ -146,7 +185,7 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, const Model& 
   if (items && items->items.size() <= kMost)
     for_each_table(*items, "contact", diagnostics, [&](const Item& c, std::size_t k) {
       check_keys(c, "a contact", "contact", diagnostics);
-      add(reader.read(c, k));
+      for (Contact& contact : reader.read(c, k)) add(std::move(contact));
     });
   std::size_t count = items ? items->items.size() : 0;
   const Item* last = items;

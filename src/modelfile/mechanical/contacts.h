@@ -25,6 +25,6 @@ bool is_one_sided(const Item& constraint);
 
 // Reads the contacts of a file whose names are declared: its [[contact]]s, then its constraints of one side, whose gaps
 // are left - right.
-std::vector<Contact> read_contacts(const Item& root, Scope& scope, const Model& model, Diagnostics& diagnostics);
+std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
 
 }  // namespace anholon

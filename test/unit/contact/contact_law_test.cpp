@@ -1,3 +1,6 @@
+#include <cmath>
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "contact/contact_law.h"
@@ -31,12 +34,73 @@ TEST(ContactLaw, BlockSticksOrSlipsByTheConeOfFriction) {
   EXPECT_EQ(consistent_modes(block(3, 0.35L))[0].modes[0].touch, Touch::sticks);
 }
 
+TEST(ContactLaw, LargeFrictionIsNotSingular) {
+  ContactProblem p = block(2e10L, 1e9L);
+  const auto list = consistent_modes(p);
+  ASSERT_EQ(list.size(), 1U);
+  EXPECT_EQ(list[0].modes[0].touch, Touch::slips);
+}
+
+// At the limit of friction the acceleration is zero up to the round-off of the forces, of either sign.
+TEST(ContactLaw, BlockAtTheLimitOfFrictionSlips) {
+  for (const long double off : {-1e-17L, 0.0L, 1e-17L}) {
+    ContactProblem p = block(2.5L + off, 0.25L);
+    p.contacts[0].may_stick = false;
+    const auto list = consistent_modes(p);
+    ASSERT_EQ(list.size(), 1U);
+    EXPECT_EQ(list[0].modes[0].direction[0], 1);
+  }
+}
+
 TEST(ContactLaw, BlockThatIsLiftedOpens) {
   ContactProblem p = block(0, 0.25L);
   p.b[1] = -1;
   const auto list = consistent_modes(p);
   ASSERT_EQ(list.size(), 1U);
   EXPECT_EQ(list[0].modes[0].touch, Touch::open);
+}
+
+// An impact in space on one contact: the directions of slip are found, whatever the mass matrix.
+TEST(ContactLaw, ImpactInSpaceHasADirectionOfSlip) {
+  std::mt19937 random(7);
+  const auto number = [&] { return static_cast<long double>(random()) / 2147483648.0L - 1; };
+  std::size_t slips = 0;
+  for (int k = 0; k < 500; ++k) {
+    ContactProblem p;
+    std::vector<std::vector<long double>> root(6, std::vector<long double>(6));
+    for (auto& row : root)
+      for (long double& x : row) x = number();
+    p.A.assign(6, std::vector<long double>(6, 0));
+    for (std::size_t i = 0; i < 6; ++i)
+      for (std::size_t j = 0; j < 6; ++j)
+        for (std::size_t l = 0; l < 6; ++l) p.A[i][j] += root[i][l] * root[j][l] + (i == j ? 0.2L : 0);
+    p.b.assign(6, 0);
+    ContactRows rows;
+    rows.tangential.resize(2);
+    for (auto* row : {&rows.normal, &rows.tangential[0], &rows.tangential[1]})
+      for (int i = 0; i < 6; ++i) row->push_back(number());
+    rows.normal_rate = -1;
+    rows.tangential_rate = {3 * number(), 3 * number()};
+    rows.friction = rows.static_friction = 0.2L;
+    rows.rough = true;
+    rows.direction = {1, 0};
+    p.contacts = {rows};
+    const auto list = consistent_modes(p);
+    ASSERT_GE(list.size(), 1U) << k;
+    for (const ContactSolution& s : list) {
+      if (s.modes[0].touch != Touch::slips) continue;
+      ++slips;
+      long double v[2];
+      for (std::size_t a = 0; a < 2; ++a) {
+        v[a] = rows.tangential_rate[a];
+        for (std::size_t i = 0; i < 6; ++i) v[a] += rows.tangential[a][i] * s.x[i];
+      }
+      const auto& d = s.modes[0].direction;
+      EXPECT_GT(v[0] * d[0] + v[1] * d[1], 0);
+      EXPECT_NEAR(static_cast<double>((v[0] * d[1] - v[1] * d[0]) / std::hypot(v[0], v[1])), 0, 1e-8);
+    }
+  }
+  EXPECT_GT(slips, 100U);
 }
 
 // Painlevé's rod of mass 1 and length 2 that slides at the angle theta: beyond the critical friction the effective mass

@@ -1,0 +1,163 @@
+#include "modelfile/mechanical/contact_shapes.h"
+
+#include <algorithm>
+
+#include "expr/normal.h"
+#include "modelfile/mechanical/shapes.h"
+
+namespace anholon {
+
+namespace {
+
+// Of length 1; the formula stays as it is where its length is proved to be 1.
+Vector unit(const Vector& v) {
+  const Expr square = dot(v, v);
+  if (proved_zero(square - v[0].graph->one())) return v;
+  return pow(square, Rational(-1, 2)) * v;
+}
+
+Vector axis(Graph& g, int k) {
+  Vector v = zero_vector(g);
+  v[k] = g.one();
+  return v;
+}
+
+// Two directions across n, one of them an axis if n has no component along it.
+std::vector<Vector> tangents(const Vector& n) {
+  Graph& g = *n[0].graph;
+  constexpr int kAxes[] = {1, 0, 2};
+  for (const int k : kAxes)
+    if (proved_zero(n[k])) {
+      const Vector e = axis(g, k);
+      return {cross(e, n), e};
+    }
+  const Vector t = unit(cross(axis(g, 1), n));
+  return {t, cross(n, t)};
+}
+
+class TouchingReader {
+ public:
+  TouchingReader(const Item& c, Scope& scope, Model& model) : c_(c), scope_(scope), model_(model), g_(*model.graph) {
+    const Item& named = *c.find("body");
+    if (named.kind != Item::Kind::string) throw Failure(named.span, "the name of a body", "body = \"ball\"");
+    body_ = scope.body(named.text(), named.span);
+    if (const Item* both = c.find("gap") ? c.find("gap") : c.find("slip"))
+      throw Failure(both->key_span, "gap and slip velocity follow from the body and its shape",
+                    "leave out 'gap' and 'slip', or 'body'");
+    read_shape_of_contact();
+    through_ = c.find("through") ? scope.vector(*c.find("through")) : zero_vector(g_);
+    read_ground();
+  }
+
+  std::vector<Touching> read() {
+    std::vector<Touching> list;
+    const Vector middle = c_.find("at") ? scope_.vector(*c_.find("at")) : body().center;
+    if (shape_.kind == "box") {
+      for (int corner = 0; corner < 8; ++corner) {
+        Vector p = middle;
+        for (int k = 0; k < 3; ++k)
+          p = p + (g_.number(Rational((corner >> k & 1) != 0 ? 1 : -1, 2)) * shape_.sizes[k]) * orientation()[k];
+        Touching t = touching(p);
+        const bool known =
+            std::any_of(list.begin(), list.end(), [&](const Touching& o) { return proved_zero(o.gap - t.gap); });
+        if (!known) list.push_back(std::move(t));
+      }
+      return list;
+    }
+    list.push_back(touching(middle));
+    return list;
+  }
+
+ private:
+  const Body& body() const { return model_.bodies[body_]; }
+  const Rotation& orientation() const { return scope_.orientation(body_, c_.find("body")->span); }
+
+  void read_shape_of_contact() {
+    const Item* given = c_.find("shape");
+    if (given && given->kind == Item::Kind::string && given->text() == "point")
+      shape_ = {"point", {}};
+    else if (given)
+      shape_ = read_shape(*given, scope_, model_);
+    else
+      shape_ = c_.find("at") || !body().shape ? Shape{"point", {}} : *body().shape;
+    if (shape_.kind == "shell") shape_.kind = "ball";
+    if (shape_.kind == "ring") shape_.kind = "disc";
+    static const std::vector<std::string> known = {"point", "ball", "disc", "box"};
+    if (std::find(known.begin(), known.end(), shape_.kind) == known.end())
+      throw Failure((given ? given : c_.find("body"))->span, "the contact of a " + shape_.kind + " is not known",
+                    "shape = \"point\", \"ball(R)\", \"disc(R)\" or \"box(a, b, c)\", or gap and slip as formulas");
+  }
+
+  void read_ground() {
+    const Item *on = c_.find("on"), *normal = c_.find("normal");
+    if (!on) {
+      normal_ = normal ? unit(scope_.vector(*normal)) : axis(g_, 2);
+      for (int k = 0; k < 3; ++k)
+        if (normal && !proved_zero(total_derivative(normal_[k])))
+          throw Failure(normal->span, "the normal of a plane does not turn",
+                        "gap = \"…\" and slip = \"…\" as formulas describe a plane that turns");
+      return;
+    }
+    if (normal) throw Failure(normal->key_span, "a ball and a bowl have no 'normal'", "leave out 'normal', or 'on'");
+    const Syntax s = on->kind == Item::Kind::string ? parse_formula(on->formula) : Syntax{};
+    if (s.op != Syntax::Op::call || (s.text != "ball" && s.text != "bowl") || s.args.size() != 1)
+      throw Failure(on->span, "a contact is on a ball or in a bowl",
+                    "on = \"ball(R)\" or \"bowl(R)\"; without it on a plane");
+    if (shape_.kind != "point" && shape_.kind != "ball")
+      throw Failure(on->span, "on a ball and in a bowl there are points and balls, and this is a " + shape_.kind);
+    radius_ = evaluate_number(s.args[0], scope_);
+    bowl_ = s.text == "bowl";
+  }
+
+  Touching touching(const Vector& place) {
+    Vector n = normal_, q = place;
+    Expr gap;
+    if (radius_) {
+      const Vector d = place - through_;
+      const Expr distance = sqrt(dot(d, d));
+      n = pow(distance, Rational(-1)) * d;
+      if (bowl_) n = g_.number(-1) * n;
+      gap = bowl_ ? *radius_ - distance : distance - *radius_;
+    } else {
+      gap = dot(place - through_, n);
+    }
+    if (shape_.kind == "ball") {
+      gap = gap - shape_.sizes[0];
+      q = place - shape_.sizes[0] * n;
+    }
+    if (shape_.kind == "disc") {
+      // The lowest place of the rim lies against the part of the normal that is in the plane of the disc.
+      const Vector& a = orientation()[2];
+      const Vector across = n - dot(n, a) * a;
+      const Expr size = sqrt(g_.one() - pow(dot(n, a), Rational(2)));
+      gap = gap - shape_.sizes[0] * size;
+      q = place - (shape_.sizes[0] * pow(size, Rational(-1))) * across;
+    }
+    const Vector from_center = q - body().center;
+    Vector v = total_derivative(body().center) - total_derivative(through_);
+    if (body().orientation)
+      v = v + cross(body().orientation->rate, from_center);
+    else if (!is_zero(from_center))
+      throw Failure(c_.find("body")->span, "the body '" + body().name + "' has no orientation",
+                    "a body without one touches with its centre, as a point");
+    return {gap, v, tangents(n)};
+  }
+
+  const Item& c_;
+  Scope& scope_;
+  Model& model_;
+  Graph& g_;
+  std::size_t body_ = 0;
+  Shape shape_;
+  Vector normal_, through_;
+  std::optional<Expr> radius_;  // of a ball or bowl that is touched
+  bool bowl_ = false;
+};
+
+}  // namespace
+
+std::vector<Touching> read_touching(const Item& contact, Scope& scope, Model& model) {
+  return TouchingReader(contact, scope, model).read();
+}
+
+}  // namespace anholon

@@ -1,0 +1,17 @@
+// body = "ball" in a [[contact]]: gap and slip velocity of a point, a ball, a disc or the corners of a box on a plane, on
+// a ball or in a bowl.
+#pragma once
+#include "modelfile/names/names.h"
+
+namespace anholon {
+
+struct Touching {
+  Expr gap;
+  Vector slip;                     // the velocity of the material point of the body, relative to what it touches
+  std::vector<Vector> directions;  // two, tangential
+};
+
+// One place of a point, a ball or a disc; of a box the corners, without those whose gaps are equal. Throws Failure.
+std::vector<Touching> read_touching(const Item& contact, Scope& scope, Model& model);
+
+}  // namespace anholon

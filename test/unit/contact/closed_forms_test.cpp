@@ -1,0 +1,316 @@
+// Motions with contacts that have closed forms. Each test has a mutant, a model of other constants, that does not fit.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "support/contact_motion.h"
+#include "support/models.h"
+
+namespace anholon {
+namespace closed_forms_test {
+
+using test::contact_motion;
+using test::times;
+
+const char* const kBody = R"toml(
+gravity.field = "-g*ez"
+point.C = "x*ex + z*ez"
+frame.B = "roty(phi)"
+[[body]]
+name = "body"
+mass = "m"
+inertia = ["J", "J", "J"]
+center = "C"
+orientation = "B"
+)toml";
+
+void expect_near(double a, double b, double relative) { EXPECT_LE(std::abs(a - b), relative * std::abs(b)) << a << b; }
+
+std::string backspin(const std::string& inertia) {
+  return "coordinates = [\"x\", \"z\", \"phi\"]\nparameters = {m = 2, R = 0.11, g = 9.81, mu = 0.2, J = \"" + inertia +
+         "\"}\n" + kBody + R"toml(
+[[contact]]
+name = "floor"
+gap = "z - R"
+slip = "vel(body, C - R*ez)"
+along = ["ex"]
+friction = "mu"
+[initial]
+z = "R"
+"x'" = 3
+"phi'" = -10
+)toml";
+}
+
+TEST(ClosedForms, BallWithBackSpinRolls) {
+  const auto rolls = [](const std::string& inertia) {
+    const auto m = contact_motion(backspin(inertia), 4);
+    EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    const auto list = times(m, "floor.sticks");
+    EXPECT_EQ(list.size(), 1U);
+    // Rolling keeps the velocity, to the bits of x' = R phi'.
+    expect_near(m.last("x'"), 0.11 * m.last("phi'"), 1e-14);
+    return std::pair{list.at(0), m.last("x'")};
+  };
+  const double slip = 3 + 10 * 0.11, mu_g = 0.2 * 9.81;
+  const auto [t, v] = rolls("2/5*m*R^2");
+  expect_near(t, 2 * slip / (7 * mu_g), 1e-12);
+  expect_near(v, 3 - 2.0 / 7 * slip, 1e-12);
+  // The mutant: a hollow ball rolls at 2 v/(5 mu g).
+  const double hollow = rolls("2/3*m*R^2").first;
+  expect_near(hollow, 2 * slip / (5 * mu_g), 1e-12);
+  EXPECT_GT(std::abs(hollow - t), 0.1);
+}
+
+std::string belt(double friction) {
+  return "coordinates = [\"x\", \"z\"]\nparameters = {m = 1, k = 40, g = 9.81, mus = 0.4, V = 0.3, muk = " +
+         std::to_string(friction) + R"toml(}
+particle = [{name = "block", mass = "m", position = "x*ex + z*ez"}]
+gravity.field = "-g*ez"
+potential.spring = "k*x^2/2"
+[[contact]]
+name = "belt"
+gap = "z"
+slip = "x' - V"
+friction = "muk"
+static_friction = "mus"
+[initial]
+"x'" = 0.3
+)toml";
+}
+
+// The block sticks up to the stretch mus m g/k and slips about the stretch muk m g/k, back to the velocity of the belt.
+TEST(ClosedForms, PeriodOfStickAndSlip) {
+  const auto period = [](double friction) {
+    const auto m = contact_motion(belt(friction), 10);
+    const auto slips = times(m, "belt.slips");
+    EXPECT_GT(slips.size(), 5U);
+    for (std::size_t k = 2; k < slips.size(); ++k) EXPECT_NEAR(slips[k] - slips[k - 1], slips[1] - slips[0], 1e-12);
+    return slips.at(1) - slips.at(0);
+  };
+  const auto formula = [](double friction) {
+    const double w = std::sqrt(40.0), d = (0.4 - friction) * 9.81 / 40, V = 0.3;
+    return 2 * d / V + 2 * (M_PI - std::atan(w * d / V)) / w;
+  };
+  expect_near(period(0.25), formula(0.25), 1e-12);
+  EXPECT_GT(std::abs(period(0.2) - formula(0.25)), 1e-2);  // the mutant
+}
+
+TEST(ClosedForms, NothingCreepsWhereItSticks) {
+  std::vector<Rational> at;
+  for (int k = 0; k <= 200; ++k) at.emplace_back(k, 10);
+  const std::string slope = R"toml(coordinates = ["x", "z"]
+parameters = {mu = 0.3}
+particle = [{name = "block", mass = 3, position = "x*ex + z*ez"}]
+force = [{on = "block", vector = "-30*ez + (3 + 5*sin(7*t))*ex"}]
+contact = [{name = "floor", gap = "z", slip = "x'", friction = "mu"}]
+initial = {x = 0.1}
+)toml";
+  const auto sticks = contact_motion(slope, 20, {}, at);
+  ASSERT_TRUE(sticks.report.outcome.ok()) << sticks.report.outcome.message;
+  ASSERT_EQ(sticks.rows.rows().size(), at.size());
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    EXPECT_EQ(sticks.number(k, "x"), 0.1);
+    EXPECT_LT(std::abs(sticks.number(k, "x'")), 1e-30);  // the round-off of the projection
+  }
+  EXPECT_GT(contact_motion(slope, 20, {{"mu", "0.2"}}).last("x"), 0.11);  // the mutant
+}
+
+// Where the force that holds passes the friction at the instant at which it slips, the acceleration is zero.
+TEST(ClosedForms, BlockThatIsPushedEverHarderSlips) {
+  const std::string push = R"toml(coordinates = ["x", "z"]
+parameters = {F = 0}
+particle = [{name = "block", mass = 1, position = "x*ex + z*ez"}]
+force = [{on = "block", vector = "-ez + (F + t)*ex"}]
+contact = [{name = "floor", gap = "z", slip = "x'", friction = 0.3}]
+)toml";
+  for (const double F : {0.0, 0.3, 0.1}) {
+    const auto m = contact_motion(push, 3, {{"F", std::to_string(F)}});
+    ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    const double begin = 0.3 - F;
+    const auto slips = times(m, "floor.slips");
+    ASSERT_EQ(slips.size(), 1U);
+    EXPECT_NEAR(slips[0], begin, 2e-12);
+    expect_near(m.last("x"), std::pow(3 - begin, 3) / 6, 1e-11);
+  }
+}
+
+// The normal force is zero at the start and its rate decides: pressed the block touches, lifted it leaves.
+TEST(ClosedForms, RateOfTheNormalForceDecidesWhereItIsZero) {
+  const auto height = [](const std::string& force) {
+    const auto m = contact_motion(R"toml(coordinates = ["z"]
+particle = [{name = "block", mass = 1, position = "z*ez"}]
+contact = [{name = "floor", gap = "z"}]
+force = [{on = "block", vector = ")toml" +
+                                      force + "*ez\"}]\n",
+                                  2);
+    EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    return m.last("z");
+  };
+  expect_near(height("t"), 8.0 / 6, 1e-11);
+  expect_near(height("t^3"), 32.0 / 20, 1e-11);
+  EXPECT_EQ(height("-t"), 0);
+  EXPECT_EQ(height("-t^2"), 0);
+}
+
+// A ball on a sphere; what else holds it is the mutual slip `slip`.
+std::string sphere(const std::string& keys, const std::string& more) {
+  return "coordinates = [\"x\", \"z\", \"phi\"]\nparameters = {m = 1, R = 1, r = 0.25, g = 9.81, J = \"2/5*m*r^2\"}\n"
+         "define.d = \"sqrt(x^2 + z^2)\"\ndefine.slip = \"(z*vel(body, C - r*C/d).x - x*vel(body, C - r*C/d).z)/d\"\n" +
+         std::string(kBody) + "[[contact]]\nname = \"sphere\"\ngap = \"d - R - r\"\n" + keys + R"toml(
+[initial]
+x = 0.02
+guess = {z = 1.25}
+conditions = ["x^2 + z^2 = (R+r)^2"]
+)toml" + more;
+}
+
+TEST(ClosedForms, BallLeavesASphere) {
+  // The cosine of the angle at which it leaves, in relation to that of the start.
+  const auto leaves = [&](const std::string& keys, const std::string& more) {
+    const auto m = contact_motion(sphere(keys, more), 3);
+    EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    const auto list = times(m, "sphere.leaves");
+    EXPECT_EQ(list.size(), 1U);
+    for (std::size_t k = 1; k < m.rows.rows().size(); ++k)
+      if (m.number(k, "sphere.mode") == 0) {
+        EXPECT_EQ(m.number(k, "t"), list.at(0));
+        return m.number(k, "z") / m.number(0, "z");
+      }
+    return 0.0;
+  };
+  EXPECT_NEAR(leaves("", ""), 2.0 / 3, 1e-12);
+  EXPECT_NEAR(leaves("", "[[constraint]]\nequation = \"slip = 0\"\n"), 10.0 / 17, 1e-12);
+  // Friction holds the ball until the normal force is small: the excess is of the order of 1/mu.
+  EXPECT_NEAR(leaves("slip = \"slip\"\nfriction = 1e6\n", ""), 10.0 / 17, 1e-6);
+  EXPECT_GT(std::abs(leaves("slip = \"slip\"\nfriction = 0.5\n", "") - 10.0 / 17), 1e-3);  // the mutant
+}
+
+TEST(ClosedForms, TimesOfABouncingBall) {
+  const std::string text = R"toml(coordinates = ["x"]
+parameters = {e = 0.7, g = 9.81, h = 2}
+particle = [{name = "ball", mass = 1, position = "x*ex"}]
+gravity.field = "-g*ex"
+contact = [{name = "floor", gap = "x", restitution = "e"}]
+initial = {x = "h"}
+)toml";
+  const double e = 0.7, fall = std::sqrt(2 * 2 / 9.81);
+  const auto misfit = [&](const test::Motion& m) {
+    EXPECT_TRUE(m.report.outcome.ok());
+    const auto hits = times(m, "floor.hits"), rests = times(m, "floor.rests");
+    EXPECT_GT(hits.size(), 30U);
+    EXPECT_EQ(rests.size(), 1U);
+    double t = fall, flight = 2 * e * fall, worst = 0;
+    for (const double hit : hits) {
+      worst = std::max(worst, std::abs(hit - t));
+      t += flight, flight *= e;
+    }
+    EXPECT_EQ(m.last("x"), 0);
+    EXPECT_EQ(m.last("x'"), 0);
+    return std::max(worst, std::abs(rests.at(0) - fall * (1 + e) / (1 - e)));
+  };
+  EXPECT_LT(misfit(contact_motion(text, 5)), 1e-12 * fall * (1 + e) / (1 - e));
+  EXPECT_GT(misfit(contact_motion(text, 5, {{"e", "0.71"}})), 1e-3);  // the mutant
+}
+
+// Every time that is asked for has its row, and one only, where the motion changes its mode there and where it ends.
+TEST(ClosedForms, RowsAtTheTimesOfEvents) {
+  const std::string text = R"toml(coordinates = ["x"]
+parameters = {h = 5}
+particle = [{name = "ball", mass = 1, position = "x*ex"}]
+gravity.field = "-10*ex"
+contact = [{name = "floor", gap = "x", restitution = 0.3}]
+initial = {x = "h"}
+)toml";
+  std::vector<Rational> at;
+  for (int k = 0; k <= 40; ++k) at.emplace_back(k, 10);
+  for (const char* h : {"5", "0.45", "0.05", "0.2"}) {
+    const auto m = contact_motion(text, 4, {{"h", h}}, at);
+    ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    ASSERT_EQ(m.rows.rows().size(), at.size()) << h;
+    for (std::size_t k = 0; k < at.size(); ++k) EXPECT_EQ(m.number(k, "t"), static_cast<double>(k) / 10);
+  }
+  const auto ends = contact_motion(text + "[[event]]\nname = \"top\"\nwhen = \"t - 0.3\"\nstop = true\n", 4, {}, at);
+  ASSERT_EQ(ends.rows.rows().size(), 4U);
+  EXPECT_EQ(ends.last("t"), 0.3);
+}
+
+std::string rod(double angle, double spin) {
+  return "coordinates = [\"x\", \"z\", \"phi\"]\nparameters = {m = 1, l = 1, g = 9.81, mu = 1.4, J = \"m*l^2/3\"}\n" +
+         std::string(kBody) + R"toml(
+[[contact]]
+name = "tip"
+gap = "(C + l*B.x).z"
+slip = "vel(body, C + l*B.x).x"
+friction = "mu"
+[initial]
+conditions = ["(C + l*B.x).z = 0", "vel(body, C + l*B.x).x = 30", "vel(body, C + l*B.x).z = 0"]
+phi = )toml" +
+         std::to_string(angle) + "\n\"phi'\" = " + std::to_string(spin) + "\n";
+}
+
+// The effective mass 1/m (1 + 3 c^2 - 3 mu s c) of the tip vanishes at the critical angle, which exists from mu = 4/3 on
+// (Génot and Brogliato 1999).
+TEST(ClosedForms, PainleveRodEndsByName) {
+  const double mu = 1.4;
+  const auto factor = [mu](double a) { return 1 + 3 * std::cos(a) * std::cos(a) - 3 * mu * std::sin(a) * std::cos(a); };
+  // Roots of 4 - 3 mu tan + tan^2.
+  const double root = std::atan((3 * mu - std::sqrt(9 * mu * mu - 16)) / 2);
+  ASSERT_NEAR(factor(root), 0, 1e-14);
+  for (const double off : {-1e-3, 1e-3}) {
+    const auto m = contact_motion(rod(root + off, 0), Rational(1, 10000));
+    EXPECT_EQ(m.report.outcome.ok(), off < 0) << off << m.report.outcome.message;
+    const bool named = m.report.outcome.message.find("Painlev") != std::string::npos;
+    EXPECT_EQ(named, off > 0);
+  }
+}
+
+// A tippe top: its center of mass lies below the middle of its sphere at the start, and above it in the end.
+TEST(ClosedForms, TippeTopTurnsOver) {
+  const std::string text = R"toml(coordinates = ["x", "y", "z", "psi", "theta", "phi"]
+parameters = {m = 0.006, R = 0.015, a = 0.006, I1 = 8e-7, I3 = 7e-7, g = 9.81, mu = 0.03}
+frame.B = "rotz(psi)*rotx(theta)*rotz(phi)"
+gravity.field = "-g*ez"
+point.C = "x*ex + y*ey + z*ez"
+point.O = "C + a*B.z"
+define.L = "I1*angvel(B) + (I3 - I1)*dot(angvel(B), B.z)*B.z"
+[[body]]
+name = "top"
+mass = "m"
+inertia = ["I1", "I1", "I3"]
+center = "C"
+orientation = "B"
+[[contact]]
+name = "floor"
+gap = "O.z - R"
+slip = "vel(top, O - R*ez)"
+along = ["ex", "ey"]
+friction = "mu"
+[monitor]
+jellett = "dot(L, R*ez - a*B.z)"
+energy = "1/2*m*dot(vel(C), vel(C)) + 1/2*dot(L, angvel(B)) + m*g*C.z"
+[initial]
+theta = 1.5
+guess = {z = 0.015}
+"phi'" = 200
+conditions = ["O.z = R"]
+)toml";
+  const auto turn = [&](const std::string& friction) {
+    const auto m = contact_motion(text, Rational(447, 100), {{"mu", friction}});
+    EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    EXPECT_LT(m.report.power, 1e-10);
+    double most = 0;
+    for (std::size_t k = 0; k < m.rows.rows().size(); ++k) {
+      most = std::max(most, m.number(k, "theta"));
+      EXPECT_NEAR(m.number(k, "jellett"), m.number(0, "jellett"), 1e-11 * std::abs(m.number(0, "jellett")));
+      const double before = m.number(k > 0 ? k - 1 : 0, "energy");
+      EXPECT_LE(m.number(k, "energy"), before * (1 + 1e-10));
+    }
+    return most;
+  };
+  EXPECT_GT(turn("0.03"), 2.9);
+  EXPECT_LT(turn("0"), 2.9);  // the mutant
+}
+
+}  // namespace closed_forms_test
+}  // namespace anholon

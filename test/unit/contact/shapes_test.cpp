@@ -1,0 +1,157 @@
+// Contacts given by the shape of a body move as those whose gap and slip velocity are written as formulas.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "support/contact_motion.h"
+
+namespace anholon {
+namespace shapes_test {
+
+using test::contact_motion;
+
+// Whether two motions have the same coordinates and velocities at the end.
+bool same(const test::Motion& a, const test::Motion& b, const std::vector<std::string>& coordinates) {
+  EXPECT_TRUE(a.report.outcome.ok()) << a.report.outcome.message;
+  EXPECT_TRUE(b.report.outcome.ok()) << b.report.outcome.message;
+  double worst = 0;
+  for (const std::string& x : coordinates)
+    for (const std::string& column : {x, x + "'"}) worst = std::max(worst, std::abs(a.last(column) - b.last(column)));
+  return worst < 1e-9;
+}
+
+std::string box(const std::string& contact) {
+  return R"toml(coordinates = ["x", "z", "th"]
+parameters = {m = 1, a = 0.3, b = 0.2, g = 9.81}
+frame.B = "roty(th)"
+point.C = "x*ex + z*ez"
+point.L = "C - a*B.x - b*B.z"
+point.Q = "C + a*B.x - b*B.z"
+point.S = "C - a*B.x + b*B.z"
+point.T = "C + a*B.x + b*B.z"
+gravity.field = "-g*ez"
+[[body]]
+name = "box"
+mass = "m"
+inertia = ["m*(a^2+b^2)/3", "m*(a^2+b^2)/3", "m*(a^2+b^2)/3"]
+center = "C"
+orientation = "B"
+[initial]
+z = 0.8
+th = 0.4
+"x'" = 1
+"th'" = 1
+)toml" + contact;
+}
+
+std::string corner(const std::string& p) {
+  return "[[contact]]\nname = \"" + p + "\"\ngap = \"" + p + ".z\"\nslip = \"vel(box, " + p +
+         ").x\"\nfriction = 0.3\nrestitution = 0.3\n";
+}
+
+TEST(Shapes, BoxTouchesWithItsCorners) {
+  const auto shape = [](const std::string& s) {
+    return contact_motion(box("[[contact]]\nname = \"c\"\nbody = \"box\"\nshape = \"box(" + s +
+                              ")\"\nfriction = 0.3\nrestitution = 0.3\n"),
+                          Rational(4, 5));
+  };
+  const auto formulas = contact_motion(box(corner("L") + corner("Q") + corner("S") + corner("T")), Rational(4, 5));
+  EXPECT_GT(formulas.report.events.size(), 4U);
+  EXPECT_TRUE(same(shape("2*a, 1, 2*b"), formulas, {"x", "z", "th"}));
+  EXPECT_FALSE(same(shape("2.1*a, 1, 2*b"), formulas, {"x", "z", "th"}));  // the mutant
+}
+
+std::string coin(const std::string& contact) {
+  return R"toml(coordinates = ["x", "y", "z", "ps", "th", "ph"]
+parameters = {m = 1, R = 0.2, g = 9.81}
+gravity.field = "-g*ez"
+point.C = "x*ex + y*ey + z*ez"
+frame.N = "rotz(ps)*rotx(th)"
+[[body]]
+name = "coin"
+mass = "m"
+shape = "disc(R)"
+center = "C"
+orientation = "N*rotz(ph)"
+[initial]
+th = 1.3
+z = "R*sin(1.3)"
+"ph'" = 15
+"x'" = 1
+[[contact]]
+name = "floor"
+friction = 0.4
+)toml" + contact;
+}
+
+TEST(Shapes, CoinTouchesWithItsRim) {
+  const auto shape = contact_motion(coin("body = \"coin\"\n"), Rational(3, 10));
+  const std::string formula = "gap = \"z - R*sin(th)\"\nslip = \"vel(coin, C - R*N.y)\"\nalong = [\"ex\", \"ey\"]\n";
+  const std::vector<std::string> all = {"x", "y", "z", "ps", "th", "ph"};
+  EXPECT_TRUE(same(shape, contact_motion(coin(formula), Rational(3, 10)), all));
+  EXPECT_FALSE(same(contact_motion(coin("body = \"coin\"\nshape = \"disc(0.99*R)\"\n"), Rational(3, 10)),
+                    contact_motion(coin(formula), Rational(3, 10)), all));  // the mutant
+}
+
+std::string ball(const std::string& contact, const std::string& start) {
+  return R"toml(coordinates = ["x", "z", "phi"]
+parameters = {m = 1, r = 0.1, g = 9.81}
+gravity.field = "-g*ez"
+define.d = "sqrt(x^2 + z^2)"
+point.C = "x*ex + z*ez"
+[[body]]
+name = "ball"
+mass = "m"
+shape = "ball(r)"
+center = "C"
+orientation = "roty(phi)"
+[[contact]]
+name = "c"
+friction = 0.5
+)toml" + contact +
+         "[initial]\nx = 0.3\n" + start;
+}
+
+TEST(Shapes, BallInABowlAndOnABall) {
+  const std::vector<std::string> all = {"x", "z", "phi"};
+  const std::string low = "guess = {z = -0.8}\nconditions = [\"d = 1 - r\"]\n",
+                    high = "guess = {z = 1}\nconditions = [\"d = 1 + r\"]\n";
+  const auto slip = [](const char* sign) {
+    const std::string q = std::string("vel(ball, C ") + sign + " r*C/d)";
+    return "slip = \"(z*" + q + ".x - x*" + q + ".z)/d\"\n";
+  };
+  const auto bowl = contact_motion(ball("body = \"ball\"\non = \"bowl(1)\"\n", low), 2);
+  EXPECT_TRUE(same(bowl, contact_motion(ball("gap = \"1 - r - d\"\n" + slip("+"), low), 2), all));
+  EXPECT_FALSE(same(bowl, contact_motion(ball("gap = \"1 - r - d\"\n" + slip("-"), low), 2), all));  // the mutant
+  const auto top = contact_motion(ball("body = \"ball\"\non = \"ball(1)\"\n", high), 1);
+  EXPECT_TRUE(same(top, contact_motion(ball("gap = \"d - 1 - r\"\n" + slip("-"), high), 1), all));
+  // A ball on a plane that is inclined rolls with 5/7 of the acceleration of a point.
+  const auto slope =
+      contact_motion(ball("body = \"ball\"\nnormal = [\"sin(0.2)\", 0, \"cos(0.2)\"]\nthrough = \"-r*ez\"\n",
+                          "z = \"r*(1/cos(0.2) - 1) - 0.3*tan(0.2)\"\n"),
+                     1);
+  EXPECT_NEAR(std::hypot(slope.last("x'"), slope.last("z'")), 5.0 / 7 * 9.81 * std::sin(0.2), 1e-12);
+}
+
+TEST(Shapes, MistakesHavePlaces) {
+  const auto refused = [](const std::string& contact) {
+    try {
+      contact_motion(ball(contact, "z = 3\n"), 1);
+    } catch (const std::runtime_error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const auto says = [&](const std::string& contact, const std::string& text) {
+    EXPECT_NE(refused(contact).find(text), std::string::npos) << refused(contact);
+  };
+  says("body = \"bal\"\n", "did you mean 'ball'?");
+  says("body = \"ball\"\ngap = \"z\"\n", "gap and slip velocity follow from the body");
+  says("body = \"ball\"\nshape = \"torus(2, 1)\"\n", "the contact of a torus is not known");
+  says("body = \"ball\"\non = \"bowle(1)\"\n", "a contact is on a ball or in a bowl");
+  says("body = \"ball\"\nnormal = \"sin(t)*ex + cos(t)*ez\"\n", "the normal of a plane does not turn");
+  says("gap = \"z\"\nnormal = \"ez\"\n", "'normal' goes with 'body'");
+}
+
+}  // namespace shapes_test
+}  // namespace anholon
