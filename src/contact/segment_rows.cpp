@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "numeric/number.h"
+
 namespace anholon {
 
 void SegmentRows::only_at(const std::vector<Rational>& times) {
-  for (const Rational& t : times) times_.push_back(t.get_d());
+  // As rows round them: get_d() cuts the digits off.
+  for (const Rational& t : times) times_.push_back(from_rational<double>(t));
 }
 
 // The forces and constraints of a contact differ from mode to mode; its monitors do not.
