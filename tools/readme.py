@@ -15,7 +15,7 @@ import sys
 
 import golden
 
-PAGES = ("README.md", "doc/papers.md", "doc/language.md", "doc/outcomes.md", "doc/json.md")
+PAGES = ("README.md", "doc/papers.md", "doc/language.md", "doc/outcomes.md", "doc/contact.md", "doc/json.md")
 RUN = {"anholon", "build/anholon", "cat", "head", "tail"}
 LEAVE = {"git", "cd", "sudo", "apt-get", "apt"}
 

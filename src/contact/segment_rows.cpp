@@ -8,6 +8,7 @@
 namespace anholon {
 
 void SegmentRows::only_at(const std::vector<Rational>& times) {
+  // As rows round them: get_d() cuts the digits off.
   for (const Rational& t : times) times_.push_back(from_rational<double>(t));
 }
 

@@ -22,12 +22,14 @@ inline std::string file_text(const std::filesystem::path& path) {
 inline std::filesystem::path source_dir() { return ANHOLON_SOURCE_DIR; }
 
 // "zoo/rocket" for models/zoo/rocket.toml, sorted. Templates of new models are not included (tools/reference.py runs
-// them).
+// them), nor are models with contacts, whose motions are not those of their equations (tools/readme.py runs them in
+// doc/contact.md).
 inline std::vector<std::string> shipped_models() {
   std::vector<std::string> names;
   const std::filesystem::path folder = source_dir() / "models";
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-    if (entry.path().extension() == ".toml" && entry.path().parent_path().filename() != "templates")
+    if (entry.path().extension() == ".toml" && entry.path().parent_path().filename() != "templates" &&
+        entry.path().parent_path().filename() != "contacts")
       names.push_back(std::filesystem::relative(entry.path(), folder).replace_extension().generic_string());
   std::sort(names.begin(), names.end());
   return names;
