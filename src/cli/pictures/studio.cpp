@@ -1,7 +1,6 @@
 #include "studio/studio.h"
 
 #include <array>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
@@ -31,7 +30,6 @@ void open_browser(const std::string& address) {
   if (posix_spawn(&child, words[0], &files, nullptr, words.data(), environ) != 0)
     say(stderr, "note: the browser could not be started\n");
   posix_spawn_file_actions_destroy(&files);
-  std::signal(SIGCHLD, SIG_DFL);
 }
 
 }  // namespace
