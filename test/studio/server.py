@@ -336,6 +336,9 @@ def main():
     if options.self_test:
         return self_test()
     program = str(pathlib.Path(options.program).resolve())
+    if not pathlib.Path("viewer/dist/studio.js").exists():
+        print("skipped: the viewer is not built, and so no studio")
+        return 77
     found = []
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -343,7 +346,7 @@ def main():
         model.write_text(MODEL)
         with Studio(program, str(model)) as s:
             if request(s.port, f"/{s.token}/")[0] != 200:
-                print("skipped: the page is not served")
+                print("FAULT the page is not served")
                 return 1
             for test in [works, lambda x: gates(x.port, x.token), lambda x: files(x, folder), editions, hostile]:
                 began = time.monotonic()
