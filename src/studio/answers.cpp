@@ -23,7 +23,7 @@ namespace anholon {
 namespace {
 
 // A motion that takes longer is shown as far as it has come.
-constexpr std::chrono::seconds kLongestMotion{8};
+constexpr std::chrono::seconds kLongestMotion{4};
 
 const char* word(Severity severity) {
   return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "note";
@@ -73,7 +73,6 @@ class Answers::Desk {
   std::string answer(const Question& q) {
     JsonWriter json;
     json.open_object();
-    const std::string begun = json.text();
     try {
       take_up(q);
       if (q.command == "check")
@@ -102,7 +101,7 @@ class Answers::Desk {
   }
 
   void forget() {
-    parts_.reset(), workspace_.reset(), run_.reset(), model_ = {}, names_ = {};
+    parts_.reset(), workspace_.reset(), model_ = {}, names_ = {};
     diagnostics_ = {}, known_ = false;
   }
 
@@ -250,7 +249,6 @@ class Answers::Desk {
   Diagnostics diagnostics_;
   std::shared_ptr<const Model> model_;
   std::shared_ptr<Names> names_;
-  std::optional<v1::Run> run_;
   std::optional<Workspace> workspace_;
   std::optional<PageInParts> parts_;
 };

@@ -25,9 +25,11 @@ bool same_secret(std::string_view a, std::string_view b) {
   return difference == 0;
 }
 
+// Browsers leave the port of HTTP out.
+static std::string named(int port) { return port == 80 ? "" : ":" + std::to_string(port); }
+
 Gate::Gate(std::string token, int port)
-    : token_(std::move(token)), numeric_("127.0.0.1:" + std::to_string(port)),
-      local_("localhost:" + std::to_string(port)) {}
+    : token_(std::move(token)), numeric_("127.0.0.1" + named(port)), local_("localhost" + named(port)) {}
 
 std::string Gate::address() const { return "http://" + numeric_ + "/" + token_ + "/"; }
 

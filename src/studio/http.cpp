@@ -1,10 +1,10 @@
 #include "studio/http.h"
 
-#include <atomic>
+#include <array>
+#include <chrono>
 #include <csignal>
 #include <stdexcept>
 #include <string_view>
-#include <thread>
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -149,6 +149,7 @@ class Session : public std::enable_shared_from_this<Session> {
 class HttpServer::Inner {
  public:
   Inner(int port, const HttpLimits& limits) : limits_(limits) {
+    service_.limits = limits;
     const tcp::endpoint place(asio::ip::make_address("127.0.0.1"), static_cast<unsigned short>(port));
     error_code error;
     acceptor_.open(place.protocol(), error);
@@ -163,27 +164,24 @@ class HttpServer::Inner {
 
   void run(Refuse refuse, Handle handle, std::function<void()> stopping) {
     asio::thread_pool pool(static_cast<std::size_t>(limits_.threads));
-    Service service{limits_, std::move(refuse), std::move(handle), &pool};
+    service_.refuse = std::move(refuse), service_.handle = std::move(handle), service_.pool = &pool;
     stopping_ = std::move(stopping);
     signals_.async_wait([this](error_code error, int) {
       if (!error) end();
     });
-    accept(service);
+    accept();
     io_.run();
     pool.join();
     io_.restart();
     io_.poll();
   }
-  void stop() {
-    asio::post(io_, [this] { end(); });
-  }
 
  private:
-  void accept(Service& service) {
-    acceptor_.async_accept([this, &service](error_code error, tcp::socket socket) {
+  void accept() {
+    acceptor_.async_accept([this](error_code error, tcp::socket socket) {
       if (!acceptor_.is_open()) return;
-      if (!error) std::make_shared<Session>(std::move(socket), service)->start();
-      accept(service);
+      if (!error) std::make_shared<Session>(std::move(socket), service_)->start();
+      accept();
     });
   }
   void end() {
@@ -196,6 +194,7 @@ class HttpServer::Inner {
   }
 
   HttpLimits limits_;
+  Service service_;  // outlives the sessions, which the context holds
   asio::io_context io_{1};
   tcp::acceptor acceptor_{io_};
   asio::signal_set signals_{io_, SIGINT, SIGTERM};
@@ -210,6 +209,5 @@ void HttpServer::run(std::function<std::optional<HttpReply>(const HttpHead&)> re
                      std::function<HttpReply(const HttpRequest&)> handle, std::function<void()> stopping) {
   inner_->run(std::move(refuse), std::move(handle), std::move(stopping));
 }
-void HttpServer::stop() { inner_->stop(); }
 
 }  // namespace anholon

@@ -36,12 +36,10 @@ class HttpServer {
   HttpServer(int port, const HttpLimits& limits);
   ~HttpServer();
   int port() const;
-  // Serves until stop(), SIGINT or SIGTERM; `stopping` is called then, before the threads are awaited. `refuse` sees the
+  // Serves until SIGINT or SIGTERM; `stopping` is called then, before the threads are awaited. `refuse` sees the
   // head alone and may answer in place of `handle`, which many threads call.
   void run(std::function<std::optional<HttpReply>(const HttpHead&)> refuse,
            std::function<HttpReply(const HttpRequest&)> handle, std::function<void()> stopping);
-  // From any thread.
-  void stop();
 
  private:
   class Inner;

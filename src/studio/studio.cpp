@@ -22,7 +22,7 @@ struct Task {
   const char* name;
   double seconds;
 };
-constexpr std::array<Task, 4> kTasks = {{{"check", 5}, {"simulate", 20}, {"derive", 20}, {"prove", 60}}};
+constexpr std::array<Task, 4> kTasks = {{{"check", 5}, {"simulate", 30}, {"derive", 30}, {"prove", 60}}};
 
 constexpr const char* kPage =
     "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"

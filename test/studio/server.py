@@ -336,6 +336,9 @@ def main():
     if options.self_test:
         return self_test()
     program = str(pathlib.Path(options.program).resolve())
+    if not pathlib.Path("viewer/dist/studio.js").exists():
+        print("skipped: the viewer is not built, and so no studio")
+        return 77
     found = []
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -343,12 +346,12 @@ def main():
         model.write_text(MODEL)
         with Studio(program, str(model)) as s:
             if request(s.port, f"/{s.token}/")[0] != 200:
-                print("skipped: the page is not served")
+                print("FAULT the page is not served")
                 return 1
             for test in [works, lambda x: gates(x.port, x.token), lambda x: files(x, folder), editions, hostile]:
                 began = time.monotonic()
                 found += test(s)
-                print(f"{getattr(test, '__name__', '')}: {time.monotonic() - began:.1f} s")
+                print(f"{time.monotonic() - began:.1f} s")
         found += saving(program, folder) + endings(program, folder)
     for f in found:
         print(f"FAULT {f}")

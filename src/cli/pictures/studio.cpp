@@ -1,7 +1,6 @@
 #include "studio/studio.h"
 
 #include <array>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
@@ -31,7 +30,6 @@ void open_browser(const std::string& address) {
   if (posix_spawn(&child, words[0], &files, nullptr, words.data(), environ) != 0)
     say(stderr, "note: the browser could not be started\n");
   posix_spawn_file_actions_destroy(&files);
-  std::signal(SIGCHLD, SIG_DFL);
 }
 
 }  // namespace
@@ -41,12 +39,12 @@ int studio(const Options& o) {
     studio_work();
     return kOk;
   }
-  if (!has_studio())
-    throw UsageError{"error: this program was built without the viewer, and so without the studio\nhint: ./dev build "
-                     "builds it where there is npm\n"};
   StudioOptions options;
   const std::string name = o.model.empty() ? "disc" : o.model;
   options.source = model_text(name, ANHOLON_MODELS_DIR);
+  if (!has_studio())
+    throw UsageError{"error: this program was built without the viewer, and so without the studio\nhint: ./dev build "
+                     "builds it where there is npm\n"};
   std::error_code none;
   options.shipped = options.source.path != "" || !std::filesystem::is_regular_file(name, none);
   options.port = o.port;
