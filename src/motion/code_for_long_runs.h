@@ -20,7 +20,7 @@ class CodeForLongRuns {
 
   // Asked at every step, by one thread at a time: begins a compilation for this plan if what is left to do takes longer
   // than that. `at`: how far the work has come on its way to `end`; `spent`: the seconds that it took since the first
-  // request, if these are not all that have passed. One lane gets code that is made quickly at first.
+  // request, if these are not all that have passed. The first code is made quickly.
   void step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes = 1,
             std::optional<double> spent = {});
   // The rest takes so many times as long, because the motion is computed once more.
