@@ -252,12 +252,12 @@ class OfMany {
   }
 
   void sum(const Node& n, const std::string& to) {
-    std::vector<Term> terms = n.terms;
-    // One with the coefficient 1 begins, then one with another coefficient, whose product needs no row of its own.
-    std::stable_sort(terms.begin(), terms.end(), [](const Term& a, const Term& b) {
-      const auto rank = [](const Rational& c) { return abs(c) != 1 ? 0 : c == 1 ? 1 : 2; };
-      return rank(a.coefficient) < rank(b.coefficient);
-    });
+    // A term whose product needs no row of its own begins, then come those to add, then those to subtract.
+    std::vector<Term> terms;
+    const auto rank = [](const Rational& c) { return abs(c) != 1 ? 0 : c == 1 ? 1 : 2; };
+    for (int k = 0; k < 3; ++k)
+      for (const Term& t : n.terms)
+        if (rank(t.coefficient) == k) terms.push_back(t);
     std::string so_far;
     Rational constant = n.number;
     for (const Term& t : terms) {
