@@ -47,10 +47,15 @@ std::vector<std::int64_t> Borders::places(Key key) const {
 
 void Borders::see(const std::vector<Sight>& sights) {
   ANHOLON_ASSERT(sights.size() == pending_.size());
-  const auto before = static_cast<std::ptrdiff_t>(known_.size());
-  for (std::size_t k = 0; k < sights.size(); ++k) known_.push_back({pending_[k], sights[k]});
-  std::inplace_merge(known_.begin(), known_.begin() + before, known_.end(),
-                     [](const Known& a, const Known& b) { return a.key < b.key; });
+  std::vector<Known> all;
+  all.reserve(known_.size() + sights.size());
+  auto before = known_.begin();
+  for (std::size_t k = 0; k < sights.size(); ++k) {
+    while (before != known_.end() && before->key < pending_[k]) all.push_back(*before++);
+    all.push_back({pending_[k], sights[k]});
+  }
+  all.insert(all.end(), before, known_.end());
+  known_ = std::move(all);
   pending_.clear();
 }
 

@@ -177,8 +177,9 @@ SweepStore SweepStore::open(const std::string& named, const SweepRequest& wanted
     // More files of one folder are listed in minutes, and their numbers fill the memory.
     constexpr std::size_t kMostParts = 10'000'000;
     if (wanted.cases / wanted.chunk > kMostParts)
-      throw Failure({}, std::to_string(wanted.cases) + " cases in parts of " + std::to_string(wanted.chunk) +
-                            " are more than " + std::to_string(kMostParts) + " parts",
+      throw Failure({},
+                    std::to_string(wanted.cases) + " cases in parts of " + std::to_string(wanted.chunk) +
+                        " are more than " + std::to_string(kMostParts) + " parts",
                     "larger parts: --chunk " + std::to_string(wanted.cases / kMostParts + 1));
     if (std::string why = create_folder(folder); !why.empty()) throw Failure({}, why);
     for (const std::string& name : files_of(folder))
