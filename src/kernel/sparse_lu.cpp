@@ -83,12 +83,12 @@ using Values = std::array<double, kSamples>;
 class Matrix {
  public:
   Matrix(std::uint32_t n, std::size_t samples, const Order& order, SparseLu& out)
-      : n_(n), samples_(samples), order_(order), out_(out), rows_(n), columns_(n), largest_(n) {}
+      : n_(n), samples_(samples), order_(order), out_(out), rows_(n), columns_(n), largest_(n), version_(n, 1) {}
 
   void add(const SampledEntry& e) {
     const auto [at, fresh] = entry(rows_[e.row], e.column, entries_.size());
     if (fresh) {
-      entries_.push_back({e.value, e.exact});
+      entries_.push_back({.value = e.value, .exact = e.exact});
       insert(columns_[e.column], e.row);
     } else {
       for (std::size_t k = 0; k < samples_; ++k) entries_[at].value[k] += e.value[k];
@@ -166,7 +166,10 @@ class Matrix {
  private:
   struct Entry {
     Values value;
-    bool exact;
+    bool exact = false;
+    // The result of size_of_pivot, and the version of its row for which it holds.
+    double size = 0;
+    std::uint32_t version = 0;
   };
   // Columns with their entries, in order; rows of a column, in order. They are short.
   using Row = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
@@ -208,16 +211,28 @@ class Matrix {
     if (best_.found && (cost > best_.cost || (cost == best_.cost && best_.exact && !exact))) return;
     const bool ties = best_.found && cost == best_.cost && exact == best_.exact;
     if (ties && order_.tie != Order::Tie::largest && !wins(i, j, 0)) return;
+    Entry& entry = entries_[e];
+    if (entry.version != version_[i]) entry.size = size_of_pivot(i, j, e), entry.version = version_[i];
+    const double size = one_sign_ && !of_one_sign(entry) ? 0 : entry.size;
+    if (size == 0 || (ties && !wins(i, j, size))) return;
+    best_ = {true, exact, cost, size, i, j, e};
+  }
+
+  // The least fraction of the largest entry of its row over the samples; 0 if it is too small for a pivot.
+  double size_of_pivot(std::uint32_t i, std::uint32_t j, std::uint32_t e) {
     double size = 1;
     const Values& largest = largest_in_row(i);
     for (std::size_t k = 0; k < samples_; ++k) {
       const double most = largest[k], here = scaled(i, j, e, k);
-      if (!(here > kVanishes) || here < kThreshold * most) return;
-      if (one_sign_ && entries_[e].value[k] * entries_[e].value[0] < 0) return;
+      if (!(here > kVanishes) || here < kThreshold * most) return 0;
       size = std::min(size, here / most);
     }
-    if (ties && !wins(i, j, size)) return;
-    best_ = {true, exact, cost, size, i, j, e};
+    return size;
+  }
+
+  bool of_one_sign(const Entry& entry) const {
+    return std::none_of(entry.value.begin(), entry.value.begin() + static_cast<std::ptrdiff_t>(samples_),
+                        [&](double v) { return v * entry.value[0] < 0; });
   }
 
   const Values& largest_in_row(std::uint32_t i) {
@@ -278,6 +293,7 @@ class Matrix {
       const std::uint32_t l = place->second;
       rows_[r].erase(place);
       largest_[r].reset();
+      ++version_[r];
       out_.scaled_entries.push_back(l);
       for (std::size_t k = 0; k < samples_; ++k) entries_[l].value[k] /= p.value[k];
       for (const auto& [other, u] : top) {
@@ -311,6 +327,7 @@ class Matrix {
   std::vector<Column> columns_;
   std::vector<Values> row_scale_, column_scale_;
   std::vector<std::optional<Values>> largest_;  // of a row in its present state, scaled
+  std::vector<std::uint32_t> version_;          // of a row: counts its changes
   std::set<std::pair<std::size_t, std::uint32_t>> short_rows_, short_columns_;
   Best best_;
   bool one_sign_ = true;  // only pivots of the same sign at all samples

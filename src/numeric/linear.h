@@ -4,7 +4,9 @@
 // Sizes are those of mechanical systems (tens, a few hundred), matrices are row-major.
 #pragma once
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
+#include <cstring>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -161,6 +163,7 @@ class Lu {
         N* const row = &lu_(order_[i], 0);
         const std::size_t last = std::min(i, end), tile_end = std::min(tile + kTile, n);
         std::size_t j = tile;
+        if constexpr (std::same_as<N, double>) j = update_side_by_side(row, first, last, j, tile_end);
         for (; j + kAtOnce <= tile_end; j += kAtOnce) {
           N a = row[j], b = row[j + 1], c = row[j + 2], d = row[j + 3];
           for (std::size_t k = first; k < last; ++k) {
@@ -175,6 +178,24 @@ class Lu {
           for (std::size_t k = first; k < last; ++k)
             if (!(row[k] == N(0))) addmul(row[j], N(-row[k]), lu_(order_[k], j));
       }
+  }
+
+  // The same for doubles, which fit into vectors, as far as whole vectors go; returns the first column that is left.
+  std::size_t update_side_by_side(double* row, std::size_t first, std::size_t last, std::size_t j, std::size_t end) {
+    constexpr std::size_t kWidth = 4, kVectors = 2;
+    using Packed [[gnu::vector_size(kWidth * sizeof(double))]] = double;
+    for (; j + kVectors * kWidth <= end; j += kVectors * kWidth) {
+      Packed a, b, top_a, top_b;
+      std::memcpy(&a, row + j, sizeof a), std::memcpy(&b, row + j + kWidth, sizeof b);
+      for (std::size_t k = first; k < last; ++k) {
+        if (row[k] == 0) continue;
+        const double* const top = &lu_(order_[k], j);
+        std::memcpy(&top_a, top, sizeof a), std::memcpy(&top_b, top + kWidth, sizeof b);
+        a += -row[k] * top_a, b += -row[k] * top_b;
+      }
+      std::memcpy(row + j, &a, sizeof a), std::memcpy(row + j + kWidth, &b, sizeof b);
+    }
+    return j;
   }
 
   Matrix<N> original_, lu_;

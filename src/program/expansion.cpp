@@ -23,9 +23,8 @@ template <Number N>
 Expansion<N>::Expansion(const Program& program, const std::vector<N>& parameters, int stages)
     : program_(&program), parameters_(parameters), stages_(stages),
       machine_(program.tape, static_cast<std::size_t>(stages) + 1, parameters),
-      x_(program.d, length_of_series(program, stages)), sensitivity_(program),
-      j_(program.unknowns(), program.unknowns()), delta_x_(program.unknowns(), N(0)), r_(program.unknowns(), N(0)),
-      hidden_(program.c) {}
+      x_(program.d, length_of_series(program, stages)), sensitivity_(program), delta_x_(program.unknowns(), N(0)),
+      r_(program.unknowns(), N(0)), hidden_(program.c) {}
 
 template <Number N>
 void Expansion<N>::load(const N& t, const std::vector<N>& state, const std::vector<N>& leading) {
@@ -108,6 +107,7 @@ void Expansion<N>::equations(std::vector<N>& out) const {
 
 template <Number N>
 void Expansion<N>::jacobian() {
+  make_room_for_jacobian();
   sensitivity_.jacobian(machine_, j_);
   balance_.reset();
 }

@@ -67,6 +67,7 @@ class Expansion {
   Outcome solve(const Solver& solver);
   template <Number M>
   void adopt_jacobian(const Matrix<M>& j) {
+    make_room_for_jacobian();
     for (std::size_t k = 0; k < j.data.size(); ++k) j_.data[k] = convert<N>(j.data[k]);
     balance_.reset();
   }
@@ -138,6 +139,10 @@ class Expansion {
   Outcome singular() const;
   Outcome unsolved() const;
   void jacobian();
+  // An expansion that never needs the Jacobian has no memory for it.
+  void make_room_for_jacobian() {
+    if (j_.data.empty()) j_ = Matrix<N>(program_->unknowns(), program_->unknowns());
+  }
   bool residual(int level, std::vector<N>& r, N& worst);
   N terms_of(std::size_t i, int level) const;
   const N& balanced_size(int level) const;

@@ -27,23 +27,28 @@ template <Number N>
 void Sensitivity<N>::columns(const Machine<N>& machine, std::size_t first, std::size_t count, Matrix<N>& all) {
   const Program& p = *program_;
   const Tape& tape = p.tape;
-  std::fill(tangent_.data.begin(), tangent_.data.end(), N(0));
-  std::fill(zero_.begin(), zero_.end(), true);
+  const N none(0);
+  N sum(0);
+  std::fill(zero_.begin(), zero_.end(), 1);
   for (const ProgramInput& in : p.inputs)
     if (in.leading && in.variable >= first && in.variable < first + count) {
-      tangent_(p.tangent_row[in.slot], in.variable - first) = N(1);
-      zero_[p.tangent_row[in.slot]] = false;
+      N* row = &tangent_(p.tangent_row[in.slot], 0);
+      std::fill(row, row + count, N(0));
+      row[in.variable - first] = N(1);
+      zero_[p.tangent_row[in.slot]] = 0;
     }
   for (std::size_t k = 0; k < p.tainted.size(); ++k) {
     const TaintedSlot& t = p.tainted[k];
     const Instruction& in = tape.code[t.slot];
-    N* row = &tangent_(t.row, 0);
+    operands_.clear();
     const auto add = [&](std::uint32_t slot, const N& factor) {
       const std::uint32_t other = p.tangent_row[slot];
-      if (zero_[other] && is_finite(factor)) return;
-      zero_[t.row] = false;
-      const N* from = &tangent_(other, 0);
-      for (std::size_t j = 0; j < count; ++j) addmul(row[j], factor, from[j]);
+      N* row = &tangent_(other, 0);
+      if (zero_[other]) {
+        if (is_finite(factor)) return;
+        std::fill(row, row + count, N(0));
+      }
+      operands_.push_back({row, factor});
     };
     if (in.op == Op::linear) {
       for (std::uint32_t i = in.first; i < in.first + in.count; ++i) {
@@ -51,20 +56,27 @@ void Sensitivity<N>::columns(const Machine<N>& machine, std::size_t first, std::
         if (p.tangent_row[term.slot] != Program::kUntainted && tape.code[term.slot].lead == in.lead)
           add(term.slot, machine.rational(term.coefficient));
       }
-      continue;
-    }
-    if (in.op == Op::select) {
+    } else if (in.op == Op::select) {
       // The other branch is not evaluated; it may have no value.
       if (const bool first_branch = partials_[k].a > N(0); first_branch ? t.a : t.b)
         add(first_branch ? in.a : in.b, N(1));
-      continue;
+    } else {
+      if (t.a) add(in.a, partials_[k].a);
+      if (t.b) add(in.b, partials_[k].b);
     }
-    if (t.a) add(in.a, partials_[k].a);
-    if (t.b) add(in.b, partials_[k].b);
+    if (operands_.empty()) continue;
+    zero_[t.row] = 0;
+    N* row = &tangent_(t.row, 0);
+    for (std::size_t j = 0; j < count; ++j) {
+      sum = none;
+      for (const Operand& o : operands_) addmul(sum, o.factor, o.row[j]);
+      row[j] = sum;
+    }
   }
   for (std::size_t i = 0; i < p.unknowns(); ++i) {
     const std::uint32_t row = p.tangent_row[tape.roots[i]];
-    for (std::size_t j = 0; j < count; ++j) all(i, first + j) = row == Program::kUntainted ? N(0) : tangent_(row, j);
+    const bool zero = row == Program::kUntainted || zero_[row];
+    for (std::size_t j = 0; j < count; ++j) all(i, first + j) = zero ? N(0) : tangent_(row, j);
   }
 }
 

@@ -46,7 +46,12 @@ class Sensitivity {
   // A row for each slot that depends on leading derivatives: its derivatives with respect to a few unknowns at a time,
   // as all would take slots times unknowns of memory.
   Matrix<N> tangent_;
-  std::vector<bool> zero_;  // the rows without an entry
+  std::vector<unsigned char> zero_;  // the rows without an entry; what they hold is of no use
+  struct Operand {
+    const N* row;
+    N factor;
+  };
+  std::vector<Operand> operands_;  // of the present slot
   std::vector<typename Machine<N>::Partials> partials_;
   std::vector<N> delta_;  // the change of each slot
 };

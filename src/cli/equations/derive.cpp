@@ -104,8 +104,8 @@ int derive(const Options& asked) {
                      "' are not those of ideal reactions\nhint: name another form, or none for Routh's equations\n"};
   if (!o.show.empty()) {
     Scenario s;
-    ready(in, *wanted[0], state_choice(o, model), s);
-    return show(o, s);
+    const Outcome outcome = ready(in, *wanted[0], state_choice(o, model), s);
+    return show(o, s, outcome);
   }
   if (!o.output.empty() && o.output != "-")
     if (const std::string why = obstacle_to_writing(o.output); !why.empty()) throw UsageError{"error: " + why + "\n"};

@@ -12,7 +12,7 @@ int check(const Options& asked) {
   Scenario s;
   Outcome outcome = ready(in, form(o, *in.model), state_choice(o, *in.model), s);
   if (outcome.ok() && !not_integrated(*in.model)) outcome = regular_at_start(s);
-  if (!o.show.empty()) return show(o, s);
+  if (!o.show.empty()) return show(o, s, outcome);
   Workspace own(s);
   const Explanation x = explain(own);
   if (o.json)

@@ -115,7 +115,7 @@ int evaluate(const Options& o) {
     print_diagnostic(*d, in.source);
     return kBadInput;
   }
-  if (!o.show.empty()) return show(o, s);
+  if (!o.show.empty()) return show(o, s, outcome);
   StateReport report;
   if (outcome.ok())
     outcome = evaluate(s, choice, precision(o.motion, Precision::long_real, asker(o)), o.digits(), report);

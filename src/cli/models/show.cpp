@@ -44,7 +44,12 @@ static void show_mechanics(const Scenario& s) {
   column("N", m.N, s);
 }
 
-int show(const Options& o, const Scenario& s) {
+int show(const Options& o, const Scenario& s, const Outcome& outcome) {
+  // A system that does not determine its motion has no structure and no program.
+  if ((o.show == "structure" || o.show == "program") && s.structure.transversal.empty() && !outcome.ok()) {
+    print_outcome(outcome);
+    return kStopped;
+  }
   if (o.show == "mechanics") {
     show_mechanics(s);
   } else if (o.show == "system") {
