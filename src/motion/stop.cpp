@@ -78,6 +78,18 @@ static std::string lost_hold(Workspace& s, const Motion<N>& motion) {
   return "the constraint '" + s.model->constraints[s.independent[which]].name + "' becomes dependent on the others";
 }
 
+// Whether a mode switches a constraint: what is left of it may hold no unknown.
+static bool switched(const Scenario& s) {
+  return std::any_of(s.independent.begin(), s.independent.end(), [&](std::size_t r) {
+    const Expr phi = s.model->constraints[r].phi;
+    const std::vector<NodeId> all = symbols({&phi, 1});
+    return std::any_of(all.begin(), all.end(), [&](NodeId id) {
+      const Node& n = phi.graph->node(id);
+      return n.kind == Kind::parameter && s.model->parameters[n.index].mode;
+    });
+  });
+}
+
 // " (x = 1, y = 2)": where the motion is, if that is not too long to be read.
 template <Number N>
 static std::string where(const Scenario& s, const Motion<N>& motion) {
@@ -134,7 +146,10 @@ void explain_stop(Workspace& s, const Motion<N>& motion, Outcome& outcome) {
                                                          : "the equations no longer determine the multiplier ") +
                                    s.system.variable_names[j]);
     if (outcome.hint.empty() || !lost.empty())
-      outcome.hint = "end the motion before; coordinates or constraints written otherwise may be regular there";
+      outcome.hint = switched(s)
+                         ? "a mode switches a constraint off, and nothing is left to determine its multiplier: write "
+                           "what opens as a [[contact]], or as a constraint with one_sided = true"
+                         : "end the motion before; coordinates or constraints written otherwise may be regular there";
   }
   if (const std::string root = vanishing_root(motion); !root.empty() && outcome.kind != OutcomeKind::not_a_number)
     message += "; " + root + " is at the edge of where it has a value";

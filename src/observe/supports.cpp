@@ -169,10 +169,13 @@ std::vector<std::string> SupportWatch::notes() const {
   std::vector<std::string> list;
   for (const Load& l : loads_) {
     if (!l.pulls) continue;
-    list.push_back("constraint '" + s_.model->constraints[l.support.constraint].name +
-                   "' looks like a floor and pulls down from t = " + number_text(*l.pulls, 6) + " on, at most with " +
-                   number_text(-l.least, 3) + " at t = " + number_text(l.least_t, 6) +
-                   ": a body that may lift would leave it");
+    list.push_back(
+        "constraint '" + s_.model->constraints[l.support.constraint].name +
+        "' looks like a floor and pulls down from t = " + number_text(*l.pulls, 6) + " on, at most with " +
+        number_text(-l.least, 3) + " at t = " + number_text(l.least_t, 6) +
+        ": a body that may lift would leave it; one_sided = true in the constraint lets it open, with the equation " +
+        s_.model->constraints[l.support.constraint].equation +
+        (l.support.upwards > 0 ? "" : " turned round, the larger side on the left"));
   }
   return list;
 }

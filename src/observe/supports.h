@@ -32,6 +32,14 @@ class SupportWatch {
   void see(double t, F multiplier) {
     for (Load& l : loads_) l.see(t, l.support.upwards * multiplier(l.support.constraint));
   }
+  // Locates the first pull of each support between two rows. first(support, t): its time, if it is found, before the row
+  // at t.
+  template <class F>
+  void locate(F first) {
+    for (Load& l : loads_)
+      if (l.pulls && *l.pulls != l.begin)
+        if (const std::optional<double> t = first(l.support, *l.pulls)) l.pulls = t;
+  }
   // A sentence for each support that pulls.
   std::vector<std::string> notes() const;
 
@@ -41,9 +49,9 @@ class SupportWatch {
     void see(double t, double force);
     Support support;
     bool any = false;
-    double first = 0, largest = 0, least = 0,
-           least_t = 0;  // when it pulls first; what it bears at most; the strongest pull
-    std::optional<double> pulls;
+    double begin = 0, largest = 0, least = 0,
+           least_t = 0;           // the time of the first row; what it bears at most; the strongest pull
+    std::optional<double> pulls;  // since when
   };
   const Scenario& s_;
   std::vector<Load> loads_;

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "simulation/event_paces.h"
+#include "simulation/first_pull.h"
 #include "simulation/kernel_rows.h"
 #include "simulation/schedule.h"
 #include "simulation/shown_motion.h"
@@ -407,6 +408,8 @@ class Run {
     }
     if (defect_) report_.rigorous = defect_->report();
     report_watched();
+    if (o_.locate_pulls && !o_.resume)
+      supports_.locate([&](const Support& support, double t) { return first_pull(s_, o_, support, t); });
     for (const std::string& text : supports_.notes()) note(text);
     const std::vector<Warning> more = warnings<N>(s_, course_, watch_, angles_);
     report_.warnings.insert(report_.warnings.end(), more.begin(), more.end());
