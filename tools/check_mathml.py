@@ -50,7 +50,8 @@ def main():
         print("the check accepts a fraction without denominator")
         return 1
     failed = 0
-    models = sorted((ROOT / "models").glob("*/*.toml"))
+    # derive refuses a model with contacts.
+    models = [m for m in sorted((ROOT / "models").glob("*/*.toml")) if m.parent.name != "contacts"]
     cases = [(model, []) for model in models]
     cases += [(ROOT / "models" / f"{name}.toml", ["--form", "all", "--steps", "--reactions"]) for name in WITH_EVERYTHING]
     for model, options in cases:

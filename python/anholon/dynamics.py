@@ -74,6 +74,10 @@ class Dynamics:
 
         Where they are not, they may have several solutions. f(t, x, u, p) then follows the solution at the start along the
         straight line from the start to (t, x, u, p); it is NaN where that solution ends.
+
+        Example:
+            >>> an.load("disc").dynamics().linear
+            True
         """
         return self._core.linear
 

@@ -1,7 +1,5 @@
 #include "simulation/first_pull.h"
 
-#include "simulation/simulate.h"
-
 namespace anholon {
 
 namespace {
@@ -14,7 +12,8 @@ class NoRowsOfPull final : public RowSink {
 
 }  // namespace
 
-std::optional<double> first_pull(const Scenario& s, const SimulationOptions& o, const Support& support, double until) {
+std::optional<double> first_pull(const Scenario& s, const SimulationOptions& o, const Support& support, double until,
+                                 const Follow& simulate) {
   if (s.system.form->eliminates()) return std::nullopt;
   const std::shared_ptr<Model> model = given_model(s);
   Graph& g = *model->graph;

@@ -409,7 +409,11 @@ class Run {
     if (defect_) report_.rigorous = defect_->report();
     report_watched();
     if (o_.locate_pulls && !o_.resume)
-      supports_.locate([&](const Support& support, double t) { return first_pull(s_, o_, support, t); });
+      supports_.locate([&](const Support& support, double t) {
+        return first_pull(s_, o_, support, t, [](const Scenario& own, const SimulationOptions& o, RowSink& rows) {
+          return simulate(own, o, rows);
+        });
+      });
     for (const std::string& text : supports_.notes()) note(text);
     const std::vector<Warning> more = warnings<N>(s_, course_, watch_, angles_);
     report_.warnings.insert(report_.warnings.end(), more.begin(), more.end());

@@ -8,6 +8,7 @@
 #include "model/motion_settings.h"
 #include "modelfile/read.h"
 #include "observe/rows/row_values.h"
+#include "result/format.h"
 #include "result/table.h"
 
 namespace anholon::cli {
@@ -92,7 +93,7 @@ std::string text_of(const std::string& path) {
 
 bool SweepCases::are_in(const std::string& path) {
   if (SweepStore::is_there(path)) return true;
-  if (path.ends_with(".csv")) {
+  if (format_of(path) == &plain_format()) {
     std::string line;
     std::ifstream file(path);
     std::getline(file, line);
@@ -100,9 +101,8 @@ bool SweepCases::are_in(const std::string& path) {
     for (const std::string_view cell : cells_of(line)) names.emplace_back(cell);
     return heads_a_sweep(names);
   }
-  if (!path.ends_with(".parquet")) return false;
   std::string text;
-  if (!read_file(path, text, nullptr)) return false;
+  if (!format_of(path) || !read_file(path, text, nullptr) || !text.starts_with("PAR1")) return false;
   std::vector<std::string> names;
   try {
     for (const ParquetColumn& c : read_parquet(text).columns) names.push_back(c.name);
@@ -119,7 +119,7 @@ SweepCases::SweepCases(const std::string& path) {
     read_model();
   } else {
     const std::string text = text_of(path);
-    file_ = path.ends_with(".csv") ? table_of_csv(text, path) : read_parquet(text);
+    file_ = format_of(path) == &plain_format() ? table_of_csv(text, path) : read_parquet(text);
     for (const ParquetColumn& c : file_.columns) names_.push_back(c.name);
   }
   // What varies stands between the number of the case and its outcome.

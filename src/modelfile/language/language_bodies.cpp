@@ -250,6 +250,12 @@ by = "motor"
 ```text
 error: there is no input 'motor'
 ```
+```toml
+[[constraint]]
+name = "floor"
+equation = "y = 0"
+one_sided = true
+```
 )md"},
       {"quasi",
        Form::named,

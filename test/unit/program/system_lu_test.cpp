@@ -107,7 +107,9 @@ TEST(SystemLu, KnowsTheMatrixOfItsFactors) {
     a(n - 1, 0) += std::numeric_limits<W>::epsilon();
     EXPECT_FALSE(lu.factors(a));
     for (std::size_t j = 0; j < n; ++j) a(1, j) = a(0, j);
-    if (!lu.factor(a)) EXPECT_FALSE(lu.factors(a)) << "there are no factors of a singular matrix";
+    if (!lu.factor(a)) {
+      EXPECT_FALSE(lu.factors(a)) << "there are no factors of a singular matrix";
+    }
   }
 }
 
