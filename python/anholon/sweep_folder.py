@@ -71,6 +71,10 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         [1, 2]
         >>> bool(abs(opened.run(2)["theta"][-1] - falls["theta"][2]) < 1e-9)
         True
+        >>> opened.generations
+        [3]
+        >>> opened.scan().select("theta").collect().height  # doctest: +SKIP
+        3
     """
 
     def __init__(self, core: _core.SweepFolder) -> None:
@@ -144,6 +148,9 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
     def where(self, conditions: Mapping[str, Any]) -> npt.NDArray[Any]:
         """The numbers of the cases for which each column has the value given, or lies within the pair given, ends included.
+
+        Returns:
+            Sorted numbers, shape (cases that are chosen,).
 
         Raises:
             KeyError: there is no such column.

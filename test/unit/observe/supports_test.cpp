@@ -65,9 +65,10 @@ TEST(Supports, PullWhereTheLoadSaysSo) {
   for (int k = 0; k < 3; ++k) watch.see(k, [&](std::size_t r) { return loads[k][r]; });
   const std::vector<std::string> notes = watch.notes();
   ASSERT_EQ(notes.size(), 1u);
-  EXPECT_EQ(notes[0], "constraint 'back' looks like a floor and pulls down from t = 1 on, at most with 4 at t = 2: a "
-                      "body that may lift would leave it; one_sided = true in the constraint lets it open, with the equation "
-                      "rear.y = 0");
+  EXPECT_EQ(notes[0],
+            "constraint 'back' looks like a floor and pulls down from t = 1 on, at most with 4 at t = 2: a "
+            "body that may lift would leave it; one_sided = true in the constraint lets it open, with the equation "
+            "rear.y = 0");
 }
 
 // The sign does not depend on the side on which the height stands, nor on which way the coordinate goes.
