@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "base/assert.h"
-#include "tape/tape.h"
+#include "tape/operands.h"
 
 namespace anholon::emit {
 
@@ -62,33 +62,9 @@ class Builder {
 
  private:
   std::vector<std::uint32_t> operands(std::uint32_t s) const {
-    const Instruction& in = tape_.code[s];
-    switch (in.op) {
-    case Op::constant:
-    case Op::pi:
-    case Op::input:
-    case Op::parameter:
-      return {};
-    case Op::linear: {
-      std::vector<std::uint32_t> out;
-      for (std::uint32_t k = in.first; k < in.first + in.count; ++k) out.push_back(tape_.linear_terms[k].slot);
-      return out;
-    }
-    case Op::select:
-      return {in.first, in.a, in.b};
-    case Op::multiply:
-    case Op::scale:
-    case Op::divide:
-    case Op::arctan2:
-      return {in.a, in.b};
-    case Op::square:
-    case Op::power:
-    case Op::function:
-    case Op::lookup:
-    case Op::rate:
-      return {in.a};
-    }
-    return {};
+    std::vector<std::uint32_t> out;
+    for_each_operand(tape_, tape_.code[s], [&](std::uint32_t k) { out.push_back(k); });
+    return out;
   }
 
   void count_uses() {

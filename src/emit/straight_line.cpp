@@ -7,6 +7,7 @@
 
 #include "base/assert.h"
 #include "emit/text.h"
+#include "tape/operands.h"
 
 namespace anholon::emit {
 
@@ -26,38 +27,6 @@ std::string element(const char* array, std::size_t i) { return std::string(array
 }  // namespace
 
 const StraightLine::Coefficient StraightLine::kOne{{{}, 1}};
-
-// The operands of a slot, without slots of derivatives, which series need.
-template <class F>
-void StraightLine::for_each_operand(std::uint32_t s, const F& f) const {
-  const Instruction& in = tape_.code[s];
-  switch (in.op) {
-  case Op::constant:
-  case Op::pi:
-  case Op::input:
-  case Op::parameter:
-    return;
-  case Op::linear:
-    for (std::uint32_t k = in.first; k < in.first + in.count; ++k) f(tape_.linear_terms[k].slot);
-    return;
-  case Op::select:
-    f(in.first);
-    [[fallthrough]];
-  case Op::multiply:
-  case Op::scale:
-  case Op::divide:
-  case Op::arctan2:
-    f(in.b);
-    [[fallthrough]];
-  case Op::square:
-  case Op::power:
-  case Op::function:
-  case Op::lookup:
-  case Op::rate:
-    f(in.a);
-    return;
-  }
-}
 
 std::string StraightLine::assigned(const std::string& name, const std::string& value, bool declare) const {
   if (language_ == Language::python) return "    " + name + " = " + value + "\n";
@@ -101,7 +70,7 @@ void StraightLine::find_uses(const std::unordered_map<std::uint32_t, std::string
   for (const std::uint32_t root : tape_.roots) uses_[root].needed = true, ++uses_[root].readers;
   for (std::uint32_t s = size; s-- > 0;)
     if (uses_[s].needed)
-      for_each_operand(s, [&](std::uint32_t k) {
+      for_each_operand(tape_, tape_.code[s], [&](std::uint32_t k) {
         uses_[k].needed = true;
         ++uses_[k].readers;
       });
@@ -109,7 +78,8 @@ void StraightLine::find_uses(const std::unordered_map<std::uint32_t, std::string
   for (std::uint32_t s = 0; s < size; ++s) {
     const Instruction& in = tape_.code[s];
     uses_[s].varies = in.op == Op::input || (in.op == Op::parameter && parameters.at(in.index)[0] == 'u');
-    for_each_operand(s, [&](std::uint32_t k) { uses_[s].varies = uses_[s].varies || uses_[k].varies; });
+    for_each_operand(tape_, tape_.code[s],
+                     [&](std::uint32_t k) { uses_[s].varies = uses_[s].varies || uses_[k].varies; });
   }
 }
 
@@ -120,7 +90,7 @@ void StraightLine::write_constants() {
     for (const auto& term : c)
       for (const auto& factor : term.first) read[factor.first] = true;
   for (std::uint32_t s = static_cast<std::uint32_t>(tape_.code.size()); s-- > 0;)
-    if (read[s]) for_each_operand(s, [&](std::uint32_t k) { read[k] = true; });
+    if (read[s]) for_each_operand(tape_, tape_.code[s], [&](std::uint32_t k) { read[k] = true; });
   std::unordered_map<std::string, std::string> computed;  // operation, name
   for (std::uint32_t s = 0; s < tape_.code.size(); ++s) {
     if (!read[s] || !name_[s].empty()) continue;

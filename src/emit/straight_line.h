@@ -75,8 +75,6 @@ class StraightLine {
   std::string operation(const Instruction& in, const std::function<std::string(std::uint32_t)>& text);
   std::string constant_text(const Coefficient& c) const;
   std::string power(const std::string& x, const Rational& exponent) const;
-  template <class F>
-  void for_each_operand(std::uint32_t slot, const F& f) const;
   bool is_literal(std::uint32_t slot) const;
   std::string assigned(const std::string& name, const std::string& value, bool declare) const;
   std::string function_name(Function f) const;

@@ -115,6 +115,7 @@ on   = "bowl(9)"                   # inside a ball of radius 9 about 0
 - Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. Rows have the columns `NAME.mode` (0 open,
   1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
 - Impacts follow Newton's law in Moreau's form. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
+  That limit is found for the impacts of one contact. A box that bounces from corner to corner may instead take many impacts and stop with the outcome that a gap is negative.
 - At most eight contacts; those that touch at one time are few, as all their modes are tried. Motions, reports and sweeps know them, in the libraries, too; derivations, proofs and linear models refuse a model with
   contacts. They do not go with events that set values, nor with servo constraints. [Recipes](contact.md).
 
