@@ -76,6 +76,7 @@ class Dynamics:
         straight line from the start to (t, x, u, p); it is NaN where that solution ends.
 
         Example:
+            >>> import anholon as an
             >>> an.load("disc").dynamics().linear
             True
         """
