@@ -67,7 +67,8 @@ static void local_partials(Graph& g, NodeId id, Column& out) {
     out.push_back(derivative(static_cast<Function>(n.index), Expr{&g, terms[0].node}, Expr{&g, id}));
     return;
   case Kind::atan2: {
-    const Expr y{&g, terms[0].node}, x{&g, terms[1].node}, r2 = x * x + y * y;
+    // Each node is made by a statement of its own: the order of terms is that of their creation, for every compiler.
+    const Expr y{&g, terms[0].node}, x{&g, terms[1].node}, y2 = y * y, x2 = x * x, r2 = x2 + y2;
     out.push_back(x / r2);
     out.push_back(-(y / r2));
     return;

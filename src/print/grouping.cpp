@@ -136,7 +136,9 @@ class Grouping {
   }
 
   Built product(const Sum& a, const Sum& b, int depth) {
-    return times(build(a, depth + 1, !one(b)), build(b, depth + 1, !one(a)));
+    // One after the other: what is made first stands first in a product, and the steps are counted in this order.
+    const Built second = build(b, depth + 1, !one(a)), first = build(a, depth + 1, !one(b));
+    return times(first, second);
   }
 
   // Takes out the common factor of all terms.
@@ -147,7 +149,8 @@ class Grouping {
     for (const auto& [exponents, c] : s) rest.emplace(quotient(exponents, front), c);
     const Rational c = take_content(rest);
     if (trivial(front) && c.get_den() == 1) return std::nullopt;
-    return times(monomial(front, c), build(rest, depth + 1, true));
+    const Built other = build(rest, depth + 1, true);
+    return times(monomial(front, c), other);
   }
 
   // A product of irreducible factors; nullopt if there is only one.
