@@ -3,13 +3,14 @@
 
 usage: same_bits.py PROGRAM OTHER
 
-Cases: test/golden/good/*.md and test/determinism/*.md (the latter need no expected output). Lines
-that a … of the case answers for, such as timings, are not compared. Exit code 77: OTHER is not built.
+Cases: test/golden/good/*.md and test/determinism/*.md (the latter need no expected output), and the equations of every
+shipped model. Lines that a … of the case answers for, such as timings, are not compared. Exit code 77: OTHER is not built.
 """
 
 import difflib
 import os
 import pathlib
+import subprocess
 import sys
 
 import golden
@@ -37,6 +38,23 @@ def is_certificate(text):
     return '"anholon-certificate"' in text[:200]
 
 
+def equations(model, program):
+    return subprocess.run([program, "derive", str(model), "--quiet"], capture_output=True, text=True, check=False).stdout.split("\n")
+
+
+def models_that_differ(program, other):
+    """The shipped models whose equations the two programs write in different ways; the differences are printed."""
+    models = sorted((golden.ROOT / "models").rglob("*.toml"))
+    found = []
+    for model in models:
+        one, two = equations(model, program), equations(model, other)
+        if one != two:
+            found.append(model)
+            print("\n".join(difflib.unified_diff(one, two, f"{program} {model.name}", f"{other} {model.name}", lineterm="", n=0)))
+    print(f"equations of {len(models)} models, {len(found)} differ")
+    return found
+
+
 def main(program, other):
     if not pathlib.Path(other).exists():
         print(f"{other} is not built; ./dev test builds it")
@@ -55,7 +73,7 @@ def main(program, other):
             failed += 1
             print("\n".join([f"{shown}:", *differences]))
     print(f"{len(cases)} cases, {failed} differ")
-    return 1 if failed else 0
+    return 1 if models_that_differ(program, other) or failed else 0
 
 
 if __name__ == "__main__":

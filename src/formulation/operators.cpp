@@ -29,11 +29,14 @@ Column nielsen_operator(const Mechanics& M, unsigned m) {
 }
 
 Column micevic_rusov_operator(const Mechanics& M, unsigned m) {
-  return gradient(T(M, m), jets(*M.model, m)) - gradient(T(M, m - 1), jets(*M.model, m - 1)) - gradient(M.T, M.q);
+  const Column by_q = gradient(M.T, M.q);
+  const Column below = gradient(T(M, m - 1), jets(*M.model, m - 1));
+  return gradient(T(M, m), jets(*M.model, m)) - below - by_q;
 }
 
 Column mangeron_deleanu_operator(const Mechanics& M, unsigned m) {
-  return Rational(1, m) * (gradient(T(M, m), jets(*M.model, m)) - Rational(m + 1) * gradient(M.T, M.q));
+  const Column by_q = Rational(m + 1) * gradient(M.T, M.q);
+  return Rational(1, m) * (gradient(T(M, m), jets(*M.model, m)) - by_q);
 }
 
 }  // namespace anholon

@@ -12,7 +12,9 @@ namespace anholon::forms {
 static Equations equations(const Mechanics& M, const Elimination& E) {
   const Rows C = E.C();
   const Column inertia = lagrange_operator(M), G = forces(M);
-  return {E.on(E.I(inertia)) + E.on(E.D(inertia)) * C, E.on(E.I(G)) + E.on(E.D(G)) * C};
+  const Column by_C = E.on(E.D(inertia)) * C, first = E.on(E.I(inertia));
+  const Column G_by_C = E.on(E.D(G)) * C, G_first = E.on(E.I(G));
+  return {first + by_C, G_first + G_by_C};
 }
 
 static Quantities quantities(const Mechanics& M, const Elimination& E) {

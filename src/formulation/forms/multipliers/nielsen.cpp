@@ -8,7 +8,8 @@
 namespace anholon::forms {
 
 static Equations equations(const Mechanics& M, const Elimination&) {
-  return {gradient(T(M, 1), M.qd) - Rational(2) * gradient(M.T, M.q), right_side(M)};
+  const Column by_q = Rational(2) * gradient(M.T, M.q);
+  return {gradient(T(M, 1), M.qd) - by_q, right_side(M)};
 }
 
 static Quantities quantities(const Mechanics& M, const Elimination&) { return of_mangeron_deleanu(M, 1); }
