@@ -43,8 +43,8 @@ std::vector<std::string> split(const std::vector<std::string>& words) {
   return out;
 }
 
-Asker asker(const Options& o) {
-  Asker a{"--", !o.save.empty() ? "--save" : !o.resume.empty() ? "--continue" : "", {}};
+Asker asker(const char* saving) {
+  Asker a{"--", saving, {}};
   a.note = [](const std::string& text) { say(stderr, "note: %s\n", text.c_str()); };
   return a;
 }
@@ -66,9 +66,9 @@ static std::pair<std::string, std::string> assignment(const std::string& text, c
   return {normal_name(text.substr(0, equals)), text.substr(equals + 1)};
 }
 
-Reader read(const Options& o) { return read(o, model_text(o.model, ANHOLON_MODELS_DIR)); }
+Reader read(const ModelCommand& o) { return read(o, model_text(o.model, ANHOLON_MODELS_DIR)); }
 
-Reader read(const Options& o, SourceText source) {
+Reader read(const ModelCommand& o, SourceText source) {
   Reader r;
   r.source = std::move(source);
   Overrides overrides;
@@ -94,11 +94,11 @@ Reader read(const Options& o, SourceText source) {
 }
 
 // The name of the form asked for.
-static std::string wanted_form(const Options& o, const Model& model) {
+static std::string wanted_form(const SystemCommand& o, const Model& model) {
   return merged(o.motion, model.simulate).form.value_or("routh");
 }
 
-const Formulation& form(const Options& o, const Model& model, const Mechanics* mechanics) {
+const Formulation& form(const SystemCommand& o, const Model& model, const Mechanics* mechanics) {
   const Formulation* f = nullptr;
   try {
     f = &named_form(wanted_form(o, model));
@@ -111,12 +111,11 @@ const Formulation& form(const Options& o, const Model& model, const Mechanics* m
   return *f;
 }
 
-Options with_form(Options o, const Reader& in) {
-  if (wanted_form(o, *in.model) != "auto") return o;
+void settle_form(SystemCommand& o, const Reader& in) {
+  if (wanted_form(o, *in.model) != "auto") return;
   const FormChoice choice = choose_form(in.model, state_choice(o, *in.model));
   o.motion.form = choice.form->name;
   if (!o.quiet) say(stderr, "form %s: %s\n", choice.form->name, choice.why.c_str());
-  return o;
 }
 
 void must_have_motions(const Reader& in, const Formulation& f) {
@@ -168,7 +167,7 @@ std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, 
   }
 }
 
-StateChoice state_choice(const Options& o, const Model& model) {
+StateChoice state_choice(const SystemCommand& o, const Model& model) {
   StateChoice c;
   for (const std::string& word : split(o.eliminate)) c.eliminate.push_back(coordinate_of(model, word, "--eliminate: "));
   if (!o.t.empty()) c.t = exact(o.t, "--t");

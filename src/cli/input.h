@@ -24,17 +24,24 @@ struct Reader {
   SourceText source;
 };
 // Reads the model named by the options (a path, or the name of a shipped model) with --set applied.
-Reader read(const Options& o);
+Reader read(const ModelCommand& o);
 // As above, from a text that is already in memory.
-Reader read(const Options& o, SourceText source);
+Reader read(const ModelCommand& o, SourceText source);
 // The form asked for: --form, else [simulate] form, else Routh's; throws if it does not apply.
-const Formulation& form(const Options& o, const Model& model, const Mechanics* mechanics = nullptr);
-// The options with --form auto, or that of the file, replaced by the selected form; prints it unless quiet.
-Options with_form(Options o, const Reader& in);
-StateChoice state_choice(const Options& o, const Model& model);
+const Formulation& form(const SystemCommand& o, const Model& model, const Mechanics* mechanics = nullptr);
+// Puts the selected form in the place of --form auto, or of that of the file; prints it unless quiet.
+void settle_form(SystemCommand& o, const Reader& in);
+// The options with the form settled.
+template <class Command>
+Command with_form(Command o, const Reader& in) {
+  settle_form(o, in);
+  return o;
+}
+StateChoice state_choice(const SystemCommand& o, const Model& model);
 Rational exact(const std::string& text, const std::string& option);
-// How the command line calls its options, and notes on stderr.
-Asker asker(const Options& o);
+// How the command line calls its options, and notes on stderr. saving: the option that saves or continues a run, if one
+// is given.
+Asker asker(const char* saving = "");
 // Splits "a,b,c" and repeated words alike.
 std::vector<std::string> split(const std::vector<std::string>& words);
 

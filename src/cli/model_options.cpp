@@ -6,20 +6,22 @@ const std::vector<ModelOption>& model_options() {
   using enum ModelOption::Of;
   static const std::vector<ModelOption> rows = {
       {parameters, "set", "NAME=VALUE", "NAME=VALUE: another value of a parameter, or of an integer of [index]",
-       &Options::set, true},
+       &SystemCommand::set, true},
       {parameters, "case", "NAME", "a scenario of the file, [case.NAME]; several are applied one after the other",
-       &Options::cases, false},
-      {state, "q", "NAME=VALUE", "initial positions x=0.2,y=1 (exact decimals); others from the file", &Options::q,
-       true},
-      {state, "qdot", "NAME=VALUE", "initial velocities x=0.2,y=1", &Options::qdot, true},
+       &SystemCommand::cases, false},
+      {state, "q", "NAME=VALUE", "initial positions x=0.2,y=1 (exact decimals); others from the file",
+       &SystemCommand::q, true},
+      {state, "qdot", "NAME=VALUE", "initial velocities x=0.2,y=1", &SystemCommand::qdot, true},
       {state, "qddot", "NAME=VALUE", "initial accelerations, where constraints of order 3 and more leave them free",
-       &Options::qddot, true},
-      {state, "qdddot", "NAME=VALUE", "initial third derivatives, likewise (order 4 and more)", &Options::qdddot, true},
-      {state, "lambda", "NAME=VALUE", "initial multipliers blade=0.4, likewise (order 3 and more)", &Options::lambda,
+       &SystemCommand::qddot, true},
+      {state, "qdddot", "NAME=VALUE", "initial third derivatives, likewise (order 4 and more)", &SystemCommand::qdddot,
        true},
-      {state, "lambdadot", "NAME=VALUE", "initial rates of multipliers (order 4 and more)", &Options::lambdadot, true},
+      {state, "lambda", "NAME=VALUE", "initial multipliers blade=0.4, likewise (order 3 and more)",
+       &SystemCommand::lambda, true},
+      {state, "lambdadot", "NAME=VALUE", "initial rates of multipliers (order 4 and more)", &SystemCommand::lambdadot,
+       true},
       {form, "eliminate", "NAME,…", "dependent coordinates of the forms without multipliers: y,z (default: chosen)",
-       &Options::eliminate, false},
+       &SystemCommand::eliminate, false},
   };
   return rows;
 }

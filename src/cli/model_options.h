@@ -10,7 +10,7 @@ struct ModelOption {
   const char* name;   // "qdot" for --qdot
   const char* value;  // how the help calls its value
   const char* help;
-  std::vector<std::string> Options::* words;
+  std::vector<std::string> SystemCommand::* words;
   bool assigns;  // each word is NAME=VALUE, and several may follow one --name
 };
 const std::vector<ModelOption>& model_options();

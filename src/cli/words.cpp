@@ -7,7 +7,7 @@
 namespace anholon::cli {
 
 // --q x=1 y=2 MODEL: a word without '=' that slipped into a list of assignments is the model.
-void rescue_model(Options& o) {
+void rescue_model(SystemCommand& o) {
   for (const ModelOption& option : model_options()) {
     if (!option.assigns) continue;
     std::vector<std::string>& list = o.*option.words;

@@ -9,7 +9,7 @@ void check_command(const char* word);
 
 // In --q x=1 y=2 MODEL the model slips into the list of assignments: takes a word without '=' out of these lists as the
 // model, where none is named.
-void rescue_model(Options& o);
+void rescue_model(SystemCommand& o);
 
 // The words as they could be typed again.
 std::string command_line(int argc, char** argv);

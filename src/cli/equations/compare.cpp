@@ -85,7 +85,7 @@ void write_json(JsonWriter& j, const EquationFinding& f) {
 
 }  // namespace
 
-int compare(const Options& o) {
+int compare(const CompareCommand& o) {
   if (o.equations.empty())
     throw UsageError{
         "error: no equations are named\nhint: anholon compare MODEL EQUATIONS, a file with one equation per line\n"};

@@ -17,7 +17,7 @@ namespace anholon::cli {
 namespace {
 
 // --format, else the format of the file's extension.
-std::string format_of_equations(const Options& o) {
+std::string format_of_equations(const DeriveCommand& o) {
   const std::string end = std::filesystem::path(o.output).extension().string();
   if (!o.format_given && !o.output.empty())
     for (const auto& [ending, format] :
@@ -27,7 +27,7 @@ std::string format_of_equations(const Options& o) {
 }
 
 // Writes to the file, or to the standard output.
-void deliver(const Options& o, const std::string& text) {
+void deliver(const DeriveCommand& o, const std::string& text) {
   if (o.output.empty() || o.output == "-") return hand_out(text);
   if (const std::string why = write_whole(o.output, text); !why.empty()) throw UsageError{"error: " + why + "\n"};
 }
@@ -41,7 +41,7 @@ Elimination pivots_of(const Reader& in, const Mechanics& m, const StateChoice& c
 }
 
 // The motion as a program in C or Python.
-int write_program(const Options& o, const Reader& in, const Formulation& f) {
+int write_program(const DeriveCommand& o, const Reader& in, const Formulation& f) {
   if (o.json)
     throw UsageError{"error: --format " + o.format + " is not JSON\nhint: leave one of --json and --format out\n"};
   if (const auto d = not_integrated(*in.model)) {
@@ -72,8 +72,8 @@ int write_program(const Options& o, const Reader& in, const Formulation& f) {
 
 }  // namespace
 
-int derive(const Options& asked) {
-  Options o = asked;
+int derive(const DeriveCommand& asked) {
+  DeriveCommand o = asked;
   o.format = format_of_equations(asked);
   const Reader in = read(o);
   without_contacts(in, "derive");

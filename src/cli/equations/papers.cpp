@@ -228,18 +228,18 @@ void print_markdown(const std::vector<Paper>& papers) {
 }
 
 // The claims that the options name; empty if the papers are only to be listed.
-std::vector<FoundClaim> wanted_claims(const Options& o, const std::vector<Paper>& papers) {
+std::vector<FoundClaim> wanted_claims(const PapersCommand& o, const std::vector<Paper>& papers) {
   std::vector<FoundClaim> wanted;
-  if (o.model.empty()) {
-    if (o.check_only || o.json)
+  if (o.tag.empty()) {
+    if (o.check || o.json)
       for (const Paper& p : papers)
         for (const Claim& c : p.claims) wanted.push_back({&p, &c});
     return wanted;
   }
-  wanted = find_claims(papers, o.model);
+  wanted = find_claims(papers, o.tag);
   if (!wanted.empty()) return wanted;
-  const std::string near = nearest_tag(papers, o.model);
-  throw UsageError{"error: no paper has '" + o.model + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
+  const std::string near = nearest_tag(papers, o.tag);
+  throw UsageError{"error: no paper has '" + o.tag + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?") +
                    "\nhint: anholon papers lists the tags; L3.13, Q13, N3.16\n"};
 }
 
@@ -260,7 +260,7 @@ struct Counts {
 // The claims on their way to the terminal or to JSON.
 class Listing {
  public:
-  Listing(const Options& o, const std::vector<Paper>& papers, std::size_t claims)
+  Listing(const PapersCommand& o, const std::vector<Paper>& papers, std::size_t claims)
       : o_(o), claims_(claims), terminal_(isatty(STDERR_FILENO) != 0 && !o.quiet) {
     if (!o.json) return;
     j_.open_object().key("papers").open_array();
@@ -289,14 +289,14 @@ class Listing {
       write_json(j_, *f.paper, *f.claim, decisions);
       return;
     }
-    if (o_.check_only && right) return;
+    if (o_.check && right) return;
     clear_line();
-    if (o_.check_only)
+    if (o_.check)
       say(stdout, "%s\n", tag_of(*f.paper, *f.claim).c_str());
     else
       show(*f.paper, *f.claim);
     for (const Decision& d : decisions)
-      if (!o_.check_only || !d.as_expected()) print_decision(d);
+      if (!o_.check || !d.as_expected()) print_decision(d);
   }
 
   void end(const Counts& n, bool decides) {
@@ -310,7 +310,7 @@ class Listing {
         count("unnumbered_as_expected", n.others_right);
       }
       hand_out(j_.close().text() + "\n");
-    } else if (o_.check_only) {
+    } else if (o_.check) {
       say(stdout,
           "%zu of %zu numbered equations and %zu of %zu other formulas are decided as the tables say; %zu checks, %zu "
           "mutants refuted\n",
@@ -324,7 +324,7 @@ class Listing {
   }
   void count(const char* key, std::size_t n) { j_.key(key).integer(static_cast<long>(n)); }
 
-  const Options& o_;
+  const PapersCommand& o_;
   std::size_t claims_;
   bool terminal_;
   JsonWriter j_;
@@ -332,12 +332,12 @@ class Listing {
 
 }  // namespace
 
-int papers(const Options& o) {
+int papers(const PapersCommand& o) {
   const std::vector<Paper> papers = read_papers();
   if (o.markdown) return print_markdown(papers), kOk;
   const std::vector<FoundClaim> wanted = wanted_claims(o, papers);
   if (wanted.empty()) return list(papers), kOk;
-  const bool decides = o.check_only || !o.model.empty();
+  const bool decides = o.check || !o.tag.empty();
   Decider decider(load);
   Counts n;
   Listing listing(o, papers, wanted.size());

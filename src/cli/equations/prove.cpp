@@ -16,7 +16,7 @@ namespace anholon::cli {
 
 namespace {
 
-std::vector<const Formulation*> wanted_forms(const Options& o, const Mechanics& m) {
+std::vector<const Formulation*> wanted_forms(const ProveCommand& o, const Mechanics& m) {
   std::vector<const Formulation*> forms;
   const auto order = static_cast<unsigned>(o.m);  // forms that do not depend on it are compared unchanged
   if (o.forms.empty()) {
@@ -26,7 +26,7 @@ std::vector<const Formulation*> wanted_forms(const Options& o, const Mechanics& 
     return forms;
   }
   for (const std::string& name : split(o.forms)) {
-    Options one = o;
+    SystemCommand one = o;
     one.motion.form = name;
     forms.push_back(&form(one, *m.model, &m));
     if (order && forms.back()->highest_m) must_have_order(*forms.back(), m, order);
@@ -126,7 +126,7 @@ void must_be_written(const std::string& why) {
 
 }  // namespace
 
-int prove(const Options& o) {
+int prove(const ProveCommand& o) {
   const auto start = std::chrono::steady_clock::now();
   const Reader in = read(o);
   without_contacts(in, "prove");
@@ -138,7 +138,7 @@ int prove(const Options& o) {
   const std::vector<Eliminations> eliminations =
       eliminations_of(in, m, state_choice(o, model), static_cast<unsigned>(o.m));
   ProofOptions options;
-  options.digits = o.proof_digits;
+  options.digits = o.digits_of_enclosures;
   const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
   std::size_t done = 0;
   if (terminal)

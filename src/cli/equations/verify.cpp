@@ -122,22 +122,22 @@ void json(const Certificate& c, const Verification& v) {
 
 }  // namespace
 
-int verify(const Options& o) {
-  SourceText source{o.model, {}};
+int verify(const VerifyCommand& o) {
+  SourceText source{o.certificate, {}};
   std::string why;
-  if (!read_file(o.model, source.text, &why))
-    throw UsageError{"error: cannot read the certificate '" + o.model + "': " + why +
+  if (!read_file(o.certificate, source.text, &why))
+    throw UsageError{"error: cannot read the certificate '" + o.certificate + "': " + why +
                      "\nhint: `anholon prove MODEL -o FILE` writes one\n"};
   Certificate certificate;
   try {
     certificate = read_certificate(source.text);
   } catch (const Failure& f) {
-    throw UsageError{"error: " + o.model + ": " + f.what() + "\n"};
+    throw UsageError{"error: " + o.certificate + ": " + f.what() + "\n"};
   }
   VerifyOptions options;
   options.points = o.points;
   options.seed = o.seed;
-  options.digits = o.proof_digits;
+  options.digits = o.digits;
   const Verification v = anholon::verify(certificate, options);
   if (o.json)
     json(certificate, v);

@@ -6,7 +6,7 @@
 
 namespace anholon::cli {
 
-int forms(const Options& o) {
+int forms(const SystemCommand& o) {
   std::optional<Reader> in;
   std::optional<Mechanics> m;
   if (!o.model.empty()) {
@@ -34,7 +34,7 @@ int forms(const Options& o) {
   return kOk;
 }
 
-int models(const Options& o) {
+int models(const ModelCommand& o) {
   const std::vector<ShippedFile> list = shipped(Shipped::models);
   if (!o.model.empty()) {
     const Reader r = read(o);

@@ -5,10 +5,10 @@
 
 namespace anholon::cli {
 
-int check(const Options& asked) {
+int check(const SystemCommand& asked) {
   const Reader in = read(asked);
   if (asked.show == "cost") return show_cost(asked, in);
-  const Options o = with_form(asked, in);
+  const SystemCommand o = with_form(asked, in);
   Scenario s;
   Outcome outcome = ready(in, form(o, *in.model), state_choice(o, *in.model), s);
   if (outcome.ok() && !not_integrated(*in.model)) outcome = regular_at_start(s);

@@ -102,7 +102,7 @@ void print_text(const Scenario& s, const StateReport& r, int digits) {
 
 }  // namespace
 
-int evaluate(const Options& o) {
+int evaluate(const SystemCommand& o) {
   if (o.motion.numbers == "double")
     throw UsageError{"error: a state is evaluated in long double at least\nhint: --numbers long-double or quad\n"};
   const Reader in = read(o);
@@ -118,7 +118,7 @@ int evaluate(const Options& o) {
   if (!o.show.empty()) return show(o, s, outcome);
   StateReport report;
   if (outcome.ok())
-    outcome = evaluate(s, choice, precision(o.motion, Precision::long_real, asker(o)), o.digits(), report);
+    outcome = evaluate(s, choice, precision(o.motion, Precision::long_real, asker()), o.digits(), report);
   if (!outcome.ok()) {
     if (o.json) {
       JsonWriter j;

@@ -6,7 +6,7 @@
 
 namespace anholon::cli {
 
-int format(const Options& o) {
+int format(const FormatCommand& o) {
   int code = kOk;
   for (const std::string& path : o.files) {
     SourceText source{path, {}};
@@ -22,7 +22,7 @@ int format(const Options& o) {
         hand_out(text);
       } else if (text != source.text) {
         say(stdout, "%s\n", path.c_str());
-        if (!o.check_only) {
+        if (!o.check) {
           if (const std::string trouble = write_whole(path, text); !trouble.empty())
             throw UsageError{"error: " + trouble + "\n"};
         } else if (code == kOk) {

@@ -288,7 +288,7 @@ void print_csv(const Scenario& s, const Linearization& l, const std::optional<Pa
 
 }  // namespace
 
-int linearize(const Options& o) {
+int linearize(const LinearizeCommand& o) {
   if (o.json && o.csv) throw UsageError{"error: --json and --csv are two formats\nhint: leave out one of them\n"};
   const Reader in = read(o);
   without_contacts(in, "linearize");

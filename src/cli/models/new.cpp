@@ -6,9 +6,9 @@
 
 namespace anholon::cli {
 
-int new_model(const Options& o) {
+int new_model(const NewCommand& o) {
   const std::vector<ShippedFile> list = shipped(Shipped::templates);
-  if (o.model.empty()) {
+  if (o.name.empty()) {
     if (!o.output.empty())
       throw UsageError{"error: which template is to be written to '" + o.output +
                        "'?\nhint: `anholon new` lists them\n"};
@@ -19,11 +19,11 @@ int new_model(const Options& o) {
   std::string text;
   for (const ShippedFile& t : list) {
     known.push_back(t.name);
-    if (t.name == o.model && !read_file(t.path, text)) throw UsageError{"error: cannot read '" + t.path + "'\n"};
+    if (t.name == o.name && !read_file(t.path, text)) throw UsageError{"error: cannot read '" + t.path + "'\n"};
   }
   if (text.empty()) {
-    const std::string near = did_you_mean(o.model, known);
-    throw UsageError{"error: there is no template '" + o.model + "'" +
+    const std::string near = did_you_mean(o.name, known);
+    throw UsageError{"error: there is no template '" + o.name + "'" +
                      (near.empty() ? "" : "; did you mean '" + near + "'?") + "\nhint: `anholon new` lists them\n"};
   }
   if (o.output.empty()) {

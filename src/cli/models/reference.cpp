@@ -7,10 +7,10 @@
 
 namespace anholon::cli {
 
-int reference(const Options& o) {
-  const std::string text = o.schema          ? reference_schema()
-                           : o.model.empty() ? reference_page()
-                                             : reference_section(o.model);
+int reference(const ReferenceCommand& o) {
+  const std::string text = o.schema            ? reference_schema()
+                           : o.section.empty() ? reference_page()
+                                               : reference_section(o.section);
   hand_out(text);
   return kOk;
 }

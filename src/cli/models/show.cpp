@@ -44,7 +44,7 @@ static void show_mechanics(const Scenario& s) {
   column("N", m.N, s);
 }
 
-int show(const Options& o, const Scenario& s, const Outcome& outcome) {
+int show(const SystemCommand& o, const Scenario& s, const Outcome& outcome) {
   // A system that does not determine its motion has no structure and no program.
   if ((o.show == "structure" || o.show == "program") && s.structure.transversal.empty() && !outcome.ok()) {
     print_outcome(outcome);
@@ -102,7 +102,7 @@ static void cost_json(const FormChoice& c) {
   hand_out(j.text() + "\n");
 }
 
-int show_cost(const Options& o, const Reader& in) {
+int show_cost(const SystemCommand& o, const Reader& in) {
   const FormChoice c = choose_form(in.model, state_choice(o, *in.model), Costs::all);
   if (o.json) return cost_json(c), kOk;
   say(stdout, "one expansion at tolerance 1e-12\n\n");

@@ -5,9 +5,9 @@
 namespace anholon::cli {
 
 // Prints the stage named by o.show: mechanics, system, structure or program.
-int show(const Options& o, const Scenario& s, const Outcome& outcome = {});
+int show(const SystemCommand& o, const Scenario& s, const Outcome& outcome = {});
 
 // Prints the cost of an expansion in each form and writing (`check --show cost`).
-int show_cost(const Options& o, const Reader& in);
+int show_cost(const SystemCommand& o, const Reader& in);
 
 }  // namespace anholon::cli

@@ -19,7 +19,7 @@ void check_format(const ResultFormat* format) {
     throw UsageError{"error: " + std::string(format->missing) + "\nhint: " + format->missing_hint + "\n"};
 }
 
-int convert(const Options& o) {
+int convert(const ConvertCommand& o) {
   const ResultFormat* format = o.json ? &report_format() : &plain_format();
   if (!o.output.empty() && o.output != "-") {
     format = format_of(o.output);
@@ -30,7 +30,7 @@ int convert(const Options& o) {
       throw UsageError{"error: --json and '" + o.output + "' ask for two formats\nhint: leave out --json\n"};
   }
   check_format(format);
-  const RunFile run = read_result(o.model);
+  const RunFile run = read_result(o.run);
   if (const std::string why = format->write(o.output, run); !why.empty()) throw UsageError{"error: " + why + "\n"};
   return kOk;
 }

@@ -18,7 +18,7 @@ namespace anholon::cli {
 
 namespace {
 
-void make_ready(const Options& o, Told& x) {
+void make_ready(const SystemCommand& o, Told& x) {
   Scenario prepared;
   const Outcome outcome = ready(x.in, form(o, *x.in.model), state_choice(o, *x.in.model), prepared);
   if (!outcome.ok()) {
@@ -33,10 +33,10 @@ void make_ready(const Options& o, Told& x) {
 
 }  // namespace
 
-void take_up(const Options& o, Told& x) {
-  x.run = read_result(o.rows.empty() ? o.model : o.rows);
+void take_up(const SystemCommand& o, const std::string& rows, Told& x) {
+  x.run = read_result(rows.empty() ? o.model : rows);
   if (x.run.table.rows() == 0) throw UsageError{"error: the run has no rows\n"};
-  if (!o.rows.empty()) {
+  if (!rows.empty()) {
     x.in = read(o);
     if (x.run.units.empty()) x.run.units = column_units(*x.in.model);
     make_ready(with_form(o, x.in), x);
@@ -45,29 +45,29 @@ void take_up(const Options& o, Told& x) {
   if (x.run.model.empty())
     throw UsageError{"error: '" + o.model + "' holds rows, but not their model\nhint: anholon report MODEL --rows " +
                      o.model + ", or a run in HDF5: anholon simulate MODEL -o run.h5\n"};
-  const Options was = options_of(x.run, o);
+  const SystemCommand was = options_of(x.run, o);
   x.in = model_of(x.run, was);
   make_ready(was, x);
 }
 
 bool is_a_run(const std::string& path) { return format_of(path) && std::filesystem::exists(path); }
 
-void check_page(const Options& o) {
-  if (const std::string why = obstacle_to_writing(o.report); !why.empty()) throw UsageError{"error: " + why + "\n"};
+void check_page(const PageFile& page) {
+  if (const std::string why = obstacle_to_writing(page.path); !why.empty()) throw UsageError{"error: " + why + "\n"};
 }
 
-void write_page(const Options& o, std::deque<Told>& cases) {
+void write_page(const SystemCommand& o, const PageFile& page, std::deque<Told>& cases) {
   Told& first = cases[0];
   // Equations and proof use the eliminations at the state of the run.
-  const Options was = first.run.settings.empty() ? o : options_of(first.run, o);
+  const SystemCommand was = first.run.settings.empty() ? o : options_of(first.run, o);
   PageRequest request;
   request.choice = state_choice(was, *first.in.model);
-  for (const std::string& name : split(o.forms)) {
-    Options one = o;
+  for (const std::string& name : split(page.forms)) {
+    SystemCommand one = o;
     one.motion.form = name;
     request.forms.push_back(&form(one, *first.in.model, &*first.scenario->mechanics));
   }
-  if (o.no_proof) request.no_proof = "The proof was left out (--no-proof).";
+  if (page.no_proof) request.no_proof = "The proof was left out (--no-proof).";
   request.version = "anholon " ANHOLON_VERSION;
   request.command = o.command_line;
   request.source = first.in.source;
@@ -85,26 +85,24 @@ void write_page(const Options& o, std::deque<Told>& cases) {
     throw UsageError{print(e.diagnostic, first.in.source)};
   }
   if (terminal) say(stderr, "\r\033[K");
-  if (const std::string why = write_whole(o.report, text); !why.empty()) throw UsageError{"error: " + why + "\n"};
-  if (!o.quiet) say(stderr, "page: %s, %.0f kB\n", o.report.c_str(), static_cast<double>(text.size()) / 1000);
+  if (const std::string why = write_whole(page.path, text); !why.empty()) throw UsageError{"error: " + why + "\n"};
+  if (!o.quiet) say(stderr, "page: %s, %.0f kB\n", page.path.c_str(), static_cast<double>(text.size()) / 1000);
 }
 
-int report(const Options& asked) {
-  Options o = asked;
-  o.report = o.output;
-  o.output.clear();
-  if (o.report.empty()) o.report = std::filesystem::path(o.model).stem().string() + ".html";
-  check_page(o);
+int report(const ReportCommand& o) {
+  PageFile page = o.page;
+  if (page.path.empty()) page.path = std::filesystem::path(o.model).stem().string() + ".html";
+  check_page(page);
   std::deque<Told> cases;
   if (!o.rows.empty() || is_a_run(o.model)) {
-    take_up(o, cases.emplace_back());
-    write_page(o, cases);
+    take_up(o, o.rows, cases.emplace_back());
+    write_page(o, page, cases);
     return kOk;
   }
   // Cases are shown side by side; `all` includes the file without a case.
   std::vector<std::string> names = o.cases;
   if (names == std::vector<std::string>{"all"}) {
-    Options plain = o;
+    ModelCommand plain = o;
     plain.cases.clear();
     names = read(plain).model->cases;
     names.insert(names.begin(), "");
@@ -112,14 +110,14 @@ int report(const Options& asked) {
   if (names.empty()) names = {""};
   int code = kOk;
   for (const std::string& name : names) {
-    Options one = o;
+    SimulateCommand one{o, {}, {}, {}, page};
     one.cases = name.empty() ? std::vector<std::string>{} : std::vector<std::string>{name};
     Told& x = cases.emplace_back();
     x.name = name;
     code = std::max(code, simulate_motion(one, nullptr, &x));
     if (x.run.table.rows() == 0) cases.pop_back();
   }
-  if (!cases.empty()) write_page(o, cases);
+  if (!cases.empty()) write_page(o, page, cases);
   return code;
 }
 

@@ -20,18 +20,18 @@ struct Told {
 };
 
 // `simulate`; with `told` the motion is stored there as well, and without an output only there.
-int simulate_motion(const Options& asked, const SavedRun* resume, Told* told);
+int simulate_motion(const SimulateCommand& asked, const SavedRun* resume, Told* told);
 
 // Whether the path is an existing result file, by its name.
 bool is_a_run(const std::string& path);
 
-// Reads the run that the options name (o.model, or o.rows of the model o.model), with its model. Throws UsageError.
-void take_up(const Options& o, Told& x);
+// Reads the run o.model, or the run `rows` of the model o.model, with its model. Throws UsageError.
+void take_up(const SystemCommand& o, const std::string& rows, Told& x);
 
 // Call it before the motion is computed: throws UsageError if the page cannot be written.
-void check_page(const Options& o);
+void check_page(const PageFile& page);
 
-// Writes the page of these motions of one model to o.report. Throws UsageError.
-void write_page(const Options& o, std::deque<Told>& cases);
+// Writes the page of these motions of one model. Throws UsageError.
+void write_page(const SystemCommand& o, const PageFile& page, std::deque<Told>& cases);
 
 }  // namespace anholon::cli

@@ -44,18 +44,16 @@ void add(RunFile& run, const Reader& in, const std::string& name) {
 
 }  // namespace
 
-Reader model_of(const RunFile& run, const Options& was) {
+Reader model_of(const RunFile& run, const ModelCommand& was) {
   SourceText source{run.model[0].name, run.model[0].text};
   for (std::size_t k = 1; k < run.model.size(); ++k) source.others.push_back({run.model[k].name, run.model[k].text});
   return read(was, std::move(source));
 }
 
-void add_formulas(RunFile& run, const Options& o) {
-  std::vector<std::string> names = split(o.columns);
-  if (!o.abscissa.empty()) names.push_back(o.abscissa);
+void add_formulas(RunFile& run, std::vector<std::string> names) {
   std::erase_if(names, [&](const std::string& n) { return holds(run.table, n); });
   if (names.empty() || run.model.empty() || run.table.rows() == 0) return;
-  const Reader in = model_of(run, options_of(run, o));
+  const Reader in = model_of(run, options_of(run, {}));
   for (const std::string& name : names)
     if (run.table.find(name) == run.table.columns.size()) add(run, in, name);
 }

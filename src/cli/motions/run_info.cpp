@@ -6,7 +6,8 @@
 
 namespace anholon::cli {
 
-RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, const MotionSettings& settings) {
+RunInfo run_info(const SystemCommand& o, const Reader& in, const Scenario& scenario, const MotionSettings& settings,
+                 const std::string& continued) {
   RunInfo info;
   info.title = in.model->title;
   info.command = o.command_line;
@@ -21,12 +22,12 @@ RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, c
   for (const ModelOption& m : model_options()) info.settings[m.name] = o.*m.words;
   one("t", o.t), one("start", number_text(scenario.state.t));
   for (const MotionOption& m : motion_options()) info.settings[m.name] = words(settings, m);
-  one("continued", o.resume);
+  one("continued", continued);
   one("model_sha256", model_hash(in.source));
   return info;
 }
 
-Options options_of(const RunInfo& run, Options o) {
+SystemCommand options_of(const RunInfo& run, SystemCommand o) {
   const auto words = [&](const char* name) {
     const auto it = run.settings.find(name);
     return it == run.settings.end() ? std::vector<std::string>{} : it->second;

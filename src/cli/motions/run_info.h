@@ -6,9 +6,10 @@
 
 namespace anholon::cli {
 
-// The settings are those of the run, complete.
-RunInfo run_info(const Options& o, const Reader& in, const Scenario& scenario, const MotionSettings& settings);
+// The settings are those of the run, complete; continued: the saved run from which it goes on, if there is one.
+RunInfo run_info(const SystemCommand& o, const Reader& in, const Scenario& scenario, const MotionSettings& settings,
+                 const std::string& continued = {});
 // The inverse: the options, with those settings of the run on which its start and its equations depend.
-Options options_of(const RunInfo& run, Options o);
+SystemCommand options_of(const RunInfo& run, SystemCommand o);
 
 }  // namespace anholon::cli

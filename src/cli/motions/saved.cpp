@@ -27,7 +27,7 @@ auto with_file(const std::string& path, F f) {
 
 }  // namespace
 
-SavedRun continued(Options& o) {
+SavedRun continued(SimulateCommand& o) {
   for (const ModelOption& m : model_options()) must_be_absent(!(o.*m.words).empty(), "--" + std::string(m.name));
   must_be_absent(!o.t.empty(), "--t");
   for (const MotionOption& m : motion_options())
@@ -54,7 +54,7 @@ void same_model(const SavedRun& run, const Reader& in) {
   });
 }
 
-void describe_run(SavedRun& run, const Options& o, const Reader& in, const MotionSettings& settings) {
+void describe_run(SavedRun& run, const SystemCommand& o, const Reader& in, const MotionSettings& settings) {
   for (const ModelOption& m : model_options()) run.set(m.name, o.*m.words);
   run.set("t0", o.t.empty() ? SavedRun::Texts{} : SavedRun::Texts{o.t});
   for (const MotionOption& m : motion_options())
@@ -63,7 +63,7 @@ void describe_run(SavedRun& run, const Options& o, const Reader& in, const Motio
   run.set("title", {in.model->title});
 }
 
-void beyond(const SavedRun& run, const Options& o, const Rational& end) {
+void beyond(const SavedRun& run, const SimulateCommand& o, const Rational& end) {
   with_file(o.resume, [&] {
     // Times of a saved run may be wider than double; the times compared with them are written by hand.
     const PrecisionScope precision(std::max(o.digits(), kQuadTextDigits) + 12);

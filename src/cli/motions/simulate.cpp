@@ -27,7 +27,7 @@ namespace anholon::cli {
 namespace {
 
 // The format of the rows: by the name of the file; --json asks for the report, too, if that format does not hold it.
-const ResultFormat& output_format(const Options& o) {
+const ResultFormat& output_format(const SimulateCommand& o) {
   const ResultFormat* named = format_of(o.output);
   if (o.json && (!named || named->holds == Holds::rows)) return report_format();
   return named ? *named : plain_format();
@@ -36,7 +36,8 @@ const ResultFormat& output_format(const Options& o) {
 // Writes the saved runs that --save asks for; stops at the first failure and keeps its message.
 class Saver {
  public:
-  Saver(const Options& o, const Reader& in, const MotionSettings& settings) : o_(o), in_(in), settings_(settings) {}
+  Saver(const SimulateCommand& o, const Reader& in, const MotionSettings& settings)
+      : o_(o), in_(in), settings_(settings) {}
   void operator()(SavedRun run) {
     if (!error.empty()) return;
     describe_run(run, o_, in_, settings_);
@@ -45,7 +46,7 @@ class Saver {
   std::string error;
 
  private:
-  const Options& o_;
+  const SimulateCommand& o_;
   const Reader& in_;
   const MotionSettings& settings_;
 };
@@ -66,7 +67,7 @@ SimulationReport run(Workspace& s, const Reader& in, const SimulationOptions& op
 }
 
 // A run that continues in its own file appends its rows to the existing ones; any other file is replaced.
-void go_on(RunWriter& rows, const Options& o, const SavedRun& resume, const Reader& in) {
+void go_on(RunWriter& rows, const SimulateCommand& o, const SavedRun& resume, const Reader& in) {
   std::error_code none;
   if (!rows.error().empty() || !resume.has("given") || !std::filesystem::is_regular_file(o.output, none)) return;
   try {
@@ -91,7 +92,7 @@ int rows_to_look_at(const Mechanics& m) {
 }
 
 // Drawn motions have an end and rows where nobody names them.
-void settle_drawing(MotionSettings& settings, const Options& o, const Workspace& s) {
+void settle_drawing(MotionSettings& settings, const SimulateCommand& o, const Workspace& s) {
   const Rational start(s.state.t);
   if (settings.at.empty() && !settings.to) {
     constexpr int kShown = 10;
@@ -116,9 +117,11 @@ void must_fit(const ResultFormat& format, const SimulationOptions& asked, const 
 }
 
 // All that is asked of the motion of this system. drawn: the motion is for a page or a film alone.
-void ask(MotionSettings& settings, const Options& o, const Workspace& s, bool drawn, SimulationOptions& options) {
+void ask(MotionSettings& settings, const SimulateCommand& o, const Workspace& s, bool drawn,
+         SimulationOptions& options) {
   if (drawn) settle_drawing(settings, o, s);
-  const Rational last = anholon::ask(settings, s, asker(o), options);
+  const char* saving = !o.save.empty() ? "--save" : !o.resume.empty() ? "--continue" : "";
+  const Rational last = anholon::ask(settings, s, asker(saving), options);
   if (options.resume) beyond(*options.resume, o, last);
   must_fit(output_format(o), options, s, last);
   // An event that sets values does not conserve what is an integral between events.
@@ -138,7 +141,7 @@ struct Written {
 // Computes the motion and writes its rows to where the options say.
 class Writer {
  public:
-  Writer(const Options& o, const Reader& in, Workspace& s, const RunInfo& info, const Outcome& start,
+  Writer(const SimulateCommand& o, const Reader& in, Workspace& s, const RunInfo& info, const Outcome& start,
          SimulationOptions& options, Saver& saver, Told* told)
       : o_(o), in_(in), s_(s), info_(info), start_(start), options_(options), saver_(saver), told_(told) {}
 
@@ -190,7 +193,7 @@ class Writer {
     w.report = run(s_, in_, options_, rows, told_);
   }
 
-  const Options& o_;
+  const SimulateCommand& o_;
   const Reader& in_;
   Workspace& s_;
   const RunInfo& info_;
@@ -201,7 +204,7 @@ class Writer {
 };
 
 // Says how the motion ended and where its rows are; returns the exit status.
-int say_end(const Options& o, const Written& w, const std::string& save_error) {
+int say_end(const SimulateCommand& o, const Written& w, const std::string& save_error) {
   const SimulationReport& r = w.report;
   std::string write_error = w.error;
   // A run that is ended because its rows have no place was not interrupted by anybody.
@@ -221,13 +224,13 @@ int say_end(const Options& o, const Written& w, const std::string& save_error) {
 
 }  // namespace
 
-int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
+int simulate_motion(const SimulateCommand& asked, const SavedRun* resume, Told* told) {
   check_format(format_of(asked.output));
   Told own;
   Told& all = told ? *told : own;
   all.in = read(asked);
   const Reader& in = all.in;
-  const Options o = with_form(asked, in);
+  const SimulateCommand o = with_form(asked, in);
   if (resume) same_model(*resume, in);
   SimulationOptions options;
   options.resume = resume;
@@ -244,10 +247,10 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   if (!o.show.empty()) return show(o, prepared);
   MotionSettings settings = merged(o.motion, in.model->simulate);
   ask(settings, o, s, told && o.output.empty(), options);
-  const RunInfo info = run_info(o, in, s, settings);
+  const RunInfo info = run_info(o, in, s, settings, o.resume);
   Saver saver(o, in, settings);
   if (!o.quiet) options.note = [](const std::string& text) { say(stderr, "note: %s\n", text.c_str()); };
-  catch_stop(told && o.output.empty() ? o.report : o.output);
+  catch_stop(told && o.output.empty() ? o.page.path : o.output);
   options.cancelled = stop_requested;
   if (told) {
     static_cast<RunInfo&>(told->run) = info;
@@ -268,17 +271,17 @@ int simulate_motion(const Options& asked, const SavedRun* resume, Told* told) {
   return say_end(o, w, saver.error);
 }
 
-int simulate(const Options& o) {
+int simulate(const SimulateCommand& o) {
   SavedRun run;
-  Options all = o;
+  SimulateCommand all = o;
   if (!o.resume.empty()) run = continued(all);
   const SavedRun* resume = o.resume.empty() ? nullptr : &run;
-  if (o.report.empty()) return simulate_motion(all, resume, nullptr);
-  check_page(all);
+  if (o.page.path.empty()) return simulate_motion(all, resume, nullptr);
+  check_page(all.page);
   std::deque<Told> cases(1);
   const int code = simulate_motion(all, resume, &cases[0]);
   if (cases[0].run.table.rows() == 0) return code;
-  write_page(all, cases);
+  write_page(all, all.page, cases);
   return code;
 }
 

@@ -25,7 +25,7 @@ namespace {
 }
 
 // -n, or a number given to --cases.
-std::optional<std::size_t> count_of(const Options& o) {
+std::optional<std::size_t> count_of(const SweepCommand& o) {
   if (o.case_count.empty()) return std::nullopt;
   const auto n = parse_rational(o.case_count);
   if (!n || n->get_den() != 1 || *n < 1 || *n > static_cast<unsigned long>(Variation::kMostCases))
@@ -65,7 +65,7 @@ std::vector<std::string> cases_of_file(std::vector<std::string>& words) {
 // The motions of one model: of the file, or of the file with one of its cases.
 struct Part {
   std::string word;  // the name of the case
-  Options asked;
+  SweepCommand asked;
   Reader in;
   std::optional<Variation> variation;
   EnsembleOptions options;
@@ -75,7 +75,7 @@ struct Part {
 };
 
 // --vary, --cases, -n, --draw and --seed.
-Variation variation_of(const Options& o, const Model& model, const std::shared_ptr<const CaseTable>& table,
+Variation variation_of(const SweepCommand& o, const Model& model, const std::shared_ptr<const CaseTable>& table,
                        bool of_cases) {
   Variation v(o.seed, o.draw == "sobol" ? Variation::Draws::sobol : Variation::Draws::random);
   try {
@@ -91,7 +91,7 @@ Variation variation_of(const Options& o, const Model& model, const std::shared_p
   return v;
 }
 
-Reductions reductions_of(const Options& o, const Reader& in) {
+Reductions reductions_of(const SweepCommand& o, const Reader& in) {
   Reductions list;
   try {
     for (const std::string& word : split(o.reduce)) list.add(word, {in.model, in.names});
@@ -104,7 +104,7 @@ Reductions reductions_of(const Options& o, const Reader& in) {
 // Returns false if --show has printed what was asked for.
 bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   p.in = read(p.asked);
-  const Options o = p.asked = with_form(p.asked, p.in);
+  const SweepCommand o = p.asked = with_form(p.asked, p.in);
   p.variation = variation_of(o, *p.in.model, table, !p.word.empty());
   EnsembleOptions& e = p.options;
   e.state = state_choice(o, *p.in.model);
@@ -118,7 +118,7 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   form(o, *p.in.model, Workspace(p.scenario).mechanics.get());
   if (const auto d = not_integrated(*p.in.model)) throw UsageError{print(*d, p.in.source)};
   if (!o.show.empty()) return false;
-  ask(o.motion, p.scenario, asker(o), e);
+  ask(o.motion, p.scenario, asker(), e);
   try {
     move_with(contacts(*p.in.names), e);
   } catch (const Failure& f) {
@@ -147,7 +147,7 @@ std::vector<SweepPiece> pieces_of(std::deque<Part>& parts) {
 }
 
 // Everything on which the rows depend.
-std::vector<std::pair<std::string, std::string>> asked_of(const RunInfo& info, const Options& o,
+std::vector<std::pair<std::string, std::string>> asked_of(const RunInfo& info, const SweepCommand& o,
                                                           const std::string& table_text) {
   std::vector<std::pair<std::string, std::string>> all;
   const auto add = [&](const std::string& name, const std::string& text) {
@@ -189,9 +189,9 @@ EnsembleReport compute(std::deque<Part>& parts, std::size_t cases, SweepOutput& 
 
 }  // namespace
 
-int sweep(const Options& asked) {
-  const ResultFormat& format = sweep_format(asked);
-  Options o = asked;
+int sweep(const SweepCommand& asked) {
+  const ResultFormat& format = sweep_format(asked.output, asked.json);
+  SweepCommand o = asked;
   const std::vector<std::string> names = cases_of_file(o.varied);
   std::shared_ptr<const CaseTable> table;
   std::string table_text;

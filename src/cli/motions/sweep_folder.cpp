@@ -60,7 +60,7 @@ struct Refinement {
   RefineRule rule;
 };
 
-Refinement refinement_of(const Options& o, const FolderSweep& sweep, const std::vector<std::string>& columns) {
+Refinement refinement_of(const SweepCommand& o, const FolderSweep& sweep, const std::vector<std::string>& columns) {
   constexpr std::size_t kMost = 30;  // a grid that is 10^9 times as fine
   Refinement r;
   if (o.refine.empty() && o.refine_by.empty()) return r;
@@ -150,7 +150,7 @@ struct Missing {
 };
 
 // Computes the parts of the share that are missing.
-Missing fill_missing(const Options& o, const FolderSweep& sweep, const SweepStore& store, const Shard& shard) {
+Missing fill_missing(const SweepCommand& o, const FolderSweep& sweep, const SweepStore& store, const Shard& shard) {
   FillOptions fill_options;
   fill_options.parts = parts_to_do(store, shard.number, shard.of);
   fill_options.cancelled = stop_requested;
@@ -200,7 +200,7 @@ bool judge(const FolderSweep& sweep, const SweepStore& store) {
   return true;
 }
 
-int stopped_early(const Options& o, const SweepStore& store) {
+int stopped_early(const SweepCommand& o, const SweepStore& store) {
   if (!o.quiet) say_progress(store, store.progress());
   print_outcome({OutcomeKind::interrupted, "interrupted", "the same command goes on where this one stopped"});
   return kStopped;
@@ -208,7 +208,7 @@ int stopped_early(const Options& o, const SweepStore& store) {
 
 }  // namespace
 
-int sweep_into_folder(const Options& o, const FolderSweep& sweep) {
+int sweep_into_folder(const SweepCommand& o, const FolderSweep& sweep) {
   const Shard shard = shard_of(o.shard);
   SweepRequest request{
       sweep.asked, {}, sweep.cases, o.chunk.empty() ? 0 : count_asked("--chunk", "cases", o.chunk, 1, kMostInPart)};
@@ -280,7 +280,7 @@ void watch(SweepStore& store) {
 
 }  // namespace
 
-int sweep_status(const Options& o) {
+int sweep_status(const SweepFolderCommand& o) {
   SweepStore store = SweepStore::open(o.folder);
   if (o.watch && o.json) throw UsageError{"error: --watch and --json exclude each other\n"};
   if (o.watch) watch(store);
@@ -319,9 +319,9 @@ int sweep_status(const Options& o) {
   return p.parts == p.all_parts ? kOk : kStopped;
 }
 
-int sweep_collect(const Options& o) {
+int sweep_collect(const SweepFolderCommand& o) {
   const SweepStore store = SweepStore::open(o.folder);
-  const ResultFormat& format = sweep_format(o);
+  const ResultFormat& format = sweep_format(o.output, o.json);
   const std::vector<std::size_t> parts = store.present();
   if (parts.size() < store.parts() && !o.partial)
     throw UsageError{"error: " + std::to_string(store.parts() - parts.size()) + " of " + std::to_string(store.parts()) +

@@ -17,6 +17,6 @@ struct FolderSweep {
 };
 
 // Computes what is missing in the folder, or what is missing in the share that --shard names. Returns the exit status.
-int sweep_into_folder(const Options& o, const FolderSweep& sweep);
+int sweep_into_folder(const SweepCommand& o, const FolderSweep& sweep);
 
 }  // namespace anholon::cli

@@ -55,16 +55,16 @@ std::string SweepOutput::close(const EnsembleReport& report) {
                       ",\n  \"outcome\": \"" + name(report.outcome.kind) + "\"\n}");
 }
 
-const ResultFormat& sweep_format(const Options& o) {
-  const ResultFormat* named = format_of(o.output);
+const ResultFormat& sweep_format(const std::string& output, bool json) {
+  const ResultFormat* named = format_of(output);
   // A data base is planned.
-  const char* unable = o.output.ends_with(".db") ? ".db" : named && !named->open_sweep ? named->endings[0] : nullptr;
+  const char* unable = output.ends_with(".db") ? ".db" : named && !named->open_sweep ? named->endings[0] : nullptr;
   if (unable)
     throw UsageError{"error: " + std::string(unable) +
                      " files are not written yet\nhint: " + known_files("-o cases", sweep_formats()) + "\n"};
   if (named && named->missing)
     throw UsageError{"error: " + std::string(named->missing) + "\nhint: " + named->missing_hint + "\n"};
-  if (o.json) return report_format();
+  if (json) return report_format();
   return named ? *named : plain_format();
 }
 

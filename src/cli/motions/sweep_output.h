@@ -39,7 +39,7 @@ class SweepOutput final : public CaseSink {
 };
 
 // The format of the file that -o names; without a file --json decides. Throws UsageError.
-const ResultFormat& sweep_format(const Options& o);
+const ResultFormat& sweep_format(const std::string& output, bool json);
 
 // Adds the report of cases that follow on those of `all`.
 void add_report(EnsembleReport& all, const EnsembleReport& next);

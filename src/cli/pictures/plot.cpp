@@ -159,9 +159,37 @@ std::string write_figure(const Figure& f, Target t, const std::string& path) {
   return t == Target::terminal ? std::string() : write_drawing(lay_out(f), f.title, t, path);
 }
 
+// Draws a sweep as a map, a histogram or a page; of a curve over one variation, which is drawn as a run is, returns the
+// table and sets its options.
+std::optional<RunFile> drawn_sweep(const PlotCommand& o, Target t, FigureOptions& options) {
+  if (t == Target::terminal || t == Target::tex)
+    throw UsageError{"error: a sweep is drawn as .svg, .pdf, .png or .html\nhint: -o falls.svg\n"};
+  const auto must_be_written = [](const std::string& why) {
+    if (!why.empty()) throw UsageError{"error: " + why + "\n"};
+  };
+  if (t == Target::html) {
+    must_be_written(write_whole(o.output, page_of_sweep(o)));
+    return std::nullopt;
+  }
+  SweepPicture picture = picture_of_sweep(o);
+  const auto draw = [&](auto& drawn) {
+    drawn.labels = options.labels;
+    if (!o.size.empty()) drawn.width = options.width, drawn.height = options.height;
+    must_be_written(write_drawing(lay_out(drawn), o.title, t, o.output));
+  };
+  if (picture.map || picture.histogram) {
+    picture.map ? draw(*picture.map) : draw(*picture.histogram);
+    return std::nullopt;
+  }
+  options.x = picture.abscissa;
+  options.names.assign(picture.table.table.columns.begin() + 1, picture.table.table.columns.end());
+  options.smooth = false;
+  return std::move(picture.table);
+}
+
 }  // namespace
 
-int plot(const Options& o) {
+int plot(const PlotCommand& o) {
   const Target t = target(o.output);
   if ((t == Target::pdf || t == Target::png) && !has_cairo())
     throw UsageError{"error: " + std::string(kNoCairo) +
@@ -171,11 +199,11 @@ int plot(const Options& o) {
   for (const std::string& name : split(o.columns)) options.names.push_back(name);
   options.x = o.abscissa;
   if (!o.from.empty()) options.from = time(o.from, "--from");
-  if (!o.until.empty()) options.to = time(o.until, "--to");
-  options.log = o.log_axis;
+  if (!o.to.empty()) options.to = time(o.to, "--to");
+  options.log = o.log;
   options.each = o.each;
   options.equal = o.equal;
-  if (o.equal && o.log_axis) throw UsageError{"error: --equal and --log exclude each other\n"};
+  if (o.equal && o.log) throw UsageError{"error: --equal and --log exclude each other\n"};
   options.smooth = true;
   options.title = o.title;
   options.labels = o.labels == "latex"   ? LabelStyle::latex
@@ -185,7 +213,7 @@ int plot(const Options& o) {
   given.rows = 0;
   take_size(o.size, t, options, given);
 
-  const bool of_sweep = SweepCases::are_in(o.model);
+  const bool of_sweep = SweepCases::are_in(o.run);
   if (!of_sweep && !o.ordinate.empty())
     throw UsageError{"error: --y belongs to a sweep\nhint: anholon plot run.h5 NAME\n"};
   if (!of_sweep && !o.histogram.empty())
@@ -196,31 +224,14 @@ int plot(const Options& o) {
         "error: a page shows a sweep, or the motion of a model\nhint: anholon report MODEL -o page.html\n"};
   RunFile run;
   if (of_sweep) {
-    if (t == Target::terminal || t == Target::tex)
-      throw UsageError{"error: a sweep is drawn as .svg, .pdf, .png or .html\nhint: -o falls.svg\n"};
-    if (t == Target::html) {
-      if (const std::string why = write_whole(o.output, page_of_sweep(o)); !why.empty())
-        throw UsageError{"error: " + why + "\n"};
-      return kOk;
-    }
-    SweepPicture picture = picture_of_sweep(o);
-    if (picture.map || picture.histogram) {
-      const auto draw = [&](auto& drawn) {
-        drawn.labels = options.labels;
-        if (!o.size.empty()) drawn.width = options.width, drawn.height = options.height;
-        if (const std::string why = write_drawing(lay_out(drawn), o.title, t, o.output); !why.empty())
-          throw UsageError{"error: " + why + "\n"};
-      };
-      picture.map ? draw(*picture.map) : draw(*picture.histogram);
-      return kOk;
-    }
-    run = std::move(picture.table);
-    options.x = picture.abscissa;
-    options.names.assign(run.table.columns.begin() + 1, run.table.columns.end());
-    options.smooth = false;
+    auto drawn = drawn_sweep(o, t, options);
+    if (!drawn) return kOk;
+    run = std::move(*drawn);
   } else {
-    run = read_result(o.model);
-    add_formulas(run, o);
+    run = read_result(o.run);
+    std::vector<std::string> names = split(o.columns);
+    if (!o.abscissa.empty()) names.push_back(o.abscissa);
+    add_formulas(run, std::move(names));
   }
   Figure figure;
   try {

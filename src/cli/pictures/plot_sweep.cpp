@@ -46,8 +46,8 @@ RunFile over_one(const NamedColumn& x, const NamedColumn& of) {
 
 }  // namespace
 
-SweepPicture picture_of_sweep(const Options& o) {
-  const SweepCases cases(o.model);
+SweepPicture picture_of_sweep(const PlotCommand& o) {
+  const SweepCases cases(o.run);
   const std::vector<std::string> asked = split(o.columns);
   if (asked.size() > 1) throw Failure({}, "a figure of a sweep shows one column", "one name, or none for the outcomes");
   std::vector<std::string> words;

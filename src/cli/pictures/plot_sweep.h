@@ -16,6 +16,6 @@ struct SweepPicture {
 
 // What a sweep in a folder or a file shows: the column that --column names (default: how the cases ended) over --x and --y
 // (default: the first two that vary). Throws Failure without a place.
-SweepPicture picture_of_sweep(const Options& o);
+SweepPicture picture_of_sweep(const PlotCommand& o);
 
 }  // namespace anholon::cli

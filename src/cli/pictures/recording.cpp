@@ -54,11 +54,10 @@ void take_size(const std::string& text, Recording& r) {
 
 }  // namespace
 
-Recording recording(const Options& o) {
+Recording recording(const RenderCommand& o) {
   Recording r;
-  r.output = o.output.empty()
-                 ? std::filesystem::path(o.model).stem().string() + (o.picture_at.empty() ? ".mp4" : ".png")
-                 : o.output;
+  r.output =
+      o.output.empty() ? std::filesystem::path(o.model).stem().string() + (o.at.empty() ? ".mp4" : ".png") : o.output;
   r.kind = kind_of(r.output);
   if (r.kind == Record::gif) r.width = 640, r.height = 360, r.fps = 25;
   if (!o.size.empty()) take_size(o.size, r);
@@ -70,12 +69,11 @@ Recording recording(const Options& o) {
                      " pictures per second\n"};
   if (!o.seconds.empty()) r.seconds = number(o.seconds, "--seconds");
   if (r.seconds && !(*r.seconds > 0)) throw UsageError{"error: --seconds " + o.seconds + ": a film lasts a while\n"};
-  if (o.picture_at.ends_with('%')) {
-    r.part = number(o.picture_at.substr(0, o.picture_at.size() - 1), "--at") / 100;
-    if (!(*r.part >= 0 && *r.part <= 1))
-      throw UsageError{"error: --at " + o.picture_at + ": from 0% to 100% of the motion\n"};
-  } else if (!o.picture_at.empty()) {
-    r.at = number(o.picture_at, "--at");
+  if (o.at.ends_with('%')) {
+    r.part = number(o.at.substr(0, o.at.size() - 1), "--at") / 100;
+    if (!(*r.part >= 0 && *r.part <= 1)) throw UsageError{"error: --at " + o.at + ": from 0% to 100% of the motion\n"};
+  } else if (!o.at.empty()) {
+    r.at = number(o.at, "--at");
   }
   if (!o.from.empty()) r.from = number(o.from, "--from");
   if (o.motion.to) r.to = o.motion.to->get_d();

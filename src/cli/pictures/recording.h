@@ -23,7 +23,7 @@ struct Recording {
 };
 
 // Throws UsageError for mistakes of the user.
-Recording recording(const Options& o);
+Recording recording(const RenderCommand& o);
 
 // Times of the motion, and the rate at which they are shown.
 struct Moments {

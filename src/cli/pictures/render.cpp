@@ -82,13 +82,12 @@ void check_place(const Recording& r) {
 }
 
 // The motion with its model.
-int motion(const Options& o, Told& x) {
+int motion(const RenderCommand& o, Told& x) {
   if (!o.rows.empty() || is_a_run(o.model)) {
-    take_up(o, x);
+    take_up(o, o.rows, x);
     return kOk;
   }
-  Options one = o;
-  one.output.clear();
+  SimulateCommand one{o, {}, {}, {}, {}};
   one.motion.error_estimate = "never";  // the estimate is not printed
   return simulate_motion(one, nullptr, &x);
 }
@@ -263,7 +262,7 @@ void note_others(const Recording& r, const Moments& m) {
 
 }  // namespace
 
-int render(const Options& o) {
+int render(const RenderCommand& o) {
   const Recording r = recording(o);
   if (viewer_script().empty())
     refuse("this program was built without the viewer, which draws the pictures",

@@ -34,8 +34,8 @@ void open_browser(const std::string& address) {
 
 }  // namespace
 
-int studio(const Options& o) {
-  if (o.studio_worker) {
+int studio(const StudioCommand& o) {
+  if (o.worker) {
     studio_work();
     return kOk;
   }

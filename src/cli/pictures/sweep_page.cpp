@@ -66,8 +66,8 @@ std::string label(const plot::NamedColumn& c) {
 
 }  // namespace
 
-std::string page_of_sweep(const Options& o) {
-  const SweepCases cases(o.model);
+std::string page_of_sweep(const PlotCommand& o) {
+  const SweepCases cases(o.run);
   std::vector<std::string> names = cases.names(), words, axis_names;
   for (const std::string& given : {o.abscissa, o.ordinate})
     if (!given.empty()) axis_names.push_back(given);
@@ -84,14 +84,14 @@ std::string page_of_sweep(const Options& o) {
   cases.read({shown}, words), words.clear();
   std::vector<std::string> none;
   const std::vector<double> numbers = cases.read({"case"}, none)[0].values;
-  if (numbers.empty()) throw Failure({}, "no part is in " + o.model, "the command of the sweep computes them");
+  if (numbers.empty()) throw Failure({}, "no part is in " + o.run, "the command of the sweep computes them");
   const std::vector<std::size_t> rows = rows_to_show(numbers, axes, names.size());
 
   std::vector<unsigned> generations = cases.generations();
   if (!generations.empty()) generations = chosen(generations, rows);
   for (plot::NamedColumn& a : axes) a.values = chosen(a.values, rows);
   JsonWriter j;
-  const std::string title = o.title.empty() ? cases.store() ? cases.store()->asked("title") : o.model : o.title;
+  const std::string title = o.title.empty() ? cases.store() ? cases.store()->asked("title") : o.run : o.title;
   j.open_object().key("title").string(title).key("shown").string(shown).key("command").string(cases.command());
   j.key("model").string(cases.store() ? cases.store()->asked("model") : "");
   j.key("varied").open_array();

@@ -6,6 +6,6 @@
 namespace anholon::cli {
 
 // The page as HTML that needs no other file. Throws Failure without a place.
-std::string page_of_sweep(const Options& o);
+std::string page_of_sweep(const PlotCommand& o);
 
 }  // namespace anholon::cli

@@ -11,14 +11,14 @@ namespace {
 constexpr const char* kPixel =
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==";
 
-Options asked(const std::string& output) {
-  Options o;
+RenderCommand asked(const std::string& output) {
+  RenderCommand o;
   o.model = "models/disc.toml";
   o.output = output;
   return o;
 }
 
-std::string refused(const Options& o) {
+std::string refused(const RenderCommand& o) {
   try {
     recording(o);
   } catch (const UsageError& e) {
@@ -56,15 +56,15 @@ TEST(Recording, KindByTheName) {
   EXPECT_EQ(recording(asked("a.png")).kind, Record::picture);
   EXPECT_EQ(recording(asked("frames/")).kind, Record::folder);
   EXPECT_EQ(recording(asked("")).output, "disc.mp4");
-  Options at = asked("");
-  at.picture_at = "1";
+  RenderCommand at = asked("");
+  at.at = "1";
   EXPECT_EQ(recording(at).output, "disc.png");
   EXPECT_NE(refused(asked("a.avi")).find("'a.avi'"), std::string::npos);
 }
 
 TEST(Recording, SizesAndRates) {
   const auto sized = [](const char* size, const char* output = "a.png") {
-    Options o = asked(output);
+    RenderCommand o = asked(output);
     o.size = size;
     return o;
   };
@@ -76,18 +76,18 @@ TEST(Recording, SizesAndRates) {
                             "99999999999999999999x90", "160 x 90"})
     EXPECT_NE(refused(sized(wrong)).find("--size"), std::string::npos) << wrong;
   for (const char* wrong : {"0", "-1", "121", "1e9"}) {
-    Options o = asked("a.mp4");
+    RenderCommand o = asked("a.mp4");
     o.fps = wrong;
     EXPECT_NE(refused(o).find("--fps"), std::string::npos) << wrong;
   }
-  Options o = asked("a.mp4");
+  RenderCommand o = asked("a.mp4");
   o.seconds = "0";
   EXPECT_NE(refused(o), "");
-  o = asked("a.mp4"), o.picture_at = "1";
+  o = asked("a.mp4"), o.at = "1";
   EXPECT_NE(refused(o), "");
-  o = asked("a.png"), o.picture_at = "60%";
+  o = asked("a.png"), o.at = "60%";
   EXPECT_EQ(recording(o).part, 0.6);
-  o.picture_at = "101%";
+  o.at = "101%";
   EXPECT_NE(refused(o), "");
   o = asked("a.png"), o.seconds = "1";
   EXPECT_NE(refused(o), "");
