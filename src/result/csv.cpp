@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstring>
 
-#include <unistd.h>
-
 #include "base/diagnostic.h"
 #include "base/escape.h"
 #include "base/utf8.h"
@@ -157,60 +155,42 @@ RunFile read_csv(std::string_view text) { return CsvReader(text).read(); }
 // Lines that are written together.
 static constexpr std::size_t kTogether = 1u << 16;
 
-CsvLines::~CsvLines() { flush(); }
-
-// Room after the lines that wait.
-char* CsvLines::room(std::size_t more) {
-  if (waiting_.size() - used_ < more) waiting_.resize(used_ + more + kTogether);
-  return waiting_.data() + used_;
-}
-
-void CsvLines::append(std::string_view text) {
-  std::memcpy(room(text.size()), text.data(), text.size());
-  used_ += text.size();
-}
-
 void CsvLines::header(const std::vector<std::string>& names) {
-  if (!open()) return;
-  append(header_line(names));
+  if (!file_.open()) return;
+  file_.add(header_line(names));
   end_line();
   flush();
 }
 
 void CsvLines::row(const Row& row) {
-  if (!open()) return;
-  char* const begin = room(room_for(row));
-  used_ += static_cast<std::size_t>(write_numbers(begin, row) - begin);
+  if (!file_.open()) return;
+  char* const begin = file_.room(room_for(row));
+  file_.added(static_cast<std::size_t>(write_numbers(begin, row) - begin));
   end_line();
 }
 
 void CsvLines::cells(const std::vector<std::string>& texts) {
-  if (!open()) return;
+  if (!file_.open()) return;
   for (const std::string& text : texts) {
-    if (&text != texts.data()) append(",");
-    append(text);
+    if (&text != texts.data()) file_.add(",");
+    file_.add(text);
   }
   end_line();
 }
 
 void CsvLines::end_line() {
-  append("\n");
-  if (used_ >= kTogether || std::chrono::steady_clock::now() >= next_) flush();
+  file_.add("\n");
+  if (file_.waiting() >= kTogether)
+    file_.end_block();
+  else if (std::chrono::steady_clock::now() >= next_)
+    flush();
 }
 
 void CsvLines::flush() {
   constexpr auto kPause = std::chrono::milliseconds(500);
-  if (!file_.stream()) return;
-  file_.write({waiting_.data(), used_});
   file_.flush();
-  used_ = 0;
   next_ = std::chrono::steady_clock::now();
-  if (!::isatty(::fileno(file_.stream()))) next_ += kPause;
-}
-
-std::string CsvLines::close() {
-  flush();
-  return file_.close();
+  if (!file_.is_terminal()) next_ += kPause;
 }
 
 extern const ResultFormat csv_format;

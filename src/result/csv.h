@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "result/file.h"
+#include "result/block_file.h"
 #include "result/writer.h"
 
 namespace anholon {
@@ -19,28 +19,20 @@ class CsvLines {
  public:
   // An empty path or "-" is the standard output. Check `error` before use.
   explicit CsvLines(const std::string& path) : file_(path) {}
-  ~CsvLines();
-  CsvLines(const CsvLines&) = delete;
-  CsvLines& operator=(const CsvLines&) = delete;
   // Writes the first line, at once.
   void header(const std::vector<std::string>& names);
   void row(const Row& row);
   // Writes a line of words and numbers unchanged.
   void cells(const std::vector<std::string>& texts);
   void flush();
-  std::string close();
+  std::string close() { return file_.close(); }
   const std::string& error() const { return file_.error(); }
   std::string part() const { return file_.part(); }
 
  private:
-  bool open() const { return file_.stream() && error().empty(); }
   void end_line();
-  void append(std::string_view text);
-  char* room(std::size_t more);
 
-  GrowingFile file_;
-  std::string waiting_;  // the first used_ characters; the others are room
-  std::size_t used_ = 0;
+  BlockFile file_;
   std::chrono::steady_clock::time_point next_{};
 };
 

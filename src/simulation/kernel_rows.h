@@ -11,7 +11,7 @@
 #include "observe/rows/waiting_rows.h"
 #include "observe/supports.h"
 #include "observe/watch.h"
-#include "simulation/in_order.h"
+#include "base/in_order.h"
 #include "simulation/row_writer.h"
 
 namespace anholon {

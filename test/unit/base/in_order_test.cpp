@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 
-#include "simulation/in_order.h"
+#include "base/in_order.h"
 #include "simulation/simulate.h"
 #include "support/models.h"
 #include "support/rows.h"
