@@ -224,8 +224,9 @@ class Workers:
         """Shares begun by GNU parallel, or xargs; one is killed and begun anew."""
         expected = self.by_command()
         numbers = [str(k) for k in (1, 2, 3, 4)]
-        # Each share tells its process, so that one can be killed.
-        share = f"echo $$ > {self.place}/share-$1; exec {self.program} " + " ".join(f'"{w}"' for w in self.shares("--shard")) + ' "$1/4"'
+        # Each share tells its process, so that one can be killed. xargs ends at a command that a signal ended, so the shell outlives it.
+        command = " ".join(f'"{w}"' for w in [self.program, *self.shares("--shard")])
+        share = f'{command} "$1/4" & echo $! > {self.place}/share-$1; wait $!'
         script = self.place / "share.sh"
         script.write_text(share)
         if not shutil.which("parallel"):
