@@ -413,8 +413,10 @@ def _fill(
     while True:
         folder = _fill_generation(core, on=on, share=share, threads=threads, stop=stop, progress=progress)
         # Other shares may have parts to compute before the borders are known; other processes may plan the same generation.
+        if refine < 1 or core.missing():
+            return folder
         generations = len(core.progress().generations)
-        if refine < 1 or core.missing() or generations > refine or not core.refine(rule, generations):
+        if generations > refine or not core.refine(rule, generations):
             return folder
 
 
