@@ -13,7 +13,9 @@ namespace anholon::v1 {
 struct Vary {
   std::string name;
   std::vector<Number> values = {};
-  std::string law = {};  // instead of values a random one in each case: "normal(MEAN,DEVIATION)" or "uniform(FROM,TO)"
+  // Instead of values: "normal(MEAN,DEVIATION)" or "uniform(FROM,TO)" draws one in each case; "FROM:TO:COUNT" is a grid
+  // whose points are computed when they are needed, so that a grid of 10^9 points takes no memory.
+  std::string law = {};
 };
 // `count` values from `from` to `to`, both included.
 ANHOLON_API std::vector<Number> linspace(double from, double to, std::size_t count);

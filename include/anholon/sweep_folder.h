@@ -68,11 +68,16 @@ class ANHOLON_API SweepFolder {
   Result<FolderDone> fill(const FolderWork& work = {}) const;
   // Plans the next generation: it halves the grid where neighbours ended in different ways, and, if a rule COLUMN:BOUND is
   // given, where their numbers in a column differ by more than a bound. Returns how many cases it adds, 0 if there is no
-  // border. Errors: parts are missing, what varies is no grid, an earlier generation followed another rule, or the folder
-  // was opened by its name alone.
-  Result<std::size_t> refine(const std::string& rule = {}) const;
+  // border. With a number, 1 for the first one that refines, it plans this generation, and returns its cases, too, if
+  // another process has planned it before. Errors: parts are missing, what varies is no grid, an earlier generation
+  // followed another rule, the generation before that number is not there, or the folder was opened by its name alone.
+  Result<std::size_t> refine(const std::string& rule = {}, std::optional<std::size_t> number = {}) const;
   // The numbers of a case by the names that vary, as exact text. Errors: there is no such case, or as `fill`.
   Result<std::vector<std::pair<std::string, std::string>>> numbers(std::size_t number) const;
+  // How far the cases can be trusted, as JSON: digits to trust and residuals of some of them, and sentences that tell
+  // these. The folder keeps it; the first call computes the cases once more. Errors: parts are missing, the folder cannot
+  // be written, it was stopped, or, where the folder does not keep it yet, it was opened by its name alone.
+  Result<std::string> judge(const std::function<bool()>& cancelled = {}) const;
 
   struct Data;
   explicit SweepFolder(std::shared_ptr<const Data> data) : data_(std::move(data)) {}

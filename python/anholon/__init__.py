@@ -69,7 +69,7 @@ from .expressions import (
 from .from_sympy import from_sympy
 from .model import Check, Model, load, loads, zoo
 from .run import Figure, Page, Run
-from .sweep import Sweep, normal, uniform
+from .sweep import Sweep, grid, normal, uniform
 from .sweep_folder import open_sweep, SweepFolder
 
 __version__: str = version()
@@ -124,6 +124,7 @@ __all__ = [
     "ey",
     "ez",
     "from_sympy",
+    "grid",
     "here",
     "load",
     "loads",

@@ -511,8 +511,8 @@ class Model:
         """Many motions, on all cores: all combinations of the values, the last name varying fastest.
 
         Args:
-            vary: by the name of a parameter, a coordinate or a velocity: a list or an array of values, or a law
-                (:func:`normal`, :func:`uniform`) by which each case draws its own.
+            vary: by the name of a parameter, a coordinate or a velocity: a list or an array of values, a grid
+                (:func:`grid`), or a law (:func:`normal`, :func:`uniform`) by which each case draws its own.
             to: the end, s; that of the file if it is None, or the last of ``at``.
             at: times, s, at which the state of each case is kept, too: ``sweep.rows("theta")`` has shape (cases, times).
             columns: names or patterns such as ``"theta*"``; all columns without it.
@@ -640,7 +640,9 @@ def _count(values: list[tuple[str, list[str]]], laws: dict[str, str], cases: int
         return float(cases)
     if together:
         return float(max((len(of) for _, of in values), default=0))
-    return None if laws else float(math.prod(len(of) for _, of in values))
+    if any("(" in law for law in laws.values()):
+        return None
+    return float(math.prod(int(laws[name].rpartition(":")[2]) if name in laws else len(of) for name, of in values))
 
 
 class Check:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Law(str):
-    """A law by which a value is drawn for each case; see :func:`normal` and :func:`uniform`."""
+    """A law that gives a value to each case; see :func:`normal`, :func:`uniform` and :func:`grid`."""
 
 
 def normal(mean: Number, deviation: Number) -> Law:
@@ -45,6 +45,18 @@ def uniform(low: Number, high: Number) -> Law:
         True
     """
     return Law(f"uniform({text_of(low)},{text_of(high)})")
+
+
+def grid(low: Number, high: Number, count: int) -> Law:
+    """Evenly spaced values, both ends included, in SI units. Each is computed when its case is: 10^9 values take no memory.
+
+    Example:
+        >>> import anholon as an
+        >>> sweep = an.load("disc").sweep({"phi'": an.grid(5, 7, 5)}, to="0.1")
+        >>> sweep.varied["phi'"].tolist()
+        [5.0, 5.5, 6.0, 6.5, 7.0]
+    """
+    return Law(f"{text_of(low)}:{text_of(high)}:{int(count)}")
 
 
 class Sweep(Mapping[str, "Array"]):

@@ -146,6 +146,36 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         end = names.index("outcome") if "outcome" in names else 0
         return [name for name in names[:end] if name not in ("case", "t", "case_name")]
 
+    def judge(self, *, stop: Callable[[], bool] | None = None) -> dict[str, Any]:
+        """How far the cases can be trusted: digits to trust and residuals of some of them, which are computed once more.
+
+        The folder keeps the answer, ``anholon sweep status`` tells it, and a second call reads it.
+
+        Args:
+            stop: asked every 20 ms; True ends the computation.
+
+        Returns:
+            ``error_estimate`` and ``residuals``, as in the JSON of ``anholon sweep``, and ``text``, a list of sentences.
+
+        Raises:
+            ModelError: parts are missing; the folder was made by the command line and is not judged yet.
+            MotionError: ``stop`` ended it.
+            KeyboardInterrupt: Ctrl-C.
+
+        Example:
+            >>> import anholon as an, tempfile
+            >>> falls = an.load("disc").sweep({"phi'": [5, 6, 7]}, to=1, out=tempfile.mkdtemp() + "/falls")
+            >>> judged = falls.judge()
+            >>> judged["error_estimate"]["digits"] >= 10, judged["residuals"]["newton"]["worst"] < 1e-12
+            (True, True)
+        """
+        kept = os.path.exists(os.path.join(self.path, "_judgement.json"))
+        judged, raised = (self._core if kept else _computing(self.path)).judge(stop)
+        if isinstance(raised, BaseException):
+            raise raised
+        answer: dict[str, Any] = json.loads(judged)
+        return answer
+
     def where(self, conditions: Mapping[str, Any]) -> npt.NDArray[Any]:
         """The numbers of the cases for which each column has the value given, or lies within the pair given, ends included.
 
@@ -382,8 +412,11 @@ def _fill(
         raise ModelError("refine_by tells what a border is, and refine how often it is refined\nhint: refine=4")
     while True:
         folder = _fill_generation(core, on=on, share=share, threads=threads, stop=stop, progress=progress)
-        # Other shares may have parts to compute before the borders are known.
-        if refine < 1 or core.missing() or len(core.progress().generations) > refine or not core.refine(rule):
+        # Other shares may have parts to compute before the borders are known; other processes may plan the same generation.
+        if refine < 1 or core.missing():
+            return folder
+        generations = len(core.progress().generations)
+        if generations > refine or not core.refine(rule, generations):
             return folder
 
 

@@ -61,16 +61,25 @@ void bind_sweep_folders(nb::module_& m) {
       .def("progress", [](const SweepFolder& f) { return value_of(unlocked([&] { return f.progress(); })); })
       .def(
           "refine",
-          [](const SweepFolder& f, const std::string& rule) {
-            return value_of(unlocked([&] { return f.refine(rule); }));
+          [](const SweepFolder& f, const std::string& rule, std::size_t number) {
+            return value_of(unlocked([&] { return f.refine(rule, number); }));
           },
-          "rule"_a)
+          "rule"_a, "number"_a)
       .def(
           "numbers",
           [](const SweepFolder& f, std::size_t number) {
             return value_of(unlocked([&] { return f.numbers(number); }));
           },
           "number"_a)
+      .def(
+          "judge",
+          [](const SweepFolder& f, nb::object stop) {
+            Attendant attendant(std::move(stop), nb::none());
+            const Result<std::string> judged =
+                attendant.attend([&] { return f.judge([&] { return attendant.cancelled(); }); });
+            return std::pair(attendant.raised().is_none() ? value_of(judged) : std::string(), attendant.raised());
+          },
+          "stop"_a.none())
       .def(
           "read",
           [](const SweepFolder& f, const std::vector<std::string>& names) {

@@ -151,6 +151,45 @@ def test_borders_are_refined_whoever_computes(tmp_path: pathlib.Path, disc: an.M
         disc.sweep({"m": [1, 3, 2]}, to=1, out=tmp_path / "none", refine=1)
 
 
+def test_a_generation_that_another_process_planned_is_not_planned_again(tmp_path: pathlib.Path, disc: an.Model) -> None:
+    folder = disc.sweep(GRID, to=3, out=tmp_path / "f")
+    planned = folder._core.refine("theta:0.5", 1)
+    assert planned > 0 and folder._core.refine("theta:0.5", 1) == planned and folder.generations == [117, planned]
+    with pytest.raises(an.ModelError, match="generation 3 cannot follow on generation 1"):
+        folder._core.refine("theta:0.5", 3)
+    with pytest.raises(an.ModelError, match="parts are missing"):
+        folder._core.refine("theta:0.5", 2)
+
+
+def test_a_grid_has_the_cases_of_its_list(tmp_path: pathlib.Path, disc: an.Model) -> None:
+    grid = {"phi'": an.grid(1, 7, 13), "theta": an.grid("0.2", "1.4", 9)}
+    exact = {"phi'": [str(1 + k / 2) for k in range(13)], "theta": [f"{20 + 15 * k}/100" for k in range(9)]}
+    memory, folder = disc.sweep(grid, to=1), disc.sweep(grid, to=1, out=tmp_path / "grid", refine=1, refine_by=("theta", 0.5))
+    listed = disc.sweep(exact, to=1, out=tmp_path / "list", refine=1, refine_by=("theta", 0.5))
+    assert memory.cases == 117 and np.array_equal(memory["theta"], folder["theta"][:117])
+    assert folder.generations == listed.generations and np.array_equal(folder["theta"], listed["theta"])
+    with pytest.raises(an.ModelError, match="a grid has between 2 and 1000000000 points"):
+        disc.sweep({"phi'": an.grid(1, 7, 1)}, to=1)
+
+
+def test_a_folder_is_judged_once(tmp_path: pathlib.Path, disc: an.Model) -> None:
+    folder = disc.sweep({"phi'": SPINS}, to=1, out=tmp_path / "f", chunk=7, share=(1, 2))
+    with pytest.raises(an.ModelError, match="4 of 9 parts are missing"):
+        folder.judge()
+    judged = folder.fill().judge()
+    error, residuals = judged["error_estimate"], judged["residuals"]
+    assert 10 <= error["digits"] <= 16 and error["compared"] == residuals["checked"] and error["worst_case"] in error["compared"]
+    assert 0 <= residuals["newton"]["worst"] < 1e-12 and len(judged["text"]) == 2
+    kept = tmp_path / "f" / "_judgement.json"
+    before = kept.stat().st_mtime_ns
+    assert an.open_sweep(folder.path).judge() == judged and kept.stat().st_mtime_ns == before
+    # The estimate bounds what two runs of the worst case differ by.
+    case = error["worst_case"]
+    sharp = folder.run(case, digits=25, tolerance="1e-24")
+    for name in ("x", "theta"):
+        assert abs(sharp[name][-1] - folder[name][case]) < 100 * error["error"] * max(1, abs(sharp[name]).max())
+
+
 def test_refined_by_workers_of_dask(client: Any, tmp_path: pathlib.Path, disc: an.Model) -> None:
     disc.sweep(GRID, to=3, out=tmp_path / "here", chunk=20, refine=2, refine_by=("theta", 0.5))
     disc.sweep(GRID, to=3, out=tmp_path / "there", chunk=20, refine=2, refine_by=("theta", 0.5), on=client)

@@ -4,7 +4,7 @@
 
 #include "api/sweep_request.h"
 #include "base/json.h"
-#include "ensemble/parts/fill.h"
+#include "ensemble/parts/judgement.h"
 #include "ensemble/refine/refine.h"
 #include "result/choose_columns.h"
 
@@ -38,13 +38,6 @@ inner::SweepTable table_of(const PreparedSweep& p, const std::vector<std::string
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-  return text;
-}
-
-std::string text_of(const Vary& v) {
-  if (!v.law.empty()) return v.name + "~" + v.law;
-  std::string text = v.name + "=";
-  for (std::size_t k = 0; k < v.values.size(); ++k) text += (k == 0 ? "" : ",") + v.values[k].text();
   return text;
 }
 
@@ -206,7 +199,7 @@ Result<FolderDone> SweepFolder::fill(const FolderWork& work) const {
   });
 }
 
-Result<std::size_t> SweepFolder::refine(const std::string& word) const {
+Result<std::size_t> SweepFolder::refine(const std::string& word, std::optional<std::size_t> number) const {
   return told([&]() -> Result<std::size_t> {
     const PreparedSweep& p = prepared(*data_);
     inner::SweepStore store = data_->now();
@@ -217,6 +210,12 @@ Result<std::size_t> SweepFolder::refine(const std::string& word) const {
       throw inner::Failure({}, "refine by " + m.word + ": " + m.diagnostic.message, "COLUMN:BOUND, such as theta:0.1");
     }
     must_be_refinable(*p.variation, columns(), rule);
+    const std::size_t next = store.generations().size();
+    if (number && *number < next) return store.generations()[*number].cases;
+    if (number && *number > next)
+      return mistake("generation " + std::to_string(*number) + " cannot follow on generation " +
+                         std::to_string(next - 1),
+                     "plan generation " + std::to_string(next) + " before it");
     if (const std::size_t missing = store.missing().size(); missing > 0)
       return mistake(std::to_string(missing) + " parts are missing, and borders follow from all cases",
                      "fill() computes them");
@@ -237,6 +236,25 @@ Result<std::vector<std::pair<std::string, std::string>>> SweepFolder::numbers(st
     for (std::size_t k = 0; k < of.values.size(); ++k)
       list.emplace_back(p.options.varied[k].name, of.values[k].get_str());
     return list;
+  });
+}
+
+Result<std::string> SweepFolder::judge(const std::function<bool()>& cancelled) const {
+  return told([&]() -> Result<std::string> {
+    const inner::SweepStore store = data_->now();
+    if (std::string kept = store.judgement(); !kept.empty()) return kept;
+    const PreparedSweep& p = prepared(*data_);
+    if (const std::size_t parts = store.missing().size(); parts > 0)
+      return mistake(std::to_string(parts) + " of " + std::to_string(store.parts()) + " parts are missing",
+                     "fill computes them");
+    inner::EnsembleOptions options = p.options;
+    options.estimate = inner::ErrorEstimate::always;
+    inner::SweepTable table = table_of(p, data_->asked_columns);
+    const inner::EnsembleReport report = judge_piece({p.scenario, &options, &table, {}}, cancelled);
+    if (!report.outcome.ok()) return error_of(report.outcome);
+    const std::string json = judgement_json(report);
+    if (const std::string error = store.add_judgement(json); !error.empty()) return mistake(error);
+    return json;
   });
 }
 

@@ -29,7 +29,7 @@ inner::Variation variation_of(const SweepOptions& asked, const inner::Model& mod
   try {
     for (const Vary& each : asked.vary) {
       if (!each.law.empty()) {
-        v.add(each.name + "~" + each.law, model);
+        v.add(text_of(each), model);
         continue;
       }
       std::vector<inner::Rational> values;
@@ -60,6 +60,14 @@ inner::Outcome scenario_with(const System::Data& of, const std::vector<std::stri
 }
 
 }  // namespace
+
+std::string text_of(const Vary& v) {
+  const bool grid = v.law.find(':') != std::string::npos;
+  if (!v.law.empty()) return v.name + (grid ? "=" : "~") + v.law;
+  std::string text = v.name + "=";
+  for (std::size_t k = 0; k < v.values.size(); ++k) text += (k == 0 ? "" : ",") + v.values[k].text();
+  return text;
+}
 
 std::vector<std::size_t> chosen_places(const std::vector<std::string>& asked, const std::vector<std::string>& all) {
   std::vector<std::size_t> places;

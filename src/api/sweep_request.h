@@ -21,6 +21,9 @@ struct PreparedSweep {
   inner::EnsembleOptions options;
 };
 
+// What varies, as the command line writes it: NAME=A,B, NAME=FROM:TO:COUNT or NAME~LAW(…).
+std::string text_of(const Vary& vary);
+
 // The places of the columns that are asked for; all without a name. Throws Failure.
 std::vector<std::size_t> chosen_places(const std::vector<std::string>& asked, const std::vector<std::string>& all);
 

@@ -11,7 +11,7 @@ namespace anholon {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 1'000'000;  // of one grid
+constexpr std::size_t kMostPoints = 1'000'000'000;  // of one grid; 2^30 places between two of them have numbers
 
 // A part of the word, with its place.
 struct Part {
@@ -145,13 +145,14 @@ Variation::Values Variation::listed(const std::string& word, std::size_t sign, c
     mistake_in(word, list[2].at, list[2].text.size(),
                "a grid has between 2 and " + std::to_string(kMostPoints) + " points",
                "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
-  const unsigned long n = count.get_num().get_ui();
-  for (unsigned long k = 0; k < n; ++k) {
-    Rational part(k, std::max(n - 1, 1UL));
-    part.canonicalize();
-    values.list.push_back(from + (to - from) * part);
-  }
+  values.grid = Grid{from, to, count.get_num().get_ui()};
   return values;
+}
+
+Rational Variation::Grid::operator[](std::size_t k) const {
+  Rational part(k, std::max<std::size_t>(points - 1, 1));
+  part.canonicalize();
+  return from + (to - from) * part;
 }
 
 void Variation::name(const std::string& word, std::size_t sign, const Model& model) {
@@ -176,7 +177,7 @@ void Variation::add(const std::string& word, const Model& model) {
     mistake_in(word, 0, word.size(), "this is not of the form NAME=VALUES or NAME~LAW(…)", kHint);
   name(word, sign, model);
   values_.push_back(word[sign] == '~' ? law(word, sign, units_.back()) : listed(word, sign, units_.back()));
-  if (!drawn(values_.back())) values_.back().axis = new_axis(values_.back().list.size());
+  if (!values_.back().drawn()) values_.back().axis = new_axis(values_.back().points());
 }
 
 void Variation::add(const std::string& name, std::vector<Rational> values, const Model& model) {
@@ -267,13 +268,13 @@ std::vector<Rational> Variation::operator()(std::size_t number) const {
   std::vector<std::string> cells;
   for (std::size_t i = 0; i < values_.size(); ++i) {
     const Values& v = values_[i];
-    if (drawn(v)) {
+    if (v.drawn()) {
       out[i] = Rational(draw(v, number));
     } else if (v.cell) {
       if (cells.empty()) cells = table_->cells(points[v.axis]);
       out[i] = anholon::number(cells[*v.cell], {0, cells[*v.cell]}, units_[i]);
     } else {
-      out[i] = v.list[points[v.axis]];
+      out[i] = v.at(points[v.axis]);
     }
   }
   return out;
@@ -283,12 +284,12 @@ void Variation::must_be_a_grid() const {
   for (std::size_t i = 0; i < values_.size(); ++i) {
     const Values& v = values_[i];
     const std::string& name = varied_[i].name;
-    if (drawn(v) || v.cell)
+    if (v.drawn() || v.cell)
       throw Failure(
           {}, "between the values of '" + name + "' lies no grid: they are " + (v.cell ? "those of a table" : "drawn"),
           "refine a grid: " + name + "=0:10:101");
-    for (std::size_t k = 1; k < v.list.size(); ++k)
-      if (cmp(v.list[k], v.list[k - 1]) * cmp(v.list[1], v.list[0]) <= 0)
+    for (std::size_t k = 1; k < v.points() && (k == 1 || !v.grid); ++k)
+      if (cmp(v.at(k), v.at(k - 1)) * cmp(v.at(1), v.at(0)) <= 0)
         throw Failure({}, "between the values of '" + name + "' lies no grid: they neither ascend nor descend",
                       "refine a grid, or a list in ascending order");
   }
@@ -302,7 +303,7 @@ std::vector<Rational> Variation::between(std::span<const std::int64_t> places, u
     const auto k = static_cast<std::size_t>(place / fine);
     Rational part(place % fine, fine);
     part.canonicalize();
-    out.push_back(part == 0 ? v.list[k] : v.list[k] + (v.list[k + 1] - v.list[k]) * part);
+    out.push_back(part == 0 ? v.at(k) : v.at(k) + (v.at(k + 1) - v.at(k)) * part);
   }
   return out;
 }

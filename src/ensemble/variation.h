@@ -17,7 +17,8 @@ class Variation {
   enum class Draws : std::uint8_t { random, sobol };
   explicit Variation(std::uint64_t seed = 0, Draws draws = Draws::random) : seed_(seed), draws_(draws) {}
 
-  // NAME=FROM:TO:COUNT, NAME=A,B,…, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO). Throws MistakeInWord.
+  // NAME=FROM:TO:COUNT, NAME=A,B,…, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO). The points of a grid are
+  // computed when they are asked for. Throws MistakeInWord.
   void add(const std::string& word, const Model& model);
   // A list of values in SI units. Throws MistakeInWord.
   void add(const std::string& name, std::vector<Rational> values, const Model& model);
@@ -48,18 +49,27 @@ class Variation {
   std::vector<Rational> between(std::span<const std::int64_t> places, unsigned halvings) const;
 
  private:
+  // Evenly spaced points, which are computed when they are asked for.
+  struct Grid {
+    Rational from, to;
+    std::size_t points = 0;
+    Rational operator[](std::size_t k) const;
+  };
   struct Values {
-    std::vector<Rational> list;       // of a grid; else empty
+    std::vector<Rational> list;       // of a list; else empty
+    std::optional<Grid> grid;         // of a grid
     std::optional<std::size_t> cell;  // of a line of the table
-    std::size_t axis = 0;             // of a list or a cell
+    std::size_t axis = 0;             // of a list, a grid or a cell
     enum class Law : std::uint8_t { normal, uniform } law = Law::normal;
     double a = 0, b = 0;  // parameters of the distribution
     std::uint32_t stream = 0;
+    bool drawn() const { return list.empty() && !grid && !cell; }
+    std::size_t points() const { return grid ? grid->points : list.size(); }  // of a list or a grid
+    Rational at(std::size_t k) const { return grid ? (*grid)[k] : list[k]; }
   };
   Values law(const std::string& word, std::size_t sign, const std::string& unit);
   Values listed(const std::string& word, std::size_t sign, const std::string& unit) const;
   void name(const std::string& word, std::size_t sign, const Model& model);
-  bool drawn(const Values& v) const { return v.list.empty() && !v.cell; }
   std::size_t new_axis(std::size_t size);
   double draw(const Values& v, std::size_t number) const;
 

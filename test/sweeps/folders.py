@@ -15,6 +15,7 @@ import json
 import os
 import pathlib
 import random
+import resource
 import shlex
 import shutil
 import signal
@@ -224,6 +225,42 @@ class Folders:
     def refined(self, folder, *words, rule="theta:0.5"):
         return [*self.REFINED, "-o", str(folder) + "/", *words, *(["--refine-by", rule] if rule else [])]
 
+    # Each of these begins a process, lets one thing happen to it after some seconds, and returns whether it was still at work then.
+
+    def kill_one(self, words, seconds):
+        process = self.begin(*words)
+        time.sleep(seconds)
+        at_work = process.poll() is None
+        process.kill()
+        process.communicate()
+        return at_work
+
+    def stop_one(self, words, seconds):
+        """Another process completes the folder in the meantime."""
+        process = self.begin(*words)
+        time.sleep(seconds)
+        at_work = process.poll() is None
+        process.send_signal(signal.SIGSTOP)
+        self.run(*words, status=0)
+        process.send_signal(signal.SIGCONT)
+        _, error = process.communicate(timeout=PATIENCE)
+        must(process.returncode == 0, f"the late process: {process.returncode}: {error}")
+        return at_work
+
+    def disk_one(self, words, seconds):
+        """From then on the process can write no file of more than 1 kB."""
+        process = subprocess.Popen(
+            ["bash", "-c", 'trap "" XFSZ; exec "$0" "$@"', self.program, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        time.sleep(seconds)
+        try:
+            resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (1024, 1024))
+        except ProcessLookupError:
+            pass  # it was faster
+        _, error = process.communicate(timeout=PATIENCE)
+        must(process.returncode == 0 or (process.returncode == 2 and "cannot write" in error), f"{process.returncode}: {error}")
+        return process.returncode == 2
+
     def refine(self):
         """Generations at borders: the same cases after kills, with other parts, threads and shares, and those of a single sweep."""
         quiet, all_of = self.place / "quiet", self.place / "refined.csv"
@@ -234,14 +271,21 @@ class Folders:
             return self.hash(all_of)
 
         expected = collected(quiet)
-        small = ["--refine", "3", "--chunk", "5", "--threads", "1"]
+        small = self.refined(self.folder, "--refine", "3", "--chunk", "5", "--threads", "1")
+        begin = time.monotonic()
+        self.run(*small, status=0)
+        takes = time.monotonic() - begin
+        shutil.rmtree(self.folder)
+        happened = {"kill": 0, "stop": 0, "disk": 0}
         for _ in range(self.kills):
-            process = self.begin(*self.refined(self.folder, *small))
-            time.sleep(random.uniform(0, 0.25))
-            process.kill()
-            process.communicate()
-        self.run(*self.refined(self.folder, *small), status=0)
-        must(collected(self.folder) == expected, "after kills the cases are others")
+            how = random.choice(list(happened))
+            happened[how] += getattr(self, f"{how}_one")(small, random.uniform(0, takes))
+            if how == "stop":
+                must(collected(self.folder) == expected, "after a late commit the cases are others")
+                shutil.rmtree(self.folder)
+        print(f"refine: {happened['kill']} kills, {happened['stop']} stops and {happened['disk']} full disks in a run of {takes:.1f} s")
+        self.run(*small, status=0)
+        must(collected(self.folder) == expected, "after kills, stops and full disks the cases are others")
         names = os.listdir(self.folder)
         must(not any(name.startswith(".tmp") for name in names) and sum(name.startswith("_gen") for name in names) == 3, f"{sorted(names)}")
         told = json.loads(self.run("sweep", "status", str(self.folder), "--json", status=0)[0])

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Sweeps in folders under engines of others, which fail: what is collected has the bytes of one quiet process.
 
-    workers.py --program PROGRAM [--kills 40] [PART...]     parts: workers stopped scheduler client disk clients parallel slurm
+    workers.py --program PROGRAM [--kills 40] [PART...]     parts: workers refined stopped scheduler client disk clients parallel slurm
     workers.py --self-test                                  other bytes are found
 
 Workers are processes `dask worker`; parts that need Dask are left out where it is missing, and so are GNU parallel (xargs takes its
@@ -41,6 +41,17 @@ def sweep(folder, on=None):
     import anholon as an
 
     return an.load("disc").sweep({"phi'": SPINS, "theta": [1.2, 1.3, 1.4, 0]}, to=12, out=folder, chunk=100, on=on, threads=1)
+
+
+def borders(folder, on=None):
+    """A sweep whose borders are refined twice."""
+    import anholon as an
+
+    grid = {"phi'": an.grid(1, 7, 61), "theta": an.grid("0.2", "1.4", 25)}
+    return an.load("disc").sweep(grid, to=6, out=folder, chunk=50, on=on, threads=1, refine=2, refine_by=("theta", 0.5))
+
+
+SWEEPS = {"sweep": sweep, "borders": borders}
 
 
 def hash_of(path):
@@ -107,10 +118,10 @@ class Workers:
     def present(self):
         return len(list(self.folder.glob("part-*.parquet"))) if self.folder.exists() else 0
 
-    def client(self, address):
-        """A client in a process of its own."""
+    def client(self, address, name="sweep"):
+        """A client in a process of its own, which asks for one of SWEEPS."""
         return subprocess.Popen(
-            [sys.executable, __file__, "--client", str(self.folder), address], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+            [sys.executable, __file__, "--client", name, str(self.folder), address], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
         )
 
     def finish(self, client, status=0):
@@ -130,10 +141,32 @@ class Workers:
 
     def workers(self):
         """kill -9 of workers at random moments; others begin in their place."""
+
+        def whole():
+            self.clear()
+            self.check()
+
+        self.kill_workers("sweep", whole)
+
+    def refined(self):
+        """The same while borders are refined, generation after generation."""
+        borders(self.folder)
+        quiet, expected = len(borders(self.folder).generations), self.collected()
+        must(quiet == 3, f"{quiet} generations")
+        shutil.rmtree(self.folder)
+
+        def whole():
+            must(borders(self.folder).complete and self.collected() == expected, "what was collected has other bytes")
+            shutil.rmtree(self.folder)
+
+        self.kill_workers("borders", whole)
+
+    def kill_workers(self, name, whole):
+        """Kills workers of clients, one client after the other; `whole` looks at the folder of each."""
         with Cluster(self.place) as cluster:
             killed = 0
             while killed < self.kills:
-                client = self.client(cluster.address)
+                client = self.client(cluster.address, name)
                 while client.poll() is None and killed < self.kills:
                     time.sleep(random.uniform(0.1, 0.7))
                     victim = random.randrange(len(cluster.workers))
@@ -142,8 +175,7 @@ class Workers:
                     cluster.workers[victim] = cluster.worker()
                     killed += 1
                 self.finish(client)
-                self.clear()
-                self.check()
+                whole()
 
     def stopped(self):
         """A worker that is stopped until others have computed its part: its late commit does no harm."""
@@ -224,8 +256,9 @@ class Workers:
         """Shares begun by GNU parallel, or xargs; one is killed and begun anew."""
         expected = self.by_command()
         numbers = [str(k) for k in (1, 2, 3, 4)]
-        # Each share tells its process, so that one can be killed.
-        share = f"echo $$ > {self.place}/share-$1; exec {self.program} " + " ".join(f'"{w}"' for w in self.shares("--shard")) + ' "$1/4"'
+        # Each share tells its process, so that one can be killed. xargs ends at a command that a signal ended, so the shell outlives it.
+        command = " ".join(f'"{w}"' for w in [self.program, *self.shares("--shard")])
+        share = f'{command} "$1/4" & echo $! > {self.place}/share-$1; wait $!'
         script = self.place / "share.sh"
         script.write_text(share)
         if not shutil.which("parallel"):
@@ -383,7 +416,7 @@ def slurm_lacks():
     return "" if os.geteuid() == 0 else "it needs the rights of root"
 
 
-DASK = ["workers", "stopped", "scheduler", "client_killed", "disk", "clients"]
+DASK = ["workers", "refined", "stopped", "scheduler", "client_killed", "disk", "clients"]
 ALL = [*DASK, "parallel", "slurm"]
 
 
@@ -427,11 +460,12 @@ def main():
     parser.add_argument("--program")
     parser.add_argument("--kills", type=int, default=40 if LONG else 3)
     parser.add_argument("--self-test", action="store_true")
-    parser.add_argument("--client", nargs=2, metavar=("FOLDER", "ADDRESS"))
+    parser.add_argument("--client", nargs=3, metavar=("SWEEP", "FOLDER", "ADDRESS"))
     parser.add_argument("parts", nargs="*")
     arguments = parser.parse_args()
     if arguments.client:
-        sweep(arguments.client[0], arguments.client[1])
+        name, folder, address = arguments.client
+        SWEEPS[name](folder, address)
         return 0
     return self_test(arguments) if arguments.self_test else run_parts(arguments)
 

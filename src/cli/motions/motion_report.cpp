@@ -2,8 +2,8 @@
 
 #include <cstdio>
 
-#include "cli/motions/report_text.h"
 #include "cli/say.h"
+#include "simulation/report_text.h"
 
 namespace anholon::cli {
 

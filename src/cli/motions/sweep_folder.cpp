@@ -190,12 +190,7 @@ bool judge(const FolderSweep& sweep, const SweepStore& store) {
     if (!all.outcome.ok()) return false;
   }
   if (!asked) return true;
-  JsonWriter lines;
-  lines.open_array();
-  for (const std::string& line : judgement_lines(all)) lines.string(line);
-  const std::string error = store.add_judgement("{\n  \"error_estimate\": " + error_json(all.error) +
-                                                ",\n  \"residuals\": " + residuals_json(all.residuals) +
-                                                ",\n  \"text\": " + lines.close().text() + "\n}\n");
+  const std::string error = store.add_judgement(judgement_json(all));
   if (!error.empty()) say(stderr, "error: %s\n", error.c_str());
   return true;
 }
@@ -230,6 +225,8 @@ int sweep_into_folder(const SweepCommand& o, const FolderSweep& sweep) {
     waits = !store.missing().empty();
     if (waits && shard.of > 1) break;
     if (waits) continue;
+    // Another process may have planned them in the meantime.
+    if (store.generations().size() > refinement.generations) break;
     if (stop_requested()) return stopped_early(o, store);
     ended = add_generation(store, *sweep.variation, refinement.rule) == 0;
     if (ended) break;

@@ -1,27 +1,10 @@
 #include "cli/motions/sweep_output.h"
 
 #include "base/json.h"
-#include "cli/motions/report_text.h"
 #include "cli/say.h"
 #include "ensemble/parts/judgement.h"
 
 namespace anholon::cli {
-
-namespace {
-
-std::string list_of(const std::vector<std::size_t>& cases) {
-  std::string list;
-  for (std::size_t k : cases) list += (list.empty() ? "" : ", ") + std::to_string(k);
-  return list;
-}
-
-// "9.1e-16 (case 3)"; the case is not named if there is only one.
-std::string worst_text(const CasesResiduals& r, const CasesResiduals::Worst& worst) {
-  return number_text(worst.residual, 2) +
-         (r.cases.size() > 1 ? " (case " + std::to_string(worst.number) + ")" : std::string());
-}
-
-}  // namespace
 
 SweepOutput::SweepOutput(const ResultFormat& format, const std::string& path, const SweepInfo& info)
     : file_(format.open_sweep(path, info)) {
@@ -93,26 +76,6 @@ void add_report(EnsembleReport& all, const EnsembleReport& next) {
   take(r.power, next.residuals.power);
   for (std::size_t k : next.residuals.cases) r.cases.push_back(before + k);
   if (!next.residuals.none.empty()) r.none = next.residuals.none;
-}
-
-std::vector<std::string> judgement_lines(const EnsembleReport& r) {
-  std::vector<std::string> lines;
-  const std::string compared = list_of(r.error.cases);
-  if (r.error.error)
-    lines.push_back("digits to trust" + digits_to_trust(*r.error.error) + "; " +
-                    (r.error.cases.size() == 1
-                         ? "of case " + compared
-                         : "of the cases " + compared + " the worst is " + std::to_string(r.error.worst)));
-  else if (!r.error.none.empty())
-    lines.push_back("digits to trust: not estimated, " + r.error.none);
-  const CasesResiduals& all = r.residuals;
-  if (!all.cases.empty())
-    lines.push_back(std::string("residuals (relative) of the ") + (all.cases.size() == 1 ? "case " : "cases ") +
-                    list_of(all.cases) + ": Newton's law " + worst_text(all, all.newton) + ", constraints " +
-                    worst_text(all, all.constraints) + ", power balance " + worst_text(all, all.power));
-  else if (!all.none.empty())
-    lines.push_back("residuals: not looked at, " + all.none);
-  return lines;
 }
 
 void report_sweep(const EnsembleReport& r, std::size_t cases, const SweepOutput& out) {

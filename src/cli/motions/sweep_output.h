@@ -44,9 +44,6 @@ const ResultFormat& sweep_format(const std::string& output, bool json);
 // Adds the report of cases that follow on those of `all`.
 void add_report(EnsembleReport& all, const EnsembleReport& next);
 
-// How far the cases can be trusted, in sentences.
-std::vector<std::string> judgement_lines(const EnsembleReport& report);
-
 // On stderr: how many cases finished, how far they can be trusted; why the others stopped.
 void report_sweep(const EnsembleReport& report, std::size_t cases, const SweepOutput& output);
 void report_stopped(const SweepOutput& output);

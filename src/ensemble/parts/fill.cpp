@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <condition_variable>
+#include <ctime>
 #include <deque>
 #include <filesystem>
 #include <mutex>
@@ -255,22 +256,32 @@ Filled fill(const SweepStore& store, std::span<const SweepPiece> pieces, const F
   return Filling(store, pieces, options)();
 }
 
+// The seconds of CPU time that some cases of a piece take; nullopt if they were stopped.
+static std::optional<double> trial(const SweepPiece& piece, std::size_t cases) {
+  NoCases none;
+  EnsembleOptions o = *piece.options;
+  o.cases = cases;
+  o.estimate = ErrorEstimate::never;
+  const std::clock_t begin = std::clock();
+  if (!ensemble(*piece.scenario, o, none).outcome.ok()) return std::nullopt;
+  return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+}
+
 std::size_t cases_in_part(std::span<const SweepPiece> pieces) {
   constexpr double kTrial = 0.2, kPart = 8;  // seconds
   constexpr double kNumbers = 2e6;           // of a part: 16 MB
   const SweepPiece& piece = pieces.front();
-  double last = 0, each = 0;  // seconds of the last trial, of a case
-  for (std::size_t count = 16, before = 0; before < piece.options->cases; before = count, count *= 4) {
-    count = std::min(count, piece.options->cases);
-    NoCases none;
-    EnsembleOptions o = *piece.options;
-    o.cases = count;
-    o.estimate = ErrorEstimate::never;
-    const EnsembleReport r = ensemble(*piece.scenario, o, none);
-    const double seconds = r.seconds * static_cast<double>(r.threads);
-    each = std::max(seconds - last, 0.0) / static_cast<double>(count - before);
-    if (seconds - last >= kTrial || !r.outcome.ok()) break;
-    last = seconds;
+  const std::size_t all = piece.options->cases;
+  std::size_t before = 1;
+  std::optional<double> last = trial(piece, before);
+  double each = 0;  // seconds of a case
+  for (std::size_t count = 16; last && before < all; count *= 4) {
+    count = std::min(count, all);
+    const std::optional<double> seconds = trial(piece, count);
+    if (!seconds) break;
+    each = std::max(*seconds - *last, 0.0) / static_cast<double>(count - before);
+    if (*seconds - *last >= kTrial) break;
+    before = count, last = seconds;
   }
   const std::size_t numbers = piece.table->columns().size() * std::max<std::size_t>(1, piece.options->at.size());
   const double most = std::clamp(kNumbers / static_cast<double>(numbers), 1.0, static_cast<double>(kMostInPart));

@@ -35,7 +35,7 @@ struct Filled {
 Filled fill(const SweepStore& store, std::span<const SweepPiece> pieces, const FillOptions& options);
 
 // The number of cases of a part that takes some seconds on one core, or holds some megabytes: 1, 2 or 5 times a power of
-// ten. By trials of more and more cases, whose difference leaves out what the computation takes to begin.
+// ten. By the CPU time of trials of more and more cases, whose difference leaves out what the computation takes to begin.
 std::size_t cases_in_part(std::span<const SweepPiece> pieces);
 // The most cases of a part.
 inline constexpr std::size_t kMostInPart = 1'000'000;

@@ -3,6 +3,7 @@
 #include "base/json.h"
 #include "ensemble/cases_error.h"
 #include "simulation/report_json.h"
+#include "simulation/report_text.h"
 
 namespace anholon {
 
@@ -25,6 +26,18 @@ void write_cases(JsonWriter& j, const char* key, const std::vector<std::size_t>&
 std::string within(std::string text) {
   for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3) text.insert(at + 1, "  ");
   return text;
+}
+
+std::string list_of(const std::vector<std::size_t>& cases) {
+  std::string list;
+  for (std::size_t k : cases) list += (list.empty() ? "" : ", ") + std::to_string(k);
+  return list;
+}
+
+// "9.1e-16 (case 3)"; the case is not named if there is only one.
+std::string worst_text(const CasesResiduals& r, const CasesResiduals::Worst& worst) {
+  return number_text(worst.residual, 2) +
+         (r.cases.size() > 1 ? " (case " + std::to_string(worst.number) + ")" : std::string());
 }
 
 }  // namespace
@@ -54,6 +67,34 @@ std::string residuals_json(const CasesResiduals& r) {
   }
   write_cases(j, "checked", r.cases);
   return within(j.close().text());
+}
+
+std::vector<std::string> judgement_lines(const EnsembleReport& r) {
+  std::vector<std::string> lines;
+  const std::string compared = list_of(r.error.cases);
+  if (r.error.error)
+    lines.push_back("digits to trust" + digits_to_trust(*r.error.error) + "; " +
+                    (r.error.cases.size() == 1
+                         ? "of case " + compared
+                         : "of the cases " + compared + " the worst is " + std::to_string(r.error.worst)));
+  else if (!r.error.none.empty())
+    lines.push_back("digits to trust: not estimated, " + r.error.none);
+  const CasesResiduals& all = r.residuals;
+  if (!all.cases.empty())
+    lines.push_back(std::string("residuals (relative) of the ") + (all.cases.size() == 1 ? "case " : "cases ") +
+                    list_of(all.cases) + ": Newton's law " + worst_text(all, all.newton) + ", constraints " +
+                    worst_text(all, all.constraints) + ", power balance " + worst_text(all, all.power));
+  else if (!all.none.empty())
+    lines.push_back("residuals: not looked at, " + all.none);
+  return lines;
+}
+
+std::string judgement_json(const EnsembleReport& r) {
+  JsonWriter text;
+  text.open_array();
+  for (const std::string& line : judgement_lines(r)) text.string(line);
+  return "{\n  \"error_estimate\": " + error_json(r.error) + ",\n  \"residuals\": " + residuals_json(r.residuals) +
+         ",\n  \"text\": " + text.close().text() + "\n}\n";
 }
 
 EnsembleReport judge_piece(const SweepPiece& piece, const std::function<bool()>& cancelled) {

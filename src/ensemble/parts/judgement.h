@@ -12,4 +12,9 @@ EnsembleReport judge_piece(const SweepPiece& piece, const std::function<bool()>&
 std::string error_json(const CasesError& error);
 std::string residuals_json(const CasesResiduals& residuals);
 
+// How far the cases can be trusted, in sentences.
+std::vector<std::string> judgement_lines(const EnsembleReport& report);
+// The error, the residuals and these sentences: the text that the folder keeps.
+std::string judgement_json(const EnsembleReport& report);
+
 }  // namespace anholon

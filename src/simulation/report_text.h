@@ -2,7 +2,7 @@
 #pragma once
 #include "simulation/simulate.h"
 
-namespace anholon::cli {
+namespace anholon {
 
 // The text that follows "digits to trust" in a report.
 std::string digits_to_trust(const ErrorReport& error);
@@ -10,4 +10,4 @@ std::string digits_to_trust(const ErrorReport& error);
 // A residual with its significant digits.
 std::string small(double x);
 
-}  // namespace anholon::cli
+}  // namespace anholon

@@ -1,6 +1,6 @@
-#include "cli/motions/report_text.h"
+#include "simulation/report_text.h"
 
-namespace anholon::cli {
+namespace anholon {
 
 std::string small(double x) { return number_text(x, 3); }
 
@@ -16,4 +16,4 @@ std::string digits_to_trust(const ErrorReport& e) {
          "; by " + e.means + ")";
 }
 
-}  // namespace anholon::cli
+}  // namespace anholon
