@@ -113,6 +113,7 @@ Outcome KernelRows::take(const WaitingRows::Computed& row, bool judged) {
   takers_.supports.see(static_cast<double>(place.t), [&](std::size_t r) {
     return good ? row.multiplier(r) : static_cast<double>(watch.multiplier(r));
   });
+  takers_.traction.see(static_cast<double>(place.t), numbers_);
   takers_.writer.row(place.t, row.label(), numbers_);
   ++takers_.report.rows;
   return {};

@@ -10,6 +10,7 @@
 #include "observe/rows/row_check.h"
 #include "observe/rows/waiting_rows.h"
 #include "observe/supports.h"
+#include "observe/traction.h"
 #include "observe/watch.h"
 #include "simulation/in_order.h"
 #include "simulation/row_writer.h"
@@ -21,6 +22,7 @@ struct RowTakers {
   Watch<long double>& watch;
   Judge<double>& judge;
   SupportWatch& supports;
+  TractionWatch& traction;
   RowWriter<double>& writer;
   SimulationReport& report;  // without its outcome
 };

@@ -29,6 +29,7 @@ struct Rows {
     watch.emplace(*s, power, std::vector<Conserved>{}, motion->parameters());
     judge.emplace(*s, options);
     supports.emplace(*s);
+    traction.emplace(*s);
     writer.emplace(sink, 16);
     report.constraints_each = constraint_reports(*s);
   }
@@ -42,6 +43,7 @@ struct Rows {
   std::optional<Watch<long double>> watch;
   std::optional<Judge<double>> judge;
   std::optional<SupportWatch> supports;
+  std::optional<TractionWatch> traction;
   test::TextRows sink;
   std::optional<RowWriter<double>> writer;
   SimulationReport report;
@@ -52,7 +54,7 @@ TEST(KernelRows, FindNumbersThatAreNotThoseOfTheReference) {
     Rows r("zoo/disc", wrong);
     ASSERT_TRUE(r.waiting);
     KernelRows rows(*r.s, r.options, *r.motion, 0, std::move(r.waiting),
-                    {*r.watch, *r.judge, *r.supports, *r.writer, r.report});
+                    {*r.watch, *r.judge, *r.supports, *r.traction, *r.writer, r.report});
     for (int k = 0; k < 20; ++k) {
       ASSERT_TRUE(r.motion->step(100).ok());
       rows.add(*r.motion, r.motion->stepper().time(), "", true);
