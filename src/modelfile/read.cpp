@@ -101,6 +101,7 @@ class Reader {  // its references are used only while it runs
     read_events(root, scope_, model_, diagnostics_);
     read_outputs(root, scope_, model_, diagnostics_);
     contacts_ = read_contacts(root, scope_, model_, diagnostics_);
+    note_contacts();
     if (const Item* n = table(root, "notation")) {
       std::vector<std::string> declared;
       for (const auto& [name, d] : scope_.declarations()) declared.push_back(name);
@@ -130,6 +131,17 @@ class Reader {  // its references are used only while it runs
  private:
   bool guard(const std::function<void()>& f, Span place = {}) { return collect(diagnostics_, f, place); }
   bool guard(const std::function<void()>& f, const Item& element) { return collect(diagnostics_, f, element); }
+
+  // The model that is read is the one in which all contacts are open.
+  void note_contacts() {
+    if (contacts_.empty()) return;
+    std::string names;
+    for (const Contact& c : contacts_) names += (names.empty() ? "'" : ", '") + c.name + "'";
+    const bool one = contacts_.size() == 1;
+    model_.notes.push_back((one ? "contact " : "contacts ") + names +
+                           (one ? " is no part of these equations, which hold while it is open"
+                                : " are no part of these equations, which hold while all of them are open"));
+  }
 
   void scenarios(Item& root) {
     const Item cases = take_cases(root, diagnostics_);

@@ -59,7 +59,7 @@ struct SimulationReport {
   std::optional<ErrorReport> error;
   std::string no_error;  // why there is no estimate, where one was asked for
   std::vector<Warning> warnings;
-  std::vector<std::string> notes;  // limits that are passed at the start, floors that pull
+  std::vector<std::string> notes;  // limits that are passed at the start, floors that pull, rolling that slips
   bool looks_for_events = false;   // the model has events
   std::vector<EventReport> events;
   std::optional<RigorousReport> rigorous;

@@ -4,154 +4,25 @@
 #include <cmath>
 
 #include "numeric/number.h"
-#include "tape/bind.h"
+#include "observe/translations.h"
 
 namespace anholon {
 
-namespace {
-
-struct Direction {
-  double x = 0, y = 0, z = 0;
-};
-double dot(const Direction& a, const Direction& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-double norm(const Direction& a) { return std::sqrt(dot(a, a)); }
-
-// What is a constant by its meaning comes out of Taylor arithmetic exactly, or within a few roundings.
-constexpr double kSame = 1e-12;
-
-// How the places of all bodies and the residuals of constraints change with one coordinate, by Taylor arithmetic: no
-// expression is made.
-class Rates {
- public:
-  Rates(Workspace& s, const std::vector<std::size_t>& constraints)
-      : s_(s), constraints_(constraints), tape_(compile(outputs())),
-        machine_(tape_, 1, parameter_values<double>(*s.model)) {}
-
-  // At the start, moved by this along every coordinate.
-  void go(std::size_t coordinate, double away) {
-    bind_series(machine_, *s_.model->graph, [&](const Node& n, NodeId, double* series, int) {
-      series[1] = 0;
-      if (n.kind == Kind::jet && n.order == 0)
-        series[0] = s_.state.q[n.index] + away * (1 + 0.37 * n.index), series[1] = n.index == coordinate ? 1 : 0;
-      else if (n.kind == Kind::time)
-        series[0] = s_.state.t;
-      else
-        series[0] = n.kind == Kind::state && n.index < s_.state.states.size() ? s_.state.states[n.index] : 0;
-    });
-    for (int stage : {0, 1}) machine_.sweep(stage, 0, static_cast<std::uint32_t>(tape_.code.size()));
-  }
-  // Of the mass centre of a body, and whether the body turns.
-  Direction center(std::size_t body) const { return direction(3 * body); }
-  bool turns() const {
-    for (std::size_t k = 3 * s_.model->bodies.size(); k < first_; ++k)
-      if (rate(k) != 0) return true;
-    return false;
-  }
-  double residual(std::size_t k) const { return rate(first_ + k); }
-  Direction gravity() const {
-    return {machine_.value(first_ + constraints_.size()), machine_.value(first_ + constraints_.size() + 1),
-            machine_.value(first_ + constraints_.size() + 2)};
-  }
-
- private:
-  Column outputs() {
-    Column es;
-    const auto add = [&](const Vector& v) { es.insert(es.end(), {v.x, v.y, v.z}); };
-    for (const Body& b : s_.model->bodies) add(b.center);
-    for (const Body& b : s_.model->bodies)
-      if (b.orientation)
-        for (const Vector& column : b.orientation->columns) add(column);
-    first_ = es.size();
-    for (std::size_t r : constraints_) es.push_back(s_.mechanics->phi[r]);
-    add(s_.model->bodies[0].gravity);
-    return put_masses(*s_.model, es);
-  }
-  double rate(std::size_t root) const { return machine_.series(tape_.roots[root])[1]; }
-  Direction direction(std::size_t root) const { return {rate(root), rate(root + 1), rate(root + 2)}; }
-
-  const Scenario& s_;
-  const std::vector<std::size_t>& constraints_;
-  std::size_t first_ = 0;  // root of the constraints
-  Tape tape_;
-  Machine<double> machine_;
-};
-
-// What a coordinate does, if it moves all bodies as one: along what, and how the residuals change; nothing where it
-// does something else.
-struct Translation {
-  std::size_t coordinate;
-  Direction along;
-  std::vector<double> residuals;
-};
-
-std::optional<Translation> translation(Rates& rates, const Scenario& s, std::size_t coordinate,
-                                       std::size_t constraints) {
-  std::optional<Translation> found;
-  for (const double away : {0.0, 0.31, -0.73}) {
-    rates.go(coordinate, away);
-    if (rates.turns()) return std::nullopt;
-    const Direction along = rates.center(0);
-    const auto same = [&](const Direction& d, const Direction& e) {
-      return norm({d.x - e.x, d.y - e.y, d.z - e.z}) <= kSame * norm(e);
-    };
-    if (!(norm(along) > 0)) return std::nullopt;
-    for (std::size_t b = 1; b < s.model->bodies.size(); ++b)
-      if (!same(rates.center(b), along)) return std::nullopt;
-    std::vector<double> residuals;
-    for (std::size_t k = 0; k < constraints; ++k) residuals.push_back(rates.residual(k));
-    if (!found) {
-      found = Translation{coordinate, along, residuals};
-      continue;
-    }
-    if (!same(along, found->along)) return std::nullopt;
-    // A rate that is not the same everywhere is marked as none of interest.
-    for (std::size_t k = 0; k < constraints; ++k)
-      if (!(std::abs(residuals[k] - found->residuals[k]) <= kSame * std::abs(residuals[k])))
-        found->residuals[k] = std::nan("");
-  }
-  return found;
-}
-
-}  // namespace
-
 std::vector<Support> supports(const Scenario& s) {
   const Model& model = *s.model;
-  std::vector<std::size_t> geometric;
-  for (std::size_t r = 0; r < model.constraints.size(); ++r)
-    if (model.constraints[r].order == 0) geometric.push_back(r);
-  if (geometric.empty() || model.bodies.empty() || !model.unknown_functions.empty()) return {};
-  Workspace own(s);
-  Rates rates(own, geometric);
-  rates.go(0, 0);
-  const Direction gravity = rates.gravity();
-  if (!(norm(gravity) > 0)) return {};
-  std::optional<Translation> up;
-  std::vector<Translation> sideways;
-  for (std::size_t a = 0; a < model.coordinates.size(); ++a) {
-    const auto t = translation(rates, s, a, geometric.size());
-    if (!t) continue;
-    const double along = dot(t->along, gravity) / (norm(t->along) * norm(gravity));
-    if (std::abs(along) <= kSame)
-      sideways.push_back(*t);
-    else if (std::abs(std::abs(along) - 1) <= kSame && !up)
-      up = t;
-    else
-      return {};  // neither upwards nor sideways
-  }
-  if (!up || sideways.empty()) return {};
-  // What holds the system sideways makes a hinge of it.
-  for (const Translation& t : sideways)
-    for (std::size_t k = 0; k < geometric.size(); ++k)
-      if (t.residuals[k] != 0) return {};
+  const auto found = translations(s);
+  if (!found || !found->up || found->sideways.empty()) return {};
+  const Translation& up = *found->up;
+  const Triple& gravity = found->gravity;
   std::vector<Support> list;
-  for (std::size_t k = 0; k < geometric.size(); ++k) {
-    const std::size_t r = geometric[k];
+  for (std::size_t k = 0; k < found->geometric.size(); ++k) {
+    const std::size_t r = found->geometric[k];
     const bool single = model.constraints[r].name.find('.') == std::string::npos,
                holds = std::find(s.redundant.begin(), s.redundant.end(), r) == s.redundant.end();
-    const double rate = up->residuals[k];
+    const double rate = up.residuals[k];
     if (!single || !holds || model.constraints[r].by || !std::isfinite(rate) || rate == 0) continue;
     // The power of the constraint for a velocity of one along the coordinate, against gravity.
-    list.push_back({r, -rate * dot(up->along, gravity) / (dot(up->along, up->along) * norm(gravity))});
+    list.push_back({r, -rate * dot(up.along, gravity) / (dot(up.along, up.along) * norm(gravity))});
   }
   return list;
 }

@@ -110,9 +110,10 @@ Outcome KernelRows::take(const WaitingRows::Computed& row, bool judged) {
     check_.see(static_cast<double>(place.t), numbers_, wide_, watch.cancellation(),
                [&](std::size_t i) { return watch.made_of_monitor(i); });
   takers_.judge.row(place.t, row.label(), numbers_, judged);
-  takers_.supports.see(static_cast<double>(place.t), [&](std::size_t r) {
+  const auto multiplier = [&](std::size_t r) {
     return good ? row.multiplier(r) : static_cast<double>(watch.multiplier(r));
-  });
+  };
+  takers_.floors.see(static_cast<double>(place.t), multiplier, numbers_);
   takers_.writer.row(place.t, row.label(), numbers_);
   ++takers_.report.rows;
   return {};

@@ -6,10 +6,10 @@
 #pragma once
 #include <atomic>
 
+#include "observe/floors.h"
 #include "observe/judge.h"
 #include "observe/rows/row_check.h"
 #include "observe/rows/waiting_rows.h"
-#include "observe/supports.h"
 #include "observe/watch.h"
 #include "base/in_order.h"
 #include "simulation/row_writer.h"
@@ -20,7 +20,7 @@ namespace anholon {
 struct RowTakers {
   Watch<long double>& watch;
   Judge<double>& judge;
-  SupportWatch& supports;
+  FloorWatch& floors;
   RowWriter<double>& writer;
   SimulationReport& report;  // without its outcome
 };

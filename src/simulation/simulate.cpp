@@ -58,7 +58,7 @@ class Run {
         stages_(std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
         course_(s, step_settings(*s.model, o), method(o), quadratures(s, power_, o), stages_), shown_(course_),
         rows_(sink, o.digits), watch_(s, power_, o.conserved, motion().parameters()),
-        angles_(s, doubles(motion().parameters())), judge_(s, o), supports_(s), paces_(s.model->events) {
+        angles_(s, doubles(motion().parameters())), judge_(s, o), floors_(s), paces_(s.model->events) {
     report_.model = s.model->title;
     report_.form = s.system.form->name;
     report_.constraints_each = constraint_reports(s);
@@ -327,7 +327,7 @@ class Run {
   void prepare_rows() {
     if constexpr (std::same_as<N, double>)
       kernel_rows_ = KernelRows::make(s_, o_, motion(), stages_, to_double(schedule_.end()),
-                                      {watch_, judge_, supports_, rows_, report_});
+                                      {watch_, judge_, floors_, rows_, report_});
   }
 
   void row_in_step(const W& t, const std::string& label) {
@@ -385,7 +385,7 @@ class Run {
   template <class Multiplier>
   void write_row(const W& t, const std::string& label, const Multiplier& multiplier) {
     judge_.row(t, label, numbers_, course_);
-    supports_.see(to_double(t), multiplier);
+    floors_.see(to_double(t), multiplier, numbers_);
     rows_.row(t, label, numbers_);
     ++report_.rows;
     if (o_.rows_lost) o_.rows_lost();
@@ -409,12 +409,12 @@ class Run {
     if (defect_) report_.rigorous = defect_->report();
     report_watched();
     if (o_.locate_pulls && !o_.resume)
-      supports_.locate([&](const Support& support, double t) {
+      floors_.supports.locate([&](const Support& support, double t) {
         return first_pull(s_, o_, support, t, [](const Scenario& own, const SimulationOptions& o, RowSink& rows) {
           return simulate(own, o, rows);
         });
       });
-    for (const std::string& text : supports_.notes()) note(text);
+    for (const std::string& text : floors_.notes()) note(text);
     const std::vector<Warning> more = warnings<N>(s_, course_, watch_, angles_);
     report_.warnings.insert(report_.warnings.end(), more.begin(), more.end());
     if (kernel_rows_)
@@ -455,7 +455,7 @@ class Run {
   Watch<W> watch_;
   AngleWatch angles_;
   Judge<N> judge_;
-  SupportWatch supports_;
+  FloorWatch floors_;
   EventPaces<W> paces_;
   Stretch<W> stretch_;
   StretchPace pace_;

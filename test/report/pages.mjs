@@ -171,6 +171,34 @@ await test('scenarios stand side by side', async () => {
   await page.close();
 });
 
+await test('the modes of a contact are bands under the plots', async () => {
+  for (const model of ['stick-slip', 'disc']) {
+    const { page, faults } = await open(page_of(`bands-${model}`, model, '--no-proof'), 1200);
+    // The parts of the first plot's lower edge that have the colours of the modes.
+    const colors = await page.evaluate(async () => {
+      for (let k = 0; k < 100 && !document.querySelector('.plot canvas'); ++k) await new Promise((f) => setTimeout(f, 50));
+      const canvas = document.querySelector('.plot canvas'), over = document.querySelector('.plot .u-over');
+      const scale = canvas.width / canvas.getBoundingClientRect().width, box = canvas.getBoundingClientRect(), o = over.getBoundingClientRect();
+      const y = Math.round((o.bottom - box.top - 3) * scale), found = {};
+      const line = canvas.getContext('2d').getImageData(Math.round((o.left - box.left) * scale), y, Math.round(o.width * scale), 1).data;
+      for (let k = 0; k < line.length; k += 4) if (line[k + 3] === 255) { const c = `rgb(${line[k]}, ${line[k + 1]}, ${line[k + 2]})`; found[c] = (found[c] ?? 0) + 4 / line.length; }
+      const style = (name) => { const e = document.createElement('i'); e.style.color = `var(--${name})`; document.body.append(e); const c = getComputedStyle(e).color; e.remove(); return c; };
+      return { slips: found[style('c1')] ?? 0, sticks: found[style('c2')] ?? 0 };
+    });
+    const key = await page.locator('.bands-key').allInnerTexts();
+    if (model === 'disc') {
+      assert.deepEqual([key.length, colors.slips, colors.sticks], [0, 0, 0], 'a model without contacts');
+    } else {
+      assert.match(key[0], /Contact belt/);
+      // It slips from 0.327 to 1.112, from 1.357 to 2.142 and from 2.387 on, of 3 seconds.
+      assert.ok(Math.abs(colors.slips - (0.785 + 0.785 + 0.613) / 3) < 0.02, JSON.stringify(colors));
+      assert.ok(Math.abs(colors.sticks - (0.327 + 0.245 + 0.245) / 3) < 0.02, JSON.stringify(colors));
+    }
+    assert.deepEqual(faults, []);
+    await page.close();
+  }
+});
+
 await browser.close();
 rmSync(folder, { recursive: true, force: true });
 process.exit(failed ? 1 : 0);

@@ -1,6 +1,7 @@
 // One plot: the columns of a group over time.
 
 import uPlot from 'uplot';
+import { draw_bands } from './bands.ts';
 import type { Case, Column, Group } from './data.ts';
 import { curve_paths, value_range } from './curve.ts';
 import { h } from './dom.ts';
@@ -246,6 +247,7 @@ export class Plot {
   private draw_events(u: uPlot): void {
     const { ctx, bbox } = u, [from, to] = this.owner.range, pixel = devicePixelRatio || 1;
     ctx.save();
+    draw_bands(ctx, bbox, this.data.bands, [from, to], pixel);
     ctx.strokeStyle = css_rgb(theme().quiet, 0.7);
     ctx.fillStyle = css_rgb(theme().quiet);
     ctx.lineWidth = pixel;

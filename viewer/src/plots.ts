@@ -1,5 +1,6 @@
 // The plots of one case, over one time.
 
+import { bands_key } from './bands.ts';
 import type { Clock } from './clock.ts';
 import type { Case, Group } from './data.ts';
 import { h } from './dom.ts';
@@ -87,7 +88,7 @@ export class Plots implements Owner {
     const { rows, shown } = this.data;
     const note = shown < rows
       ? h('span', { class: 'note' }, `${shown.toLocaleString('en')} of ${rows.toLocaleString('en')} rows are drawn; extremes are kept`) : null;
-    return h('div', { class: 'plots-head' }, this.group_chips, this.unzoom, note);
+    return h('div', { class: 'plots-head' }, this.group_chips, this.unzoom, note, bands_key(this.data.bands));
   }
 
   private chips(): void {

@@ -2,6 +2,7 @@
 
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
+import { strips } from '../src/bands.ts';
 import { comfortable_rate } from '../src/clock.ts';
 import { rows_within, trace_curve, value_range } from '../src/curve.ts';
 import { decode, read_case } from '../src/data.ts';
@@ -245,4 +246,15 @@ test('a run takes a comfortable time', () => {
   assert.equal(comfortable_rate(1e-3), 1e-4);
   assert.equal(comfortable_rate(3600), 360);
   assert.equal(comfortable_rate(0), 1);
+});
+
+test('a band is cut at the range that is shown', () => {
+  const band = { name: 'belt', spans: [[0, 1, 2], [1, 3, 1], [3, 4, 2]] as [number, number, number][] };
+  assert.deepEqual(strips(band, 0, 4), [{ x: 0, width: 0.25, mode: 2 }, { x: 0.25, width: 0.5, mode: 1 }, { x: 0.75, width: 0.25, mode: 2 }]);
+  assert.deepEqual(strips(band, 2, 2.5), [{ x: 0, width: 1, mode: 1 }]);
+  assert.deepEqual(strips(band, 5, 6), []);
+});
+
+test('a case without contacts has no bands', () => {
+  assert.deepEqual(read_case(disc(steady, 1, 11)).bands, []);
 });

@@ -1,6 +1,8 @@
 #include "report/page/data.h"
 
+#include "numeric/number.h"
 #include "report/columns.h"
+#include "report/contact_bands.h"
 #include "report/markup.h"
 #include "report/observer_path.h"
 #include "simulation/report_json.h"
@@ -54,6 +56,19 @@ void events(JsonWriter& j, const std::optional<SimulationReport>& r) {
   j.close();
 }
 
+void bands(JsonWriter& j, const RunTable& table, const std::optional<SimulationReport>& r) {
+  const std::vector<ContactBand> list = contact_bands(table, r ? r->events : std::vector<EventReport>());
+  if (list.empty()) return;
+  j.key("bands").open_array();
+  for (const ContactBand& b : list) {
+    j.open_object().key("name").string(b.name).key("spans").open_array();
+    for (const ContactSpan& s : b.spans)
+      j.open_array().number(number_text(s.begin)).number(number_text(s.end)).integer(s.mode).close();
+    j.close().close();
+  }
+  j.close();
+}
+
 void observer(JsonWriter& j, const Model& model, const PlotData& d) {
   const std::vector<double>& t = d.frame_t.empty() ? d.t : d.frame_t;
   std::vector<double> quaternions, origins;
@@ -84,6 +99,7 @@ void one_case(JsonWriter& j, const PageCase& c) {
   columns(j, d);
   frames(j, d);
   events(j, read_report(c.run.report));
+  bands(j, c.run.table, read_report(c.run.report));
   j.key("scene");
   // In the page the time is not a column.
   const ColumnOf in_table = column_of(model, c.run.table);

@@ -42,6 +42,7 @@ std::string watched(const SimulationReport& r, const std::string& of) {
     events.push_back({user(e.name), e.t.text(), set});
   }
   out += table("Events" + of, {"", "t", "what was set"}, events);
+  for (const std::string& note : r.notes) out += warning_box({sentence(note), ""});
   for (const Warning& w : r.warnings) out += warning_box(w);
   return out;
 }

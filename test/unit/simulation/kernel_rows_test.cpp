@@ -28,7 +28,7 @@ struct Rows {
     waiting = WaitingRows::make(*other, {}, 0, parameter_values<long double>(*other->model), motion->start_state(), 1);
     watch.emplace(*s, power, std::vector<Conserved>{}, motion->parameters());
     judge.emplace(*s, options);
-    supports.emplace(*s);
+    floors.emplace(*s);
     writer.emplace(sink, 16);
     report.constraints_each = constraint_reports(*s);
   }
@@ -41,7 +41,7 @@ struct Rows {
   std::unique_ptr<WaitingRows> waiting;
   std::optional<Watch<long double>> watch;
   std::optional<Judge<double>> judge;
-  std::optional<SupportWatch> supports;
+  std::optional<FloorWatch> floors;
   test::TextRows sink;
   std::optional<RowWriter<double>> writer;
   SimulationReport report;
@@ -52,7 +52,7 @@ TEST(KernelRows, FindNumbersThatAreNotThoseOfTheReference) {
     Rows r("zoo/disc", wrong);
     ASSERT_TRUE(r.waiting);
     KernelRows rows(*r.s, r.options, *r.motion, 0, std::move(r.waiting),
-                    {*r.watch, *r.judge, *r.supports, *r.writer, r.report});
+                    {*r.watch, *r.judge, *r.floors, *r.writer, r.report});
     for (int k = 0; k < 20; ++k) {
       ASSERT_TRUE(r.motion->step(100).ok());
       rows.add(*r.motion, r.motion->stepper().time(), "", true);

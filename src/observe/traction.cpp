@@ -1,0 +1,155 @@
+#include "observe/traction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "expr/diff.h"
+#include "expr/normal.h"
+#include "numeric/number.h"
+#include "observe/supports.h"
+#include "tape/bind.h"
+
+namespace anholon {
+
+namespace {
+
+bool held_by_motion(const Translations& t, std::size_t coordinate) {
+  const auto is = [&](const Translation& x) { return x.coordinate == coordinate; };
+  return (t.up && is(*t.up)) || std::any_of(t.sideways.begin(), t.sideways.end(), is);
+}
+
+// Whether an expression changes with a translation, in positions (order 0) or velocities (order 1).
+bool feels(const Scenario& s, const Translations& t, Expr e, std::uint32_t order) {
+  Column jets;
+  for (std::uint32_t a = 0; a < s.model->coordinates.size(); ++a)
+    if (held_by_motion(t, a)) jets.push_back(s.model->graph->jet(a, order));
+  for (const Expr d : gradient(e, jets))
+    if (!proved_zero(d)) return true;
+  return false;
+}
+
+// Whether the only forces from outside, besides the floor's, are gravity and those with a vector.
+bool outside_is_known(const Workspace& s, const Translations& t) {
+  const Model& m = *s.model;
+  for (const Force& f : m.forces) {
+    if (f.kind == Force::Kind::tension && !f.from) return false;
+    for (const auto& [coordinate, component] : f.generalized)
+      if (held_by_motion(t, coordinate)) return false;
+  }
+  for (const Potential& v : m.potentials)
+    if (feels(s, t, put_masses(m, v.value), 0)) return false;
+  for (const Dissipation& d : m.dissipation)
+    if (feels(s, t, put_masses(m, d.value), 1)) return false;
+  for (const Body& b : m.bodies)
+    if (b.expelled_velocity) return false;
+  return m.observer.inertial && m.masses.empty();
+}
+
+// Whether parameters may change on the way.
+bool events_set_numbers(const Model& m) {
+  return std::any_of(m.events.begin(), m.events.end(), [](const Event& e) { return !e.set.empty(); });
+}
+
+// The names of the constraints of velocities that hold the system sideways. Returns nullopt if the floor is not a plane,
+// or a constraint is of another kind, as one of the speed is.
+std::optional<std::vector<std::string>> rolling_constraints(const Workspace& s, const Translations& t) {
+  std::vector<std::string> names;
+  for (std::size_t r = 0; r < s.model->constraints.size(); ++r) {
+    const Constraint& c = s.model->constraints[r];
+    if (c.by || c.order > 1) return std::nullopt;
+    if (c.order == 0) continue;
+    const Expr phi = put_masses(*s.model, s.mechanics->phi[r]);
+    if (!feels(s, t, phi, 1)) continue;
+    if (s.classes[r].kind == "nonlinear" || (t.up && feels(s, t, phi, 0))) return std::nullopt;
+    names.push_back(c.name);
+  }
+  return names;
+}
+
+// The force of the floor.
+Column force_of_floor(const Workspace& s) {
+  const Model& m = *s.model;
+  Graph& g = *m.graph;
+  Column sum(3, g.zero());
+  const auto add = [&](Expr factor, const Vector& v) {
+    sum[0] = sum[0] + factor * v.x, sum[1] = sum[1] + factor * v.y, sum[2] = sum[2] + factor * v.z;
+  };
+  const Expr minus = g.number(-1);
+  for (const Body& b : m.bodies) {
+    add(b.mass, {total_derivative(b.center.x, 2), total_derivative(b.center.y, 2), total_derivative(b.center.z, 2)});
+    add(minus * b.mass, b.gravity);
+  }
+  for (const Force& f : m.forces)
+    if (f.kind == Force::Kind::vector && !f.from) add(minus, f.vector);
+  return put_masses(m, sum);
+}
+
+}  // namespace
+
+TractionWatch::TractionWatch(const Scenario& s) : s_(s) {
+  const auto found = translations(s);
+  if (!found || found->sideways.empty() || events_set_numbers(*s.model) || largest_order(s, s.structure.d) < 2) return;
+  Workspace own(s);
+  const auto names = rolling_constraints(own, *found);
+  if (!names || names->empty() || !outside_is_known(own, *found)) return;
+  names_ = *names;
+  has_floor_ = !supports(s).empty();
+  Column outputs = force_of_floor(own);
+  const Vector& gravity = own.model->bodies[0].gravity;
+  for (const Expr e : put_masses(*own.model, Column{gravity.x, gravity.y, gravity.z})) outputs.push_back(e);
+  Tape tape = compile(outputs);
+  for (const Input& in : tape.inputs) {
+    const Node& n = own.model->graph->node(in.symbol);
+    const bool known = n.kind == Kind::time || n.kind == Kind::parameter || (n.kind == Kind::jet && n.order <= 2);
+    if (!known) return;
+  }
+  tape_ = std::move(tape);
+  machine_.emplace(*tape_, 0, parameter_values<double>(*own.model));
+  numbers_.resize(3 * s.model->coordinates.size());
+}
+
+void TractionWatch::look(double t) {
+  const std::size_t n = s_.model->coordinates.size();
+  bind(*machine_, *s_.model->graph,
+       [&](const Node& node, NodeId) { return node.kind == Kind::jet ? numbers_[node.order * n + node.index] : t; });
+  machine_->evaluate();
+  const auto direction = [&](std::size_t k) {
+    return Triple{machine_->value(k), machine_->value(k + 1), machine_->value(k + 2)};
+  };
+  const Triple force = direction(0), gravity = direction(3);
+  const double load = -dot(force, gravity) / norm(gravity),
+               sideways = std::sqrt(std::max(dot(force, force) - load * load, 0.0));
+  largest_ = std::max(largest_, std::abs(load));
+  // Round-off of a load that vanishes is neither.
+  constexpr double kNothing = 1e-9;
+  if (load < -kNothing * largest_) {
+    if (!pulls_) pulls_ = t;
+    if (load < least_) least_ = load, least_t_ = t;
+  } else if (load > kNothing * largest_ && sideways > load) {
+    if (!above_) above_ = t;
+    if (sideways > need_ * load) need_ = sideways / load, need_t_ = t;
+  }
+}
+
+std::string TractionWatch::rolling() const {
+  std::string list;
+  for (const std::string& name : names_) list += (list.empty() ? "'" : ", '") + name + "'";
+  return (names_.size() > 1 ? "constraints " : "constraint ") + list;
+}
+
+std::vector<std::string> TractionWatch::notes() const {
+  std::vector<std::string> list;
+  if (pulls_ && !has_floor_)
+    list.push_back("the floor under " + rolling() + " pulls down from t = " + number_text(*pulls_, 6) +
+                   " on, at most with " + number_text(-least_, 3) + " at t = " + number_text(least_t_, 6) +
+                   ": a wheel would lift off; write what touches as a [[contact]], with the height as a coordinate");
+  if (above_)
+    list.push_back(rolling() + (names_.size() > 1 ? " need" : " needs") +
+                   " a friction above 1 from t = " + number_text(*above_, 6) + " on, at least " +
+                   number_text(need_, 3) + " times the load at t = " + number_text(need_t_, 6) +
+                   ": a wheel would slip; a [[contact]] with its slip and friction = 0.8 in place of the constraint "
+                   "tells how");
+  return list;
+}
+
+}  // namespace anholon

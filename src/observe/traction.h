@@ -1,0 +1,51 @@
+// The friction that wheels without slip need, in relation to the load: what rolling constraints take for granted.
+//
+//   F = sum m (a - g) - F_ext,   mu >= |F sideways| / F upwards
+//
+// F is the whole force of the floor by Newton's law. Contacts with the friction mu transmit at most mu times the sum of
+// their loads, so the quotient is a lower bound of the friction that the worst of them needs.
+//
+// Hypotheses, without which there is no watch: gravity, coordinates that move all bodies as one sideways, no geometric
+// constraint that holds the system sideways, constraints of velocities that do, forces that are torques, act between
+// bodies or have a vector, an observer that is inertial, masses that do not vary.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "numeric/number.h"
+#include "observe/translations.h"
+#include "tape/tape.h"
+
+namespace anholon {
+
+class TractionWatch {
+ public:
+  explicit TractionWatch(const Scenario& s);
+  bool any() const { return machine_.has_value(); }
+  // numbers: of a row after t, which begin with the derivatives of the coordinates of order 0, 1 and 2.
+  template <class N>
+  void see(double t, const std::vector<N>& numbers) {
+    if (!any()) return;
+    for (std::size_t i = 0; i < numbers_.size(); ++i) numbers_[i] = to_double(numbers[i]);
+    look(t);
+  }
+  // A sentence if the friction needed passes 1, or if the floor would have to pull.
+  std::vector<std::string> notes() const;
+
+ private:
+  void look(double t);
+  std::string rolling() const;  // the names of the constraints
+
+  const Scenario& s_;
+  std::vector<std::string> names_;
+  bool has_floor_ = false;  // a geometric constraint is a support, whose pull its own watch tells
+  std::optional<Tape> tape_;
+  std::optional<Machine<double>> machine_;
+  std::vector<double> numbers_;
+  double largest_ = 0;  // load
+  double need_ = 0, need_t_ = 0, least_ = 0, least_t_ = 0;
+  std::optional<double> above_, pulls_;  // since when
+};
+
+}  // namespace anholon
