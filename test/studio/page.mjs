@@ -89,6 +89,26 @@ const tests = {
     assert.deepEqual(faults, []);
     await page.close();
   },
+  async 'a case of the model can be chosen'(s) {
+    const { page, faults } = await open(s.address);
+    assert.ok(await page.locator('.studio-bar select').isHidden());
+    await edit(page, 'title = "', 'case.moon.parameters.g = 1.62\ntitle = "');
+    const select = page.getByLabel('case');
+    await select.waitFor();
+    const text = () => page.locator('#report').textContent();
+    const choose = async (name) => {
+      const before = await page.evaluate(() => { const { dataset } = document.documentElement, { shown } = dataset; delete dataset.shown; return shown; });
+      await select.selectOption(name);
+      await page.waitForFunction((b) => (document.documentElement.dataset.shown ?? b) !== b, before);
+      return text();
+    };
+    const alone = await text(), moon = await choose('moon');
+    assert.notEqual(moon, alone);
+    assert.equal(await select.locator('option:checked').innerText(), 'moon');
+    assert.equal(await choose('none'), alone);
+    assert.deepEqual(faults, []);
+    await page.close();
+  },
   async 'completion offers sections, keys, functions and the names of the model'(s) {
     const { page, faults } = await open(s.address);
     const offers = async (typed) => {
