@@ -214,14 +214,24 @@ class Answers::Desk {
 
   void derive(JsonWriter& json) {
     if (!has_model(json)) return;
+    if (!contacts(*names_).empty()) return derive_no_mode(json);
     JsonWriter no_motion;
     no_motion.open_object();
-    if (!contacts(*names_).empty() || !move(no_motion)) return derive_alone(json);
+    if (!move(no_motion)) return derive_alone(json);
     add_equations();
     json.key("sections").open_array();
     section(json, "system", "System", system_section(parts_->page()));
     section(json, "equations", "Equations of motion", equations_section(parts_->page()));
     section(json, "structure", "Structure", structure_section(parts_->page()));
+    json.close();
+  }
+
+  static void derive_no_mode(JsonWriter& json) {
+    json.key("sections").open_array();
+    section(
+        json, "equations", "Equations of motion",
+        "<p>Each mode of the contacts has equations of its own. Write what touches as a <code>[[constraint]]</code> "
+        "to see those of a mode in which it touches.</p>");
     json.close();
   }
 

@@ -255,8 +255,8 @@ def contacts(studio):
     if "no motions with contacts" not in json.dumps(motion) or "anholon simulate" not in json.dumps(motion):
         found.append(f"the motion with a contact: {str(motion)[:200]}")
     _, derived = studio.ask("derive", CONTACT)
-    if "<math" not in json.dumps(derived):
-        found.append(f"the equations with a contact: {str(derived)[:200]}")
+    if "<math" in json.dumps(derived) or "equations of its own" not in json.dumps(derived):
+        found.append(f"equations that leave out a contact: {str(derived)[:200]}")
     return found
 
 
