@@ -101,16 +101,18 @@ class Answers::Desk {
   }
 
   void forget() {
-    parts_.reset(), workspace_.reset(), model_ = {}, names_ = {};
+    parts_.reset(), workspace_.reset(), model_ = {}, names_ = {}, cases_.clear();
     diagnostics_ = {}, known_ = false;
   }
 
   // Reads the text unless it is the last one. Only files that the opened model named are read.
   void take_up(const Question& q) {
-    if (known_ && q.text == source_.text && q.name == source_.name && q.readable == readable_) return;
+    const bool same_file = q.text == source_.text && q.name == source_.name && q.readable == readable_;
+    if (known_ && same_file && q.case_name == (cases_.empty() ? "" : cases_.front())) return;
     forget();
     source_ = {q.name, q.text, q.path};
     readable_ = q.readable;
+    if (!q.case_name.empty()) cases_ = {q.case_name};
     try {
       for (const NamedFile& f : files_named(source_))
         if (std::find(readable_.begin(), readable_.end(), f.name) == readable_.end())
@@ -120,7 +122,8 @@ class Answers::Desk {
       // open_model reports it.
     }
     if (!diagnostics_.has_errors())
-      if (const auto opened = open_model(source_, diagnostics_)) model_ = opened->model, names_ = opened->names;
+      if (const auto opened = open_model(source_, diagnostics_, {}, cases_))
+        model_ = opened->model, names_ = opened->names;
     if (model_) source_ = model_->source_text;
     known_ = true;
   }
@@ -130,6 +133,9 @@ class Answers::Desk {
     for (const Diagnostic& d : diagnostics_.list()) anholon::write(json, d, source_);
     json.close().key("names").open_array();
     if (model_) names(json);
+    json.close().key("cases").open_array();
+    if (model_)
+      for (const std::string& name : model_->cases) json.string(name);
     json.close().key("title").string(model_ ? model_->title : "").key("moves").boolean(static_cast<bool>(model_));
   }
 
@@ -157,9 +163,8 @@ class Answers::Desk {
   void simulate(JsonWriter& json) {
     if (!has_model(json)) return;
     if (const auto& list = contacts(*names_); !list.empty())
-      return anholon::write(
-          json, v1::mistake("the studio computes no motions with contacts", "anholon simulate " + source_.name),
-          source_.name);
+      return anholon::write(json, v1::mistake("the studio computes no motions with contacts", command("simulate")),
+                            source_.name);
     if (!move(json)) return;
     const std::optional<SimulationReport> report = read_report(parts_->page().cases.front().run.report);
     json.key("title").string(page_title(parts_->page())).key("sections").open_array();
@@ -168,11 +173,16 @@ class Answers::Desk {
     json.close().key("data").string(page_data(parts_->page()));
   }
 
+  // The command line that does the same of the saved file.
+  std::string command(const char* name) const {
+    return std::string("anholon ") + name + " " + source_.name + (cases_.empty() ? "" : " --case " + cases_.front());
+  }
+
   // Computes the motion unless it is there. False if there is none; the answer then says why.
   bool move(JsonWriter& json) {
     if (parts_) return true;
     auto data = std::make_shared<v1::Model::Data>();
-    data->source = source_, data->model = model_;
+    data->source = source_, data->cases = cases_, data->model = model_;
     v1::PrepareOptions prepare;
     prepare.form = model_->simulate.form.value_or("routh");
     const auto system = v1::prepare(v1::Model(data), prepare);
@@ -192,7 +202,7 @@ class Answers::Desk {
     PageRequest request;
     request.choice = system->data().choice;
     request.version = "anholon " ANHOLON_VERSION;
-    request.command = "anholon report " + source_.name;
+    request.command = command("report");
     request.source = workspace_->model->source_text;
     std::vector<Conserved> integrals;
     if (!sets_values(*workspace_->model)) integrals = conserved(*workspace_->mechanics);
@@ -204,9 +214,10 @@ class Answers::Desk {
 
   void derive(JsonWriter& json) {
     if (!has_model(json)) return;
+    if (!contacts(*names_).empty()) return derive_no_mode(json);
     JsonWriter no_motion;
     no_motion.open_object();
-    if (!contacts(*names_).empty() || !move(no_motion)) return derive_alone(json);
+    if (!move(no_motion)) return derive_alone(json);
     add_equations();
     json.key("sections").open_array();
     section(json, "system", "System", system_section(parts_->page()));
@@ -215,10 +226,19 @@ class Answers::Desk {
     json.close();
   }
 
+  static void derive_no_mode(JsonWriter& json) {
+    json.key("sections").open_array();
+    section(
+        json, "equations", "Equations of motion",
+        "<p>Each mode of the contacts has equations of its own. Write what touches as a <code>[[constraint]]</code> "
+        "to see those of a mode in which it touches.</p>");
+    json.close();
+  }
+
   // The equations of a model that has no motion, for want of numbers or of a start.
   void derive_alone(JsonWriter& json) const {
     auto data = std::make_shared<v1::Model::Data>();
-    data->source = source_, data->model = model_;
+    data->source = source_, data->cases = cases_, data->model = model_;
     v1::DeriveOptions options;
     options.form = model_->simulate.form.value_or("routh");
     if (options.form == "auto") options.form = "routh";
@@ -245,6 +265,7 @@ class Answers::Desk {
 
   SourceText source_;
   std::vector<std::string> readable_;
+  std::vector<std::string> cases_;  // the chosen one, if any
   bool known_ = false;
   Diagnostics diagnostics_;
   std::shared_ptr<const Model> model_;

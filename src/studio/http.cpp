@@ -1,6 +1,7 @@
 #include "studio/http.h"
 
 #include <array>
+#include <charconv>
 #include <chrono>
 #include <csignal>
 #include <stdexcept>
@@ -44,6 +45,20 @@ std::string only(const Fields& fields, Name name) {
   return fields.count(name) == 1 ? text(fields[name]) : std::string();
 }
 
+// The text of a field that is percent-encoded; a % without two digits stays as it is.
+std::string decoded(const std::string& field) {
+  std::string out;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    unsigned char byte = 0;
+    const char* from = field.data() + i + 1;
+    if (field[i] == '%' && i + 2 < field.size() && std::from_chars(from, from + 2, byte, 16).ptr == from + 2)
+      out += static_cast<char>(byte), i += 2;
+    else
+      out += field[i];
+  }
+  return out;
+}
+
 class Session : public std::enable_shared_from_this<Session> {
  public:
   Session(tcp::socket&& socket, Service& service) : stream_(std::move(socket)), service_(service) {
@@ -70,6 +85,7 @@ class Session : public std::enable_shared_from_this<Session> {
     head = {text(fields.method_string()), text(fields.target()), only(fields, http::field::host),
             only(fields, http::field::origin), only(fields, "Sec-Fetch-Site")};
     request_.page = only(fields, "X-Anholon-Page"), request_.edition = only(fields, "X-Anholon-Edition");
+    request_.case_name = decoded(only(fields, "X-Anholon-Case"));
     if (std::optional<HttpReply> no = service_.refuse(head)) return send(std::move(*no));
     http::async_read(stream_, buffer_, parser_,
                      [self = shared_from_this()](error_code e, std::size_t) { self->read_body(e); });

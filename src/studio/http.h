@@ -15,6 +15,7 @@ struct HttpHead {
 struct HttpRequest {
   HttpHead head;
   std::string page, edition;  // X-Anholon-Page, X-Anholon-Edition
+  std::string case_name;      // X-Anholon-Case, which is percent-encoded
   std::string body;
 };
 

@@ -116,7 +116,7 @@ class Studio {
     const std::size_t of_edition = editions_.seen(request.page, edition);
     const auto give_up = [&] { return stopping_ || editions_.is_old(request.page, edition); };
     const SourceText& s = file_.source();
-    const Question q{task.name, s.name, s.path, request.body, file_.readable()};
+    const Question q{task.name, s.name, s.path, request.case_name, request.body, file_.readable()};
     Worker& worker = std::string(task.name) == "check" ? checker_ : movers_[of_edition];
     const Worker::Answer a = worker.ask(q, task.seconds, give_up);
     switch (a.end) {

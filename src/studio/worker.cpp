@@ -136,7 +136,8 @@ Worker::Answer Worker::ask(const Question& question, double seconds, const std::
   const auto deadline =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   std::string parts, message;
-  for (const std::string* p : {&question.command, &question.name, &question.path, &question.text}) append(parts, *p);
+  for (const std::string* p : {&question.command, &question.name, &question.path, &question.case_name, &question.text})
+    append(parts, *p);
   for (const std::string& r : question.readable) append(parts, r);
   append(message, parts);
   Answer answer;
@@ -167,7 +168,7 @@ void work(const WorkerLimits& limits, const std::function<std::string(const Ques
     if (!receive_message(0, message, end_of_time, never)) return;
     Question q;
     std::size_t at = 0;
-    for (std::string* p : {&q.command, &q.name, &q.path, &q.text})
+    for (std::string* p : {&q.command, &q.name, &q.path, &q.case_name, &q.text})
       if (!take(message, at, *p)) return;
     while (take(message, at, part)) q.readable.push_back(part);
     std::string reply;

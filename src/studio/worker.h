@@ -12,10 +12,10 @@
 
 namespace anholon {
 
-// What the worker is asked. `name` and `path` are those of the model's file, `readable` the files that the text may
-// refer to, as the text writes them.
+// What the worker is asked. `name` and `path` are those of the model's file, `case_name` is a case of the text or empty,
+// `readable` the files that the text may refer to, as the text writes them.
 struct Question {
-  std::string command, name, path, text;
+  std::string command, name, path, case_name, text;
   std::vector<std::string> readable;
 };
 

@@ -1,26 +1,20 @@
-// Pages of the site and of a report in Chromium, at the width of a desk and of a phone: axe-core finds nothing, nothing scrolls sideways,
+// Pages of the site and of a report in Chromium and Firefox, at the width of a desk and of a phone: axe-core finds nothing, nothing scrolls sideways,
 // and no script complains. node accessibility.mjs SITE PROGRAM [--all] | --self-test. Exit 77: there is no browser, or no axe-core.
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
+import { browsers } from '../support/browsers.mjs';
 
 const self_test = process.argv[2] === '--self-test';
-const browser_path = process.env.CHROMIUM ?? '/usr/bin/chromium';
-const skip = (why) => { console.log(`skipped: ${why}`); process.exit(77); };
-if (!existsSync(browser_path)) skip(`no ${browser_path}`);
-if (!existsSync('viewer/node_modules/axe-core/axe.min.js')) skip('no axe-core');
-const { chromium } = await import(resolve('viewer/node_modules/playwright-core/index.mjs')).catch(() => skip('no playwright-core'));
+if (!existsSync('viewer/node_modules/axe-core/axe.min.js')) { console.log('skipped: no axe-core'); process.exit(77); }
 const axe = readFileSync('viewer/node_modules/axe-core/axe.min.js', 'utf8');
-const browser = await chromium.launch({
-  executablePath: browser_path,
-  args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking', '--disable-component-update'],
-});
+const started = await browsers();
 const folder = mkdtempSync(join(tmpdir(), 'anholon-site-'));
 
 // What is wrong with a page: rule and place, each rule once.
-async function faults(file, width, dark) {
+async function faults(browser, file, width, dark) {
   const page = await browser.newPage({ viewport: { width, height: 800 }, colorScheme: dark ? 'dark' : 'light' });
   const found = [];
   page.on('pageerror', (e) => found.push(`script: ${e.message}`));
@@ -48,12 +42,16 @@ async function faults(file, width, dark) {
 if (self_test) {
   const bad = join(folder, 'bad.html');
   writeFileSync(bad, '<!doctype html><html><head><title>t</title></head><body><main><h1>x</h1><img src="data:,"><p style="color:#bbb">pale</p><div style="width:900px">wide</div></main></body></html>');
-  const found = (await faults(bad, 390, false)).join('\n');
-  await browser.close();
+  let blind = 0;
+  for (const { name, browser } of started) {
+    const found = (await faults(browser, bad, 390, false)).join('\n');
+    await browser.close();
+    const missed = ['image-alt', 'color-contrast', 'html-has-lang', 'scrolls sideways'].filter((rule) => !found.includes(rule));
+    console.log(`${name}: ${missed.length ? `not found: ${missed}` : 'the faults of a bad page are found'}`);
+    blind += missed.length;
+  }
   rmSync(folder, { recursive: true });
-  const missed = ['image-alt', 'color-contrast', 'html-has-lang', 'scrolls sideways'].filter((rule) => !found.includes(rule));
-  console.log(missed.length ? `not found: ${missed}` : 'the faults of a bad page are found');
-  process.exit(missed.length ? 1 : 0);
+  process.exit(blind ? 1 : 0);
 }
 
 const site = resolve(process.argv[2]), program = resolve(process.argv[3]);
@@ -66,17 +64,19 @@ const pages = process.argv.includes('--all') ? all(site).filter((f) => !/_static
   : [...new Set([...sample, ...all(site).filter((f) => !/_static/.test(f)).filter((_, k) => k % 60 === 7)])];
 let count = 0;
 const rules = new Map();
-for (const page of [...pages, report]) {
-  for (const [width, dark] of [[1280, false], [390, true]]) {
-    for (const f of await faults(page, width, dark)) {
-      ++count;
-      const rule = f.split(' ')[0];
-      rules.set(rule, (rules.get(rule) ?? 0) + 1);
-      if (rules.get(rule) <= 8) console.log(`FAULT ${page.replace(site, '')} at ${width}: ${f}`);
+await Promise.all(started.map(async ({ name, browser }) => {
+  for (const page of [...pages, report]) {
+    for (const [width, dark] of [[1280, false], [390, true]]) {
+      for (const f of await faults(browser, page, width, dark)) {
+        ++count;
+        const rule = f.split(' ')[0];
+        rules.set(rule, (rules.get(rule) ?? 0) + 1);
+        if (rules.get(rule) <= 8) console.log(`FAULT ${page.replace(site, '')} at ${width} in ${name}: ${f}`);
+      }
     }
   }
-}
-await browser.close();
+  await browser.close();
+}));
 rmSync(folder, { recursive: true, force: true });
-console.log(`${pages.length + 1} pages, ${count} faults${count ? `: ${[...rules].map(([r, n]) => `${r} ${n}`).join(', ')}` : ''}`);
+console.log(`${pages.length + 1} pages in ${started.map((b) => b.name).join(' and ')}, ${count} faults${count ? `: ${[...rules].map(([r, n]) => `${r} ${n}`).join(', ')}` : ''}`);
 process.exit(count > 0 ? 1 : 0);

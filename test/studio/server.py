@@ -17,6 +17,7 @@ import sys
 import tempfile
 import threading
 import time
+import urllib.parse
 
 MODEL = """title = "A mass on a spring"
 coordinates = ["x"]
@@ -56,9 +57,9 @@ class Studio:
             self.process.wait(20)
         self.process.stdout.close()
 
-    def ask(self, what, text=None, edition=1, page="test", timeout=90):
+    def ask(self, what, text=None, edition=1, page="test", timeout=90, case=""):
         origin = f"http://127.0.0.1:{self.port}"
-        headers = {"Origin": origin, "X-Anholon-Page": page, "X-Anholon-Edition": str(edition)} if text is not None else {}
+        headers = {"Origin": origin, "X-Anholon-Page": page, "X-Anholon-Edition": str(edition), "X-Anholon-Case": urllib.parse.quote(case)} if text is not None else {}
         status, body = request(self.port, f"/{self.token}/{what}", text, headers, timeout)
         return status, json.loads(body) if body.startswith("{") else body
 
@@ -71,6 +72,9 @@ def request(port, path, text=None, headers=(), timeout=90):
         return reply.status, reply.read().decode()
     finally:
         connection.close()
+
+
+SOCKET = {"Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13", "Sec-WebSocket-Key": "AAAAAAAAAAAAAAAAAAAAAA=="}
 
 
 # Each returns a list of what is wrong.
@@ -88,6 +92,9 @@ def strangers(port, token):
         "a wrong token to compute": (f"/{wrong}/check", MODEL, good),
         "a foreign host": (f"/{token}/", None, {"Host": f"evil.example:{port}"}),
         "a foreign host with the name of ours": (f"/{token}/", None, {"Host": f"127.0.0.1:{port}.evil.example"}),
+        "a name that was made to mean this machine": (f"/{token}/check", MODEL, {**good, "Host": f"rebound.example:{port}", "Origin": f"http://rebound.example:{port}"}),
+        "a web socket without a token": ("/", None, {**SOCKET, "Origin": own}),
+        "a web socket of a foreign page": (f"/{token}/", None, {**SOCKET, "Origin": "http://evil.example"}),
         "a foreign page that reads": (f"/{token}/model", None, {"Origin": "http://evil.example"}),
         "a foreign page": (f"/{token}/check", MODEL, {**good, "Origin": "http://evil.example"}),
         "another port of this machine": (f"/{token}/check", MODEL, {**good, "Origin": f"http://127.0.0.1:{port + 1}"}),
@@ -110,6 +117,11 @@ def paths(port, token):
         status, body = request(port, f"/{token}/{path}")
         if status != 404 or "root:" in body:
             found.append(f"{path}: status {status}")
+    headers = {"Origin": f"http://127.0.0.1:{port}"}
+    for path in ["save/../../stolen.toml", "save?file=stolen.toml", "save/%2e%2e%2fstolen.toml", "save-anyway/stolen.toml", "..%2fsave"]:
+        status, _ = request(port, f"/{token}/{path}", MODEL, headers)
+        if status != 404:
+            found.append(f"saving to {path}: status {status}")
     return found
 
 
@@ -192,11 +204,68 @@ def works(studio):
     return found
 
 
+CASES = MODEL + '''[case.stiff]
+parameters = {k = 400}
+[case."far away / 100 %"]
+initial = {x = 3}
+'''
+CONTACT = '''title = "Ball over a floor"
+coordinates = ["z"]
+parameters = {m = 1, g = 9.81}
+gravity.field = "-g*ez"
+particle = [{name = "ball", mass = "m", position = "z*ez"}]
+contact = [{name = "floor", gap = "z", restitution = 0.5}]
+initial = {z = 1}
+simulate = {to = 1}
+'''
+
+
+def cases(studio):
+    """A case that is chosen is applied to the motion; a name that is none is a message."""
+    found = []
+    _, checked = studio.ask("check", CASES)
+    if checked.get("cases") != ["stiff", "far away / 100 %"]:
+        found.append(f"the cases: {checked}")
+    first = {}
+    for case in ["", "stiff", "far away / 100 %", ""]:
+        _, motion = studio.ask("simulate", CASES, case=case)
+        if "data" not in motion:
+            found.append(f"case '{case}': {str(motion)[:200]}")
+        elif first.setdefault(case, motion["data"]) != motion["data"]:
+            found.append(f"case '{case}' gives two motions")
+    if len(set(first.values())) != 3:
+        found.append("a case does not change the motion")
+    for case in ["stif", "../../etc/passwd", "a\r\nSet-Cookie: x", "x" * 8000, "%"]:
+        status, reply = studio.ask("check", CASES, case=case)
+        if status != 200 or "there is no case" not in json.dumps(reply):
+            found.append(f"case {case[:20]!r}: {status} {str(reply)[:200]}")
+    return found
+
+
+def contacts(studio):
+    """The mistakes of a model with contacts are messages; its motion is refused with the command that computes it."""
+    found = []
+    _, checked = studio.ask("check", CONTACT)
+    if checked.get("diagnostics") != []:
+        found.append(f"a floor: {checked}")
+    _, bad = studio.ask("check", CONTACT.replace('gap = "z"', 'gap = "zz"'))
+    if [d["line"] for d in bad.get("diagnostics", [])] != [6]:
+        found.append(f"the mistake in line 6: {bad}")
+    _, motion = studio.ask("simulate", CONTACT)
+    if "no motions with contacts" not in json.dumps(motion) or "anholon simulate" not in json.dumps(motion):
+        found.append(f"the motion with a contact: {str(motion)[:200]}")
+    _, derived = studio.ask("derive", CONTACT)
+    if "<math" in json.dumps(derived) or "equations of its own" not in json.dumps(derived):
+        found.append(f"equations that leave out a contact: {str(derived)[:200]}")
+    return found
+
+
 def hostile(studio):
     """Texts that ask for too much: each has an answer within its time, and the studio works afterwards."""
     found = []
     texts = {
         "a motion without an end": ("simulate", MODEL.replace("to = 2", "to = 1e7"), "interrupted"),
+        "a row each nanosecond": ("simulate", MODEL.replace("to = 2", "to = 1e9\nevery = 1e-9"), "error"),
         "a name of a megabyte": ("check", MODEL.replace('"P"', '"' + "P" * 900000 + '"'), ""),
         "brackets": ("check", MODEL.replace('"k*x^2/2"', '"' + "(" * 200000 + '"'), ""),
         "powers": ("simulate", MODEL.replace('"k*x^2/2"', '"((((((x+k)^99+m)^99+k)^99+m)^99+k)^99+m)^99"'), ""),
@@ -325,7 +394,7 @@ def self_test():
     counts = len(strangers(port, token)), len(paths(port, token)), len(sizes(port, token))
     server.shutdown()
     print(f"faults found in a careless server: {counts}")
-    return 0 if counts[0] == 12 and counts[1] == 9 and counts[2] >= 1 else 1
+    return 0 if counts[0] == 15 and counts[1] == 14 and counts[2] >= 1 else 1
 
 
 def main():
@@ -348,7 +417,7 @@ def main():
             if request(s.port, f"/{s.token}/")[0] != 200:
                 print("FAULT the page is not served")
                 return 1
-            for test in [works, lambda x: gates(x.port, x.token), lambda x: files(x, folder), editions, hostile]:
+            for test in [works, cases, contacts, lambda x: gates(x.port, x.token), lambda x: files(x, folder), editions, hostile]:
                 began = time.monotonic()
                 found += test(s)
                 print(f"{time.monotonic() - began:.1f} s")

@@ -125,7 +125,7 @@ monitor = {i = "D(a(x), 1)", j = "D(a(x), 2)"}
 error: a derivative of order 2 of the table 'a', which its fit does not have
 ```
 
-Columns of a file stand between commas, semicolons or blanks:
+Columns of a file stand between semicolons if a line has any, else between commas, else between blanks. Numbers have a decimal point.
 
 ```csv drag.csv
 mach,drag,lift

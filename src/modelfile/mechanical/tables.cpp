@@ -15,28 +15,43 @@ namespace {
 constexpr std::size_t kMostKnots = 10'000;
 constexpr std::uintmax_t kLargestFile = 16U << 20;
 
-// A row of a text file: fields between commas, semicolons or blanks.
+// A row of a text file: fields between semicolons if there are any, else between commas, else between blanks. A field in
+// quotes may hold the separator.
 std::vector<std::string> fields(const std::string& line) {
   std::vector<std::string> out;
-  const bool marked = line.find_first_of(",;") != std::string::npos;
+  const char separator = line.find(';') != std::string::npos ? ';' : line.find(',') != std::string::npos ? ',' : ' ';
   std::string field;
+  bool quoted = false;
   const auto end = [&] {
-    const auto from = field.find_first_not_of(" \t\r\"");
-    const auto to = field.find_last_not_of(" \t\r\"");
+    const auto from = field.find_first_not_of(" \t\r");
+    const auto to = field.find_last_not_of(" \t\r");
     if (from != std::string::npos)
       out.push_back(field.substr(from, to - from + 1));
-    else if (marked)
+    else if (separator != ' ')
       out.push_back("");
     field.clear();
   };
-  for (char c : line) {
-    if (marked ? c == ',' || c == ';' : c == ' ' || c == '\t')
+  for (const char c : line) {
+    if (c == '"')
+      quoted = !quoted;
+    else if (!quoted && (c == separator || (separator == ' ' && c == '\t')))
       end();
     else
       field += c;
   }
   end();
   return out;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& n : names) list += (list.empty() ? "" : ", ") + n;
+  return list;
+}
+
+// Takes off the mark of UTF-8 with which some programs begin a file.
+void drop_byte_order_mark(std::string& line) {
+  if (line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
 }
 
 class TableReader {
@@ -50,6 +65,19 @@ class TableReader {
     if (!named || named->kind != Item::Kind::string) throw Failure(t.span, "a table has no name", "name = \"Cd\"");
     Table table;
     table.name = normal_name(named->text());
+    try {
+      fill(t, *named, table);
+    } catch (const Failure&) {
+      // Formulas that use the table are not to complain, too.
+      table.x = {0, 1}, table.y = {0, 0};
+      declare(*named, std::move(table));
+      throw;
+    }
+    declare(*named, std::move(table));
+  }
+
+ private:
+  void fill(const Item& t, const Item& named, Table& table) {
     table.fit = choice<Fit>(t, "fit", {"hold", "linear", "monotone", "spline"}, Fit::linear);
     table.outside = choice<Outside>(t, "outside", {"hold", "linear", "error"}, Outside::hold);
     const Item *x = t.find("x"), *y = t.find("y"), *file = t.find("file");
@@ -60,7 +88,7 @@ class TableReader {
       from_file(*file, t.find("columns"), table);
     } else {
       if (!x || !y)
-        throw Failure(named->span, "the table '" + table.name + "' has no " + (x ? "y" : "x"),
+        throw Failure(named.span, "the table '" + table.name + "' has no " + (x ? "y" : "x"),
                       "x = [0, 1, 2], y = [0, 1, 4]");
       table.x = numbers(*x);
       table.y = numbers(*y);
@@ -76,14 +104,16 @@ class TableReader {
       if (!(table.x[k - 1] < table.x[k]))
         throw Failure(x ? x->items[k].span : place,
                       "the knots of a table ascend; the " + std::to_string(k + 1) + ". does not");
-    Scope::Declaration d;
-    d.role = Scope::Role::table;
-    d.span = named->formula.whole();
-    d.index = scope_.add_table(std::move(table));
-    scope_.declare(normal_name(named->text()), d);
   }
 
- private:
+  void declare(const Item& named, Table table) {
+    Scope::Declaration d;
+    d.role = Scope::Role::table;
+    d.span = named.formula.whole();
+    d.index = scope_.add_table(std::move(table));
+    scope_.declare(normal_name(named.text()), d);
+  }
+
   template <class Choice>
   Choice choice(const Item& t, const char* key, const std::vector<std::string>& names, Choice usual) {
     const Item* i = t.find(key);
@@ -91,9 +121,7 @@ class TableReader {
     const std::string text = i->kind == Item::Kind::string ? i->text() : std::string();
     const auto it = std::find(names.begin(), names.end(), text);
     if (it != names.end()) return static_cast<Choice>(it - names.begin());
-    std::string list;
-    for (const std::string& n : names) list += (list.empty() ? "" : ", ") + n;
-    throw Failure(i->span, std::string("'") + key + "' is one of " + list);
+    throw Failure(i->span, std::string("'") + key + "' is one of " + joined(names));
   }
 
   Rational number(const Item& i) {
@@ -127,7 +155,7 @@ class TableReader {
     std::size_t at[2] = {0, 0}, number = 0;
     bool placed = false;
     for (std::string line; std::getline(in, line);) {
-      ++number;
+      if (++number == 1) drop_byte_order_mark(line);
       const std::vector<std::string> row = fields(line);
       if (row.empty() || row[0].rfind('#', 0) == 0) continue;
       if (!placed) {
@@ -143,15 +171,19 @@ class TableReader {
           else
             throw Failure(columns ? columns->items[static_cast<std::size_t>(k)].span : file.span,
                           "the file '" + path.string() + "' has no column '" + wanted[static_cast<std::size_t>(k)] +
-                              "'");
+                              "'",
+                          "its first line has the columns " + joined(row));
         }
         if (heading || !parse_rational(row[0])) continue;
       }
       for (int k = 0; k < 2; ++k) {
         const auto v = at[k] < row.size() ? parse_rational(row[at[k]]) : std::nullopt;
         if (!v)
-          throw Failure(file.span, "line " + std::to_string(number) + " of '" + path.string() +
-                                       "' has no number in column " + std::to_string(at[k] + 1));
+          throw Failure(file.span,
+                        "line " + std::to_string(number) + " of '" + path.string() + "' has no number in column " +
+                            std::to_string(at[k] + 1),
+                        at[k] < row.size() ? "'" + row[at[k]] + "' stands there; numbers have a decimal point: 0.8"
+                                           : "the line has " + std::to_string(row.size()) + " columns");
         (k == 0 ? table.x : table.y).push_back(*v);
       }
     }

@@ -1,4 +1,4 @@
-// What the studio asks of the program: functions of a text. The page knows no more of it, so a program compiled to WebAssembly
+// What the studio asks of the program: functions of a text and a case. The page knows no more of it, so a program compiled to WebAssembly
 // can take the place of the one behind HTTP (http_engine.ts).
 
 export interface Problem {
@@ -15,16 +15,19 @@ export interface Failed { error: Trouble }
 export type Answer<T> = T | Replaced | Failed;
 
 export interface Name { name: string; what: string }
-export interface Checked { diagnostics: Problem[]; names: Name[]; title: string; moves: boolean }
+export interface Checked { diagnostics: Problem[]; names: Name[]; cases: string[]; title: string; moves: boolean }
 export interface Section { id: string; title: string; html: string }       // markup of the program, in which all text of the model is escaped
 export interface Sections { sections: Section[] }
 export interface Motion extends Sections { title: string; data: string }   // data: the JSON of CONTRACT.md
 
+// The text of a model and the scenario [case.NAME] that is applied to it; empty: none.
+export interface Chosen { text: string; case_name: string }
+
 export interface Engine {
-  check(text: string, edition: number): Promise<Answer<Checked>>;
-  simulate(text: string, edition: number): Promise<Answer<Motion>>;
-  derive(text: string, edition: number): Promise<Answer<Sections>>;
-  prove(text: string, edition: number): Promise<Answer<Sections>>;
+  check(of: Chosen, edition: number): Promise<Answer<Checked>>;
+  simulate(of: Chosen, edition: number): Promise<Answer<Motion>>;
+  derive(of: Chosen, edition: number): Promise<Answer<Sections>>;
+  prove(of: Chosen, edition: number): Promise<Answer<Sections>>;
 }
 
 export interface Key { name: string; meaning: string; choices: string[] }

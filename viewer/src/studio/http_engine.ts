@@ -1,6 +1,6 @@
 // The program behind HTTP on the loopback address; the token is in the path of the page, so addresses are relative.
 
-import type { Answer, Checked, Engine, Failed, Language, Motion, Opened, Sections, Store } from './engine.ts';
+import type { Answer, Checked, Chosen, Engine, Failed, Language, Motion, Opened, Sections, Store } from './engine.ts';
 
 const page = Array.from(crypto.getRandomValues(new Uint8Array(8)), (b) => b.toString(16).padStart(2, '0')).join('');
 
@@ -8,9 +8,9 @@ const lost = (why: string): Failed => ({
   error: { text: `the program does not answer: ${why}`, hint: 'start anholon studio again', outcome: '', diagnostics: [] },
 });
 
-async function ask<T>(what: string, text: string, edition: number): Promise<Answer<T>> {
+async function ask<T>(what: string, of: Chosen, edition: number): Promise<Answer<T>> {
   try {
-    const reply = await fetch(what, { method: 'POST', body: text, headers: { 'X-Anholon-Page': page, 'X-Anholon-Edition': String(edition) } });
+    const reply = await fetch(what, { method: 'POST', body: of.text, headers: { 'X-Anholon-Page': page, 'X-Anholon-Edition': String(edition), 'X-Anholon-Case': encodeURIComponent(of.case_name) } });
     if (!reply.ok) return lost((await reply.text()).trim() || String(reply.status));
     return await reply.json() as Answer<T>;
   } catch (e) { return lost((e as Error).message); }
@@ -23,10 +23,10 @@ async function get<T>(what: string): Promise<T> {
 }
 
 export const http_engine: Engine & Store = {
-  check: (text, edition) => ask<Checked>('check', text, edition),
-  simulate: (text, edition) => ask<Motion>('simulate', text, edition),
-  derive: (text, edition) => ask<Sections>('derive', text, edition),
-  prove: (text, edition) => ask<Sections>('prove', text, edition),
+  check: (of, edition) => ask<Checked>('check', of, edition),
+  simulate: (of, edition) => ask<Motion>('simulate', of, edition),
+  derive: (of, edition) => ask<Sections>('derive', of, edition),
+  prove: (of, edition) => ask<Sections>('prove', of, edition),
   open: () => get<Opened>('model'),
   language: () => get<Language>('language'),
   async save(text, anyway) {

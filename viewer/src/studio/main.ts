@@ -5,6 +5,7 @@ import './studio.css';
 import { h } from '../dom.ts';
 import { theme_switch, watch_theme } from '../theme.ts';
 import { Editor } from './editor.ts';
+import { CaseChoice } from './case_choice.ts';
 import type { Answer, Engine, Failed, Problem, Replaced, Store } from './engine.ts';
 import { http_engine } from './http_engine.ts';
 import { Preview } from './preview.ts';
@@ -22,6 +23,7 @@ class Studio {
   private readonly problems = h('ul', { class: 'problems', 'aria-label': 'Messages' });
   private readonly save_button = h('button', { type: 'button', click: () => void this.save(false) }, 'Save');
   private readonly file = h('span', { class: 'file' });
+  private readonly cases = new CaseChoice(() => this.changed());
   private readonly preview: Preview;
   private editor!: Editor;
 
@@ -30,7 +32,7 @@ class Studio {
     const editing = h('div', { class: 'editing' }), shown = h('div', { class: 'shown' });
     document.body.classList.add('studio');
     document.body.append(
-      h('header', { class: 'studio-bar' }, h('h1', {}, 'Anholon studio'), this.file, this.save_button, this.status, tools),
+      h('header', { class: 'studio-bar' }, h('h1', {}, 'Anholon studio'), this.file, this.cases.element, this.save_button, this.status, tools),
       h('div', { class: 'columns' }, h('div', { class: 'left', role: 'region', 'aria-label': 'Model' }, editing, this.problems), shown));
     watch_theme();
     theme_switch(tools);
@@ -70,18 +72,19 @@ class Studio {
 
   // The motion first, which the eye waits for, then the equations, then the proof.
   private async compute(): Promise<void> {
-    const { edition } = this, { text } = this.editor, began = performance.now();
+    const { edition } = this, of = { text: this.editor.text, case_name: this.cases.chosen }, began = performance.now();
     const old = (a: unknown): boolean => edition !== this.edition || replaced(a as Answer<object>);
     this.say('computing …');
-    void this.engine.check(text, edition).then((a) => {
+    void this.engine.check(of, edition).then((a) => {
       if (old(a)) return;
       if (failed(a)) return this.list(a.error.diagnostics, a.error.text);
       if (!replaced(a)) {
+        if (a.moves) this.cases.offer(a.cases);
         if (a.names.length > 0) this.editor.names = a.names;
         this.list(a.diagnostics, '');
       }
     });
-    const motion = await this.engine.simulate(text, edition);
+    const motion = await this.engine.simulate(of, edition);
     if (old(motion) || replaced(motion)) return;
     if (failed(motion)) {
       this.preview.stale(motion.error.text, motion.error.hint);
@@ -91,11 +94,11 @@ class Studio {
       this.say(`motion in ${((performance.now() - began) / 1000).toFixed(2)} s`);
     }
     document.documentElement.dataset.shown = String(edition);
-    const equations = await this.engine.derive(text, edition);
+    const equations = await this.engine.derive(of, edition);
     if (old(equations) || replaced(equations)) return;
     if (!failed(equations)) this.preview.sections(equations.sections);
     if (failed(motion)) return;
-    const proof = await this.engine.prove(text, edition);
+    const proof = await this.engine.prove(of, edition);
     if (old(proof) || replaced(proof)) return;
     if (failed(proof)) this.preview.remove(['proof']); else this.preview.sections(proof.sections);
     document.documentElement.dataset.done = String(edition);
@@ -104,7 +107,7 @@ class Studio {
   private list(problems: Problem[], text: string): void {
     this.editor.show(problems);
     this.problems.replaceChildren(...problems.map((p) => h('li', { class: p.severity },
-      h('button', { type: 'button', class: 'plain', click: () => this.editor.go_to(p) }, `${p.file || 'line'} ${p.line}`), ` ${p.severity}: ${p.message}`,
+      h('button', { type: 'button', class: 'plain', click: () => this.editor.go_to(p) }, p.line > 0 ? `${p.file || 'line'} ${p.line}` : p.file || 'the text'), ` ${p.severity}: ${p.message}`,
       p.hint ? h('span', { class: 'hint' }, ` ${p.hint}`) : null)));
     if (text !== '' && problems.length === 0) this.problems.replaceChildren(h('li', { class: 'error' }, text));
   }
