@@ -145,7 +145,9 @@ class HybridMotion {
       const bool begins = modes_[c].touch == Touch::slips && contacts_[c].rough() && !p.contacts[c].moves;
       if (begins) set_slip(c, modes_[c].direction, kSeed * std::max(dynamics_.speed(), 1.0L));
     }
-    stop_touching();
+    // The velocities at the end of a segment have the round-off of those before, which may be much larger.
+    dynamics_.go(at_);
+    stop(modes_);
     return {};
   }
 
@@ -232,63 +234,71 @@ class HybridMotion {
     });
   }
 
-  // A contact comes to rest if its impacts add up to a limit less than kLeft away, or if it is pressed together and would
-  // rise, with its velocity after the impact, by round-off of its place only. The contacts that come to rest do so
-  // together, as the impacts of each set the others in motion.
+  // A gap comes to rest if its impacts add up to a limit less than kLeft away, or if it is pressed together and would
+  // rise, with its velocity after the impact, by round-off of its place only. Gaps that come to rest do so together, as
+  // the impacts of each set the others in motion; and so does a slip that friction ends within round-off of the place.
   void land() {
     constexpr double kLeft = 1e-7;
     const double t = at_.t.get_d();
-    std::vector<bool> rests(contacts_.size()), lies(contacts_.size());
+    ContactModes stops(contacts_.size());
     bool any = false;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       if (!closed(c)) continue;
       const std::optional<double> limit = accumulation_.limit(c);
-      rests[c] = gap_rate(c) != 0 && ((limit && *limit - t < kLeft) || hardly_rises(c));
-      lies[c] = rests[c] || gap_rate(c) == 0;
-      any = any || rests[c];
-      if (!rests[c]) continue;
+      const bool rests = gap_rate(c) != 0 && ((limit && *limit - t < kLeft) || hardly_rises(c));
+      if (rests || gap_rate(c) == 0) stops[c].touch = Touch::slips;
+      if (!rests) continue;
+      any = true;
       joined_.event(contacts_[c].name + ".rests", limit ? std::max(*limit, t) : t);
       accumulation_.forget(c);
     }
-    if (any) stop_gaps(lies);
+    if (!any) return;
+    stop(stops);
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      if (stops[c].touch != Touch::open && hardly_slips(c)) stops[c].touch = Touch::sticks;
+    stop(stops);
   }
 
-  // The height to which a gap opens with its velocity against the free acceleration is below round-off of its place.
-  bool hardly_rises(std::size_t c) const {
+  // The acceleration with which a gap would close without contacts.
+  long double pressed(std::size_t c) const {
     const ContactProblem& p = dynamics_.accelerations();
     const auto free = of_modes(p, ContactModes(contacts_.size()));
-    if (!free) return false;
+    if (!free) return 0;
     long double a = p.contacts[c].normal_rate;
     for (std::size_t i = 0; i < free->x.size(); ++i) a += p.contacts[c].normal[i] * free->x[i];
-    const long double v = gap_rate(c);
-    return a < 0 && v * v <= -2 * a * kRounded * place_size(c);
+    return std::max(-a, 0.0L);
+  }
+  // Whether a velocity ends against the deceleration a within round-off of the place.
+  bool hardly_moves(std::size_t c, long double v, long double a) const {
+    return a > 0 && v * v <= 2 * a * kRounded * place_size(c);
+  }
+  bool hardly_rises(std::size_t c) const { return hardly_moves(c, gap_rate(c), pressed(c)); }
+  bool hardly_slips(std::size_t c) const {
+    const auto& slip = dynamics_.place(c).slip;
+    return contacts_[c].rough() &&
+           hardly_moves(c, std::hypot(slip[0], slip[1]), dynamics_.accelerations().contacts[c].friction * pressed(c));
   }
 
-  // The jump of least change after which these gaps do not move. A gap that the others stop already is left out.
-  void stop_gaps(const std::vector<bool>& stops) {
-    ContactProblem p = dynamics_.impact(stops, 0);
-    ContactModes modes(contacts_.size());
+  // The jump of least change after which what touches does not move along its normal, and what sticks does not slip. A
+  // contact that the others stop already is left out.
+  void stop(const ContactModes& modes) {
+    ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), true), 0);
+    ContactModes stopped(contacts_.size());
     std::optional<ContactSolution> jump;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      if (!stops[c]) continue;
       p.contacts[c].friction = 0;
-      modes[c].touch = Touch::slips;
-      if (auto further = of_modes(p, modes))
-        jump = std::move(further);
-      else
-        modes[c].touch = Touch::open;
+      for (const Touch touch : {Touch::sticks, Touch::slips}) {
+        if (touch > modes[c].touch) continue;
+        stopped[c].touch = touch;
+        if (auto further = of_modes(p, stopped)) {
+          jump = std::move(further);
+          break;
+        }
+        stopped[c].touch = Touch::open;
+      }
     }
     if (jump) add_to_velocities(jump->x);
     dynamics_.go(at_);
-  }
-
-  // The jump of least change after which what touches does not move along its normal, and what sticks does not slip: the
-  // velocities at the end of a segment have the round-off of those before, which may be much larger.
-  void stop_touching() {
-    dynamics_.go(at_);
-    ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), true), 0);
-    for (ContactRows& rows : p.contacts) rows.friction = 0;
-    if (const auto jump = of_modes(p, modes_)) add_to_velocities(jump->x);
   }
 
   void add_to_velocities(const std::vector<long double>& jump) {
