@@ -66,6 +66,8 @@ class HybridMotion {
   static constexpr long double kRest = 1e-12L, kSeed = 1e-10L;
   // A place is known to this part of the size of its terms.
   static constexpr long double kRounded = 1e-14L;
+  // The jump that stops a velocity leaves this part of what the velocity has been.
+  static constexpr long double kLeftOver = 1e-16L;
   // Impacts at one instant; others follow after a segment.
   static constexpr std::size_t kMostImpacts = 16;
   static constexpr const char* kPassed =
@@ -148,6 +150,9 @@ class HybridMotion {
     // The velocities at the end of a segment have the round-off of those before, which may be much larger.
     dynamics_.go(at_);
     stop(modes_);
+    // What the jump leaves of a velocity that it stops.
+    for (std::size_t a = 0; a < at_.qd.size(); ++a)
+      if (std::abs(at_.qd[a]) <= kLeftOver * dynamics_.most(a)) at_.qd[a] = 0;
     return {};
   }
 
