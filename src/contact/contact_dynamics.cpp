@@ -119,7 +119,7 @@ void ContactDynamics::go(const ContactState& at) {
   }
 }
 
-ContactProblem ContactDynamics::impact(const std::vector<bool>& touches, const std::vector<bool>& gentle) const {
+ContactProblem ContactDynamics::impact(const std::vector<bool>& touches, std::optional<long double> restitution) const {
   ContactProblem p;
   p.A = problem_.A;
   p.Phi = problem_.Phi;
@@ -128,7 +128,7 @@ ContactProblem ContactDynamics::impact(const std::vector<bool>& touches, const s
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     ContactRows rows = problem_.contacts[c];
     const Place& place = places_[c];
-    const long double e = gentle[c] ? 0 : place.restitution;
+    const long double e = restitution.value_or(place.restitution);
     rows.normal_rate = (1 + e) * place.gap_rate;
     rows.tangential_rate = place.slip;
     rows.static_friction = rows.friction;  // of impulses there is one coefficient

@@ -24,8 +24,9 @@ class ContactDynamics {
   long double most(std::size_t coordinate) const { return most_[coordinate]; }  // its largest velocity up to now
   // The accelerations; `moves` and `direction` of the contacts are those of their slip velocities.
   const ContactProblem& accelerations() const { return problem_; }
-  // The jumps of the velocities at an impact by Newton's law in Moreau's form. gentle: contacts whose restitution is 0.
-  ContactProblem impact(const std::vector<bool>& touches, const std::vector<bool>& gentle) const;
+  // The jumps of the velocities at an impact by Newton's law in Moreau's form, with the restitutions of the contacts or
+  // with this one.
+  ContactProblem impact(const std::vector<bool>& touches, std::optional<long double> restitution = std::nullopt) const;
   // The kinetic energy of velocities, in which the mass matrix is that of the state.
   long double energy(const std::vector<long double>& qd) const;
 

@@ -22,6 +22,7 @@ struct ContactMode {
   bool free = false;                       // sticks without friction of its own, as other contacts hold it
   long double rest = 0;                    // a slip velocity with two components is zero below it
   long double slack = 0;                   // forces below it are round-off
+  long double depth = 0;                   // a gap is negative below minus this
 };
 using ContactModes = std::vector<ContactMode>;
 

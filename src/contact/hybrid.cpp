@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "contact/accumulation.h"
 #include "contact/contact_dynamics.h"
 #include "contact/joined_report.h"
 #include "contact/segment_rows.h"
@@ -31,7 +32,7 @@ class HybridMotion {
  public:
   HybridMotion(Workspace& s, const std::vector<Contact>& contacts, const SimulationOptions& o, RowSink& sink)
       : s_(s), contacts_(contacts), o_(o), dynamics_(s, contacts), rows_(sink, contacts), joined_(*s.model),
-        gentle_(contacts.size(), false), impacts_(contacts.size()) {
+        accumulation_(contacts.size()) {
     at_.t = o.state.t ? *o.state.t : Rational(s.state.t);
     at_.q = s.state.q, at_.qd = s.state.qd, at_.states = s.state.states;
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
@@ -63,26 +64,31 @@ class HybridMotion {
  private:
   // A slip velocity with two components ends at kRest and begins at kSeed of the velocities: at zero it has no direction.
   static constexpr long double kRest = 1e-12L, kSeed = 1e-10L;
-  static constexpr const char* kPassed = "rows before that are inside, too: the contact was missed; please report it";
+  // A place is known to this part of the size of its terms.
+  static constexpr long double kRounded = 1e-14L;
+  // The jump that stops a velocity leaves this part of what the velocity has been.
+  static constexpr long double kLeftOver = 1e-16L;
+  // Impacts at one instant; others follow after a segment.
+  static constexpr std::size_t kMostImpacts = 16;
+  static constexpr const char* kPassed =
+      "the contact is deeper than the round-off of its event: take a smaller --tolerance, or end the motion before";
   // What the event at which the last segment ended excludes.
   struct Excluded {
     bool touch = false, stick = false, slips = false;
   };
-  // The last impacts of a contact, from which it is seen that they accumulate.
-  struct Impacts {
-    double last = 0, interval = 0, ratio = 0;
-    std::size_t alike = 0, count = 0;
-  };
-
   std::string when() const { return " at t = " + number_text(at_.t.get_d(), 12); }
 
   // A gap of this size is none: the state is rounded to doubles.
   bool closed(std::size_t c) const {
     constexpr long double kClosed = 1e-12L;
+    return dynamics_.place(c).gap <= kClosed * place_size(c);
+  }
+  // The size of the terms of a gap.
+  long double place_size(std::size_t c) const {
     long double size = 1e-300L;
     for (std::size_t a = 0; a < at_.q.size(); ++a)
       size = std::max(size, std::abs(dynamics_.accelerations().contacts[c].normal[a]) * (1 + std::abs(at_.q[a])));
-    return dynamics_.place(c).gap <= kClosed * size;
+    return size;
   }
   // The velocity of the gap, 0 within round-off of the velocities that the motion had.
   long double gap_rate(std::size_t c) const {
@@ -106,17 +112,16 @@ class HybridMotion {
     return {};
   }
   bool negligible(std::size_t c) const {
-    constexpr long double kRounded = 1e-8L;
-    return dynamics_.place(c).gap > -kRounded;
+    constexpr long double kMissed = 1e-8L;
+    return dynamics_.place(c).gap > -kMissed;
   }
 
   // Impacts where a closed gap shrinks, then the modes by the accelerations.
   Outcome choose() {
     dynamics_.go(at_);
-    bool hits = false;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) hits = hits || (closed(c) && gap_rate(c) < 0);
-    if (hits)
+    for (std::size_t k = 0; shrinks() && k < kMostImpacts; ++k)
       if (Outcome o = impact(); !o.ok()) return o;
+    land();
     ContactProblem p = dynamics_.accelerations();
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       ContactRows& rows = p.contacts[c];
@@ -136,12 +141,18 @@ class HybridMotion {
     for (const long double b : p.b) force = std::max(force, std::abs(b));
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       modes_[c].rest = kRest * dynamics_.place(c).slip_scale;
+      modes_[c].depth = kRounded / 2 * place_size(c) + std::max(0.0L, -dynamics_.place(c).gap);
       modes_[c].slack = kRest * (force > 0 ? force : 1);
       if (contacts_[c].slip.size() < 2 || modes_[c].free) continue;
       const bool begins = modes_[c].touch == Touch::slips && contacts_[c].rough() && !p.contacts[c].moves;
       if (begins) set_slip(c, modes_[c].direction, kSeed * std::max(dynamics_.speed(), 1.0L));
-      if (modes_[c].touch == Touch::sticks && excluded_[c].slips) set_slip(c, {}, 0);
     }
+    // The velocities at the end of a segment have the round-off of those before, which may be much larger.
+    dynamics_.go(at_);
+    stop(modes_);
+    // What the jump leaves of a velocity that it stops.
+    for (std::size_t a = 0; a < at_.qd.size(); ++a)
+      if (std::abs(at_.qd[a]) <= kLeftOver * dynamics_.most(a)) at_.qd[a] = 0;
     return {};
   }
 
@@ -171,12 +182,32 @@ class HybridMotion {
             "rigid bodies with this friction have several motions here: take less friction, or end the motion before"};
   }
 
+  // Whether a closed gap shrinks.
+  bool shrinks() const {
+    bool any = false;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) any = any || (closed(c) && gap_rate(c) < 0);
+    return any;
+  }
+
+  // Impacts within round-off of one instant for which no mode is consistent follow each other: the least gap comes first.
+  void first_alone(std::vector<bool>& touches) const {
+    std::size_t first = contacts_.size();
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      if (touches[c] && gap_rate(c) < 0 &&
+          (first == contacts_.size() || dynamics_.place(c).gap < dynamics_.place(first).gap))
+        first = c;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) touches[c] = touches[c] && (c == first || gap_rate(c) == 0);
+  }
+
   Outcome impact() {
     const std::size_t n = at_.q.size();
     std::vector<bool> touches;
     for (std::size_t c = 0; c < contacts_.size(); ++c) touches.push_back(closed(c) && gap_rate(c) <= 0);
-    const bool rests = accumulate(touches);
-    const std::vector<ContactSolution> list = consistent_modes(dynamics_.impact(touches, gentle_));
+    std::vector<ContactSolution> list = consistent_modes(dynamics_.impact(touches));
+    if (list.size() != 1) {
+      first_alone(touches);
+      list = consistent_modes(dynamics_.impact(touches));
+    }
     if (list.size() != 1) return undecided(list);
     std::vector<long double> before(at_.qd.begin(), at_.qd.end()), after = before;
     for (std::size_t a = 0; a < n; ++a) after[a] += list[0].x[a];
@@ -192,10 +223,12 @@ class HybridMotion {
       at_.qd[a] = v;
     }
     joined_.set(at_.t.get_d(), changes);
-    if (rests) joined_.event(rest_name_, rest_time_);
-    for (std::size_t c = 0; c < contacts_.size(); ++c) gentle_[c] = false, excluded_[c] = {};
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      if (touches[c] && gap_rate(c) != 0) accumulation_.impact(c, at_.t.get_d());
+      excluded_[c] = {};
+    }
     dynamics_.go(at_);
-    // What the impact made zero is zero.
+    land();
     return {};
   }
 
@@ -206,33 +239,75 @@ class HybridMotion {
     });
   }
 
-  // Intervals that shrink by one ratio r add up to a limit: t + interval r/(1 - r). From kLeft before the limit on the
-  // impact has no restitution: what the gap would still open is of the order of kLeft^2, which is below round-off.
-  // Returns whether a contact comes to rest.
-  bool accumulate(const std::vector<bool>& touches) {
-    constexpr double kRatio = 1e-3, kNoise = 0.1, kLeft = 1e-7;
-    constexpr std::size_t kAlike = 4;
-    bool rests = false;
+  // A gap comes to rest if its impacts add up to a limit less than kLeft away, or if it is pressed together and would
+  // rise, with its velocity after the impact, by round-off of its place only. Gaps that come to rest do so together, as
+  // the impacts of each set the others in motion; and so does a slip that friction ends within round-off of the place.
+  void land() {
+    constexpr double kLeft = 1e-7;
     const double t = at_.t.get_d();
+    ContactModes stops(contacts_.size());
+    bool any = false;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      if (!touches[c] || gap_rate(c) == 0) continue;
-      Impacts& i = impacts_[c];
-      const double interval = i.count > 0 ? t - i.last : 0, ratio = i.count > 1 ? interval / i.interval : 0;
-      // Near the limit an interval has few digits, and the ratio stays that of before.
-      const bool known = i.alike >= kAlike, alike = std::abs(ratio - i.ratio) < (known ? kNoise : kRatio);
-      i.alike = i.count > 2 && ratio < 1 && alike ? i.alike + 1 : 0;
-      const double r = known && alike ? i.ratio : ratio;
-      const double left = r > 0 && r < 1 ? interval * r / (1 - r) : 0;
-      if (i.alike >= kAlike && left < kLeft) {
-        gentle_[c] = rests = true;
-        rest_name_ = contacts_[c].name + ".rests";
-        rest_time_ = t + left;
-        i = {};
-        continue;
-      }
-      i.last = t, i.interval = interval, i.ratio = r, ++i.count;
+      if (!closed(c)) continue;
+      const std::optional<double> limit = accumulation_.limit(c);
+      const bool rests = gap_rate(c) != 0 && ((limit && *limit - t < kLeft) || hardly_rises(c));
+      if (rests || gap_rate(c) == 0) stops[c].touch = Touch::slips;
+      if (!rests) continue;
+      any = true;
+      joined_.event(contacts_[c].name + ".rests", limit ? std::max(*limit, t) : t);
+      accumulation_.forget(c);
     }
-    return rests;
+    if (!any) return;
+    stop(stops);
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      if (stops[c].touch != Touch::open && hardly_slips(c)) stops[c].touch = Touch::sticks;
+    stop(stops);
+  }
+
+  // The acceleration with which a gap would close without contacts.
+  long double pressed(std::size_t c) const {
+    const ContactProblem& p = dynamics_.accelerations();
+    const auto free = of_modes(p, ContactModes(contacts_.size()));
+    if (!free) return 0;
+    long double a = p.contacts[c].normal_rate;
+    for (std::size_t i = 0; i < free->x.size(); ++i) a += p.contacts[c].normal[i] * free->x[i];
+    return std::max(-a, 0.0L);
+  }
+  // Whether a velocity ends against the deceleration a within round-off of the place.
+  bool hardly_moves(std::size_t c, long double v, long double a) const {
+    return a > 0 && v * v <= 2 * a * kRounded * place_size(c);
+  }
+  bool hardly_rises(std::size_t c) const { return hardly_moves(c, gap_rate(c), pressed(c)); }
+  bool hardly_slips(std::size_t c) const {
+    const auto& slip = dynamics_.place(c).slip;
+    return contacts_[c].rough() &&
+           hardly_moves(c, std::hypot(slip[0], slip[1]), dynamics_.accelerations().contacts[c].friction * pressed(c));
+  }
+
+  // The jump of least change after which what touches does not move along its normal, and what sticks does not slip. A
+  // contact that the others stop already is left out.
+  void stop(const ContactModes& modes) {
+    ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), true), 0);
+    ContactModes stopped(contacts_.size());
+    std::optional<ContactSolution> jump;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      p.contacts[c].friction = 0;
+      for (const Touch touch : {Touch::sticks, Touch::slips}) {
+        if (touch > modes[c].touch) continue;
+        stopped[c].touch = touch;
+        if (auto further = of_modes(p, stopped)) {
+          jump = std::move(further);
+          break;
+        }
+        stopped[c].touch = Touch::open;
+      }
+    }
+    if (jump) add_to_velocities(jump->x);
+    dynamics_.go(at_);
+  }
+
+  void add_to_velocities(const std::vector<long double>& jump) {
+    for (std::size_t a = 0; a < at_.qd.size(); ++a) at_.qd[a] = static_cast<double>(at_.qd[a] + jump[a]);
   }
 
   // A slip that begins where the friction that holds has become too large begins against this friction.
@@ -246,7 +321,7 @@ class HybridMotion {
 
   // The jump of least change that gives a contact the slip velocity v along d.
   void set_slip(std::size_t c, const std::array<long double, 2>& d, long double v) {
-    ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), false), gentle_);
+    ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), false));
     ContactModes modes(contacts_.size());
     modes[c].touch = Touch::sticks;
     p.contacts[c] = dynamics_.accelerations().contacts[c];
@@ -254,7 +329,7 @@ class HybridMotion {
     for (std::size_t a = 0; a < 2; ++a) p.contacts[c].tangential_rate[a] = dynamics_.place(c).slip[a] - v * d[a];
     const auto jump = of_modes(p, modes);
     if (!jump) return;
-    for (std::size_t a = 0; a < at_.qd.size(); ++a) at_.qd[a] += static_cast<double>(jump->x[a]);
+    add_to_velocities(jump->x);
   }
 
   // A slip velocity with two components that vanishes on a curved line has no Taylor series there, and the steps become
@@ -332,11 +407,8 @@ class HybridMotion {
   std::vector<Rational> times_;
   ContactModes modes_;
   std::vector<Excluded> excluded_;
-  std::vector<bool> gentle_;  // contacts whose next impact has no restitution
-  std::vector<Impacts> impacts_;
+  Accumulation accumulation_;
   std::vector<long double> most_place_;  // the largest value of each coordinate at a change of mode
-  std::string rest_name_;
-  double rest_time_ = 0;
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ class ModeBuilder {
     if (mode.touch == Touch::open) {
       event(c, ModeChange::hits, c.gap, -1);
       // A gap that is zero at the start passes no zero when it closes again at once.
-      event(c, ModeChange::hits, c.gap + g_.number(Rational(1e-12)), -1);
+      event(c, ModeChange::hits, c.gap + g_.number(Rational(static_cast<double>(mode.depth))), -1);
     } else {
       normal = keep(c.name + ".gap", c.name + ".n", c.gap, 0);
       act(c, 0, normal, c.gap);

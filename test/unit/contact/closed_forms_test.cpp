@@ -213,6 +213,52 @@ initial = {x = "h"}
   EXPECT_GT(misfit(contact_motion(text, 5, {{"e", "0.71"}})), 1e-3);  // the mutant
 }
 
+// A box that rocks from corner to corner without rebound (Housner 1963): at each impact the spin changes by the factor r = 1
+// - 3 b^2/(2 (a^2 + b^2)) with the half width b, and half a swing lasts twice the time in which the box falls back.
+TEST(ClosedForms, RockingBoxComesToRest) {
+  const std::string text = R"toml(coordinates = ["x", "z", "phi"]
+parameters = {m = 1, b = 0.2, a = 0.3, g = 9.81, J = "m*(a^2 + b^2)/3", w = 0.05}
+)toml" + std::string(kBody) +
+                           R"toml(
+[[contact]]
+name = "floor"
+body = "body"
+shape = "box(2*b, 1, 2*a)"
+friction = 5
+[initial]
+conditions = ["(C + b*B.x - a*B.z).z = 0", "vel(body, C + b*B.x - a*B.z).x = 0", "vel(body, C + b*B.x - a*B.z).z = 0"]
+guess = {z = 0.3}
+phi = 0
+"phi'" = "w"
+)toml";
+  const auto hits_of = [&](const char* width) {
+    const auto m = contact_motion(text, 2, {{"b", width}});
+    EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    EXPECT_EQ(m.last("phi'"), 0);
+    EXPECT_LT(std::abs(m.last("phi")), 1e-13);
+    std::vector<double> hits, rests;
+    for (const EventReport& e : m.report.events) {
+      if (e.name.find(".hits") != std::string::npos) hits.push_back(e.t.value);
+      if (e.name.find(".rests") != std::string::npos) rests.push_back(e.t.value);
+    }
+    EXPECT_GT(hits.size(), 10U);
+    EXPECT_FALSE(rests.empty());
+    return std::pair{hits, rests.empty() ? 0 : rests[0]};
+  };
+  // About a corner phi'' = -3 g (b cos phi - a sin phi)/(4 (a^2 + b^2)), for the small angles of the last swings linear.
+  const auto ratio = [](const std::vector<double>& hits) {
+    const std::size_t n = hits.size() - 3;
+    return (hits[n] - hits[n - 1]) / (hits[n - 1] - hits[n - 2]);
+  };
+  const double r = 1 - 3 * 0.04 / (2 * 0.13);
+  const auto [hits, rest] = hits_of("0.2");
+  EXPECT_NEAR(ratio(hits), r, 1e-4);
+  // What is left after an impact is a geometric series, up to the angles of its swings.
+  const std::size_t n = hits.size() - 3;
+  EXPECT_NEAR(rest, hits[n] + (hits[n] - hits[n - 1]) * r / (1 - r), 1e-7);
+  EXPECT_GT(std::abs(ratio(hits_of("0.22").first) - r), 1e-2);  // the mutant
+}
+
 // Every time that is asked for has its row, and one only, where the motion changes its mode there and where it ends.
 TEST(ClosedForms, RowsAtTheTimesOfEvents) {
   const std::string text = R"toml(coordinates = ["x"]

@@ -1,0 +1,24 @@
+#include "contact/accumulation.h"
+
+#include <cmath>
+
+namespace anholon {
+
+void Accumulation::impact(std::size_t contact, double t) {
+  constexpr double kRatio = 1e-3, kNoise = 0.1;
+  Impacts& i = impacts_[contact];
+  const double interval = i.count > 0 ? t - i.last : 0, ratio = i.count > 1 ? interval / i.interval : 0;
+  // Near the limit an interval has few digits, and the ratio stays that of before.
+  const bool known = i.alike >= kAlike, alike = std::abs(ratio - i.ratio) < (known ? kNoise : kRatio);
+  i.alike = i.count > 2 && ratio < 1 && alike ? i.alike + 1 : 0;
+  i.ratio = known && alike ? i.ratio : ratio;
+  i.last = t, i.interval = interval, ++i.count;
+}
+
+std::optional<double> Accumulation::limit(std::size_t contact) const {
+  const Impacts& i = impacts_[contact];
+  if (i.alike < kAlike || !(i.ratio > 0 && i.ratio < 1)) return std::nullopt;
+  return i.last + i.interval * i.ratio / (1 - i.ratio);
+}
+
+}  // namespace anholon

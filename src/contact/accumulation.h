@@ -1,0 +1,30 @@
+// Impacts of a contact whose intervals shrink by one ratio r add up to a limit: after an interval d it is d r/(1 - r) away
+// (theory: contact).
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace anholon {
+
+class Accumulation {
+ public:
+  explicit Accumulation(std::size_t contacts) : impacts_(contacts) {}
+
+  // An impact of this contact at the time t.
+  void impact(std::size_t contact, double t);
+  // The time to which the impacts add up; nullopt if their intervals do not shrink by one ratio.
+  std::optional<double> limit(std::size_t contact) const;
+  // The contact has come to rest, and its impacts count no more.
+  void forget(std::size_t contact) { impacts_[contact] = {}; }
+
+ private:
+  static constexpr std::size_t kAlike = 4;
+  struct Impacts {
+    double last = 0, interval = 0, ratio = 0;
+    std::size_t alike = 0, count = 0;
+  };
+  std::vector<Impacts> impacts_;
+};
+
+}  // namespace anholon

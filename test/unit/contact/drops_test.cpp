@@ -1,0 +1,133 @@
+// Random drops of boxes, balls and discs: the energy never grows, no gap is negative, and each motion ends by name. `./dev
+// long` (ANHOLON_LONG=1) computes 10^4 of them.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "support/contact_motion.h"
+
+namespace anholon {
+namespace drops_test {
+
+// Numbers from 0 to 1 that are the same for every library: a linear congruential generator.
+class Numbers {
+ public:
+  explicit Numbers(std::uint64_t seed) : state_(seed * 2862933555777941757ULL + 3037000493ULL) {}
+  double operator()(double from, double to) {
+    state_ = state_ * 6364136223846793005ULL + 1442695040888963407ULL;
+    return from + (to - from) * static_cast<double>(state_ >> 11) * 0x1p-53;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+std::string number(const std::string& key, double x) { return key + " = " + std::to_string(x) + "\n"; }
+
+// A body in the plane y = 0 over a floor, beside a wall, or in a corner of both. Of a box all four corners may touch.
+std::string drop(std::uint64_t seed) {
+  Numbers random(seed);
+  const int kind = static_cast<int>(seed % 3);
+  const bool wall = seed % 2 == 1 && kind > 0;
+  const double a = random(0.1, 0.5), b = random(0.1, 0.5);
+  std::string text = R"toml(coordinates = ["x", "z", "th"]
+frame.B = "roty(th)"
+point.C = "x*ex + z*ez"
+gravity.field = "-g*ez"
+[parameters]
+m = 1
+g = 9.81
+)toml";
+  text += number("a", a) + number("b", b) + number("mu", std::max(0.0, random(-0.3, 1))) +
+          number("e", std::max(0.0, random(-0.4, 0.9)));
+  const char* const kShapes[] = {"box(2*a, 1, 2*b)", "ball(a)", "disc(a)"};
+  const char* const kInertias[] = {"m*(a^2 + b^2)/3", "2/5*m*a^2", "m*a^2/2"};
+  const std::string J = kInertias[kind];
+  text += "[[body]]\nname = \"body\"\nmass = \"m\"\ncenter = \"C\"\norientation = \"B\"\ninertia = [\"" + J + "\", \"" +
+          J + "\", \"" + J + "\"]\n";
+  const std::string rough = "friction = \"mu\"\nrestitution = \"e\"\n";
+  if (kind == 0) {
+    text += "[[contact]]\nname = \"floor\"\nbody = \"body\"\nshape = \"" + std::string(kShapes[0]) + "\"\n" + rough;
+  } else {
+    text +=
+        "[[contact]]\nname = \"floor\"\ngap = \"z - a\"\nslip = \"vel(body, C - a*ez)\"\nalong = [\"ex\"]\n" + rough;
+    if (wall)
+      text += "[[contact]]\nname = \"wall\"\ngap = \"3 - x - a\"\nslip = \"vel(body, C + a*ex)\"\nalong = [\"ez\"]\n" +
+              rough;
+  }
+  text += "[monitor]\nenergy = \"m*(x'^2 + z'^2)/2 + " + J + "*th'^2/2 + m*g*z\"\n[initial]\n";
+  return text + number("z", random(0.75, 1.5)) + number("th", random(-3, 3)) + number("\"x'\"", random(-2, 2)) +
+         number("\"z'\"", random(-2, 2)) + number("\"th'\"", random(-6, 6));
+}
+
+struct Found {
+  double gains = 0, depth = 0;  // the largest growth of the energy between rows, the deepest gap
+  Outcome outcome;
+  std::vector<double> last;
+};
+
+Found look_at(const std::string& text, const Overrides& overrides = {}) {
+  const auto m = test::contact_motion(text, 2, overrides);
+  Found f;
+  f.outcome = m.report.outcome;
+  const auto& names = m.rows.names();
+  for (std::size_t k = 0; k < m.rows.rows().size(); ++k) {
+    if (k > 0) f.gains = std::max(f.gains, m.number(k, "energy") - m.number(k - 1, "energy"));
+    for (const std::string& name : names)
+      if (name.size() > 4 && name.compare(name.size() - 4, 4, ".gap") == 0)
+        f.depth = std::max(f.depth, -m.number(k, name));
+  }
+  for (const char* name : {"t", "x", "z", "th", "x'", "z'", "th'"}) f.last.push_back(m.last(name));
+  return f;
+}
+
+TEST(Drops, EnergyNeverGrowsAndNothingPenetrates) {
+  const std::size_t count = std::getenv("ANHOLON_LONG") ? 10'000 : 150;
+  const unsigned threads = std::max(2U, std::thread::hardware_concurrency());
+  std::vector<Found> found(count), again(20);
+  const auto all = [&](std::vector<Found>& list, unsigned workers) {
+    std::vector<std::thread> pool;
+    for (unsigned w = 0; w < workers; ++w)
+      pool.emplace_back([&list, w, workers] {
+        for (std::size_t k = w; k < list.size(); k += workers) list[k] = look_at(drop(k + 1));
+      });
+    for (std::thread& t : pool) t.join();
+  };
+  all(found, threads);
+  all(again, 1);
+  std::size_t finished = 0;
+  for (std::size_t k = 0; k < count; ++k) {
+    // Both are round-off: an energy is about 20, a place about 1.
+    EXPECT_LE(found[k].gains, 1e-11) << k + 1;
+    EXPECT_LE(found[k].depth, 1e-12) << k + 1;
+    const Outcome& o = found[k].outcome;
+    finished += o.ok();
+    EXPECT_TRUE(o.ok() || o.message.find("Painlev") != std::string::npos ||
+                o.message.find("raise the energy") != std::string::npos)
+        << k + 1 << ": " << o.message;
+  }
+  EXPECT_GT(finished, count * 99 / 100);
+  for (std::size_t k = 0; k < again.size(); ++k)
+    EXPECT_EQ(std::memcmp(again[k].last.data(), found[k].last.data(), again[k].last.size() * sizeof(double)), 0)
+        << k + 1;
+}
+
+// The mutants: a restitution above 1 raises the energy, and a floor that is pushed up lifts the body, whose energy grows.
+TEST(Drops, MutantsAreFound) {
+  std::size_t raised = 0;
+  for (std::uint64_t k = 1; k <= 6; ++k) {
+    const Found f = look_at(drop(3 * k - 1), {{"e", "1.2"}});
+    raised += f.outcome.message.find("raise the energy") != std::string::npos;
+  }
+  EXPECT_EQ(raised, 6U);
+  std::string lifted = drop(2);
+  lifted.replace(lifted.find("gap = \"z - a\""), 13, "gap = \"z - a - t/9\"");
+  EXPECT_GT(look_at(lifted).gains, 1e-3);
+}
+
+}  // namespace drops_test
+}  // namespace anholon
