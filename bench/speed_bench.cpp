@@ -281,7 +281,11 @@ void go_side_by_side(Kernel& kernel, std::deque<Trajectory<double>>& motions,
         return there != EndOfStep::failed;
       });
     }
-    all([](Stepper<double>& s) { return s.finish_step(); });
+    all([](Stepper<double>& s) {
+      const bool good = s.finish_step();
+      if (s.arrived()) s.leave_kernel();
+      return good;
+    });
     if (!last) continue;
     last->resize(motions.size());
     for (std::size_t i = 0; i < motions.size(); ++i)

@@ -188,7 +188,8 @@ bool CaseWalk::rows() {
 // Keeps the results at t, which lies in the last step.
 bool CaseWalk::keep(const W& t, std::vector<double>& values) {
   const System& system = plan_->scenario.system;
-  stepper_->leave_kernel();  // as every reader of a motion does (motion.cpp)
+  // As every reader of a motion does (motion.cpp), unless no step follows.
+  if (!stepper_->arrived()) stepper_->leave_kernel();
   if (!stepper_->at(t, *point_, plan_->leading).ok() || (plan_->stages > 0 && !point_->extend().ok())) return false;
   for (const int k : {0, 1})
     for (std::size_t a = 0; a < system.coordinates; ++a) values.push_back(to_double(point_->derivative(a, k)));

@@ -77,13 +77,18 @@ struct Judged {
   SimulationReport compared, looked_at;
 };
 
-void judge(const Scenario& of_all, const EnsembleOptions& o, const CaseResult& r, Judged& to) {
+// The two runs of one case, each with a scenario of its own, so that two threads can make them at once.
+void compare(const Scenario& of_all, const EnsembleOptions& o, const CaseResult& r, SimulationReport& report) {
   const EnsembleCase numbers = o.numbers(r.number);
   Scenario of_case;
-  to.looked_at.outcome = scenario_of_case(of_all, o, numbers, of_case);
-  if (!to.looked_at.outcome.ok()) return;
-  to.compared = compared(of_case, o, numbers, r);
-  to.looked_at = looked_at(of_case, o, numbers);
+  if (scenario_of_case(of_all, o, numbers, of_case).ok()) report = compared(of_case, o, numbers, r);
+}
+
+void look_at(const Scenario& of_all, const EnsembleOptions& o, const CaseResult& r, SimulationReport& report) {
+  const EnsembleCase numbers = o.numbers(r.number);
+  Scenario of_case;
+  report.outcome = scenario_of_case(of_all, o, numbers, of_case);
+  if (report.outcome.ok()) report = looked_at(of_case, o, numbers);
 }
 
 CasesError error_of(std::span<const CaseResult* const> fit, std::span<const Judged> judged) {
@@ -135,12 +140,20 @@ void judge_cases(const Scenario& scenario, const EnsembleOptions& o, std::span<c
                  const Each& each, EnsembleReport& report) {
   const std::vector<const CaseResult*> fit = fit_for_judgement(o, results);
   std::vector<Judged> judged(fit.size());
-  each(fit.size(), [&](std::size_t i) {
+  each(2 * fit.size(), [&](std::size_t i) {
+    const CaseResult& r = *fit[i / 2];
+    Judged& of_case = judged[i / 2];
+    const bool compares = i % 2 == 0;
     try {
-      judge(scenario, o, *fit[i], judged[i]);
+      if (compares)
+        compare(scenario, o, r, of_case.compared);
+      else
+        look_at(scenario, o, r, of_case.looked_at);
     } catch (const Failure& e) {
-      judged[i].compared.no_error = e.diagnostic.message;
-      judged[i].looked_at.outcome = {OutcomeKind::too_large, e.diagnostic.message, e.diagnostic.hint};
+      if (compares)
+        of_case.compared.no_error = e.diagnostic.message;
+      else
+        of_case.looked_at.outcome = {OutcomeKind::too_large, e.diagnostic.message, e.diagnostic.hint};
     }
   });
   report.error = error_of(fit, judged);

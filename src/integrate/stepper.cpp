@@ -43,7 +43,9 @@ bool Stepper<N>::make_step(const W& end) {
     }
     if (there == EndOfStep::failed) return false;
   }
-  return finish_step();
+  if (!finish_step()) return false;
+  if (arrived()) leave_kernel();
+  return true;
 }
 
 template <Number N>
@@ -136,8 +138,6 @@ bool Stepper<N>::finish_step() {
   }
   finish_at(end_.time());
   end_.finish();
-  // Others in the kernel go on while this one has arrived.
-  if (end_.arrives()) leave_kernel();
   return true;
 }
 

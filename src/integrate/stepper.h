@@ -66,6 +66,9 @@ class Stepper {
   [[nodiscard]] bool aim(const W& end);
   [[nodiscard]] EndOfStep look_at_end(const W& end);
   [[nodiscard]] bool finish_step();
+  // Whether the last of these steps ended where the caller has set the end. The motion is still in its lane, where the
+  // others carry it on with the next expansion: until then it can be read by `at`, or taken out.
+  bool arrived() const { return phase_ == Phase::advanced && !ordinary_ && end_.arrives(); }
   Outcome trouble() { return std::exchange(trouble_, {}); }
   // Rounds the state as it is rounded when it is taken out of a kernel's lane and put back.
   void round_state() { expander_.round_state(); }
