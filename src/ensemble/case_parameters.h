@@ -26,7 +26,8 @@ class CaseParameters {
   const std::vector<Varied>& varied_;
   bool any_ = false;  // whether a parameter is varied
   Tape tape_;
-  std::optional<Tape> bodies_, equations_;
+  std::optional<Tape> bodies_;
+  std::optional<Tape> equations_;  // only where some parameters may give them another structure
   struct Check {  // one condition on the roots of `bodies_`
     std::string what;
     std::size_t root = 0;
