@@ -28,6 +28,16 @@ bool of_parameters(Expr e) {
   return true;
 }
 
+// Whether a derivative beyond those that are solved for stands in an equation, so that it may occur for some parameters.
+bool may_go_beyond(const System& system, const Structure& t) {
+  for (std::size_t i = 0; i < system.equations.size(); ++i)
+    for (const NodeId id : symbols({&system.equations[i], 1})) {
+      const std::optional<std::size_t> j = system.variable(id);
+      if (j && static_cast<int>(system.equations[i].graph->node(id).order) + t.c[i] > t.d[*j]) return true;
+    }
+  return false;
+}
+
 }  // namespace
 
 CaseParameters::CaseParameters(Workspace& s, const std::vector<Varied>& varied) : s_(s), varied_(varied) {
@@ -56,7 +66,7 @@ CaseParameters::CaseParameters(Workspace& s, const std::vector<Varied>& varied) 
   }
   if (!es.empty()) bodies_ = compile(es);
   whole_ = implicit_system(s.model, *s.mechanics, *s.system.form, s.independent, s.elimination);
-  equations_ = compile(whole_.equations);
+  if (may_go_beyond(whole_, s.structure)) equations_ = compile(whole_.equations);
 }
 
 template <Number N>

@@ -26,8 +26,9 @@ class CaseParameters {
   const std::vector<Varied>& varied_;
   bool any_ = false;  // whether a parameter is varied
   Tape tape_;
-  std::optional<Tape> bodies_, equations_;
-  struct Check {  // one condition on the roots of `bodies_`
+  std::optional<Tape> bodies_;
+  std::optional<Tape> equations_;  // only where some parameters may give them another structure
+  struct Check {                   // one condition on the roots of `bodies_`
     std::string what;
     std::size_t root = 0;
     std::vector<Column> axes;  // of an inertia: the body's axes, whose weights are the roots; empty for a single number
