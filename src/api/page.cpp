@@ -12,8 +12,10 @@ namespace anholon::v1 {
 
 namespace {
 
-std::vector<inner::Conserved> conserved_of(const inner::Workspace& s) {
-  return inner::sets_values(*s.model) ? std::vector<inner::Conserved>() : inner::conserved(*s.mechanics);
+// What events set, impacts and friction do not conserve what is an integral between them.
+std::vector<inner::Conserved> conserved_of(const System::Data& of, const inner::Workspace& s) {
+  const bool kept = !inner::sets_values(*s.model) && of.model->contacts.empty();
+  return kept ? inner::conserved(*s.mechanics) : std::vector<inner::Conserved>();
 }
 
 Error without_rows() { return mistake("the run has no rows"); }
@@ -31,7 +33,7 @@ Result<std::string> page(const Run& run, const PageOptions& options) {
     if (!options.proof) request.no_proof = "The proof was left out.";
     request.version = std::string("anholon ") + version();
     request.source = s.model->source_text;
-    return inner::page_of({{"", &s, conserved_of(s), run.data().run}}, of.model->model, request);
+    return inner::page_of({{"", &s, conserved_of(of, s), run.data().run}}, of.model->model, request);
   });
 }
 
@@ -41,7 +43,7 @@ Result<std::string> picture_data(const Run& run) {
     if (run.rows() == 0) return without_rows();
     inner::Workspace s(of.scenario);
     inner::Page content;
-    content.cases.push_back({"", &s, nullptr, conserved_of(s), run.data().run});
+    content.cases.push_back({"", &s, nullptr, conserved_of(of, s), run.data().run});
     content.source = s.model->source_text;
     return inner::page_data(content);
   });

@@ -1,15 +1,6 @@
-// The modes of contacts as bands of colour along the lower edge of a plot.
+// The modes of contacts within a range of time.
 
 import type { Band } from './data.ts';
-import { h } from './dom.ts';
-import { css_rgb, theme } from './theme.ts';
-
-export const mode_names = ['open', 'slips', 'sticks'];
-
-// Open contacts have no colour.
-export function mode_color(mode: number): string | null {
-  return mode === 1 ? css_rgb(theme().series[1]) : mode === 2 ? css_rgb(theme().series[2]) : null;
-}
 
 export interface Strip { x: number; width: number; mode: number }
 
@@ -17,26 +8,4 @@ export interface Strip { x: number; width: number; mode: number }
 export function strips(band: Band, from: number, to: number): Strip[] {
   const part = (t: number): number => (Math.min(to, Math.max(from, t)) - from) / (to - from || 1);
   return band.spans.map(([begin, end, mode]) => ({ x: part(begin), width: part(end) - part(begin), mode })).filter((s) => s.width > 0);
-}
-
-// The first band stands lowest.
-export function draw_bands(ctx: CanvasRenderingContext2D, box: { left: number; top: number; width: number; height: number },
-  bands: Band[], range: [number, number], pixel: number): void {
-  const height = 5 * pixel;
-  bands.forEach((band, k) => {
-    for (const s of strips(band, ...range)) {
-      const color = mode_color(s.mode);
-      if (!color) continue;
-      ctx.fillStyle = color;
-      ctx.fillRect(box.left + s.x * box.width, box.top + box.height - (k + 1) * height, Math.max(s.width * box.width, pixel), height - pixel);
-    }
-  });
-}
-
-// Says what the colours mean; null if there are no contacts.
-export function bands_key(bands: Band[]): HTMLElement | null {
-  if (bands.length === 0) return null;
-  const key = (mode: number): HTMLElement => h('span', { class: `mode mode-${mode}` }, mode_names[mode]);
-  const names = bands.map((b) => b.name).join(', ');
-  return h('p', { class: 'note bands-key' }, bands.length > 1 ? `Contacts, from below: ${names}. ` : `Contact ${names}: `, key(2), ' ', key(1));
 }

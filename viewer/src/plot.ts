@@ -1,7 +1,7 @@
 // One plot: the columns of a group over time.
 
 import uPlot from 'uplot';
-import { draw_bands } from './bands.ts';
+import { draw_bands } from './band_drawing.ts';
 import type { Case, Column, Group } from './data.ts';
 import { curve_paths, value_range } from './curve.ts';
 import { h } from './dom.ts';

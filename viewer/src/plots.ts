@@ -1,6 +1,6 @@
 // The plots of one case, over one time.
 
-import { bands_key } from './bands.ts';
+import { bands_key } from './band_drawing.ts';
 import type { Clock } from './clock.ts';
 import type { Case, Group } from './data.ts';
 import { h } from './dom.ts';

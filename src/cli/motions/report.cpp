@@ -10,6 +10,7 @@
 #include "cli/motions/run_formulas.h"
 #include "cli/motions/run_info.h"
 #include "cli/say.h"
+#include "modelfile/contacts.h"
 #include "observe/rows/row_values.h"
 #include "report/page/page_of.h"
 #include "result/file.h"
@@ -28,7 +29,7 @@ void make_ready(const SystemCommand& o, Told& x) {
   x.scenario = std::make_unique<Workspace>(prepared);
   const bool reset =
       std::any_of(x.in.model->events.begin(), x.in.model->events.end(), [](const Event& e) { return !e.set.empty(); });
-  if (!reset) x.conserved = conserved(*x.scenario->mechanics);
+  if (!reset && contacts(*x.in.names).empty()) x.conserved = conserved(*x.scenario->mechanics);
 }
 
 }  // namespace

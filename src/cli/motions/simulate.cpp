@@ -254,7 +254,8 @@ int simulate_motion(const SimulateCommand& asked, const SavedRun* resume, Told* 
   options.cancelled = stop_requested;
   if (told) {
     static_cast<RunInfo&>(told->run) = info;
-    told->conserved = options.conserved;
+    // Nor does an impact, or friction.
+    if (contacts(*in.names).empty()) told->conserved = options.conserved;
   }
   Written w;
   {
