@@ -257,19 +257,19 @@ if(TARGET anholon)
     set_tests_properties("golden.${name}" PROPERTIES LABELS golden ENVIRONMENT "PYTHONDONTWRITEBYTECODE=1;${no_cache}")
   endforeach()
 
-  # Pages of doc/ whose commands are run likewise: doc.<part>.<page>
-  foreach(part book recipes asked from)
-    file(GLOB pages CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}/doc" "${PROJECT_SOURCE_DIR}/doc/${part}/*.md")
-    foreach(page IN LISTS pages)
-      file(STRINGS "${PROJECT_SOURCE_DIR}/doc/${page}" commands REGEX "^```console")
-      if(commands)
-        string(REGEX REPLACE "\\.md$" "" name "${page}")
-        string(REPLACE "/" "." name "${name}")
-        add_test(NAME "doc.${name}" WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
-          COMMAND ${ANHOLON_PYTHON} tools/golden.py --program $<TARGET_FILE:anholon> "doc/${page}")
-        set_tests_properties("doc.${name}" PROPERTIES LABELS golden ENVIRONMENT "PYTHONDONTWRITEBYTECODE=1;${no_cache}")
-      endif()
-    endforeach()
+  # Pages of doc/ whose commands are run likewise: doc.<part>.<page>, or doc.<page>
+  set(doc_folder "${PROJECT_SOURCE_DIR}/doc")
+  file(GLOB pages CONFIGURE_DEPENDS RELATIVE "${doc_folder}"
+    "${doc_folder}/book/*.md" "${doc_folder}/recipes/*.md" "${doc_folder}/asked/*.md" "${doc_folder}/from/*.md" "${doc_folder}/sweeps.md")
+  foreach(page IN LISTS pages)
+    file(STRINGS "${doc_folder}/${page}" commands REGEX "^```console")
+    if(commands)
+      string(REGEX REPLACE "\\.md$" "" name "${page}")
+      string(REPLACE "/" "." name "${name}")
+      add_test(NAME "doc.${name}" WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
+        COMMAND ${ANHOLON_PYTHON} tools/golden.py --program $<TARGET_FILE:anholon> "doc/${page}")
+      set_tests_properties("doc.${name}" PROPERTIES LABELS golden ENVIRONMENT "PYTHONDONTWRITEBYTECODE=1;${no_cache}")
+    endif()
   endforeach()
 
   if(ANHOLON_SAME_BITS_WITH)
