@@ -257,14 +257,12 @@ if(TARGET anholon)
     set_tests_properties("golden.${name}" PROPERTIES LABELS golden ENVIRONMENT "PYTHONDONTWRITEBYTECODE=1;${no_cache}")
   endforeach()
 
-  # Pages of doc/ whose commands are run likewise: doc.<part>.<page>
-  set(pages sweeps.md)
-  foreach(part book recipes asked from)
-    file(GLOB of_part CONFIGURE_DEPENDS RELATIVE "${PROJECT_SOURCE_DIR}/doc" "${PROJECT_SOURCE_DIR}/doc/${part}/*.md")
-    list(APPEND pages ${of_part})
-  endforeach()
+  # Pages of doc/ whose commands are run likewise: doc.<part>.<page>, or doc.<page>
+  set(doc_folder "${PROJECT_SOURCE_DIR}/doc")
+  file(GLOB pages CONFIGURE_DEPENDS RELATIVE "${doc_folder}"
+    "${doc_folder}/book/*.md" "${doc_folder}/recipes/*.md" "${doc_folder}/asked/*.md" "${doc_folder}/from/*.md" "${doc_folder}/sweeps.md")
   foreach(page IN LISTS pages)
-    file(STRINGS "${PROJECT_SOURCE_DIR}/doc/${page}" commands REGEX "^```console")
+    file(STRINGS "${doc_folder}/${page}" commands REGEX "^```console")
     if(commands)
       string(REGEX REPLACE "\\.md$" "" name "${page}")
       string(REPLACE "/" "." name "${name}")

@@ -42,7 +42,9 @@ OTHERS = {  # pages outside of doc/ that belong to a part
     ".": ["NOTATION.md", "models/README.md", "python/notebooks/README.md"],
     "project": ["ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md", "bench/RESULTS.md", "test/golden/README.md", "viewer/README.md", "viewer/CONTRACT.md"],
 }
-RUN_BY_GOLDEN = ("book", "recipes", "asked", "from")  # their transcripts; tools/readme.py runs those of README.md and of doc/
+RUN_BY_GOLDEN = ("book", "recipes", "asked", "from")  # their transcripts
+PAGES_RUN_BY_GOLDEN = ("doc/sweeps.md",)  # tools/readme.py runs those of README.md and of other pages of doc/
+PYTHON_NOT_RUN = ("doc/results.md", "doc/sweeps.md")  # it reads files and clusters that the reader has
 LEAST_EXAMPLES = 300
 RUN_ELSEWHERE = {  # commands that no transcript can run, and the test that does
     "render": "test/house/render_disc.py",  # needs a browser
@@ -85,15 +87,17 @@ def title_of(text):
     return found[1].strip() if found else None
 
 
-def examples_of(text):
+def examples_of(text, name=""):
     """How many commands and Python blocks a page has that are executed."""
     _, steps = golden.parse(text.split("\n"))
-    return len(steps) + len(re.findall(r"^```python$", text, re.M))
+    return len(steps) + (0 if name in PYTHON_NOT_RUN else len(re.findall(r"^```python$", text, re.M)))
 
 
 def transcripts(root):
     """The pages whose commands golden.py runs."""
-    return [page for part in RUN_BY_GOLDEN for page in sorted((root / "doc" / part).glob("*.md")) if "```console" in page.read_text(encoding="utf-8")]
+    pages = [page for part in RUN_BY_GOLDEN for page in sorted((root / "doc" / part).glob("*.md"))]
+    pages += [root / name for name in PAGES_RUN_BY_GOLDEN if (root / name).exists()]
+    return [page for page in pages if "```console" in page.read_text(encoding="utf-8")]
 
 
 def commands_without_example(root):
@@ -128,12 +132,13 @@ def check(root, least=LEAST_EXAMPLES):
             if page.name != "README.md" and page.resolve() not in pages:
                 problems.append(f"{index.relative_to(root)} does not list {page.name}")
     pages = sorted((root / "doc").rglob("*.md")) + [root / "README.md"]
+    run = {page.resolve() for page in [*transcripts(root), *(root / name for name in readme.PAGES)]}
     for page in pages:
         text, name = page.read_text(encoding="utf-8"), page.relative_to(root).as_posix()
         if title_of(text) is None:
             problems.append(f"{name} has no title")
         try:
-            examples = examples_of(text)
+            examples = examples_of(text, name)
         except golden.CaseError as error:
             problems.append(f"{name}: {error}")
             continue
@@ -152,6 +157,8 @@ def check(root, least=LEAST_EXAMPLES):
         for place, _ in golden.FIGURE.findall(text):
             if not (page.parent / place).exists():
                 problems.append(f"{name}: there is no {place}")
+        if "```console" in text and page.resolve() not in run:
+            problems.append(f"{name}: no test runs its commands")
         if "```python" in text and part not in PYTHON_PARTS and name != "README.md":
             problems.append(f"{name}: no test runs its Python")
     shown = {(page.parent / place).resolve() for page in pages for place, _ in golden.FIGURE.findall(page.read_text(encoding="utf-8"))}
@@ -516,6 +523,7 @@ MUTANTS = {
     "answer without its question": ("doc/asked/q.md", "# Q\n```console\n$ anholon check x\n```\n"),
     "command without an example": ("doc/commands.md", "# Commands\n### `anholon check`\n### `anholon fly`\n"),
     "too few examples": ("doc/b.md", "# B\n"),
+    "commands that nothing runs": ("doc/b.md", "# B\n```python\nx = 1\n```\n```console\n$ anholon models\n```\n"),
     "Python that nothing runs": ("doc/theory/README.md", "# T\n```python\nx = 1\n```\n"),
 }
 BUILT = '<html><head><link rel="stylesheet" href="a.css"></head><body id="top"><a href="b.html#here">b</a><img src="a.css" alt=""><a href="https://x.y">out</a></body></html>'

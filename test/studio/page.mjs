@@ -190,7 +190,7 @@ const wanted = process.argv[3] ?? '';
 async function run_tests(browser, browser_name) {
   for (const [name, test] of Object.entries(tests)) {
     if (!name.includes(wanted)) continue;
-    const file = join(folder, 'disc.toml');
+    const file = join(folder, `disc-${browser_name}.toml`);
     copyFileSync('models/zoo/disc.toml', file);
     const s = await studio(file, browser);
     try {
@@ -202,7 +202,7 @@ async function run_tests(browser, browser_name) {
 }
 
 // From an edit to the picture, with a warm program; printed and not judged, for the machine may be busy.
-async function measure(browser, browser_name) {
+async function measure(browser) {
   for (const [model, name] of [['disc', 'm = 1'], ['whipple', 'v = 5']]) {
     const file = join(folder, `${model}.toml`), text = readFileSync(`models/zoo/${model}.toml`, 'utf8');
     writeFileSync(file, text);
@@ -211,15 +211,13 @@ async function measure(browser, browser_name) {
     try {
       for (let k = 0; k < 7; ++k) times.push(await edit(page, k === 0 ? name : `${name}.${k}`, `${name}.${k + 1}`));
       times.sort((a, b) => a - b);
-      console.log(`${model} in ${browser_name}: ${(times[3] / 1000).toFixed(2)} s from the edit to the picture, median of 7; ${(times[6] / 1000).toFixed(2)} s at most`);
+      console.log(`${model}: ${(times[3] / 1000).toFixed(2)} s from the edit to the picture, median of 7; ${(times[6] / 1000).toFixed(2)} s at most`);
     } finally { await page.close(); await s.end(); }
   }
 }
 
-for (const { name, browser } of started) {
-  await run_tests(browser, name);
-  await measure(browser, name);
-  await browser.close();
-}
+await Promise.all(started.map(({ name, browser }) => run_tests(browser, name)));
+await measure(started[0].browser);
+for (const { browser } of started) await browser.close();
 rmSync(folder, { recursive: true, force: true });
 process.exit(failed > 0 ? 1 : 0);
