@@ -6,6 +6,7 @@
 
 #include "base/read_file.h"
 #include "cli/commands.h"
+#include "modelfile/names/constant.h"
 #include "modelfile/shipped.h"
 #include "proof/prove.h"
 #include "setup/scenario.h"
@@ -33,6 +34,8 @@ const Formulation& form(const Options& o, const Model& model, const Mechanics* m
 Options with_form(Options o, const Reader& in);
 StateChoice state_choice(const Options& o, const Model& model);
 Rational exact(const std::string& text, const std::string& option);
+// The same with the dimension of its unit.
+Constant constant(const std::string& text, const std::string& option);
 // How the command line calls its options, and notes on stderr.
 Asker asker(const Options& o);
 // Splits "a,b,c" and repeated words alike.
