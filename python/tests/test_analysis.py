@@ -229,8 +229,6 @@ qdot = {th = 0}
 LONG: list[tuple[str, Callable[[an.Model], object]]] = [
     ("prove", lambda m: m.prove()),
     ("compare", lambda m: m.compare(["a: phi'' = psi'' + delta''*phi"])),
-    ("equations", lambda m: m.equations("lagrange-reduced", expand="full")),
-    ("stability", lambda m: m.stability("v", 1, 10, 2000)),
 ]
 
 
