@@ -28,7 +28,7 @@ def _time(t: object) -> float:
         return t
     if isinstance(t, (str, bytes)) or not hasattr(t, "__float__") or getattr(t, "ndim", 0) != 0:
         raise TypeError(f"t is a number, the time in s, not a {type(t).__name__}; the states follow: f(t, x)")
-    return float(t)  # type: ignore[arg-type]
+    return float(t)
 
 
 class Dynamics:
