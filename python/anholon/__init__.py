@@ -12,9 +12,12 @@ from ._errors import ColumnError, Interrupted, ModelError, MotionError
 from ._numbers import Number
 from .analysis import Comparison, LinearModel, Stability, State
 from .builder import Builder, Constraint
+from .check import Check
 from .dynamics import Dynamics
 from .equations import Equations, Proof, verify
-from .expressions import (
+from .expressions import Body, call, Condition, Equation, ex, Expr, expr, ey, ez, here, pi, Place, Rotation, t, vector
+from .from_sympy import from_sympy
+from .functions import (
     acc,
     acos,
     acosh,
@@ -24,34 +27,21 @@ from .expressions import (
     atan,
     atan2,
     atanh,
-    Body,
-    call,
     choose,
-    Condition,
     cos,
     cosh,
     cross,
     dot,
-    Equation,
     euler,
-    ex,
     exp,
-    Expr,
-    expr,
-    ey,
-    ez,
-    here,
     log,
     maximum,
     minimum,
     norm,
     norm2,
-    pi,
     piecewise,
-    Place,
     quat,
     rot,
-    Rotation,
     rotx,
     roty,
     rotz,
@@ -59,15 +49,13 @@ from .expressions import (
     sin,
     sinh,
     sqrt,
-    t,
     tan,
     tanh,
     unit,
-    vector,
     vel,
 )
-from .from_sympy import from_sympy
-from .model import Check, Model, load, loads, zoo
+from .model import Model
+from .reading import load, loads, zoo
 from .run import Figure, Page, Run
 from .sweep import Sweep, grid, normal, uniform
 from .sweep_folder import open_sweep, SweepFolder

@@ -11,7 +11,7 @@ from . import _core
 if TYPE_CHECKING:
     from .analysis import LinearModel
     from .equations import Proof
-    from .model import Check
+    from .check import Check
     from .run import Run
     from .sweep import Sweep
 

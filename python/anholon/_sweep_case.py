@@ -33,14 +33,14 @@ def run_of(core: _core.SweepFolder, computing: Any, number: int, row: dict[str, 
 
 def model_of(core: _core.SweepFolder, recipe: dict[str, Any]) -> Model:
     """The model of a folder that Python made."""
-    from .model import load, loads
+    from .reading import load, loads
 
     given = {"set": recipe["set"], "case": recipe["case"]}
     return load(recipe["path"], **given) if recipe["path"] else loads(core.asked("model"), **given)
 
 
 def _of_command_line(core: _core.SweepFolder, row: dict[str, float]) -> tuple[Model, dict[str, str], dict[str, str], dict[str, str]]:
-    from .model import loads
+    from .reading import loads
 
     if core.asked("base file 1"):
         raise ModelError(f"the model of {core.path} refers to other files\nhint: anholon simulate with the numbers of the case")

@@ -11,8 +11,10 @@ from dataclasses import dataclass
 from typing import Any, Union
 
 from ._errors import ModelError
-from .expressions import Body, Equation, Expr, Place, Rotation, Term, _named, expr, norm, unit
-from .model import Model, loads
+from .expressions import Body, Equation, Expr, Place, Rotation, Term, _named, expr
+from .functions import norm, unit
+from .model import Model
+from .reading import loads
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+\Z")
 

@@ -22,6 +22,15 @@ Values = Union["npt.ArrayLike", Mapping[str, float], None]
 """Inputs or parameters: an array in their order, values by name (the others keep theirs), or None for those of the model."""
 
 
+def _time(t: object) -> float:
+    """The time as a float. Raises TypeError if it is no number."""
+    if type(t) is float:
+        return t
+    if isinstance(t, (str, bytes)) or not hasattr(t, "__float__") or getattr(t, "ndim", 0) != 0:
+        raise TypeError(f"t is a number, the time in s, not a {type(t).__name__}; the states follow: f(t, x)")
+    return float(t)
+
+
 class Dynamics:
     """A function f(t, x, u, p) -> x' in SI units, with outputs y. Threads may share it; large batches take all cores.
 
@@ -139,6 +148,7 @@ class Dynamics:
         NaN where the equations have no solution. A state has the same bits alone and among others.
 
         Raises:
+            TypeError: t is not a number.
             ValueError: a shape does not fit.
             KeyError: there is no input or parameter of that name.
 
@@ -150,17 +160,18 @@ class Dynamics:
         """
         import numpy as np
 
+        time = _time(t)
         given = np.ascontiguousarray(x, dtype=np.float64)
         if given.shape[:1] != (self._count,):
             raise ValueError(f"x has the shape {given.shape}; its first axis has to be the {self._count} states")
         if out is None:
             out = np.empty_like(given)
         if u is None and p is None:
-            self._core.rates(t, given, out)
+            self._core.rates(time, given, out)
         else:
             some = self._values(u, self.inputs, lambda: self.u0, "u", given.shape[1:])
             others = self._values(p, self.parameters, lambda: self.p0, "p", given.shape[1:])
-            self._core.rates(t, given, out, some, others)
+            self._core.rates(time, given, out, some, others)
         return out
 
     def _states(self, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array | None, Array | None, tuple[int, ...]]:
@@ -184,7 +195,7 @@ class Dynamics:
             (['N', 'lam'], (2, 100))
         """
         state, some, others, batch = self._states(x, u, p)
-        made: Array = self._core.outputs_at(t, state, some, others)
+        made: Array = self._core.outputs_at(_time(t), state, some, others)
         return made.reshape((len(made), *batch))
 
     def input(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
@@ -198,7 +209,7 @@ class Dynamics:
         state, _, parameters, batch = self._states(x, None, p)
         if batch:
             raise ValueError(f"x has the shape {state.shape}; it has to be that of one state, {(self._count,)}")
-        return np.array(self._core.inputs_at(t, state.tolist(), [] if parameters is None else parameters.tolist()))
+        return np.array(self._core.inputs_at(_time(t), state.tolist(), [] if parameters is None else parameters.tolist()))
 
     def jac(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
         """The exact derivatives of the rates (or outputs), not differences, of one state or of many.
@@ -225,7 +236,7 @@ class Dynamics:
         if by not in ("x", "u", "p") or of not in ("x'", "y"):
             raise ValueError("by is 'x', 'u' or 'p', and of is \"x'\" or 'y'")
         state, some, others, batch = self._states(x, u, p)
-        whole: Array = self._core.jacobian(t, state, some, others)
+        whole: Array = self._core.jacobian(_time(t), state, some, others)
         rows = whole[: self._count] if of == "x'" else whole[self._count :]
         ends = [0, self._count, self._count + len(self.inputs), whole.shape[1]]
         k = "xup".index(by)
@@ -268,7 +279,7 @@ class Dynamics:
         state, some, others, batch = self._states(x, u, p)
         matrix: Array
         right: Array
-        _, matrix, right = self._core.equations(t, state, some, others)
+        _, matrix, right = self._core.equations(_time(t), state, some, others)
         return matrix.reshape((*matrix.shape[:2], *batch)), right.reshape((len(right), *batch))
 
     def mass_matrix(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:

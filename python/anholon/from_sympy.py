@@ -20,93 +20,10 @@ from typing import Any
 
 from ._errors import ModelError
 from ._numbers import Number, text_of
-from ._sympy_parts import Parts, center_of, is_particle, mechanics_module, parts_of, sympy_module, vanish
-from .model import Model, loads
-
-_RESERVED = {"t", "pi", "ex", "ey", "ez", "e", "i", "D", "lambda"}
-
-
-class _Writer:
-    """Writes expressions of SymPy as formulas of a model file, and gives every symbol a name."""
-
-    def __init__(self, parts: Parts) -> None:
-        sm, dynamicsymbols = sympy_module(), mechanics_module().dynamicsymbols
-
-        self._sm = sm
-        self.time = dynamicsymbols._t
-        self.names: dict[Any, str] = {}
-        self._taken = set(_RESERVED)
-        self.parameters: dict[Any, str] = {}
-        self.functions: dict[Any, str] = {}
-        self.q: list[Any] = []
-        self.rates: list[Any] = []
-        for q in parts.q:
-            self.add(q)
-
-    def add(self, q: Any) -> None:
-        """Names a coordinate."""
-        self.names[q] = self.new(str(q.func))
-        self.q.append(q)
-        self.rates.append(q.diff(self.time))
-
-    def new(self, wish: str) -> str:
-        """A name that is not taken yet."""
-        name = re.sub(r"\W+", "_", wish).strip("_") or "s"
-        if name[0].isdigit() or name in self._taken:
-            name = "s_" + name
-        while name in self._taken:
-            name += "_"
-        self._taken.add(name)
-        return name
-
-    def formula(self, e: Any) -> str:
-        """The formula of an expression in coordinates, rates, parameters and the time."""
-        sm = self._sm
-        e = sm.sympify(e)
-        if e in self.names:
-            return self.names[e]
-        if isinstance(e, sm.Derivative):
-            inner, (variable, order) = e.args[0], e.args[1]
-            if inner in self.names and variable == self.time:
-                return self.names[inner] + "'" * int(order)
-            raise ModelError(f"the derivative {e} is not one of a coordinate by the time")
-        if e == self.time:
-            return "t"
-        if e is sm.pi:
-            return "pi"
-        if e is sm.E:
-            return "exp(1)"
-        if e.is_Integer:
-            return f"({int(e)})" if int(e) < 0 else str(int(e))
-        if e.is_Rational:
-            return f"({e.p}/{e.q})"
-        if e.is_Float:
-            return f"({text_of(float(e))})"
-        if isinstance(e, sm.Symbol):
-            return self.parameters.get(e) or self._parameter(e)
-        if isinstance(e, sm.core.function.AppliedUndef):
-            if e not in self.functions:
-                self.functions[e] = self.new(str(e.func))
-            return self.functions[e]
-        if e.is_Add:
-            return "(" + " + ".join(self.formula(x) for x in e.args) + ")"
-        if e.is_Mul:
-            return "(" + "*".join(self.formula(x) for x in e.args) + ")"
-        if e.is_Pow:
-            base, exponent = e.as_base_exp()
-            return f"sqrt({self.formula(base)})" if exponent == sm.Rational(1, 2) else f"({self.formula(base)})^({self.formula(exponent)})"
-        known = {sm.Abs: "abs", sm.log: "log", sm.sign: "sign"}
-        function = known.get(e.func, str(e.func))
-        return f"{function}({', '.join(self.formula(x) for x in e.args)})"
-
-    def _parameter(self, symbol: Any) -> str:
-        self.parameters[symbol] = name = self.new(symbol.name)
-        return name
-
-
-def _name_of(key: Any) -> str:
-    """The name of a symbol, of a function of time without its argument, or a name itself."""
-    return str(key.func) if getattr(key, "args", ()) else str(key)
+from ._sympy_parts import center_of, is_particle, mechanics_module, parts_of, sympy_module, vanish
+from ._sympy_writer import name_of, RESERVED, Writer
+from .model import Model
+from .reading import loads
 
 
 class _Import:
@@ -123,7 +40,7 @@ class _Import:
         self.speeds: dict[Any, Any] = {}  # in coordinates and their rates
         parts.velocity += self._solve(list(parts.kinematic), known)
         self.centers: list[tuple[str, Any]] = []  # constraints that tie coordinates of mass centres to their velocities
-        self.writer = _Writer(parts)
+        self.writer = Writer(parts)
         self._places: dict[Any, list[Any]] = {}
         self._place_centers([u for u in parts.u if u not in known])
 
@@ -161,7 +78,7 @@ class _Import:
 
     def _add_coordinate(self, wish: str) -> Any:
         """A coordinate that SymPy does not have."""
-        taken = {str(q.func) for q in self.parts.q} | _RESERVED
+        taken = {str(q.func) for q in self.parts.q} | RESERVED
         while wish in taken:
             wish += "_"
         q = mechanics_module().dynamicsymbols(wish)
@@ -448,7 +365,7 @@ class _Import:
         constraints += [(f"velocity{k + 1}", w.formula(e)) for k, e in enumerate(self.velocity_constraints())]
         constraints += [(name, w.formula(e)) for name, e in self.centers]
         forces = {w.names[q]: w.formula(s) for q, s in self.generalized_forces().items()}
-        by_name = {_name_of(key): value for key, value in values.items()}
+        by_name = {name_of(key): value for key, value in values.items()}
         missing = sorted(symbol.name for symbol in w.parameters if symbol.name not in by_name)
         if missing:
             raise ModelError(f"values are missing for {', '.join(missing)}\nhint: from_sympy(…, values={{{missing[0]}: 1}})")
@@ -469,7 +386,7 @@ class _Import:
         if forces:
             lines.append("[[force]]\ngeneralized = {" + ", ".join(f"{q} = {json.dumps(f)}" for q, f in forces.items()) + "}\n")
         lines += [f'[[constraint]]\nname = "{name}"\nequation = {json.dumps(e + " = 0")}\n' for name, e in constraints]
-        given = {self.writer.names.get(key, _name_of(key)): value for key, value in initial.items()}
+        given = {self.writer.names.get(key, name_of(key)): value for key, value in initial.items()}
         if given:
             lines.append("[initial]")
             lines += [f"{json.dumps(name)} = {json.dumps(text_of(value))}" for name, value in given.items()]

@@ -1,4 +1,4 @@
-"""Models: how they are read, and what can be asked of them."""
+"""Models: what they say, their equations and their motions."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ import html
 import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
 
-from . import _core, _display
+from . import _core
 from ._errors import Interrupted, ModelError, MotionError
 from ._numbers import Number, float_of, list_of, spaced, text_of, texts_of
 from ._progress import Progress, Shown
+from ._source import Source
 from .analysis import Comparison, LinearModel, PublishedEquations, Stability, State, equation_text
+from .check import Check
 from .dynamics import Dynamics
 from .equations import Equations, Proof
 from .expressions import Expr
@@ -25,20 +26,6 @@ if TYPE_CHECKING:
     from distributed import Client
 
 _KEPT = 16  # prepared systems of a model
-
-
-@dataclass(frozen=True)
-class Source:
-    """Where a model is read: a text with its name, or a file."""
-
-    text: str | None
-    name: str
-
-    def __call__(self, given: dict[str, str], cases: list[str]) -> _core.Model:
-        """Reads the model."""
-        if self.text is None:
-            return _core.read_file(self.name, given, cases)
-        return _core.read_text(self.text, given, cases, self.name)
 
 
 class Model:
@@ -61,7 +48,7 @@ class Model:
 
     def __reduce__(self) -> tuple[Callable[..., Model], tuple[Source, dict[str, str], list[str]]]:
         """Another process reads the model again."""
-        return _made, (self._again, self._given, self._cases)
+        return made, (self._again, self._given, self._cases)
 
     # ---- what it says ----
 
@@ -645,100 +632,6 @@ def _count(values: list[tuple[str, list[str]]], laws: dict[str, str], cases: int
     return float(math.prod(int(laws[name].rpartition(":")[2]) if name in laws else len(of) for name, of in values))
 
 
-class Check:
-    """What kind of system a model is, at its initial state.
-
-    Example:
-        >>> import anholon as an
-        >>> check = an.load("disc").check()
-        >>> [constraint.name for constraint in check.constraints]
-        ['rolling.x', 'rolling.y']
-    """
-
-    def __init__(self, model: Model, core: _core.System) -> None:
-        self.model: Model = model
-        self._core = core
-
-    @property
-    def degrees_of_freedom(self) -> int:
-        """Velocities that the constraints leave free; coordinates without constraints."""
-        return self._core.degrees_of_freedom
-
-    @property
-    def constraints(self) -> list[_core.ConstraintClass]:
-        """The kind of each constraint."""
-        return self._core.constraints
-
-    @property
-    def initial(self) -> list[_core.InitialValue]:
-        """The consistent initial state, each value with where it comes from."""
-        return self._core.initial
-
-    @property
-    def notes(self) -> list[str]:
-        """Choices that were made for the initial state."""
-        return self._core.notes
-
-    def __repr__(self) -> str:
-        lines = [self.model.title, f"degrees of freedom {self.degrees_of_freedom}"]
-        lines += [f"  {c!r}{', redundant' if c.redundant else ''}" for c in self.constraints]
-        lines += [f"  {v!r} ({v.origin})" for v in self.initial]
-        return "\n".join([*lines, *self.notes])
-
-    def _repr_html_(self) -> str:
-        return _display.check(self)
-
-
-def load(path: str | os.PathLike[str] | _core.ShippedModel, *, case: str | Sequence[str] = (), set: Mapping[str, Number] | None = None) -> Model:
-    """Reads a model file, or a shipped model by its name.
-
-    Args:
-        path: ``"disc"``, ``"my/robot.toml"``, or one of :func:`zoo`.
-        case: scenarios [case.NAME] that are laid over the file.
-        set: values of parameters instead of those of the file.
-
-    Raises:
-        ModelError: all mistakes of the file at once, each with its line, a caret and a hint.
-
-    Example:
-        >>> import anholon as an
-        >>> an.load("disc").title
-        'Disc rolling on a plane'
-    """
-    name = path.name if isinstance(path, _core.ShippedModel) else os.fspath(path)
-    return _read(Source(None, os.path.abspath(name) if os.path.exists(name) else name), set, case)
-
-
-def loads(text: str, *, case: str | Sequence[str] = (), set: Mapping[str, Number] | None = None, name: str = "model") -> Model:
-    """The same for a text; `name` stands in its diagnostics.
-
-    Example:
-        >>> import anholon as an
-        >>> an.loads('''
-        ... title = "Pendulum"
-        ... coordinates = ["th"]
-        ... particle = [{name = "bob", mass = 1, position = ["sin(th)", "-cos(th)", 0]}]
-        ... gravity.field = "-9.81*ey"
-        ... ''').coordinates[0].name
-        'th'
-    """
-    return _read(Source(text, name), set, case)
-
-
-def _read(again: Source, set: Mapping[str, Number] | None, case: str | Sequence[str]) -> Model:
-    return _made(again, texts_of(set), [case] if isinstance(case, str) else list(case))
-
-
-def _made(again: Source, given: dict[str, str], cases: list[str]) -> Model:
+def made(again: Source, given: dict[str, str], cases: list[str]) -> Model:
+    """Reads a model, for :func:`load` and for other processes."""
     return Model(again(given, cases), again, given, cases)
-
-
-def zoo() -> list[_core.ShippedModel]:
-    """The models that come with the library: name, path, title.
-
-    Example:
-        >>> import anholon as an
-        >>> any(model.name == "disc" for model in an.zoo())
-        True
-    """
-    return _core.shipped_models()

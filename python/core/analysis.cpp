@@ -1,4 +1,4 @@
-#include "core.h"
+#include "interruptible.h"
 
 namespace anholon::python {
 
@@ -65,8 +65,8 @@ void bind_compare(nb::module_& m) {
       [](const Model& model, const std::string& equations, bool file, const std::string& name,
          const std::vector<std::string>& eliminate, const Numbers& initial) {
         const CompareOptions options{name, eliminate, numbers(initial)};
-        return value_of(unlocked(
-            [&] { return file ? compare_file(model, equations, options) : compare(model, equations, options); }));
+        return value_of(interruptible(
+            [=] { return file ? compare_file(model, equations, options) : compare(model, equations, options); }));
       },
       "model"_a, "equations"_a, "file"_a, "name"_a, "eliminate"_a, "initial"_a);
 }
@@ -102,7 +102,9 @@ void bind_evaluate(nb::module_& m) {
       .def_prop_ro("residuals", [](const StateReport& r) { return named(r.residuals); });
   m.def(
       "evaluate",
-      [](const System& system, int digits) { return value_of(unlocked([&] { return evaluate(system, digits); })); },
+      [](const System& system, int digits) {
+        return value_of(interruptible([=] { return evaluate(system, digits); }));
+      },
       "system"_a, "digits"_a);
 }
 
@@ -165,7 +167,7 @@ void bind_linear(nb::module_& m) {
       [](const Model& model, const std::string& form, const Numbers& initial, const std::vector<std::string>& eliminate,
          bool equilibrium, int digits) {
         const LinearOptions options = linear_options(form, initial, eliminate, equilibrium, digits);
-        return value_of(unlocked([&] { return linearize(model, options); }));
+        return value_of(interruptible([=] { return linearize(model, options); }));
       },
       "model"_a, "form"_a, "initial"_a, "eliminate"_a, "equilibrium"_a, "digits"_a);
   m.def(
@@ -175,7 +177,7 @@ void bind_linear(nb::module_& m) {
          int digits) {
         const LinearOptions options = linear_options(form, initial, eliminate, equilibrium, digits);
         const std::vector<Number> list(values.begin(), values.end());
-        return value_of(unlocked([&] { return stability(model, parameter, list, options); }));
+        return value_of(interruptible([=] { return stability(model, parameter, list, options); }));
       },
       "model"_a, "parameter"_a, "values"_a, "form"_a, "initial"_a, "eliminate"_a, "equilibrium"_a, "digits"_a);
 }

@@ -1,4 +1,4 @@
-#include "core.h"
+#include "interruptible.h"
 
 namespace anholon::python {
 
@@ -113,7 +113,7 @@ void bind_dynamics(nb::module_& m) {
           options.outputs.emplace();
           for (const auto& [name, formula] : *outputs) options.outputs->push_back({name, formula});
         }
-        return value_of(unlocked([&] { return dynamics(system, options); }));
+        return value_of(interruptible([=] { return dynamics(system, options); }));
       },
       "system"_a, "minimal"_a, "inputs"_a, "names"_a, "outputs"_a.none());
 }

@@ -1,4 +1,4 @@
-#include "core.h"
+#include "interruptible.h"
 
 namespace anholon::python {
 
@@ -49,17 +49,17 @@ void bind_model(nb::module_& m) {
       .def_prop_ro("remarks", &Model::remarks)
       .def_prop_ro("text", &Model::text)
       .def_prop_ro("stands_alone", [](const Model& m) { return m.base_files() == 0; })
-      .def("forms", [](const Model& model) { return value_of(unlocked([&] { return model.forms(); })); });
+      .def("forms", [](const Model& model) { return value_of(interruptible([=] { return model.forms(); })); });
   m.def(
       "read_file",
       [](const std::string& path, const Numbers& set, const std::vector<std::string>& cases) {
-        return value_of(unlocked([&] { return read_file(path, read_options(set, cases)); }));
+        return value_of(interruptible([=] { return read_file(path, read_options(set, cases)); }));
       },
       "path"_a, "set"_a, "cases"_a);
   m.def(
       "read_text",
       [](const std::string& text, const Numbers& set, const std::vector<std::string>& cases, const std::string& name) {
-        return value_of(unlocked([&] { return read_text(text, read_options(set, cases), name); }));
+        return value_of(interruptible([=] { return read_text(text, read_options(set, cases), name); }));
       },
       "text"_a, "set"_a, "cases"_a, "name"_a);
   m.def("shipped_models", shipped_models);
@@ -76,7 +76,7 @@ void bind_equations(nb::module_& m) {
       "derive",
       [](const Model& model, const std::string& form, const std::string& expand, bool steps, bool reactions) {
         const DeriveOptions options{form, expand, steps, reactions};
-        return value_of(unlocked([&] { return derive(model, options); }));
+        return value_of(interruptible([=] { return derive(model, options); }));
       },
       "model"_a, "form"_a, "expand"_a, "steps"_a, "reactions"_a);
 }
@@ -112,11 +112,12 @@ void bind_proofs(nb::module_& m) {
   m.def(
       "prove",
       [](const Model& model, const std::vector<std::string>& forms) {
-        return value_of(unlocked([&] { return prove(model, forms); }));
+        return value_of(interruptible([=] { return prove(model, forms); }));
       },
       "model"_a, "forms"_a);
   m.def(
-      "verify", [](const std::string& certificate) { return value_of(unlocked([&] { return verify(certificate); })); },
+      "verify",
+      [](const std::string& certificate) { return value_of(interruptible([=] { return verify(certificate); })); },
       "certificate"_a);
 }
 

@@ -1,4 +1,4 @@
-#include "core.h"
+#include "interruptible.h"
 
 NB_MODULE(_core, m) {
   m.doc() = "The C++ library of Anholon, as its public headers have it.";
@@ -10,4 +10,6 @@ NB_MODULE(_core, m) {
   anholon::python::bind_sweep_folders(m);
   anholon::python::bind_dynamics(m);
   anholon::python::bind_analysis(m);
+  nanobind::module_::import_("atexit").attr("register")(
+      nanobind::cpp_function([] { anholon::python::Abandoned::threads().wait(); }));
 }

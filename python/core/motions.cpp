@@ -1,4 +1,4 @@
-#include "core.h"
+#include "interruptible.h"
 
 namespace anholon::python {
 
@@ -37,7 +37,7 @@ void bind_system(nb::module_& m) {
       [](const Model& model, const std::string& form, const Numbers& initial,
          const std::vector<std::string>& eliminate) {
         const PrepareOptions options{form, numbers(initial), eliminate};
-        return value_of(unlocked([&] { return prepare(model, options); }));
+        return value_of(interruptible([=] { return prepare(model, options); }));
       },
       "model"_a, "form"_a, "initial"_a, "eliminate"_a);
   m.def(
@@ -139,7 +139,7 @@ void bind_run(nb::module_& m) {
       .def(
           "page",
           [](const Run& run, const std::vector<std::string>& forms, bool proof) {
-            return value_of(unlocked([&] { return page(run, PageOptions{forms, proof}); }));
+            return value_of(interruptible([=] { return page(run, PageOptions{forms, proof}); }));
           },
           "forms"_a, "proof"_a)
       .def("picture_data", [](const Run& run) { return value_of(unlocked([&] { return picture_data(run); })); })

@@ -2,6 +2,9 @@
 
 import json
 import pathlib
+import signal
+import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -221,3 +224,25 @@ qdot = {th = 0}
         pendulum.stability("l", 0, 1, 1)
     with pytest.raises(an.ModelError):
         pendulum.stability("l", [])
+
+
+LONG: list[tuple[str, Callable[[an.Model], object]]] = [
+    ("prove", lambda m: m.prove()),
+    ("compare", lambda m: m.compare(["a: phi'' = psi'' + delta''*phi"])),
+]
+
+
+@pytest.mark.parametrize("call", [call for _, call in LONG], ids=[name for name, _ in LONG])
+def test_ctrl_c_ends_what_keeps_nothing(call: Callable[[an.Model], object]) -> None:
+    model = an.load("whipple")
+    pressed: list[float] = []
+
+    def press() -> None:
+        pressed.append(time.perf_counter())
+        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+
+    threading.Timer(0.05, press).start()
+    with pytest.raises(KeyboardInterrupt):
+        call(model)
+    assert time.perf_counter() - pressed[0] < 0.1
+    assert model.coordinates[0].name == "x"  # the model is as it was, while the computation ends by itself

@@ -85,3 +85,43 @@ def test_values_by_name_have_names_and_numbers() -> None:
 def test_a_shipped_model_of_the_list_is_loaded() -> None:
     first = an.zoo()[0]
     assert an.load(first).title == first.title
+
+
+def test_a_unit_of_another_quantity_is_refused(disc: an.Model) -> None:
+    spring = an.loads(SPRING)
+    for made, said in (
+        (lambda: disc.with_(m="3 m"), ("a mass (kg) is expected here, this is a length (m)",)),
+        (lambda: spring.with_(m="3 m"), ("a mass (kg) is expected here",)),
+        (lambda: spring.simulate(to=1, initial={"x": "3 kg"}), ("initial x: a length (m) is expected here, this is a mass (kg)", "hint: a number in m")),
+        (lambda: spring.simulate(to=1, initial={"x'": "3 m"}), ("initial x': a velocity (m/s) is expected here",)),
+        (lambda: spring.linearize(initial={"x": "3 s"}), ("initial x: a length (m) is expected here",)),
+    ):
+        with pytest.raises(an.ModelError) as raised:
+            made()
+        for part in said:
+            assert part in str(raised.value)
+    assert disc.with_(m="300 g", R="50 cm").parameters["m"] == 0.3
+    assert spring.check(initial={"x": "30 cm", "x'": "36 km/h"}).initial[0].value == 0.3
+
+
+SPRING = """
+coordinates = ["x"]
+parameters = {m = "1 kg", k = "3 N/m"}
+particle = [{name = "p", mass = "m", position = ["x", 0, 0]}]
+potential.spring = "k*x^2/2"
+"""
+
+
+def test_load_and_loads_name_each_other() -> None:
+    with pytest.raises(an.ModelError, match=r"hint: anholon.load\('disc.toml'\)"):
+        an.loads("disc.toml")
+    with pytest.raises(an.ModelError, match=r"hint: anholon.loads\(text\)"):
+        an.load(SPRING)
+
+
+def test_a_time_is_a_number(disc: an.Model) -> None:
+    f = disc.dynamics()
+    for wrong in ("a", [0], None):
+        for function in (f, f.jac, f.output):
+            with pytest.raises(TypeError, match="t is a number, the time in s"):
+                function(wrong, f.start)  # type: ignore[arg-type,operator]

@@ -59,9 +59,11 @@ Error mistake(const std::string& message, const std::string& hint) {
   return {{d}, {}, "error: " + message + "\n" + (hint.empty() ? "" : "hint: " + hint + "\n")};
 }
 
-inner::Rational exact(const Number& number, const std::string& argument) {
+inner::Rational exact(const Number& number, const std::string& argument) { return constant(number, argument).value; }
+
+inner::Constant constant(const Number& number, const std::string& argument) {
   try {
-    return inner::read_constant(number.text()).value;
+    return inner::read_constant(number.text());
   } catch (const inner::Failure&) {
     const std::string& text = number.text();
     throw inner::Failure({}, argument + ": '" + text + "' is not a number",
@@ -79,9 +81,9 @@ inner::StateChoice state_choice(const PrepareOptions& options, const inner::Mode
   inner::StateChoice choice;
   for (const std::string& name : options.eliminate) choice.eliminate.push_back(inner::coordinate_of(model, name));
   for (const auto& [name, number] : options.initial) {
-    const inner::Rational value = exact(number, "initial " + name);
+    const inner::Constant value = constant(number, "initial " + name);
     if (name == "t")
-      choice.t = value;
+      choice.t = value.value;
     else
       inner::give(choice, model, inner::initial_name(name), value, "initial " + name + ": ");
   }

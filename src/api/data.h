@@ -2,6 +2,7 @@
 #pragma once
 #include "anholon/motion.h"
 #include "modelfile/contacts.h"
+#include "modelfile/names/constant.h"
 #include "modelfile/read.h"
 #include "setup/scenario.h"
 
@@ -55,6 +56,8 @@ auto guarded(const inner::SourceText& source, F f) -> decltype(f()) {
 
 // The number as an exact rational in SI units. Throws Failure that names the argument.
 inner::Rational exact(const Number& number, const std::string& argument);
+// The same with the dimension of its unit.
+inner::Constant constant(const Number& number, const std::string& argument);
 
 // The form of that name. Throws Failure if there is none; with mechanics also if it does not apply.
 const inner::Formulation& find_form(const std::string& name, const inner::Mechanics* mechanics = nullptr);

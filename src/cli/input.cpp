@@ -49,9 +49,11 @@ Asker asker(const char* saving) {
   return a;
 }
 
-Rational exact(const std::string& text, const std::string& option) {
+Rational exact(const std::string& text, const std::string& option) { return constant(text, option).value; }
+
+Constant constant(const std::string& text, const std::string& option) {
   try {
-    return read_constant(text).value;
+    return read_constant(text);
   } catch (const Failure& f) {
     const std::string why = f.diagnostic.message.rfind("'" + text, 0) == 0 ? "" : ": " + f.diagnostic.message;
     throw UsageError{"error: " + option + ": '" + text + "' is not a number" + why +
@@ -184,7 +186,7 @@ StateChoice state_choice(const SystemCommand& o, const Model& model) {
       const auto [name, value] = assignment(word, g.option);
       InitialName of = g.multiplier ? InitialName{name, g.order, true} : initial_name(name);
       if (g.order > 0) of.order = g.order;  // --qdot "x'=2" means x', too
-      give(c, model, of, exact(value, g.option), std::string(g.option) + ": ");
+      give(c, model, of, constant(value, g.option), std::string(g.option) + ": ");
     }
   return c;
 }

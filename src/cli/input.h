@@ -6,6 +6,7 @@
 
 #include "base/read_file.h"
 #include "cli/commands.h"
+#include "modelfile/names/constant.h"
 #include "modelfile/shipped.h"
 #include "proof/prove.h"
 #include "setup/scenario.h"
@@ -39,6 +40,8 @@ Command with_form(Command o, const Reader& in) {
 }
 StateChoice state_choice(const SystemCommand& o, const Model& model);
 Rational exact(const std::string& text, const std::string& option);
+// The same with the dimension of its unit.
+Constant constant(const std::string& text, const std::string& option);
 // How the command line calls its options, and notes on stderr. saving: the option that saves or continues a run, if one
 // is given.
 Asker asker(const char* saving = "");

@@ -80,7 +80,22 @@ unsigned first_determined_order(const Model& model) {
   return order;
 }
 
-void give(StateChoice& choice, const Model& model, const InitialName& of, const Rational& value,
+// Throws if the value has a unit that the derivative of a coordinate cannot have.
+static void must_fit(const Model& model, std::size_t coordinate, unsigned order, const Constant& value,
+                     const std::string& called) {
+  const std::string unit =
+      coordinate < model.coordinate_units.size() ? model.coordinate_units[coordinate] : std::string();
+  const std::optional<Unit> own = unit == "1" ? Unit{} : read_unit(unit);
+  if (!value.dimension || !own) return;
+  Dimension wanted = own->dimension;
+  wanted[2] -= order;
+  if (wanted == *value.dimension) return;
+  throw Failure({}, called + describe(wanted) + " is expected here, this is " + describe(*value.dimension),
+                wanted == Dimension{} ? "a bare number, or an angle: 30 deg"
+                                      : "a number in " + print(wanted) + ", or a bare number in SI units");
+}
+
+void give(StateChoice& choice, const Model& model, const InitialName& of, const Constant& value,
           const std::string& called) {
   const unsigned determined = first_determined_order(model);
   const std::size_t index = of.multiplier ? place(model.names.multipliers, of.name, "constraint", called)
@@ -96,7 +111,8 @@ void give(StateChoice& choice, const Model& model, const InitialName& of, const 
   for (const StateOverride& before : choice.overrides)
     if (before.multiplier == of.multiplier && before.order == of.order && before.coordinate == index)
       throw Failure({}, called + "'" + of.name + "' is given twice");
-  choice.overrides.push_back({of.order, index, value, of.multiplier});
+  if (!of.multiplier) must_fit(model, index, of.order, value, called);
+  choice.overrides.push_back({of.order, index, value.value, of.multiplier});
 }
 
 }  // namespace anholon

@@ -1,6 +1,7 @@
 // Names and numbers that somebody gives beside a model, made into a form and a choice of state. The command line and the
 // library share them. All functions throw Failure without a place.
 #pragma once
+#include "modelfile/names/constant.h"
 #include "setup/scenario.h"
 
 namespace anholon {
@@ -23,9 +24,9 @@ struct InitialName {
   bool multiplier = false;
 };
 InitialName initial_name(const std::string& written);
-// Adds a value to the choice. Throws if there is no such name, if the value follows from the state, and if it is given
-// already.
-void give(StateChoice& choice, const Model& model, const InitialName& of, const Rational& value,
+// Adds a value to the choice. Throws if there is no such name, if the value follows from the state, if it is given
+// already, and if it has the unit of another quantity.
+void give(StateChoice& choice, const Model& model, const InitialName& of, const Constant& value,
           const std::string& called = {});
 
 // Derivatives of this order and above follow from the state.

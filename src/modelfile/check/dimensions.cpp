@@ -30,8 +30,10 @@ bool may_have_units(const Item& item) {
 // The equations between dimensions that each element of a model file gives.
 class Elements {
  public:
-  Elements(const Item& root, const Scope& scope, const Model& model)
-      : root_(root), model_(model), formulas_(scope, model) {}
+  using Overrides = FormulaDimensions::Overrides;
+
+  Elements(const Item& root, const Scope& scope, const Model& model, Overrides overrides = Overrides::read)
+      : root_(root), model_(model), formulas_(scope, model, overrides) {}
 
   bool run() {
     // A value given from outside may have replaced the only one with a unit.
@@ -272,11 +274,28 @@ static void note_bare_numbers(const Scope& scope, Model& model) {
                             model.parameter_units[i] + ", beside " + other->second);
 }
 
+// Whether a file without units is consistent when the values from outside may have any dimension.
+static bool consistent_without_overrides(const Item& root, const Scope& scope, const Model& model) {
+  Elements elements(root, scope, model, Elements::Overrides::ignored);
+  elements.run();
+  return elements.found().empty();
+}
+
+// Whether a value from outside has a unit.
+static bool overrides_with_units(const Scope& scope) {
+  return std::any_of(scope.declarations().begin(), scope.declarations().end(), [](const auto& d) {
+    return !d.second.override.empty() && has_unit(parse_formula(d.second.formula));
+  });
+}
+
 void check_dimensions(const Item& root, const Scope& scope, Model& model, Diagnostics& diagnostics) {
-  if (!may_have_units(root)) return;
+  if (!may_have_units(root) && !overrides_with_units(scope)) return;
   Elements elements(root, scope, model);
-  if (!elements.run()) return;
-  for (const Diagnostic& d : elements.found()) diagnostics.add(d);
+  const bool units_seen = elements.run();
+  // Without units the check passes over formulas that contradict one another, but not over a unit from outside that does.
+  if (!elements.found().empty() && (units_seen || consistent_without_overrides(root, scope, model)))
+    for (const Diagnostic& d : elements.found()) diagnostics.add(d);
+  if (!units_seen) return;
   const auto units = [&](const std::vector<std::string>& names) {
     std::vector<std::string> list;
     for (const std::string& name : names) {

@@ -1,7 +1,8 @@
 // Checks that the units of a file are consistent. Every name gets a dimension, known from a unit or an unknown of Q^7,
 // and every formula and element gives relations between dimensions: terms of a sum have one dimension, x' has that of x
 // divided by a second, a position is a length. A bare number has any dimension, so a file without units is always
-// consistent and is not checked.
+// consistent. In such a file formulas may contradict one another, as those with scaled quantities do; a value with a unit
+// from outside (--set) may not.
 #pragma once
 #include "modelfile/names/names.h"
 

@@ -12,7 +12,8 @@ using Type = Measured::Type;
 // The limit of calls of functions inside one another, over the whole file; calls beyond it are not checked.
 static constexpr std::size_t kMostCalls = 20'000;
 
-FormulaDimensions::FormulaDimensions(const Scope& scope, const Model& model) : scope_(scope) {
+FormulaDimensions::FormulaDimensions(const Scope& scope, const Model& model, Overrides overrides)
+    : scope_(scope), overrides_(overrides) {
   for (const std::string& name : model.names.coordinates) names_[name] = number(dimensions_.unknown(name));
 }
 
@@ -108,6 +109,8 @@ Measured FormulaDimensions::declared(const std::string& name, const Scope::Decla
   using Role = Scope::Role;
   switch (d.role) {
   case Role::parameter: {
+    if (!d.override.empty() && d.unit.empty() && overrides_ == Overrides::ignored)
+      return number(dimensions_.unknown(name));
     Measured m = d.item ? of(*d.item) : of(parse_formula(d.formula));
     if (!d.unit.empty()) {
       const DimensionForm given = unit(d.unit.c_str());

@@ -15,7 +15,10 @@ struct Measured {
 
 class FormulaDimensions {
  public:
-  FormulaDimensions(const Scope& scope, const Model& model);
+  // Whether the units of values from outside (--set) are looked at; else such a value has any dimension.
+  enum class Overrides : std::uint8_t { read, ignored };
+
+  FormulaDimensions(const Scope& scope, const Model& model, Overrides overrides);
 
   // Declares all names; a clash inside a declaration is reported once, at its place.
   void declarations(Diagnostics& found);
@@ -74,6 +77,7 @@ class FormulaDimensions {
   std::size_t calls_ = 0;
   int depth_ = 0;
   bool in_override_ = false;
+  Overrides overrides_;
 };
 
 }  // namespace anholon

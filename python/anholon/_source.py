@@ -1,0 +1,21 @@
+"""Where a model is read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from . import _core
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a model is read: a text with its name, or a file."""
+
+    text: str | None
+    name: str
+
+    def __call__(self, given: dict[str, str], cases: list[str]) -> _core.Model:
+        """Reads the model."""
+        if self.text is None:
+            return _core.read_file(self.name, given, cases)
+        return _core.read_text(self.text, given, cases, self.name)

@@ -1,0 +1,54 @@
+"""What kind of system a model is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from . import _core, _display
+
+if TYPE_CHECKING:
+    from .model import Model
+
+
+class Check:
+    """What kind of system a model is, at its initial state.
+
+    Example:
+        >>> import anholon as an
+        >>> check = an.load("disc").check()
+        >>> [constraint.name for constraint in check.constraints]
+        ['rolling.x', 'rolling.y']
+    """
+
+    def __init__(self, model: Model, core: _core.System) -> None:
+        self.model: Model = model
+        self._core = core
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Velocities that the constraints leave free; coordinates without constraints."""
+        return self._core.degrees_of_freedom
+
+    @property
+    def constraints(self) -> list[_core.ConstraintClass]:
+        """The kind of each constraint."""
+        return self._core.constraints
+
+    @property
+    def initial(self) -> list[_core.InitialValue]:
+        """The consistent initial state, each value with where it comes from."""
+        return self._core.initial
+
+    @property
+    def notes(self) -> list[str]:
+        """Choices that were made for the initial state."""
+        return self._core.notes
+
+    def __repr__(self) -> str:
+        lines = [self.model.title, f"degrees of freedom {self.degrees_of_freedom}"]
+        lines += [f"  {c!r}{', redundant' if c.redundant else ''}" for c in self.constraints]
+        lines += [f"  {v!r} ({v.origin})" for v in self.initial]
+        return "\n".join([*lines, *self.notes])
+
+    def _repr_html_(self) -> str:
+        return _display.check(self)
