@@ -135,8 +135,8 @@ contact = [{name = "floor", gap = "z", slip = "x'", friction = 0.3}]
   }
 }
 
-// A force that grows and turns: the block begins to slip without acceleration, on a curved path. In the limit of a slow turn it
-// goes as one that is pushed straight, and a second run, that begins to move, must agree with the first.
+// A force that grows begins the slip without acceleration. Pushed straight the block goes by the cube of the time; a force
+// that turns bends its path.
 TEST(ClosedForms, SlipWithTwoComponentsBeginsWithoutAcceleration) {
   const auto push = [](const std::string& turn, const std::string& friction) {
     return contact_motion(R"toml(coordinates = ["x", "y", "z"]
@@ -154,7 +154,6 @@ contact = [{name = "floor", gap = "z", slip = ["x'", "y'"], friction = )toml" +
   EXPECT_EQ(straight.last("y"), 1);
   const auto turns = push("1", "0.3");
   ASSERT_TRUE(turns.report.outcome.ok()) << turns.report.outcome.message;
-  // Power: what the force does in excess of friction is the kinetic energy; it is balanced row by row.
   EXPECT_LT(turns.report.power, 1e-10);
   EXPECT_LT(turns.report.steps, 2000U);
   EXPECT_GT(turns.last("y"), 1.1);
