@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace anholon {
 
@@ -133,12 +134,52 @@ std::array<Real, 2> slip_rate(const ContactRows& rows, const Numbers& x) {
   return v;
 }
 
+bool has_direction_to_find(const ContactRows& rows, const ContactMode& mode) {
+  return mode.touch == Touch::slips && !rows.moves && rows.tangential.size() == 2 && rows.rough;
+}
+
+// The direction of the one slip that begins with two components, as the angle at which its rate has no part across, by the
+// secant method: where the slip hardly accelerates, the rate turns much faster than the direction, and the fixed point
+// repels. Returns nullopt if several slips begin, or no angle is found.
+std::optional<ContactSolution> with_one_direction(const ContactProblem& p, ContactModes modes) {
+  std::optional<std::size_t> one;
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    if (!has_direction_to_find(p.contacts[c], modes[c])) continue;
+    if (one) return std::nullopt;
+    one = c;
+  }
+  if (!one) return std::nullopt;
+  const std::array<Real, 2> first = modes[*one].direction;
+  std::optional<ContactSolution> f;
+  std::array<Real, 2> v{};
+  const auto across = [&](Real angle) -> Real {
+    auto& d = modes[*one].direction;
+    d = {first[0] * std::cos(angle) - first[1] * std::sin(angle),
+         first[1] * std::cos(angle) + first[0] * std::sin(angle)};
+    f = of_modes(p, modes);
+    if (!f) return std::numeric_limits<Real>::quiet_NaN();
+    v = slip_rate(p.contacts[*one], f->x);
+    return v[1] * d[0] - v[0] * d[1];
+  };
+  constexpr int kMost = 40;
+  constexpr Real kFound = 1e-9L, kStep = 1e-4L, kTurn = 0.5L;
+  Real a = kStep, fa = across(a), b = 0, fb = across(b);
+  for (int k = 0; k < kMost && fa != fb && std::isfinite(fa) && std::isfinite(fb); ++k) {
+    const Real step = std::clamp(fb * (b - a) / (fb - fa), -kTurn, kTurn);
+    a = b, fa = fb, b -= step, fb = across(b);
+    const auto& d = modes[*one].direction;
+    if (std::abs(fb) <= kFound * std::hypot(v[0], v[1]) && v[0] * d[0] + v[1] * d[1] > 0) return f;
+  }
+  return std::nullopt;
+}
+
 // Directions of slip that begins are those of the slip rates that follow from them: a fixed point. A rate that is
 // round-off of the accelerations `free` has no direction, and the first guess stays.
 std::optional<ContactSolution> with_directions(const ContactProblem& p, ContactModes modes, Real free) {
   // From kPlain on the steps are damped, as they may go to and fro about the fixed point.
   constexpr int kMost = 400, kPlain = 30, kSlow = 100;
   constexpr Real kFound = 1e-17L, kNear = 1e-9L;
+  const ContactModes first = modes;
   Real change = 0;
   for (int k = 0; k < kMost; ++k) {
     auto f = of_modes(p, modes);
@@ -147,7 +188,7 @@ std::optional<ContactSolution> with_directions(const ContactProblem& p, ContactM
     const Real step = k < kPlain ? 1 : k < kSlow ? 0.5L : 0.1L;
     for (std::size_t c = 0; c < modes.size(); ++c) {
       const ContactRows& rows = p.contacts[c];
-      if (modes[c].touch != Touch::slips || rows.moves || rows.tangential.size() < 2 || !rows.rough) continue;
+      if (!has_direction_to_find(rows, modes[c])) continue;
       const auto v = slip_rate(rows, f->x);
       const Real size = std::hypot(v[0], v[1]),
                  terms = std::max(largest(rows.tangential[0]), largest(rows.tangential[1]));
@@ -161,7 +202,7 @@ std::optional<ContactSolution> with_directions(const ContactProblem& p, ContactM
     }
     if (change <= kFound) return f;
   }
-  return change <= kNear ? of_modes(p, modes) : std::nullopt;
+  return change <= kNear ? of_modes(p, modes) : with_one_direction(p, first);
 }
 
 // free: the size of the accelerations without contacts. Where the contacts leave no acceleration, those of the modes

@@ -20,6 +20,7 @@ struct ContactMode {
   Touch touch = Touch::open;
   std::array<long double, 2> direction{};  // of the slip, of length 1
   bool free = false;                       // sticks without friction of its own, as other contacts hold it
+  bool held = false;                       // sticks, whatever friction this needs
   long double rest = 0;                    // a slip velocity with two components is zero below it
   long double slack = 0;                   // forces below it are round-off
   long double depth = 0;                   // a gap is negative below minus this

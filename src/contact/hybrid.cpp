@@ -46,6 +46,7 @@ class HybridMotion {
 
   SimulationReport go() {
     excluded_.assign(contacts_.size(), {});
+    held_.assign(contacts_.size(), 0);
     Outcome outcome = not_inside(" at the start", "start at a position where the gap is zero or positive");
     constexpr std::size_t kMostSegments = 100'000;
     for (std::size_t k = 0; outcome.ok() && at_.t < end_; ++k) {
@@ -54,7 +55,8 @@ class HybridMotion {
                    "end the motion earlier"};
       else
         outcome = choose();
-      if (outcome.ok() && !segment(outcome)) break;
+      if (outcome.ok() && !segment(end_, outcome)) break;
+      if (outcome.ok() && !hold(outcome)) break;
       if (outcome.ok()) outcome = not_inside(when(), kPassed);
     }
     if (outcome.ok()) outcome = not_inside(when(), kPassed);
@@ -122,15 +124,7 @@ class HybridMotion {
     for (std::size_t k = 0; shrinks() && k < kMostImpacts; ++k)
       if (Outcome o = impact(); !o.ok()) return o;
     land();
-    ContactProblem p = dynamics_.accelerations();
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      ContactRows& rows = p.contacts[c];
-      rows.may_touch = closed(c) && gap_rate(c) == 0 && !excluded_[c].touch;
-      rows.may_stick = !excluded_[c].stick;
-      rows.moves = rows.moves && !excluded_[c].slips;
-      // A gap that is open, or opens, is not bounded by its acceleration.
-      if (!closed(c) || gap_rate(c) > 0) rows.normal.assign(at_.q.size(), 0), rows.normal_rate = 0;
-    }
+    ContactProblem p = with_touching();
     for (std::size_t c = 0; c < contacts_.size(); ++c)
       if (excluded_[c].stick && contacts_[c].slip.size() == 2) against_friction(p, c);
     const std::vector<ContactSolution> list = consistent_modes(p);
@@ -145,7 +139,7 @@ class HybridMotion {
       modes_[c].slack = kRest * (force > 0 ? force : 1);
       if (contacts_[c].slip.size() < 2 || modes_[c].free) continue;
       const bool begins = modes_[c].touch == Touch::slips && contacts_[c].rough() && !p.contacts[c].moves;
-      if (begins) set_slip(c, modes_[c].direction, kSeed * std::max(dynamics_.speed(), 1.0L));
+      if (begins) set_slip(c, modes_[c].direction, first_slip(c, list[0].x));
     }
     // The velocities at the end of a segment have the round-off of those before, which may be much larger.
     dynamics_.go(at_);
@@ -154,6 +148,20 @@ class HybridMotion {
     for (std::size_t a = 0; a < at_.qd.size(); ++a)
       if (std::abs(at_.qd[a]) <= kLeftOver * dynamics_.most(a)) at_.qd[a] = 0;
     return {};
+  }
+
+  // The accelerations, in which each contact may do what its gap and the event at which the last segment ended allow.
+  ContactProblem with_touching() const {
+    ContactProblem p = dynamics_.accelerations();
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      ContactRows& rows = p.contacts[c];
+      rows.may_touch = closed(c) && gap_rate(c) == 0 && !excluded_[c].touch;
+      rows.may_stick = !excluded_[c].stick;
+      rows.moves = rows.moves && !excluded_[c].slips;
+      // A gap that is open, or opens, is not bounded by its acceleration.
+      if (!closed(c) || gap_rate(c) > 0) rows.normal.assign(at_.q.size(), 0), rows.normal_rate = 0;
+    }
+    return p;
   }
 
   // Velocities within round-off of those that the motion had are zero, and so are coordinates: where the modes leave no
@@ -310,6 +318,65 @@ class HybridMotion {
     for (std::size_t a = 0; a < at_.qd.size(); ++a) at_.qd[a] = static_cast<double>(at_.qd[a] + jump[a]);
   }
 
+  // The slip velocity from which a slip with two components is followed. After held_ it has grown with the acceleration,
+  // which is zero where the slip begins.
+  long double first_slip(std::size_t c, const std::vector<long double>& accelerations) const {
+    const long double seed = kSeed * std::max(dynamics_.speed(), 1.0L);
+    return held_[c] > 0 ? std::max(seed, slip_acceleration(c, accelerations) * held_[c] / 2) : seed;
+  }
+  long double slip_acceleration(std::size_t c, const std::vector<long double>& accelerations) const {
+    const ContactRows& rows = dynamics_.accelerations().contacts[c];
+    std::array<long double, 2> a = rows.tangential_rate;
+    for (std::size_t k = 0; k < rows.tangential.size(); ++k)
+      for (std::size_t i = 0; i < accelerations.size(); ++i) a[k] += rows.tangential[k][i] * accelerations[i];
+    return std::hypot(a[0], a[1]);
+  }
+
+  // Where a slip with two components begins without acceleration, its velocity grows by the square of the time, and as long
+  // as it is small its direction is stiff. The contact is held for the time h in which the velocity reaches kHeld of its
+  // terms; the error is of the order of h^3 (theory: contact). Returns false if the motion ends meanwhile.
+  bool hold(Outcome& outcome) {
+    constexpr long double kHeld = 1e-7L, kTrial = 1e-6L, kMost = 3e-2L;
+    std::fill(held_.begin(), held_.end(), 0);
+    std::size_t c = 0;
+    while (c < contacts_.size() && !begins_at_rest(c)) ++c;
+    if (c == contacts_.size()) return true;
+    const long double pace = 1 / std::max(dynamics_.speed(), 1.0L), trial = kTrial * pace;
+    if (!hold_for(c, trial, outcome)) return outcome.ok();
+    dynamics_.go(at_);
+    ContactProblem p = with_touching();
+    against_friction(p, c);
+    const std::vector<ContactSolution> list = consistent_modes(p);
+    if (list.size() != 1 || list[0].modes[c].touch != Touch::slips) return true;
+    held_[c] = trial;
+    const long double rate = slip_acceleration(c, list[0].x) / trial, scale = dynamics_.place(c).slip_scale;
+    // A contact that never moved has terms of unknown size.
+    const long double h = std::min(std::sqrt(2 * kHeld * (scale > 0 ? scale : 1) / rate), kMost * pace);
+    if (!(h > 2 * trial)) return true;
+    if (!hold_for(c, h - trial, outcome)) return outcome.ok();
+    held_[c] = h;
+    return true;
+  }
+
+  // Whether the last segment ended with a slip of this contact that has two components and one coefficient of friction.
+  bool begins_at_rest(std::size_t c) const {
+    const ContactRows& rows = dynamics_.accelerations().contacts[c];
+    return excluded_[c].stick && modes_[c].touch == Touch::sticks && contacts_[c].slip.size() == 2 &&
+           rows.friction == rows.static_friction;
+  }
+
+  // Returns false if something else happens before.
+  bool hold_for(std::size_t c, long double time, Outcome& outcome) {
+    const Rational to(at_.t.get_d() + static_cast<double>(time));
+    if (to >= end_) return false;
+    modes_[c].held = true;
+    stop(modes_);
+    const bool goes_on = segment(to, outcome);
+    modes_[c].held = false;
+    excluded_[c].stick = true;
+    return goes_on && outcome.ok() && at_.t >= to;
+  }
+
   // A slip that begins where the friction that holds has become too large begins against this friction.
   static void against_friction(ContactProblem& p, std::size_t c) {
     ContactModes modes(p.contacts.size());
@@ -354,7 +421,7 @@ class HybridMotion {
   }
 
   // Follows the motion in the present modes to their end; returns false if it ends there.
-  bool segment(Outcome& outcome) {
+  bool segment(const Rational& to, Outcome& outcome) {
     const ModeModel mode = mode_model(*s_.model, contacts_, modes_, at_);
     Scenario scenario;
     outcome = make_scenario(mode.model, *s_.system.form, {}, scenario);
@@ -362,12 +429,13 @@ class HybridMotion {
     Workspace own(scenario);
     SimulationOptions o = o_;
     o.state = {};
-    o.to = end_;
+    o.to = to;
     o.every.reset();
     o.at_text.clear();
     o.at.clear();
     for (std::size_t k = rows_.due(); k < times_.size(); ++k)
-      if (joined_.segments() == 0 ? times_[k] >= at_.t : times_[k] > at_.t) o.at.push_back(times_[k]);
+      if (times_[k] <= to && (joined_.segments() == 0 ? times_[k] >= at_.t : times_[k] > at_.t))
+        o.at.push_back(times_[k]);
     o.estimate = ErrorEstimate::never;
     o.conserved.clear();
     o.note = nullptr;
@@ -393,7 +461,7 @@ class HybridMotion {
       if (known->second.change == ModeChange::slips) excluded_[known->second.contact].stick = true;
       if (known->second.change == ModeChange::sticks) excluded_[known->second.contact].slips = true;
     }
-    return changed && every_event_known && at_.t < end_;
+    return (changed || to < end_) && every_event_known && at_.t < end_;
   }
 
   Workspace& s_;
@@ -407,6 +475,7 @@ class HybridMotion {
   std::vector<Rational> times_;
   ContactModes modes_;
   std::vector<Excluded> excluded_;
+  std::vector<long double> held_;  // the time for which a contact that begins to slip was held
   Accumulation accumulation_;
   std::vector<long double> most_place_;  // the largest value of each coordinate at a change of mode
 };

@@ -83,18 +83,21 @@ class ModeBuilder {
       forces.push_back(keep(c.name + ".slip" + tag, c.name + ".t" + tag, c.slip[a], 1));
       act(c, 1, forces.back(), c.slip[a]);
     }
+    const Expr size =
+        forces.size() == 1 ? forces[0] : pow(forces[0] * forces[0] + forces[1] * forces[1], Rational(1, 2));
+    if (mode.held) return size;
     const Expr most = c.static_friction * normal;
     if (forces.size() == 1) {
       for (const Expr force : {forces[0], g_.number(-1) * forces[0]}) {
         event(c, ModeChange::slips, force - most, 1);
         event(c, ModeChange::slips, force - most - slack(mode), 1);
       }
-      return forces[0];
+      return size;
     }
     const Expr square = forces[0] * forces[0] + forces[1] * forces[1];
     event(c, ModeChange::slips, square - most * most, 1);
     event(c, ModeChange::slips, square - most * most - slack(mode) * slack(mode), 1);
-    return pow(square, Rational(1, 2));
+    return size;
   }
 
   Expr slack(const ContactMode& mode) const { return g_.number(Rational(static_cast<double>(mode.slack))); }
