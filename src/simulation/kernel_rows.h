@@ -6,12 +6,12 @@
 #pragma once
 #include <atomic>
 
+#include "base/in_order.h"
 #include "observe/floors.h"
 #include "observe/judge.h"
 #include "observe/rows/row_check.h"
 #include "observe/rows/waiting_rows.h"
 #include "observe/watch.h"
-#include "base/in_order.h"
 #include "simulation/row_writer.h"
 
 namespace anholon {
