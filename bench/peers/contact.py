@@ -3,10 +3,8 @@
 
     contact.py --program PROGRAM [--steps 1e-3 1e-4]
 
-MuJoCo's contacts are springs with dampers whose stiffness is bounded by the step. Its friction is that of a convex problem,
-in which a body that begins to slip is lifted: the ball with back-spin hops, and is late by its flight. Its last state, which
-follows from the angular momentum about the contact, is that of rigid bodies. Prints a Markdown table of the deviations from
-the closed forms. Without MuJoCo (pip install mujoco) it says so and does nothing.
+MuJoCo's contacts are springs with dampers whose stiffness is bounded by the step. In its results the ball with back-spin
+hops, and it slips longer by its flight. Prints a Markdown table of the deviations from the closed forms. Without MuJoCo (pip install mujoco) it says so and does nothing.
 """
 
 import argparse

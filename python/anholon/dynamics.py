@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Union
+from typing import Any, SupportsFloat, TYPE_CHECKING, Union
 
 from . import _core
 from ._errors import ModelError
@@ -26,7 +26,7 @@ def _time(t: object) -> float:
     """The time as a float. Raises TypeError if it is no number."""
     if type(t) is float:
         return t
-    if isinstance(t, (str, bytes)) or not hasattr(t, "__float__") or getattr(t, "ndim", 0) != 0:
+    if not isinstance(t, SupportsFloat) or getattr(t, "ndim", 0) != 0:
         raise TypeError(f"t is a number, the time in s, not a {type(t).__name__}; the states follow: f(t, x)")
     return float(t)
 
