@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, SupportsFloat, TYPE_CHECKING, Union
+from typing import TYPE_CHECKING, Any, SupportsFloat, Union
 
 from . import _core
 from ._errors import ModelError
