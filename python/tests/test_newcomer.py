@@ -124,4 +124,4 @@ def test_a_time_is_a_number(disc: an.Model) -> None:
     for wrong in ("a", [0], None):
         for function in (f, f.jac, f.output):
             with pytest.raises(TypeError, match="t is a number, the time in s"):
-                function(wrong, f.start)  # type: ignore[arg-type,operator]
+                function(wrong, f.start)  # type: ignore[arg-type]
