@@ -45,6 +45,9 @@ class CommandLine {
   template <class Command>
   Words<Command> command(const char* name, const std::string& what, int (*function)(const Command&),
                          const std::string& footer, CLI::App* parent, Model model);
+  // Runs a command whose options are parsed.
+  template <class Command>
+  int run_parsed(Command& o, int (*function)(const Command&), Model model) const;
   void add_completion();
 
   CLI::App app_{"Anholon: the equations of nonholonomic mechanics, their motion, with a residual report."};
@@ -98,6 +101,15 @@ void add_verify(CommandLine& line);
 int say_no_model();
 
 template <class Command>
+int CommandLine::run_parsed(Command& o, int (*function)(const Command&), [[maybe_unused]] Model model) const {
+  if constexpr (requires { o.command_line; }) o.command_line = typed_;
+  if constexpr (std::derived_from<Command, SystemCommand>) rescue_model(o);
+  if constexpr (std::derived_from<Command, ModelCommand>)
+    if (model == Model::needed && o.model.empty()) return say_no_model();
+  return function(o);
+}
+
+template <class Command>
 Words<Command> CommandLine::command(const char* name, const std::string& what, int (*function)(const Command&),
                                     const std::string& footer, CLI::App* parent, Model model) {
   CLI::App* c = (parent ? parent : &app_)->add_subcommand(name, what);
@@ -105,13 +117,7 @@ Words<Command> CommandLine::command(const char* name, const std::string& what, i
   const auto o = std::make_shared<Command>();
   c->callback([this, c, o, function, model] {
     if (!c->get_subcommands().empty()) return;  // the words name one of these
-    command_ = [this, o, function, model] {
-      if constexpr (requires { o->command_line; }) o->command_line = typed_;
-      if constexpr (std::derived_from<Command, SystemCommand>) rescue_model(*o);
-      if constexpr (std::derived_from<Command, ModelCommand>)
-        if (model == Model::needed && o->model.empty()) return say_no_model();
-      return function(*o);
-    };
+    command_ = [this, o, function, model] { return run_parsed(*o, function, model); };
   });
   return {c, *o};
 }
