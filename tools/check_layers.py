@@ -211,7 +211,7 @@ GOOD = {
     "src/cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "simulation/simulate.h"\n',
     "include/anholon/api.h": "#include <vector>\n",
     "src/cli/say.cpp": "void f() { std::fwrite(text, 1, 1, stdout); }\n",
-    "src/cli/words.cpp": 'const char* kText = "std::printf";  // not fputs\nint n = std::snprintf(buffer, 1, "x");\n',
+    "src/cli/typed_words.cpp": 'const char* kText = "std::printf";  // not fputs\nint n = std::snprintf(buffer, 1, "x");\n',
     # The same names where they are different types.
     "src/kernel/plan.h": "namespace anholon {\nstruct Entry {\n  struct Place {};\n};\ntemplate <> struct Of<int> {};\n}\n",
     "src/simulation/plan.cpp": "namespace anholon {\nnamespace {\nstruct Entry {};\n}\nstruct Entry;\nstruct Own { struct Place {}; };\n}\nnamespace anholon::cli {\nclass Entry {};\n}\n",

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "api/sweep_request.h"
+#include "base/join.h"
 #include "base/json.h"
 #include "ensemble/parts/judgement.h"
 #include "ensemble/refine/refine.h"
@@ -35,12 +36,6 @@ inner::SweepTable table_of(const PreparedSweep& p, const std::vector<std::string
   return table;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-  return text;
-}
-
 // Everything on which the rows depend.
 std::vector<std::pair<std::string, std::string>> asked_of(const System::Data& system, const PreparedSweep& p,
                                                           const SweepOptions& o) {
@@ -54,7 +49,7 @@ std::vector<std::pair<std::string, std::string>> asked_of(const System::Data& sy
     add("base file " + std::to_string(k + 1), model.source.others[k].text);
   std::string set;
   for (const auto& [name, value] : model.overrides) set += (set.empty() ? "" : " ") + name + "=" + value;
-  add("set", set), add("case", joined(model.cases)), add("form", system.scenario.system.form->name);
+  add("set", set), add("case", inner::joined(model.cases, " ")), add("form", system.scenario.system.form->name);
   std::string initial, eliminate;
   for (const inner::StateOverride& s : system.choice.overrides)
     initial += (initial.empty() ? "" : " ") +
@@ -67,10 +62,10 @@ std::vector<std::pair<std::string, std::string>> asked_of(const System::Data& sy
   const inner::MotionSettings settings = inner::merged(p.settings, system.scenario.model->simulate);
   for (const inner::MotionOption& m : inner::motion_options())
     if (std::string_view(m.name) != "error-estimate" && std::string_view(m.name) != "form")
-      add(m.name, joined(inner::words(settings, m)));
+      add(m.name, inner::joined(inner::words(settings, m), " "));
   for (const Vary& v : o.vary) add("vary " + v.name, text_of(v));
   add("together", o.together ? "yes" : ""), add("cases", o.cases ? std::to_string(*o.cases) : "");
-  add("draw", o.draw), add("seed", std::to_string(o.seed)), add("reduce", joined(o.reduce));
+  add("draw", o.draw), add("seed", std::to_string(o.seed)), add("reduce", inner::joined(o.reduce, " "));
   return all;
 }
 

@@ -53,13 +53,17 @@ CommandLine::CommandLine() {
 }
 
 int CommandLine::run(int argc, char** argv) {
+  std::vector<std::string> known;
+  for (const CLI::App* command : app_.get_subcommands([](const CLI::App*) { return true; }))
+    known.push_back(command->get_name());
+  if (argc > 1) check_command(argv[1], known);
   typed_ = command_line(argc, argv);
   try {
     app_.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app_.exit(e);
-    const bool known = argc > 1 && argv[1][0] != '-';
-    say(stderr, "error: %s\nhint: anholon %s%s--help\n", e.what(), known ? argv[1] : "", known ? " " : "");
+    const bool named = argc > 1 && argv[1][0] != '-';
+    say(stderr, "error: %s\nhint: anholon %s%s--help\n", e.what(), named ? argv[1] : "", named ? " " : "");
     return kBadInput;
   }
   return command_();
@@ -145,9 +149,6 @@ void order_m(CLI::App* c, int& m) {
       ->check(CLI::Range(1, static_cast<int>(kHighestM)));
 }
 
-int run_command_line(int argc, char** argv) {
-  if (argc > 1) check_command(argv[1]);
-  return CommandLine().run(argc, argv);
-}
+int run_command_line(int argc, char** argv) { return CommandLine().run(argc, argv); }
 
 }  // namespace anholon::cli

@@ -9,7 +9,7 @@
 
 #include "cli/commands.h"
 #include "cli/model_options.h"
-#include "cli/words.h"
+#include "cli/typed_words.h"
 #include "model/motion_settings.h"
 
 namespace anholon::cli {
@@ -25,7 +25,7 @@ class CommandLine {
  public:
   CommandLine();
 
-  // Runs the command that the words name; returns the exit status.
+  // Runs the command that the words name, and returns the exit status. Throws UsageError for words that make no command.
   int run(int argc, char** argv);
 
   // Adds a command below `parent` (nullptr: below the program) that is run with its parsed options.

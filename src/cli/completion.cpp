@@ -2,15 +2,11 @@
 
 #include <functional>
 
+#include "base/join.h"
+
 namespace anholon::cli {
 
 namespace {
-
-std::string joined(const std::vector<std::string>& words, const std::string& between) {
-  std::string out;
-  for (const std::string& w : words) out += (out.empty() ? "" : between) + w;
-  return out;
-}
 
 // Between single quotes of a shell.
 std::string quoted(const std::string& text) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/join.h"
 #include "formula/functions.h"
 #include "mechanics/mechanics.h"
 
@@ -31,12 +32,6 @@ std::vector<std::string> split(const std::string& path) {
     from = dot + 1;
   }
   return parts;
-}
-
-std::string joined(const std::vector<std::string>& parts) {
-  std::string path;
-  for (const std::string& p : parts) path += (path.empty() ? "" : ".") + p;
-  return path;
 }
 
 // The path of a chain of members of a name; empty if s is not one.
@@ -203,11 +198,11 @@ const Column* Vocabulary::column(const std::string& name) {
 
 std::optional<Value> Vocabulary::word(const std::string& first, const std::vector<std::string>& rest, Span span) {
   Graph& g = graph();
-  const std::string whole = rest.empty() ? first : first + "." + joined(rest);
+  const std::string whole = rest.empty() ? first : first + "." + joined(rest, ".");
   const auto one_member = [&](const char* of) {
     if (rest.empty())
       throw Failure(span, "'" + first + "' is " + of, first + "." + mechanics_.model->coordinates[0].name);
-    return joined(rest);
+    return joined(rest, ".");
   };
   if (among(kNumbers, first) && rest.empty()) {
     if (first == "T_r") return mechanics_.T;
@@ -219,7 +214,7 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
   }
   if (const Column* c = column(first)) {
     if (rest.empty()) return InertialName{};  // has a meaning in along(Q, x) and Q(x) only
-    return (*c)[coordinate(joined(rest), span)];
+    return (*c)[coordinate(joined(rest, "."), span)];
   }
   if (first == "phi" || first == "mu") {
     std::vector<std::string> known;
@@ -233,7 +228,7 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
     if (rest.empty() && known.size() > 1)
       throw Failure(span, "there are " + std::to_string(known.size()) + " of '" + first + "'", first + "." + known[0]);
     if (!rest.empty()) {
-      const std::string wanted = joined(rest);
+      const std::string wanted = joined(rest, ".");
       k = static_cast<std::size_t>(std::find(known.begin(), known.end(), wanted) - known.begin());
       const std::string near = did_you_mean(wanted, known);
       if (k == known.size())
@@ -303,7 +298,7 @@ Expr Vocabulary::of_form(const Formulation& form, const std::vector<std::string>
   const bool left = !path.empty() && path[0] == "left" && path.size() > 1,
              right = !path.empty() && path[0] == "right" && path.size() > 1;
   if (left || right) path.erase(path.begin());
-  const std::string wanted = joined(path);
+  const std::string wanted = joined(path, ".");
   const auto k = static_cast<std::size_t>(std::find(known.begin(), known.end(), wanted) - known.begin());
   if (k == known.size()) {
     std::string list;

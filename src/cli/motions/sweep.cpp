@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <deque>
 
+#include "base/join.h"
 #include "base/read_file.h"
 #include "cli/input.h"
 #include "cli/models/show.h"
@@ -153,18 +154,13 @@ std::vector<std::pair<std::string, std::string>> asked_of(const RunInfo& info, c
   const auto add = [&](const std::string& name, const std::string& text) {
     if (!text.empty()) all.emplace_back(name, text);
   };
-  const auto joined = [](const std::vector<std::string>& words) {
-    std::string text;
-    for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
-    return text;
-  };
   add("title", info.title);
   for (std::size_t k = 0; k < info.model.size(); ++k)
     add(k == 0 ? "model" : "base file " + std::to_string(k), info.model[k].text);
   for (const auto& [name, words] : info.settings)
-    if (name != "model_sha256" && name != "error-estimate") add(name, joined(words));
-  add("vary", joined(o.varied)), add("table of cases", table_text), add("n", o.case_count), add("draw", o.draw);
-  add("seed", std::to_string(o.seed)), add("reduce", joined(o.reduce));
+    if (name != "model_sha256" && name != "error-estimate") add(name, joined(words, " "));
+  add("vary", joined(o.varied, " ")), add("table of cases", table_text), add("n", o.case_count), add("draw", o.draw);
+  add("seed", std::to_string(o.seed)), add("reduce", joined(o.reduce, " "));
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/join.h"
 #include "modelfile/text/collect.h"
 #include "modelfile/text/keys.h"
 
@@ -41,12 +42,6 @@ std::vector<std::string> fields(const std::string& line) {
   }
   end();
   return out;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& n : names) list += (list.empty() ? "" : ", ") + n;
-  return list;
 }
 
 // Takes off the mark of UTF-8 with which some programs begin a file.

@@ -28,12 +28,13 @@ const char* const kHoop =
     "\"m\"\nposition = \"C + R*B.z\"\n[[constraint]]\nname = \"rolling\"\nequation = \"vel(hoop, C - R*ez).x = "
     "0\"\n[initial]\n\"phi'\" = 20\n";
 
-std::vector<std::string> notes(const std::string& text, const char* until = "1") {
+std::vector<std::string> notes(const std::string& text, const char* until = "1",
+                               const Rational& every = Rational(1, 100)) {
   Scenario s;
   EXPECT_TRUE(make_scenario(test::model_of(text), *find_formulation("routh"), {}, s).ok());
   SimulationOptions o;
   o.to = *parse_rational(until);
-  o.every = Rational(1, 100);
+  o.every = every;
   o.estimate = ErrorEstimate::never;
   test::TextRows rows;
   const SimulationReport r = simulate(s, o, rows);
@@ -51,6 +52,13 @@ TEST(Traction, IsThatOfADrivenWheel) {
   EXPECT_TRUE(notes(wheel(), "0.3").empty()) << "below 1";
   EXPECT_TRUE(notes(test::replaced(wheel(), "M = 30", "M = 8.9")).empty()) << "below 1 to the end";
   EXPECT_TRUE(notes(test::replaced(wheel(), "g = 10", "g = 40")).empty()) << "a load four times as large";
+}
+
+// In long runs some of the later rows are looked at.
+TEST(Traction, IsSeenLateInALongRun) {
+  const std::vector<std::string> said = notes(wheel(), "1", Rational(1, 20000));
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("need a friction above 1 from t = 0.300"), std::string::npos) << said[0];
 }
 
 // A force presses the wheel down: the load is 90, the friction 66.7 at most.

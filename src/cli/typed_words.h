@@ -4,8 +4,8 @@
 
 namespace anholon::cli {
 
-// Throws UsageError with a suggestion if the first word is no command and no option.
-void check_command(const char* word);
+// Throws UsageError with a suggestion if the first word is no option and none of the commands.
+void check_command(const std::string& word, const std::vector<std::string>& commands);
 
 // In --q x=1 y=2 MODEL the model slips into the list of assignments: takes a word without '=' out of these lists as the
 // model, where none is named.

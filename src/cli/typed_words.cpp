@@ -1,4 +1,6 @@
-#include "cli/words.h"
+#include "cli/typed_words.h"
+
+#include <algorithm>
 
 #include "base/diagnostic.h"
 #include "cli/input.h"
@@ -20,21 +22,10 @@ void rescue_model(SystemCommand& o) {
   }
 }
 
-static constexpr const char* kCommands[] = {"check",  "derive", "evaluate",  "simulate", "sweep",  "linearize",
-                                            "forms",  "models", "prove",     "compare",  "papers", "verify",
-                                            "new",    "fmt",    "reference", "convert",  "plot",   "report",
-                                            "render", "studio", "completion"};
-
-// A word that is no command gets an answer of its own.
-void check_command(const char* word) {
-  if (word[0] == '-') return;
-  std::vector<std::string> known;
-  for (const char* c : kCommands) {
-    if (std::string(c) == word) return;
-    known.emplace_back(c);
-  }
-  const std::string near = did_you_mean(word, known);
-  throw UsageError{"error: there is no command '" + std::string(word) + "'" +
+void check_command(const std::string& word, const std::vector<std::string>& commands) {
+  if (word.starts_with('-') || std::find(commands.begin(), commands.end(), word) != commands.end()) return;
+  const std::string near = did_you_mean(word, commands);
+  throw UsageError{"error: there is no command '" + word + "'" +
                    (near.empty() ? "" : "; did you mean '" + near + "'?") + "\nhint: anholon --help\n"};
 }
 
