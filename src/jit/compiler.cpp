@@ -14,6 +14,7 @@
 
 #include "jit/emitter.h"
 #include "jit/store.h"
+#include "jit/x86/straight_code.h"
 
 extern "C" __attribute__((visibility("default"))) const anholon::CompilerModule anholon_compiler;
 extern "C" __attribute__((visibility("default"))) const char anholon_compiler_layout[];
@@ -75,6 +76,16 @@ bool name(const KernelTables& tables, int lanes, CodeEffort effort, int several_
   w.add(tables);
   key = w.key();
   return true;
+}
+
+// Code that LLVM has no part in but that of the notation. Returns nullopt for a plan that this way does not know.
+std::optional<Code> straight(const KernelTables& tables, int lanes, const CalledFunctions& called) {
+  if (!compiles_at_once(lanes) || Emitter::parts(tables) > 1) return std::nullopt;
+  llvm::LLVMContext context;
+  llvm::Module module("kernel", context);
+  Emitter(tables, module, lanes, called.several).run();
+  std::string why;
+  return x86::straight_code(module, Emitter::levels(tables), called, why);
 }
 
 // The selection of instructions takes more than half of the time, most of it for patterns that the emitter leaves
@@ -189,6 +200,13 @@ void set_option(const char* name, const char* value) {
 
 void compile(const KernelTables& tables, int lanes, CodeEffort effort, const CalledFunctions& called,
              const std::string& cache, Code& code, std::string& message) {
+  if (effort == CodeEffort::quick)
+    if (auto made = straight(tables, lanes, called)) {
+      code = std::move(*made);
+      // In lanes of 256 bits no better code is known.
+      code.effort = lanes == 1 ? CodeEffort::quick : CodeEffort::full;
+      return;
+    }
   static std::once_flag once;
   std::call_once(once, [] {
     llvm::InitializeNativeTarget();

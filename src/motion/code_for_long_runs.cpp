@@ -52,7 +52,8 @@ void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double
                            std::optional<double> spent) {
   // Seconds: what is observed before, what the compiler takes to be loaded, and for each step of a stage; it works on
   // another core if there is one.
-  constexpr double kObserved = 0.001, kEachStep = 0.002, kLoadedSoon = 0.02, kEachStepSoon = 0.0015;
+  constexpr double kObserved = 0.001, kEachStep = 0.002, kLoadedSoon = 0.02;
+  const double each_step_soon = compiles_at_once(lanes) ? 0.00015 : 0.0015;
   // By so much the better code is faster at least, if it is; in lanes less of the time is spent in it, and the compiler
   // takes its time from the cases.
   const double better = lanes == 1 ? 0.05 : 0.02;
@@ -72,7 +73,7 @@ void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double
     return elapsed < kObserved ? 0 : elapsed / done * (std::abs(end - at) * times_ + done * (times_ - 1));
   };
   if (!code) {
-    if (!known && left(*first_, spent) > kLoadedSoon + kEachStepSoon * stage) begin(plan, lanes, CodeEffort::quick);
+    if (!known && left(*first_, spent) > kLoadedSoon + each_step_soon * stage) begin(plan, lanes, CodeEffort::quick);
   } else if (code->effort == CodeEffort::quick) {
     if (!since_quick_) since_quick_ = {.at = at};
     if (left(*since_quick_, {}) * better > kEachStep * stage) begin(plan, lanes, CodeEffort::full);

@@ -1,0 +1,31 @@
+// The constants of the code of a module: numbers beside it.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include <llvm/IR/Constants.h>
+#include <llvm/IR/GlobalVariable.h>
+
+namespace anholon::jit::x86 {
+
+// The bits of a constant number; 0 for one that may be anything. Throws Unknown for what is no number.
+std::uint64_t bits_of(const llvm::Constant* number);
+
+// An element of a constant vector, or a constant that is no vector.
+const llvm::Constant* element_of(const llvm::Constant& c, unsigned i);
+
+class Constants {
+ public:
+  // The place, in bytes, of these numbers; equal ones have one place. Four numbers are aligned for a vector.
+  std::int64_t place(const std::vector<std::uint64_t>& bits);
+  // The place of a table.
+  std::int64_t table(const llvm::GlobalVariable& of);
+  const std::vector<std::uint64_t>& all() const { return all_; }
+
+ private:
+  std::vector<std::uint64_t> all_;
+  std::map<std::vector<std::uint64_t>, std::int64_t> places_;
+};
+
+}  // namespace anholon::jit::x86
