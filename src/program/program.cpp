@@ -3,8 +3,12 @@
 #include <algorithm>
 
 #include "base/assert.h"
+#include "program/linearized.h"
 
 namespace anholon {
+
+// From so many unknowns on, J may be sparse.
+static constexpr std::size_t kMany = 64;
 
 Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures, bool shared) {
   Program p;
@@ -80,6 +84,7 @@ Program program(const System& system, const Structure& structure, std::span<cons
     p.tangent_row[s] = t.row;
     p.tainted.push_back(t);
   }
+  if (p.unknowns() >= kMany) p.linearized = std::make_shared<const Linearized>(p);
   return p;
 }
 
