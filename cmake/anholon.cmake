@@ -114,7 +114,7 @@ endfunction()
 function(anholon_compiler_module)
   # Program and module share these types. A hash of the headers tells the program that the module beside it is of another build.
   set(layout "")
-  foreach(header kernel/arithmetic kernel/code kernel/plan/plan numeric/sparse_lu)
+  foreach(header kernel/arithmetic kernel/code kernel/plan/plan program/sparse_lu)
     set(file "${PROJECT_SOURCE_DIR}/src/${header}.h")
     file(SHA256 "${file}" hash)
     string(APPEND layout "${hash}")

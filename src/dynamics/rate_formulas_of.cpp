@@ -12,7 +12,7 @@
 #include "lowering/quasi_velocities.h"
 #include "lowering/velocity_algebra.h"
 #include "numeric/linear.h"
-#include "numeric/sparse_lu.h"
+#include "program/sparse_lu.h"
 
 namespace anholon {
 

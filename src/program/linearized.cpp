@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "numeric/sparse_lu.h"
+#include "program/sparse_lu.h"
 
 namespace anholon {
 
@@ -51,6 +51,10 @@ Linearized::Linearized(const Program& p) {
   first_.push_back(static_cast<std::uint32_t>(terms_.size()));
   for (std::size_t i = 0; i < p.unknowns(); ++i) roots_.push_back(column[tape.roots[i]]);
   make_columns();
+}
+
+std::shared_ptr<const Linearized> linearized(const Program& program) {
+  return std::make_shared<const Linearized>(program);
 }
 
 void Linearized::make_columns() {

@@ -7,8 +7,8 @@
 #pragma once
 #include <mutex>
 
-#include "numeric/threshold_lu.h"
 #include "program/program.h"
+#include "program/threshold_lu.h"
 
 namespace anholon {
 

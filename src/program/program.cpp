@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/assert.h"
-#include "program/linearized.h"
 
 namespace anholon {
 
@@ -84,7 +83,7 @@ Program program(const System& system, const Structure& structure, std::span<cons
     p.tangent_row[s] = t.row;
     p.tainted.push_back(t);
   }
-  if (p.unknowns() >= kMany) p.linearized = std::make_shared<const Linearized>(p);
+  if (p.unknowns() >= kMany) p.linearized = linearized(p);
   return p;
 }
 

@@ -49,6 +49,9 @@ struct Program {
 Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures = {},
                 bool shared = false);
 
+// The places of the entries of J (program/linearized.h); the program does not hold them yet.
+std::shared_ptr<const Linearized> linearized(const Program& program);
+
 // Counts for tests and `--show program`.
 struct ProgramSize {
   std::size_t slots, products, linear, functions, tainted;

@@ -1,4 +1,4 @@
-#include "numeric/sparse_lu.h"
+#include "program/sparse_lu.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "numeric/sparse_lu.h"
+#include "program/sparse_lu.h"
 
 namespace anholon {
 

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "numeric/linear.h"
-#include "numeric/threshold_lu.h"
+#include "program/threshold_lu.h"
 
 namespace anholon::threshold_lu_test {
 namespace {
