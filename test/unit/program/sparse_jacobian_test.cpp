@@ -85,7 +85,7 @@ TYPED_TEST(SparseJacobianOf, HasTheNumbersOfTheFullOne) {
   ASSERT_TRUE(lu.factor(full));
   std::vector<N> x(80), image, sizes, b(80), by_sparse, by_full, direction, other;
   for (std::size_t i = 0; i < 80; ++i) {
-    N largest(0), moved(0), product(0);
+    N largest(0);
     x[i] = N(static_cast<int>(i % 11) - 5), b[i] = N(static_cast<int>(i % 7) - 3);
     for (std::size_t k = 0; k < 80; ++k) {
       EXPECT_LE(abs(N(written(i, k) - full(i, k))), round_offs * abs(full(i, k)));
