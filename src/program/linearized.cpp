@@ -199,6 +199,8 @@ std::vector<std::vector<double>> largest_of_rows(const Linearized& l, const Part
                                           std::vector<N>&);
 INSTANTIATE(double)
 INSTANTIATE(long double)
+INSTANTIATE(Quad)
+INSTANTIATE(Multi)
 #undef INSTANTIATE
 
 }  // namespace anholon
