@@ -34,7 +34,7 @@ bool contracts(Expansion<long double>& point, long double t, const std::vector<l
     point.load(t, state, leading);
     if (!point.prepare().ok()) return false;
     point.equations(residual);
-    point.lu().solve(residual, correction);
+    point.system_jacobian().solve(residual, correction);
     long double size = 0, of = 0;
     for (std::size_t j = 0; j < leading.size(); ++j) {
       leading[j] -= correction[j];

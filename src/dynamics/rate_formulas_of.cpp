@@ -9,10 +9,10 @@
 #include "emit/motion.h"
 #include "emit/text.h"
 #include "expr/copy.h"
-#include "kernel/sparse_lu.h"
 #include "lowering/quasi_velocities.h"
 #include "lowering/velocity_algebra.h"
 #include "numeric/linear.h"
+#include "program/sparse_lu.h"
 
 namespace anholon {
 

@@ -52,7 +52,7 @@ template <Number N>
 Outcome ReferenceExpansion<N>::solve_wide(MotionState<N>& m, Expansion<W>& point) {
   const auto solver = [this](const std::vector<W>& r, std::vector<W>& y) {
     convert_all(r, narrow_r_);
-    expansion_.lu().solve_once(narrow_r_, narrow_y_);
+    expansion_.system_jacobian().solve_once(narrow_r_, narrow_y_);
     convert_all(narrow_y_, y);
   };
   point.evaluate();

@@ -27,11 +27,12 @@ template <Number N>
 bool near(const Expansion<N>& p0, const Expansion<N>& p1) {
   constexpr double kNear = 0.5;
   const std::size_t n = p0.program().unknowns();
+  const Matrix<N> j0 = p0.system_jacobian().matrix(), j1 = p1.system_jacobian().matrix();
   Matrix<N> a(n, n);
   std::vector<N> column(n), y;
   for (std::size_t j = 0; j < n; ++j) {
-    for (std::size_t i = 0; i < n; ++i) column[i] = p1.system_jacobian()(i, j) - p0.system_jacobian()(i, j);
-    p0.lu().solve_once(column, y);
+    for (std::size_t i = 0; i < n; ++i) column[i] = j1(i, j) - j0(i, j);
+    p0.system_jacobian().solve_once(column, y);
     for (std::size_t i = 0; i < n; ++i) a(i, j) = y[i];
   }
   balance(a);
@@ -49,22 +50,18 @@ bool near(const Expansion<N>& p0, const Expansion<N>& p1) {
 
 template <Number N>
 Mode<N> weakest_mode(const Expansion<N>& at, const N& sigma) {
-  const Matrix<N>& J = at.system_jacobian();
-  const std::size_t size = J.rows, n = at.program().system->coordinates;
+  const SystemJacobian<N>& J = at.system_jacobian();
+  const std::size_t size = at.program().unknowns(), n = at.program().system->coordinates;
   Mode<N> m;
   m.sigma = sigma;
   m.v = at.weakest_direction();
-  m.image.assign(size, N(0));
-  m.reaction.assign(n, N(0));
-  for (std::size_t i = 0; i < size; ++i) {
-    N largest(0);
-    for (std::size_t j = 0; j < size; ++j) {
-      addmul(m.image[i], J(i, j), m.v[j]);
-      if (i < n && j >= n) addmul(m.reaction[i], J(i, j), m.v[j]);
-      if (N x = abs(J(i, j)); x > largest) largest = x;
-    }
-    if (largest > N(0)) m.image[i] = m.image[i] / largest;
-  }
+  J.multiply(m.v, m.image);
+  for (std::size_t i = 0; i < size; ++i)
+    if (const N largest = J.largest(i); largest > N(0)) m.image[i] = m.image[i] / largest;
+  std::vector<N> multipliers = m.v;
+  std::fill(multipliers.begin(), multipliers.begin() + static_cast<std::ptrdiff_t>(n), N(0));
+  J.multiply(multipliers, m.reaction);
+  m.reaction.resize(n);
   return m;
 }
 
@@ -107,15 +104,13 @@ std::optional<Mode<N>> mode_of(Expansion<N>* there) {
 template <Number N>
 bool reversed(const Mode<N>& from, const Expansion<N>& there) {
   constexpr double kOpposite = -0.5;
-  const Matrix<N>& J = there.system_jacobian();
+  const SystemJacobian<N>& J = there.system_jacobian();
   double dot = 0, before = 0, after = 0;
-  for (std::size_t i = 0; i < J.rows; ++i) {
-    N image(0), largest(0);
-    for (std::size_t j = 0; j < J.cols; ++j) {
-      addmul(image, J(i, j), from.v[j]);
-      if (N x = abs(J(i, j)); x > largest) largest = x;
-    }
-    const double a = to_double(from.image[i]), b = largest > N(0) ? to_double(N(image / largest)) : 0;
+  std::vector<N> image;
+  J.multiply(from.v, image);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    const N largest = J.largest(i);
+    const double a = to_double(from.image[i]), b = largest > N(0) ? to_double(N(image[i] / largest)) : 0;
     dot += a * b, before += a * a, after += b * b;
   }
   return dot < kOpposite * std::sqrt(before * after);

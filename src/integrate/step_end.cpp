@@ -73,7 +73,7 @@ N StepEnd<N>::defect(PresentStep<N>& step, const W& h) {
     if (!is_finite(r)) return r;
     r = -r;
   }
-  step.series().lu().solve_once(residual_, change_);
+  step.series().system_jacobian().solve_once(residual_, change_);
   N worst(0);
   const int levels = *std::max_element(p.d.begin(), p.d.end());
   for (int d = 1; d <= levels; ++d) {

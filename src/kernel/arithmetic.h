@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernel/plan/plan.h"
-#include "kernel/sparse_lu.h"
+#include "program/sparse_lu.h"
 
 namespace anholon {
 

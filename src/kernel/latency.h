@@ -5,7 +5,7 @@
 // number of operations (Plan::work) is.
 #pragma once
 #include "kernel/plan/plan.h"
-#include "kernel/sparse_lu.h"
+#include "program/sparse_lu.h"
 
 namespace anholon {
 

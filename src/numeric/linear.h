@@ -26,6 +26,34 @@ struct Matrix {
   const N& operator()(std::size_t i, std::size_t j) const { return data[i * cols + j]; }
 };
 
+// An estimate of the smallest singular value of D^-1 A with the diagonal matrix D of `row_scale`, by `sweeps` of inverse
+// iteration from `direction`, which is kept for the next call. `lu`: solves with A by solve_once and solve_transposed.
+template <Number N, class Factors>
+N smallest_singular_value_by(const Factors& lu, const std::vector<N>& row_scale, std::vector<N>& direction,
+                             int sweeps) {
+  const std::size_t n = row_scale.size();
+  if (n == 0) return N(1);
+  if (direction.size() != n) {
+    // The entries are uneven on purpose: no kernel of a mechanical system is orthogonal to them by symmetry.
+    direction.assign(n, N(1));
+    for (std::size_t i = 0; i < n; ++i) direction[i] += N(static_cast<int>((i * 37 + 11) % 17)) / N(23);
+  }
+  std::vector<N> y, scaled(n);
+  N sigma(0);
+  for (int k = 0; k < sweeps; ++k) {
+    lu.solve_transposed(direction, y);  // (D^-1 A)^T w = v  with  w = D y
+    for (std::size_t i = 0; i < n; ++i) scaled[i] = y[i] * row_scale[i] * row_scale[i];
+    lu.solve_once(scaled, direction);  // (D^-1 A) v' = w
+    N norm2(0);
+    for (const N& v : direction) addmul(norm2, v, v);
+    const N length = sqrt(norm2);
+    if (!(length > N(0)) || !is_finite(length)) return N(0);
+    for (N& v : direction) v /= length;
+    sigma = N(1) / sqrt(length);
+  }
+  return sigma;
+}
+
 // P A = L U of a square matrix. The pivot in a column is the entry that is largest relative to its row.
 template <Number N>
 class Lu {
@@ -85,27 +113,7 @@ class Lu {
   // An estimate of the smallest singular value of A with rows divided by their largest entry, by
   // `sweeps` of inverse iteration from `direction`, which is kept for the next call.
   N smallest_singular_value(std::vector<N>& direction, int sweeps = 3) const {
-    const std::size_t n = size();
-    if (n == 0) return N(1);
-    if (direction.size() != n) {
-      // The entries are uneven on purpose: no kernel of a mechanical system is orthogonal to them by symmetry.
-      direction.assign(n, N(1));
-      for (std::size_t i = 0; i < n; ++i) direction[i] += N(static_cast<int>((i * 37 + 11) % 17)) / N(23);
-    }
-    std::vector<N> y, scaled(n);
-    N sigma(0);
-    for (int k = 0; k < sweeps; ++k) {
-      solve_transposed(direction, y);  // (D^-1 A)^T w = v  with  w = D y
-      for (std::size_t i = 0; i < n; ++i) scaled[i] = y[i] * row_scale_[i] * row_scale_[i];
-      solve_once(scaled, direction);  // (D^-1 A) v' = w
-      N norm2(0);
-      for (const N& v : direction) addmul(norm2, v, v);
-      const N length = sqrt(norm2);
-      if (!(length > N(0)) || !is_finite(length)) return N(0);
-      for (N& v : direction) v /= length;
-      sigma = N(1) / sqrt(length);
-    }
-    return sigma;
+    return smallest_singular_value_by(*this, row_scale_, direction, sweeps);
   }
 
  private:

@@ -23,7 +23,7 @@ template <Number N>
 Expansion<N>::Expansion(const Program& program, const std::vector<N>& parameters, int stages)
     : program_(&program), parameters_(parameters), stages_(stages),
       machine_(program.tape, static_cast<std::size_t>(stages) + 1, parameters),
-      x_(program.d, length_of_series(program, stages)), sensitivity_(program), delta_x_(program.unknowns(), N(0)),
+      x_(program.d, length_of_series(program, stages)), jacobian_(program), delta_x_(program.unknowns(), N(0)),
       r_(program.unknowns(), N(0)), hidden_(program.c) {}
 
 template <Number N>
@@ -106,20 +106,16 @@ void Expansion<N>::equations(std::vector<N>& out) const {
 }
 
 template <Number N>
-void Expansion<N>::jacobian() {
-  make_room_for_jacobian();
-  sensitivity_.jacobian(machine_, j_);
-  balance_.reset();
-}
-
-template <Number N>
 Outcome Expansion<N>::prepare() {
   sweep_known(0);
-  jacobian();
-  for (const N& v : j_.data)
-    if (!is_finite(v)) return fault_outcome(*program_, machine_, 0);
-  if (!lu_.factor(j_) || smallest_singular_value() < unit_roundoff<N>() * N(kSingularRoundoffs)) return singular();
-  return {};
+  jacobian_.compute(machine_);
+  if (!jacobian_.finite()) return fault_outcome(*program_, machine_, 0);
+  const auto vanishes = [&] { return smallest_singular_value() < unit_roundoff<N>() * N(kSingularRoundoffs); };
+  if (!jacobian_.factor()) return singular();
+  if (!vanishes()) return {};
+  // Sparse factors do not decide that J is singular.
+  if (jacobian_.is_sparse() && jacobian_.factor_written() && !vanishes()) return {};
+  return singular();
 }
 
 // Names the constraint that has become singular, or the coordinate that has lost its inertia.
@@ -128,9 +124,10 @@ Outcome Expansion<N>::singular() const {
   const System& s = *program_->system;
   const std::size_t n = s.coordinates, constraints = s.constraints.size();
   constexpr double kLost = 1e-10;
+  const Matrix<N> j = jacobian_.matrix();
   Matrix<N> phi(constraints, n);
   for (std::size_t i = 0; i < constraints; ++i)
-    for (std::size_t a = 0; a < n; ++a) phi(i, a) = j_(n + i, a);
+    for (std::size_t a = 0; a < n; ++a) phi(i, a) = j(n + i, a);
   const RowChoice<N> rows = choose_rows(phi, N(kLost));
   if (!rows.dependent.empty()) {
     std::string names;
@@ -142,14 +139,14 @@ Outcome Expansion<N>::singular() const {
             "start or stop the motion away from this configuration, or write the constraint in a form that is regular "
             "here"};
   }
-  const RowChoice<N> all = choose_rows(j_, N(kLost));
+  const RowChoice<N> all = choose_rows(j, N(kLost));
   std::vector<bool> used(s.size(), false);
   for (std::size_t column : all.pivot_columns) used[column] = true;
   std::string names;
-  for (std::size_t j = 0; j < s.size(); ++j)
-    if (!used[j])
+  for (std::size_t k = 0; k < s.size(); ++k)
+    if (!used[k])
       names += (names.empty() ? "" : ", ") +
-               derivative_name(s.variable_names[j], static_cast<unsigned>(program_->d[j]), Format::text);
+               derivative_name(s.variable_names[k], static_cast<unsigned>(program_->d[k]), Format::text);
   return {OutcomeKind::singular,
           "singular configuration: the equations do not determine " +
               (names.empty() ? std::string("the accelerations") : names),
@@ -163,10 +160,29 @@ Outcome Expansion<N>::singular() const {
 template <Number N>
 N Expansion<N>::terms_of(std::size_t i, int level) const {
   const Program& p = *program_;
-  N scale = machine_.terms(i, static_cast<std::size_t>(p.c[i] - level)), moved(0);
-  for (std::size_t j = 0; j < p.unknowns(); ++j)
-    if (const int k = p.d[j] - level; k >= 0 && j_(i, j) != N(0)) moved += abs(N(j_(i, j) * x_(j, k)));
+  const N scale = machine_.terms(i, static_cast<std::size_t>(p.c[i] - level)), moved = moved_by_unknowns(i, level);
   return moved > scale ? moved : scale;
+}
+
+template <Number N>
+N Expansion<N>::moved_by_unknowns(std::size_t i, int level) const {
+  const Program& p = *program_;
+  if (jacobian_.is_sparse()) {
+    if (moved_.size() <= static_cast<std::size_t>(level)) moved_.resize(static_cast<std::size_t>(level) + 1);
+    std::vector<N>& moved = moved_[static_cast<std::size_t>(level)];
+    if (moved.empty()) {
+      std::vector<N> x(p.unknowns(), N(0));
+      for (std::size_t j = 0; j < p.unknowns(); ++j)
+        if (const int k = p.d[j] - level; k >= 0) x[j] = x_(j, k);
+      jacobian_.sparse().multiply_sizes(x, moved);
+    }
+    return moved[i];
+  }
+  const Matrix<N>& all = jacobian_.written();
+  N moved(0);
+  for (std::size_t j = 0; j < p.unknowns(); ++j)
+    if (const int k = p.d[j] - level; k >= 0 && all(i, j) != N(0)) moved += abs(N(all(i, j) * x_(j, k)));
+  return moved;
 }
 
 // The largest x_j^(d_j - level), or the largest force that causes one, as measured by the balanced J. If a whole level
@@ -178,13 +194,13 @@ const N& Expansion<N>::balanced_size(int level) const {
   size_.resize(static_cast<std::size_t>(deepest) + 1);
   std::optional<N>& known = size_[static_cast<std::size_t>(level)];
   if (known) return *known;
-  if (!balance_) balance_ = balance_of(j_);
+  const Balance& balance = jacobian_.balance();
   N size(0);
   for (std::size_t j = 0; j < p.unknowns(); ++j)
     if (const int k = p.d[j] - level; k >= 0)
-      if (N v = abs(derivative(j, k)) / N(balance_->column[j]); v > size) size = v;
+      if (N v = abs(derivative(j, k)) / N(balance.column[j]); v > size) size = v;
   for (std::size_t i = 0; level == 0 && i < p.unknowns(); ++i)
-    if (N v = terms_of(i, 0) * x_.factorial(p.c[i]) * N(balance_->row[i]); v > size) size = v;
+    if (N v = terms_of(i, 0) * x_.factorial(p.c[i]) * N(balance.row[i]); v > size) size = v;
   if (level > 0 && level < deepest) {
     const N between = sqrt(N(balanced_size(level - 1) * balanced_size(deepest)));
     if (is_finite(between) && size < unit_roundoff<N>() * N(kRoundoffsOfSum) * between) size = between;
@@ -196,7 +212,7 @@ const N& Expansion<N>::balanced_size(int level) const {
 template <Number N>
 N Expansion<N>::size_of_level(int level, std::size_t i) const {
   const N& size = balanced_size(level);
-  return size / N(balance_->row[i]);
+  return size / N(jacobian_.balance().row[i]);
 }
 
 // Residuals of the equations at derivative order c_i - level, as right sides for J.
@@ -205,7 +221,7 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
   const Program& p = *program_;
   bool any = false;
   worst = N(0);
-  size_.clear();
+  size_.clear(), moved_.clear();
   for (std::size_t i = 0; i < p.unknowns(); ++i) {
     const int order = p.c[i] - level;
     r[i] = N(0);
@@ -239,9 +255,7 @@ N Expansion<N>::displacement(int level, const std::vector<N>& r) const {
       if (N v = abs(derivative(j, k)); v > size) size = v;
   for (std::size_t i = 0; i < p.unknowns(); ++i) {
     if (p.c[i] < level) continue;
-    N row(0);
-    for (std::size_t j = 0; j < p.unknowns(); ++j)
-      if (N v = abs(j_(i, j)); p.d[j] >= level && v > row) row = v;
+    const N row = jacobian_.largest(i, level);
     if (!(row > N(0))) continue;
     if (N v = abs(r[i]) / (row * size); v > most) most = v;
   }
@@ -250,7 +264,7 @@ N Expansion<N>::displacement(int level, const std::vector<N>& r) const {
 
 template <Number N>
 Outcome Expansion<N>::project() {
-  return project([this](const std::vector<N>& r, std::vector<N>& y) { lu_.solve(r, y); });
+  return project([this](const std::vector<N>& r, std::vector<N>& y) { jacobian_.solve(r, y); });
 }
 
 template <Number N>
@@ -298,7 +312,7 @@ void Expansion<N>::measure() {
 // Adds the effect of the new coefficients to all slots that depend on them.
 template <Number N>
 void Expansion<N>::add_leading(int stage) {
-  sensitivity_.add(
+  jacobian_.sensitivity().add(
       stage, machine_, [&](std::size_t j) -> const N& { return delta_x_[j]; },
       [&](std::size_t j, std::size_t k) -> const N& { return x_(j, k); });
 }
@@ -307,8 +321,8 @@ template <Number N>
 Outcome Expansion<N>::extend() {
   const Program& p = *program_;
   // J and the partial derivatives at the computed leading derivatives (they may enter nonlinearly).
-  jacobian();
-  if (!lu_.factors(j_) && !lu_.factor(j_)) return singular();
+  jacobian_.compute(machine_);
+  if (!jacobian_.factored() && !jacobian_.factor()) return singular();
   for (int stage = 1; stage <= stages_; ++stage) {
     for (std::size_t j = 0; j < p.unknowns(); ++j) x_(j, p.d[j] + stage) = N(0);
     sweep(stage);
@@ -316,12 +330,12 @@ Outcome Expansion<N>::extend() {
     // The passes after the first are steps of iterative refinement. Their residual comes from the tape itself, not from
     // J: if J is nearly singular (Euler angles near their singularity), the tape still contains the small difference of
     // two rates whose squares J has rounded away.
-    for (int pass = 0; pass < lu_.passes(); ++pass) {
+    for (int pass = 0; pass < jacobian_.passes(); ++pass) {
       for (std::size_t i = 0; i < p.unknowns(); ++i) {
         const std::size_t order = s + static_cast<std::size_t>(p.c[i]);
         r_[i] = -(machine_.series(p.tape.roots[i])[order] * rising<N>(s, order));
       }
-      lu_.solve_once(r_, y_);
+      jacobian_.solve_once(r_, y_);
       for (std::size_t j = 0; j < p.unknowns(); ++j) {
         const std::size_t order = s + static_cast<std::size_t>(p.d[j]);
         delta_x_[j] = y_[j] / rising<N>(s, order);

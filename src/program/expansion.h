@@ -9,10 +9,8 @@
 #include <optional>
 
 #include "base/outcome.h"
-#include "numeric/balance.h"
 #include "program/program.h"
-#include "program/sensitivity.h"
-#include "program/system_lu.h"
+#include "program/system_jacobian.h"
 #include "program/unknown_coefficients.h"
 
 namespace anholon {
@@ -66,10 +64,8 @@ class Expansion {
   Outcome solve();
   Outcome solve(const Solver& solver);
   template <Number M>
-  void adopt_jacobian(const Matrix<M>& j) {
-    make_room_for_jacobian();
-    for (std::size_t k = 0; k < j.data.size(); ++k) j_.data[k] = convert<N>(j.data[k]);
-    balance_.reset();
+  void adopt_jacobian(const SystemJacobian<M>& j) {
+    jacobian_.adopt(j);
   }
   // Copies the point from a wider expansion, every value correctly rounded: the coefficients of higher order then start
   // from values without round-off of their own (an angle of many turns has lost digits in N that its sine still needs).
@@ -88,8 +84,7 @@ class Expansion {
   void adopt_coefficient(std::uint32_t slot, int order, const N& value) { machine_.series(slot)[order] = value; }
   const std::vector<N>& parameters() const { return parameters_; }
   const Machine<N>& machine() const { return machine_; }
-  const Matrix<N>& system_jacobian() const { return j_; }
-  const SystemLu<N>& lu() const { return lu_; }
+  const SystemJacobian<N>& system_jacobian() const { return jacobian_; }
   // Coefficients of all stages 1..stages().
   Outcome extend();
   // Replaces extend() if formulas have no derivatives: the polynomials end with these leading derivatives, and all
@@ -109,7 +104,7 @@ class Expansion {
   // may be of the size of its round-off, even if all terms of equation i vanish: the error comes from the other numbers
   // of the same solution.
   N size_of_level(int level, std::size_t i) const;
-  N smallest_singular_value() { return lu_.smallest_singular_value(direction_); }
+  N smallest_singular_value() { return jacobian_.smallest_singular_value(direction_); }
   // The change of the unknowns to which J is least sensitive; the next call continues its iteration.
   const std::vector<N>& weakest_direction() const { return direction_; }
   void set_weakest_direction(const std::vector<N>& direction) { direction_ = direction; }
@@ -138,13 +133,9 @@ class Expansion {
   Outcome newton(const Solver& solver, bool own);
   Outcome singular() const;
   Outcome unsolved() const;
-  void jacobian();
-  // An expansion that never needs the Jacobian has no memory for it.
-  void make_room_for_jacobian() {
-    if (j_.data.empty()) j_ = Matrix<N>(program_->unknowns(), program_->unknowns());
-  }
   bool residual(int level, std::vector<N>& r, N& worst);
   N terms_of(std::size_t i, int level) const;
+  N moved_by_unknowns(std::size_t i, int level) const;
   const N& balanced_size(int level) const;
   bool left_is_roundoff() const;
   N displacement(int level, const std::vector<N>& r) const;
@@ -156,14 +147,12 @@ class Expansion {
   Machine<N> machine_;
   N t_{0};
   UnknownCoefficients<N> x_;
-  Sensitivity<N> sensitivity_;
-  Matrix<N> j_;
-  SystemLu<N> lu_;
+  SystemJacobian<N> jacobian_;
   std::vector<N> delta_x_, r_, y_, direction_;
   N constraint_residual_{0}, drift_{0}, equation_residual_{0};
   HiddenResiduals<N> hidden_;
-  mutable std::optional<Balance> balance_;      // of J
   mutable std::vector<std::optional<N>> size_;  // of each level, balanced, at the current point
+  mutable std::vector<std::vector<N>> moved_;   // of each level, by a sparse J: moved_by_unknowns for all equations
 };
 
 extern template class Expansion<double>;

@@ -11,7 +11,7 @@ constexpr int kMostNewton = 30;
 
 template <Number N>
 Outcome Expansion<N>::solve() {
-  return newton([this](const std::vector<N>& r, std::vector<N>& y) { lu_.solve(r, y); }, true);
+  return newton([this](const std::vector<N>& r, std::vector<N>& y) { jacobian_.solve(r, y); }, true);
 }
 
 template <Number N>
@@ -94,8 +94,8 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
     if (stalls || (holds && (k > 0 || !(step > eps * N(kQuietRoundoffs) * size)))) return {};
     if (own && k >= 2 && last >= N(0) && step > last * N(0.1)) {
       // Convergence is slow: the Jacobian has changed with the leading derivatives.
-      jacobian();
-      if (!lu_.factor(j_)) return unsolved();
+      jacobian_.compute(machine_);
+      if (!jacobian_.factor()) return unsolved();
     }
     last = step;
   }

@@ -6,6 +6,9 @@
 
 namespace anholon {
 
+// From so many unknowns on, J may be sparse.
+static constexpr std::size_t kMany = 64;
+
 Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures, bool shared) {
   Program p;
   p.system = &system;
@@ -80,6 +83,7 @@ Program program(const System& system, const Structure& structure, std::span<cons
     p.tangent_row[s] = t.row;
     p.tainted.push_back(t);
   }
+  if (p.unknowns() >= kMany) p.linearized = linearized(p);
   return p;
 }
 

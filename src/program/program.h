@@ -5,6 +5,8 @@
 // zero, one back-substitution, and one pass that adds the effect of the coefficients to the slots that depend on them
 // (the tainted ones). One LU serves all stages.
 #pragma once
+#include <memory>
+
 #include "structure/structure.h"
 #include "tape/tape.h"
 
@@ -24,6 +26,8 @@ struct TaintedSlot {
   bool a, b;          // which operands are tainted (for a linear slot: see its terms)
 };
 
+class Linearized;
+
 struct Program {
   const System* system = nullptr;
   std::vector<int> c, d;
@@ -32,8 +36,9 @@ struct Program {
   std::vector<TaintedSlot> tainted;        // ascending, without the leading inputs
   std::vector<std::uint32_t> tangent_row;  // slot -> row, or kUntainted
   std::size_t tangent_rows = 0;
-  std::size_t quadratures = 0;  // roots after the equations
-  bool nonlinear = false;       // leading derivatives enter nonlinearly: J depends on them
+  std::size_t quadratures = 0;                   // roots after the equations
+  bool nonlinear = false;                        // leading derivatives enter nonlinearly: J depends on them
+  std::shared_ptr<const Linearized> linearized;  // of programs with many unknowns
 
   static constexpr std::uint32_t kUntainted = 0xffffffffU;
   std::size_t unknowns() const { return d.size(); }
@@ -43,6 +48,9 @@ struct Program {
 // `shared`: the option of the tape (tape/tape.h).
 Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures = {},
                 bool shared = false);
+
+// The places of the entries of J (program/linearized.h); the program does not hold them yet.
+std::shared_ptr<const Linearized> linearized(const Program& program);
 
 // Counts for tests and `--show program`.
 struct ProgramSize {

@@ -10,14 +10,22 @@ constexpr std::size_t kColumns = 16;  // at a time
 
 template <Number N>
 Sensitivity<N>::Sensitivity(const Program& program)
-    : program_(&program), tangent_(program.tangent_rows, std::min(kColumns, program.unknowns())),
-      zero_(program.tangent_rows), partials_(program.tainted.size()), delta_(program.tape.main_end, N(0)) {}
+    : program_(&program), partials_(program.tainted.size()), delta_(program.tape.main_end, N(0)) {}
+
+template <Number N>
+void Sensitivity<N>::take(const Machine<N>& machine) {
+  const Program& p = *program_;
+  for (std::size_t k = 0; k < p.tainted.size(); ++k)
+    if (p.tape.code[p.tainted[k].slot].op != Op::linear) partials_[k] = machine.partials(p.tainted[k].slot);
+}
 
 template <Number N>
 void Sensitivity<N>::jacobian(const Machine<N>& machine, Matrix<N>& all) {
   const Program& p = *program_;
-  for (std::size_t k = 0; k < p.tainted.size(); ++k)
-    if (p.tape.code[p.tainted[k].slot].op != Op::linear) partials_[k] = machine.partials(p.tainted[k].slot);
+  if (tangent_.data.empty()) {
+    tangent_ = Matrix<N>(p.tangent_rows, std::min(kColumns, p.unknowns()));
+    zero_.resize(p.tangent_rows);
+  }
   for (std::size_t from = 0; from < p.unknowns(); from += kColumns)
     columns(machine, from, std::min(kColumns, p.unknowns() - from), all);
 }

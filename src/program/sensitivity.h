@@ -21,7 +21,11 @@ class Sensitivity {
  public:
   explicit Sensitivity(const Program& program);
 
-  // The system Jacobian at the values of the machine; keeps the partial derivatives of the slots for `add`.
+  // Takes the partial derivatives of the slots at the values of the machine; `add` uses them.
+  void take(const Machine<N>& machine);
+  // Those of the slot `tainted[k]`.
+  const typename Machine<N>::Partials& partials(std::size_t k) const { return partials_[k]; }
+  // The system Jacobian for the partial derivatives that were taken.
   void jacobian(const Machine<N>& machine, Matrix<N>& j);
   // Adds to all slots, at this stage, the effect of a change of the unknowns. The change and the new value of each input
   // are given by functions of the unknown and the order of its coefficient.

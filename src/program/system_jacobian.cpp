@@ -1,0 +1,68 @@
+#include "program/system_jacobian.h"
+
+#include <algorithm>
+
+namespace anholon {
+
+template <Number N>
+void SystemJacobian<N>::compute(const Machine<N>& machine) {
+  sensitivity_.take(machine);
+  balance_.reset();
+  is_sparse_ = sparse_.take(machine, sensitivity_);
+  if (is_sparse_) return;
+  make_room();
+  sensitivity_.jacobian(machine, j_);
+}
+
+template <Number N>
+bool SystemJacobian<N>::finite() const {
+  return is_sparse_ || std::all_of(j_.data.begin(), j_.data.end(), [](const N& v) { return is_finite(v); });
+}
+
+template <Number N>
+bool SystemJacobian<N>::factor() {
+  if (!is_sparse_) return lu_.factor(j_);
+  return sparse_.factor() || factor_written();
+}
+
+template <Number N>
+bool SystemJacobian<N>::factor_written() {
+  if (is_sparse_) {
+    j_ = sparse_.matrix();
+    sparse_.refuse();
+    is_sparse_ = false;
+    balance_.reset();
+  }
+  return lu_.factor(j_);
+}
+
+template <Number N>
+void SystemJacobian<N>::multiply(const std::vector<N>& x, std::vector<N>& y) const {
+  if (is_sparse_) return sparse_.multiply(x, y);
+  y.assign(j_.rows, N(0));
+  for (std::size_t i = 0; i < j_.rows; ++i)
+    for (std::size_t j = 0; j < j_.cols; ++j) addmul(y[i], j_(i, j), x[j]);
+}
+
+template <Number N>
+N SystemJacobian<N>::largest(std::size_t i, int level) const {
+  if (is_sparse_) return N(sparse_.largest(i, level));
+  N most(0);
+  for (std::size_t j = 0; j < j_.cols; ++j)
+    if (N v = abs(j_(i, j)); program_->d[j] >= level && v > most) most = v;
+  return most;
+}
+
+template <Number N>
+const Balance& SystemJacobian<N>::balance() const {
+  if (is_sparse_) return sparse_.balance();
+  if (!balance_) balance_ = balance_of(j_);
+  return *balance_;
+}
+
+template class SystemJacobian<double>;
+template class SystemJacobian<long double>;
+template class SystemJacobian<Quad>;
+template class SystemJacobian<Multi>;
+
+}  // namespace anholon

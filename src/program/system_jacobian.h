@@ -1,0 +1,79 @@
+// The system Jacobian J at one point, with its LU: written down, or, of many unknowns, sparse (program/linearized.h).
+#pragma once
+#include <cmath>
+
+#include "program/sparse_jacobian.h"
+#include "program/system_lu.h"
+
+namespace anholon {
+
+template <Number N>
+class SystemJacobian {
+ public:
+  explicit SystemJacobian(const Program& program) : program_(&program), sensitivity_(program), sparse_(program) {}
+
+  // J at the values of the machine; keeps the partial derivatives of the slots for sensitivity().
+  void compute(const Machine<N>& machine);
+  // Takes J, without its factors, from another number type.
+  template <Number M>
+  void adopt(const SystemJacobian<M>& other) {
+    is_sparse_ = other.is_sparse();
+    balance_.reset();
+    if (is_sparse_) return sparse_.adopt(other.sparse());
+    make_room();
+    for (std::size_t k = 0; k < j_.data.size(); ++k) j_.data[k] = convert<N>(other.written().data[k]);
+  }
+  Sensitivity<N>& sensitivity() { return sensitivity_; }
+
+  bool is_sparse() const { return is_sparse_; }
+  const SparseJacobian<N>& sparse() const { return sparse_; }
+  // REQUIRES: !is_sparse().
+  const Matrix<N>& written() const { return j_; }
+  // J, written down in any case.
+  Matrix<N> matrix() const { return is_sparse_ ? sparse_.matrix() : j_; }
+
+  bool finite() const;
+  // Returns false if a pivot vanishes or is NaN; there are no factors then.
+  bool factor();
+  // Whether the factors are those of J.
+  bool factored() const { return is_sparse_ ? sparse_.factored() : lu_.factors(j_); }
+  // Writes J down and factors it again: for decisions that are not to depend on sparse factors.
+  bool factor_written();
+
+  // As SystemLu.
+  void solve_once(const std::vector<N>& b, std::vector<N>& x) const {
+    is_sparse_ ? sparse_.solve_once(b, x) : lu_.solve_once(b, x);
+  }
+  void solve(const std::vector<N>& b, std::vector<N>& x) const { is_sparse_ ? sparse_.solve(b, x) : lu_.solve(b, x); }
+  int passes() const { return is_sparse_ ? 2 : lu_.passes(); }
+  N smallest_singular_value(std::vector<N>& direction) const {
+    return is_sparse_ ? sparse_.smallest_singular_value(direction) : lu_.smallest_singular_value(direction);
+  }
+
+  // y := J x.
+  void multiply(const std::vector<N>& x, std::vector<N>& y) const;
+  // The largest |J_ij| over the unknowns with d_j >= level.
+  N largest(std::size_t i, int level = 0) const;
+  const Balance& balance() const;
+
+ private:
+  // Where J is not needed, there is no memory for it.
+  void make_room() {
+    if (j_.data.empty()) j_ = Matrix<N>(program_->unknowns(), program_->unknowns());
+  }
+
+  const Program* program_;
+  Sensitivity<N> sensitivity_;
+  bool is_sparse_ = false;
+  SparseJacobian<N> sparse_;
+  Matrix<N> j_;
+  SystemLu<N> lu_;
+  mutable std::optional<Balance> balance_;  // of the written J
+};
+
+extern template class SystemJacobian<double>;
+extern template class SystemJacobian<long double>;
+extern template class SystemJacobian<Quad>;
+extern template class SystemJacobian<Multi>;
+
+}  // namespace anholon
