@@ -78,6 +78,10 @@ set = {stage = "stage + 1"}
         {"on", text, "not a plane: `ball(R)`, or `bowl(R)`, whose inside is touched"},
         {"friction", number, "Coulomb's coefficient while it slips; 0 without it"},
         {"static_friction", number, "the coefficient while it sticks; `friction` without it"},
+        {"rolling_resistance", number,
+         "a length: times the normal force, the largest moment against rolling; of a `body` that is a ball or a disc"},
+        {"drilling_resistance", number,
+         "a length: the same about the normal, of a ball, a disc or a point of a `body`"},
         {"restitution", number, "Newton's coefficient of impacts, 0 to 1; 0 without it"}},
        R"md(```toml
 [[contact]]
@@ -99,6 +103,7 @@ shape  = "ball(R)"                 # which lies on a plane
 normal = "ey"
 through = "-3*ey"
 friction = 0.3
+rolling_resistance = "R/50"
 
 [[contact]]
 name = "pin"
@@ -107,11 +112,22 @@ at   = "P"                         # a point of the body
 on   = "bowl(9)"                   # inside a ball of radius 9 about 0
 ```
 
+```toml
+coordinates = ["z", "phi"]         # a top that spins and stops
+body = [{name = "top", mass = 1, shape = "ball(1)", center = "z*ez", orientation = "rotz(phi)"}]
+gravity.field = "-9.81*ez"
+contact = [{body = "top", drilling_resistance = 0.02}]
+initial = {z = 1, "phi'" = 9}
+```
+
 - With `body` the gap and the slip velocity follow from the shape of the body and the plane. A disc is turned about its axis z and touches with
   its rim; a box touches with its corners, whose contacts are called `NAME1`, `NAME2`, …; in a plane motion these are four. `at` without `shape` is a point of the body.
 - The normal of a plane does not turn; `through` may move. On a ball the directions of slip are those across `ey`.
 - A contact pushes and does not pull: it is open, sticks or slips. The normal force N acts along the gradient of the gap, friction against the slip velocity:
   μN while it slips, at most the static coefficient times N while it sticks. Without `slip` there is no friction.
+- `rolling_resistance` δ and `drilling_resistance` hold moments against the angular velocity of the body: δN against its part along the surface while the body
+  rolls, at most δN while it does not; the same about the normal. They need a `body` with an orientation. Columns are `NAME.rolling.mode` (0 open, 1 rolls, 2 rests),
+  `NAME.rolling.moment`, `NAME.drilling.mode`, `NAME.drilling.moment`; events are `NAME.rolling.starts`, `NAME.rolling.stops`, and the same of `NAME.drilling`.
 - Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. Rows have the columns `NAME.mode` (0 open,
   1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
 - Impacts follow Newton's law in Moreau's form. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
@@ -127,6 +143,16 @@ friction = 0.3
 ```
 ```text
 error: the contact 'floor' has friction and no slip velocity
+```
+```toml
+[[contact]]
+body = "plate"
+normal = "ey"
+shape = "point"
+rolling_resistance = 0.01
+```
+```text
+error: a point does not roll
 ```
 )md"},
       {"event",

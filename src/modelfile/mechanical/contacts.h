@@ -3,6 +3,7 @@
 // A contact is no part of the equations of a model: the model that is read is the one in which all contacts are open.
 // Motions make a model for each mode of the contacts (contact/mode_model.h).
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "modelfile/names/names.h"
@@ -17,14 +18,17 @@ struct Contact {
   Expr static_friction;    // of sticking
   Expr restitution;        // 0 … 1
   Span span;
+  // Resistance to rolling or drilling stands behind its contact, whose place in the list this is, and whose gap it has. Its
+  // `slip` is an angular velocity, and its coefficients of friction are the length that times N is the largest moment.
+  std::optional<std::size_t> under;
   bool rough() const;  // whether there is friction
 };
 
 // Whether a [[constraint]] has one_sided = true. Throws Failure if that is neither true nor false.
 bool is_one_sided(const Item& constraint);
 
-// Reads the contacts of a file whose names are declared: its [[contact]]s, then its constraints of one side, whose gaps
-// are left - right.
+// Reads the contacts of a file whose names are declared: its [[contact]]s, each followed by its resistance to rolling
+// (NAME.rolling) and drilling (NAME.drilling), then its constraints of one side, whose gaps are left - right.
 std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
 
 }  // namespace anholon
