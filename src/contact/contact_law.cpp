@@ -105,9 +105,11 @@ std::optional<ContactSolution> of_modes(const ContactProblem& p, const ContactMo
       for (std::size_t a = 0; a < rows.tangential.size(); ++a) {
         if (modes[c].touch == Touch::sticks) {
           if (!modes[c].free) m[kt + a][i] = rows.tangential[a][i], m[i][kt + a] = -rows.tangential[a][i];
-        } else if (presses) {
-          m[i][k] += rows.friction * modes[c].direction[a] * rows.tangential[a][i];
+          continue;
         }
+        const long double friction = rows.friction * modes[c].direction[a] * rows.tangential[a][i];
+        if (presses) m[i][k] += friction;
+        right[i] -= friction * rows.pressed;
       }
     }
     if (!rows.under) right[k] = -rows.normal_rate;
@@ -121,7 +123,7 @@ std::optional<ContactSolution> of_modes(const ContactProblem& p, const ContactMo
   f.x.assign(found->begin(), found->begin() + static_cast<std::ptrdiff_t>(n));
   for (std::size_t c = 0; c < modes.size(); ++c) {
     const bool open = modes[p.contacts[c].under.value_or(c)].touch == Touch::open;
-    f.normal.push_back(open ? 0 : (*found)[normal(c)]);
+    f.normal.push_back((open ? 0 : (*found)[normal(c)]) + p.contacts[c].pressed);
     std::array<Real, 2> t{};
     if (modes[c].touch == Touch::sticks && !modes[c].free)
       for (std::size_t a = 0; a < p.contacts[c].tangential.size(); ++a) t[a] = (*found)[tangential(c) + a];
@@ -270,11 +272,12 @@ bool alternatives(const ContactSolution& a, const ContactSolution& b) {
   return open;
 }
 
-// Resistance is open where its contact is.
+// Resistance is open where its contact is, unless a given force presses it.
 bool possible(const ContactProblem& p, const ContactModes& modes) {
   for (std::size_t c = 0; c < modes.size(); ++c)
     if (const auto& under = p.contacts[c].under)
-      if ((modes[c].touch == Touch::open) != (modes[*under].touch == Touch::open)) return false;
+      if ((modes[c].touch == Touch::open) != (modes[*under].touch == Touch::open && p.contacts[c].pressed == 0))
+        return false;
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include "contact/accumulation.h"
 #include "contact/contact_dynamics.h"
+#include "contact/impact.h"
 #include "contact/joined_report.h"
 #include "contact/round_off.h"
 #include "contact/segment_rows.h"
@@ -100,7 +101,7 @@ class HybridMotion {
     for (std::size_t c = 0; c < contacts_.size(); ++c)
       if (excluded_[c].stick && contacts_[c].slip.size() == 2) against_friction(p, c);
     const std::vector<ContactSolution> list = consistent_modes(p);
-    if (list.size() != 1) return undecided(list);
+    if (list.size() != 1) return undecided(list.size());
     modes_ = list[0].modes;
     come_to_rest();
     long double force = 0;
@@ -162,17 +163,16 @@ class HybridMotion {
     }
   }
 
-  Outcome undecided(const std::vector<ContactSolution>& list) const {
+  Outcome undecided(std::size_t modes) const {
     std::string names;
     for (std::size_t c = 0; c < contacts_.size(); ++c)
       if (near_.closed(c) && !contacts_[c].under) names += (names.empty() ? "'" : ", '") + contacts_[c].name + "'";
-    if (list.empty())
+    if (modes == 0)
       return {OutcomeKind::inconsistent,
               "no mode of the contacts " + names + " is consistent (Painlevé's paradox)" + when(),
               "rigid bodies with this friction have no motion here: take less friction, or end the motion before"};
     return {OutcomeKind::inconsistent,
-            std::to_string(list.size()) + " modes of the contacts " + names + " are consistent (Painlevé's paradox)" +
-                when(),
+            std::to_string(modes) + " modes of the contacts " + names + " are consistent (Painlevé's paradox)" + when(),
             "rigid bodies with this friction have several motions here: take less friction, or end the motion before"};
   }
 
@@ -198,19 +198,21 @@ class HybridMotion {
     const std::size_t n = at_.q.size();
     std::vector<bool> touches;
     for (std::size_t c = 0; c < contacts_.size(); ++c) touches.push_back(near_.closed(c) && near_.gap_rate(c) <= 0);
-    std::vector<ContactSolution> list = consistent_modes(dynamics_.impact(touches));
+    std::vector<std::vector<long double>> list = impact_jumps(dynamics_, contacts_, touches);
     if (list.size() != 1) {
       first_alone(touches);
-      list = consistent_modes(dynamics_.impact(touches));
+      list = impact_jumps(dynamics_, contacts_, touches);
     }
-    if (list.size() != 1) return undecided(list);
+    if (list.size() != 1) return undecided(list.size());
     std::vector<long double> before(at_.qd.begin(), at_.qd.end()), after = before;
-    for (std::size_t a = 0; a < n; ++a) after[a] += list[0].x[a];
+    for (std::size_t a = 0; a < n; ++a) after[a] += list[0][a];
     constexpr long double kGrows = 1e-12L;
     // Formulas that hold t move a wall, which may give energy.
     if (!moving_walls() && dynamics_.energy(after) > dynamics_.energy(before) * (1 + kGrows))
       return {OutcomeKind::inconsistent, "the impact would raise the energy" + when(),
-              "Newton's law of impacts with friction does so for this direction: take a smaller restitution"};
+              contacts_[0].law == ImpactLaw::newton
+                  ? "Newton's law with friction does so in this direction: impact = \"poisson\" in the contacts"
+                  : "take a smaller restitution"};
     std::vector<EventReport::Change> changes;
     for (std::size_t a = 0; a < n; ++a) {
       const auto v = static_cast<double>(after[a]);

@@ -82,7 +82,8 @@ set = {stage = "stage + 1"}
          "a length: times the normal force, the largest moment against rolling; of a `body` that is a ball or a disc"},
         {"drilling_resistance", number,
          "a length: the same about the normal, of a ball, a disc or a point of a `body`"},
-        {"restitution", number, "Newton's coefficient of impacts, 0 to 1; 0 without it"}},
+        {"restitution", number, "the coefficient of impacts, 0 to 1; 0 without it"},
+        {"impact", choice, "the law of impacts with that coefficient; `newton` without it", {"newton", "poisson"}}},
        R"md(```toml
 [[contact]]
 name = "floor"
@@ -92,6 +93,7 @@ along = ["ex"]
 friction = 0.3
 static_friction = 0.4
 restitution = 0.5
+impact = "poisson"
 [initial]
 y = 1
 ```
@@ -130,7 +132,9 @@ initial = {z = 1, "phi'" = 9}
   `NAME.rolling.moment`, `NAME.drilling.mode`, `NAME.drilling.moment`; events are `NAME.rolling.starts`, `NAME.rolling.stops`, and the same of `NAME.drilling`.
 - Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. Rows have the columns `NAME.mode` (0 open,
   1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
-- Impacts follow Newton's law in Moreau's form. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
+- Impacts follow Newton's law in Moreau's form: the velocity of the gap is reversed and multiplied by the restitution e. With `impact = "poisson"` they follow
+  Poisson's law: the impulse that stops the gap is followed by e times this impulse. Both agree without friction; with friction Newton's law may raise the energy, which ends the
+  motion. All contacts of a model have one law. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
   That limit is found for the impacts of one contact. A box that bounces from corner to corner may instead take many impacts and stop with the outcome that a gap is negative.
 - At most eight contacts; those that touch at one time are few, as all their modes are tried. Motions, reports and sweeps know them, in the libraries, too; derivations, proofs and linear models refuse a model with
   contacts. They do not go with events that set values, nor with servo constraints. [Recipes](contact.md).

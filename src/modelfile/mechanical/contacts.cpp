@@ -27,6 +27,7 @@ class ContactReader {
     contact.friction = friction ? coefficient(*friction) : g.zero();
     contact.static_friction = fixed ? coefficient(*fixed) : contact.friction;
     contact.restitution = e ? coefficient(*e) : g.zero();
+    if (const Item* law = c.find("impact")) contact.law = impact_law(*law);
     if (c.find("body")) return by_shape(c, contact);
     for (const char* key : {"rolling_resistance", "drilling_resistance"})
       if (const Item* i = c.find(key))
@@ -72,6 +73,13 @@ class ContactReader {
     if (!is_element_name(contact.name))
       throw Failure(contact.span, "'" + contact.name.substr(0, 40) + "' is not a name");
     return contact;
+  }
+
+  static ImpactLaw impact_law(const Item& law) {
+    const std::string word = law.kind == Item::Kind::string ? law.text() : std::string();
+    if (word == "newton") return ImpactLaw::newton;
+    if (word != "poisson") throw Failure(law.span, "the law of impacts is newton or poisson", "impact = \"poisson\"");
+    return ImpactLaw::poisson;
   }
 
   void read_formulas(const Item& c, Contact& contact) const {
@@ -231,6 +239,10 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
       check_keys(c, "a contact", "contact", diagnostics);
       const std::size_t before = list.size();
       for (Contact& contact : reader.read(c, k)) {
+        if (!list.empty() && list[0].law != contact.law)
+          throw Failure(contact.span,
+                        "the contacts '" + list[0].name + "' and '" + contact.name + "' have different laws of impacts",
+                        "one value of 'impact' in all contacts: they may strike at one time");
         if (contact.under) *contact.under += before;
         add(std::move(contact));
       }
