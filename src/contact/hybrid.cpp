@@ -133,7 +133,7 @@ class HybridMotion {
         if (row[a] != 0)
           now = std::max<long double>(now, std::abs(at_.qd[a])), most = std::max(most, dynamics_.most(a));
       for (std::size_t a = 0; a < row.size(); ++a)
-        if (row[a] != 0 && now <= kLeftOver * most) at_.qd[a] = 0;
+        if (row[a] != 0 && now <= RoundOff::kPlace * most) at_.qd[a] = 0;
     }
   }
 

@@ -224,6 +224,37 @@ conditions = ["x^2 + z^2 = 0.9^2"]
   EXPECT_EQ(rest("0.006"), 3U);  // the mutant
 }
 
+// A ball on a smooth floor ends its turning: what the last jump leaves of the velocities of its quaternion is dropped as a
+// whole.
+TEST(Resistance, BallOnASmoothFloorEndsItsTurning) {
+  const auto m = contact_motion(R"toml(
+coordinates = ["x","y","z","a","b","c","d"]
+gravity.field = "-9.81*ez + 0.000*ex"
+body=[{name="B",mass=1,shape="ball(0.1)",center="x*ex+y*ey+z*ez",orientation="quat(a,b,c,d)"}]
+[initial]
+a=1
+z = 0.114146
+"x'" = 0.259997
+"y'" = 2.074455
+"z'" = -0.616297
+"b'" = 1.619342
+"c'" = 3.336354
+"d'" = 3.191192
+[[contact]]
+name="f"
+body="B"
+friction = 0.0000
+restitution = 0.0000
+impact = "newton"
+rolling_resistance = 0.00853
+drilling_resistance = 0.00744
+)toml",
+                                5);
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  EXPECT_EQ(m.last("f.rolling.mode"), 2);
+  EXPECT_LT(m.report.power, 1e-10);
+}
+
 TEST(Resistance, MistakesHavePlaces) {
   const auto refused = [](const std::string& text) {
     try {
