@@ -83,9 +83,10 @@ void ContactDynamics::go(const ContactState& at) {
   for (std::size_t i = 0; i < n_; ++i) problem_.A.push_back(row()), problem_.b.push_back(next());
   for (std::size_t r = 0; r < independent_.size(); ++r) problem_.Phi.push_back(row()), problem_.beta.push_back(next());
   speed_ = 0;
-  most_.resize(n_, 0);
+  most_.resize(n_, 0), met_.resize(n_, 0);
   for (std::size_t a = 0; a < n_; ++a) {
-    most_[a] = std::max(most_[a], static_cast<long double>(std::abs(at.qd[a])));
+    met_[a] = std::max(met_[a], static_cast<long double>(std::abs(at.qd[a])));
+    most_[a] = std::max(most_[a], met_[a]);
     speed_ = std::max(speed_, static_cast<long double>(std::abs(at.qd[a])));
   }
   for (const Contact& c : contacts_) {
@@ -104,6 +105,7 @@ void ContactDynamics::go(const ContactState& at) {
     rows.static_friction = next();
     place.restitution = next();
     rows.rough = c.rough();
+    rows.under = c.under;
     const long double size = std::hypot(place.slip[0], place.slip[1]);
     rows.direction = size > 0 ? std::array<long double, 2>{place.slip[0] / size, place.slip[1] / size}
                               : std::array<long double, 2>{1, 0};
@@ -111,11 +113,26 @@ void ContactDynamics::go(const ContactState& at) {
     constexpr long double kZero = 1e-13L;
     long double scale = 0;
     for (const auto& t : rows.tangential)
-      for (std::size_t i = 0; i < n_; ++i) scale = std::max(scale, std::abs(t[i] * most_[i]));
+      for (std::size_t i = 0; i < n_; ++i) {
+        scale = std::max(scale, std::abs(t[i] * most_[i]));
+        place.slip_scale = std::max(place.slip_scale, std::abs(t[i] * met_[i]));
+      }
     rows.moves = size > kZero * scale && size > 0;
-    place.slip_scale = scale;
     problem_.contacts.push_back(std::move(rows));
     places_.push_back(place);
+  }
+}
+
+void ContactDynamics::pass(const ContactState& from, const ContactState& to) {
+  // Of a difference this part of its terms is round-off, and a segment may be short.
+  constexpr long double kDifference = 1e-15L;
+  const long double time = Rational(to.t - from.t).get_d();
+  if (!(time > 0)) return;
+  most_.resize(n_, 0);
+  for (std::size_t a = 0; a < n_; ++a) {
+    const long double way = std::abs(static_cast<long double>(to.q[a]) - from.q[a]),
+                      terms = std::abs(to.q[a]) + std::abs(from.q[a]);
+    most_[a] = std::max(most_[a], (way - kDifference * terms) / time);
   }
 }
 

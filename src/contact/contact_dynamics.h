@@ -14,11 +14,13 @@ class ContactDynamics {
   struct Place {
     long double gap = 0, gap_rate = 0;
     std::array<long double, 2> slip{};
-    long double slip_scale = 0;  // the size of the terms of the slip velocity up to now
+    long double slip_scale = 0;  // the size of the terms of the slip velocity at the states up to now
     long double restitution = 0;
   };
   // Evaluates all formulas at a state.
   void go(const ContactState& at);
+  // Notes the mean velocities of a segment between two states: a motion from rest to rest is fast between them.
+  void pass(const ContactState& from, const ContactState& to);
   const Place& place(std::size_t contact) const { return places_[contact]; }
   long double speed() const { return speed_; }                                  // the largest velocity of a coordinate
   long double most(std::size_t coordinate) const { return most_[coordinate]; }  // its largest velocity up to now
@@ -40,7 +42,7 @@ class ContactDynamics {
   ContactProblem problem_;
   std::vector<Place> places_;
   long double speed_ = 0;
-  std::vector<long double> most_;
+  std::vector<long double> most_, met_;  // up to now: with the means of segments, and at states alone
 };
 
 }  // namespace anholon

@@ -82,8 +82,11 @@ std::optional<ContactSolution> of_modes(const ContactProblem& p, const ContactMo
   for (std::size_t c = 0; c < modes.size(); ++c) {
     first.push_back(size);
     if (modes[c].touch == Touch::open) continue;
-    size += 1 + (modes[c].touch == Touch::sticks && !modes[c].free ? p.contacts[c].tangential.size() : 0);
+    size += (p.contacts[c].under ? 0 : 1) +
+            (modes[c].touch == Touch::sticks && !modes[c].free ? p.contacts[c].tangential.size() : 0);
   }
+  const auto normal = [&](std::size_t c) { return first[p.contacts[c].under.value_or(c)]; };
+  const auto tangential = [&](std::size_t c) { return first[c] + (p.contacts[c].under ? 0 : 1); };
   std::vector<Numbers> m(size, Numbers(size, 0));
   Numbers right(size, 0);
   for (std::size_t i = 0; i < n; ++i) {
@@ -95,20 +98,23 @@ std::optional<ContactSolution> of_modes(const ContactProblem& p, const ContactMo
   for (std::size_t c = 0; c < modes.size(); ++c) {
     const ContactRows& rows = p.contacts[c];
     if (modes[c].touch == Touch::open) continue;
-    const std::size_t k = first[c];
+    const std::size_t k = normal(c), kt = tangential(c);
+    const bool presses = modes[rows.under.value_or(c)].touch != Touch::open;
     for (std::size_t i = 0; i < n; ++i) {
-      m[k][i] = rows.normal[i];
-      m[i][k] = -rows.normal[i];
+      if (!rows.under) m[k][i] = rows.normal[i], m[i][k] = -rows.normal[i];
       for (std::size_t a = 0; a < rows.tangential.size(); ++a) {
-        if (modes[c].touch == Touch::slips)
-          m[i][k] += rows.friction * modes[c].direction[a] * rows.tangential[a][i];
-        else if (!modes[c].free)
-          m[k + 1 + a][i] = rows.tangential[a][i], m[i][k + 1 + a] = -rows.tangential[a][i];
+        if (modes[c].touch == Touch::sticks) {
+          if (!modes[c].free) m[kt + a][i] = rows.tangential[a][i], m[i][kt + a] = -rows.tangential[a][i];
+          continue;
+        }
+        const long double friction = rows.friction * modes[c].direction[a] * rows.tangential[a][i];
+        if (presses) m[i][k] += friction;
+        right[i] -= friction * rows.pressed;
       }
     }
-    right[k] = -rows.normal_rate;
+    if (!rows.under) right[k] = -rows.normal_rate;
     if (modes[c].touch == Touch::sticks && !modes[c].free)
-      for (std::size_t a = 0; a < rows.tangential.size(); ++a) right[k + 1 + a] = -rows.tangential_rate[a];
+      for (std::size_t a = 0; a < rows.tangential.size(); ++a) right[kt + a] = -rows.tangential_rate[a];
   }
   const auto found = solve(std::move(m), std::move(right));
   if (!found) return std::nullopt;
@@ -116,11 +122,11 @@ std::optional<ContactSolution> of_modes(const ContactProblem& p, const ContactMo
   f.modes = modes;
   f.x.assign(found->begin(), found->begin() + static_cast<std::ptrdiff_t>(n));
   for (std::size_t c = 0; c < modes.size(); ++c) {
-    const bool open = modes[c].touch == Touch::open;
-    f.normal.push_back(open ? 0 : (*found)[first[c]]);
+    const bool open = modes[p.contacts[c].under.value_or(c)].touch == Touch::open;
+    f.normal.push_back((open ? 0 : (*found)[normal(c)]) + p.contacts[c].pressed);
     std::array<Real, 2> t{};
     if (modes[c].touch == Touch::sticks && !modes[c].free)
-      for (std::size_t a = 0; a < p.contacts[c].tangential.size(); ++a) t[a] = (*found)[first[c] + 1 + a];
+      for (std::size_t a = 0; a < p.contacts[c].tangential.size(); ++a) t[a] = (*found)[tangential(c) + a];
     f.friction.push_back(t);
   }
   return f;
@@ -215,13 +221,15 @@ bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
     const Real scale = kSame * (largest(rows.normal) * size + std::abs(rows.normal_rate));
     const Real N = f.normal[c];
     if (mode.touch == Touch::open) {
+      if (rows.under) continue;
       if (dot(rows.normal, f.x) + rows.normal_rate < -scale) return false;
       continue;
     }
     // Friction multiplies the round-off of N.
     constexpr Real kRounded = 1e-14L;
-    const Real forces = kSame * std::max(force, std::abs(N)) + kRounded * rows.static_friction * force;
-    if (N < -forces) return false;
+    const Real lever = rows.under ? rows.static_friction : 1;
+    const Real forces = kSame * lever * std::max(force, std::abs(N)) + kRounded * rows.static_friction * force;
+    if (!rows.under && N < -forces) return false;
     if (!rows.rough) continue;
     const auto v = slip_rate(rows, f.x);
     Real span = 0;
@@ -240,9 +248,9 @@ bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
 }
 
 // The modes that one contact may take, those that touch first, and of them those that stick.
-ContactModes choices(const ContactRows& rows) {
+ContactModes choices(const ContactRows& rows, bool may_touch) {
   ContactModes list;
-  if (rows.may_touch) {
+  if (may_touch) {
     if (rows.rough && !rows.moves && rows.may_stick)
       for (const bool free : {false, true}) list.push_back({Touch::sticks, {}, free});
     if (!rows.rough || rows.moves || rows.tangential.size() > 1) {
@@ -264,12 +272,24 @@ bool alternatives(const ContactSolution& a, const ContactSolution& b) {
   return open;
 }
 
+// Resistance is open where its contact is, unless a given force presses it.
+bool possible(const ContactProblem& p, const ContactModes& modes) {
+  for (std::size_t c = 0; c < modes.size(); ++c)
+    if (const auto& under = p.contacts[c].under)
+      if ((modes[c].touch == Touch::open) != (modes[*under].touch == Touch::open && p.contacts[c].pressed == 0))
+        return false;
+  return true;
+}
+
 }  // namespace
 
 std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
   std::vector<ContactModes> each;
   std::size_t count = 1;
-  for (const ContactRows& rows : p.contacts) each.push_back(choices(rows)), count *= each.back().size();
+  for (const ContactRows& rows : p.contacts) {
+    each.push_back(choices(rows, rows.under ? p.contacts[*rows.under].may_touch : rows.may_touch));
+    count *= each.back().size();
+  }
   std::vector<ContactSolution> list;
   const auto open = of_modes(p, ContactModes(p.contacts.size()));
   const Real free = std::max(open ? largest(open->x) : 0, Real(1e-300L));
@@ -279,6 +299,7 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
       modes.push_back(each[c][rest % each[c].size()]);
       rest /= each[c].size();
     }
+    if (!possible(p, modes)) continue;
     const auto f = with_directions(p, modes, free);
     if (!f || !consistent(p, *f, free)) continue;
     const bool known = std::any_of(list.begin(), list.end(), [&](const ContactSolution& o) {

@@ -5,6 +5,9 @@
 //   sticks: n x + n0 = 0, t x + t0 = 0, N >= 0, |T| <= mu_s N
 //   slips:  n x + n0 = 0, T = -mu N d, N >= 0, where d is the direction of the slip velocity, or at rest that of t x + t0
 //
+// Resistance to rolling or drilling is a further T of a contact, bounded by the same N: it has rows of its own, in which t
+// is the angular velocity and mu a length. It is open where its contact is, unless a given force presses it.
+//
 // x are the accelerations, or the jumps of the velocities. All modes are tried; there are at most four contacts.
 #pragma once
 #include <array>
@@ -33,6 +36,8 @@ struct ContactRows {
   long double normal_rate = 0;                       // n0
   std::array<long double, 2> tangential_rate{};      // t0
   long double friction = 0, static_friction = 0;
+  std::optional<std::size_t> under;  // of resistance: the contact whose N bounds it, which stands before it
+  long double pressed = 0;           // a normal force that bounds friction besides N
   bool rough = false;
   bool may_open = true, may_touch = true, may_stick = true;
   bool moves = false;                      // it slips already, in `direction`
@@ -48,8 +53,8 @@ struct ContactProblem {
 struct ContactSolution {
   ContactModes modes;
   std::vector<long double> x;
-  std::vector<long double> normal;                   // N
-  std::vector<std::array<long double, 2>> friction;  // T of the contacts that stick
+  std::vector<long double> normal;                   // N, of resistance that which presses it
+  std::vector<std::array<long double, 2>> friction;  // T of what sticks
 };
 
 // The accelerations and forces of given modes, whether or not they are consistent; nullopt if the equations are singular.

@@ -6,7 +6,9 @@
 
 #include "contact/accumulation.h"
 #include "contact/contact_dynamics.h"
+#include "contact/impact.h"
 #include "contact/joined_report.h"
+#include "contact/round_off.h"
 #include "contact/segment_rows.h"
 #include "numeric/number.h"
 #include "simulation/request.h"
@@ -31,8 +33,8 @@ void refuse(const SimulationOptions& o, const Scenario& s) {
 class HybridMotion {
  public:
   HybridMotion(Workspace& s, const std::vector<Contact>& contacts, const SimulationOptions& o, RowSink& sink)
-      : s_(s), contacts_(contacts), o_(o), dynamics_(s, contacts), rows_(sink, contacts), joined_(*s.model),
-        accumulation_(contacts.size()) {
+      : s_(s), contacts_(contacts), o_(o), dynamics_(s, contacts), near_(contacts, dynamics_, at_),
+        rows_(sink, contacts), joined_(*s.model), accumulation_(contacts.size()) {
     at_.t = o.state.t ? *o.state.t : Rational(s.state.t);
     at_.q = s.state.q, at_.qd = s.state.qd, at_.states = s.state.states;
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
@@ -66,8 +68,6 @@ class HybridMotion {
  private:
   // A slip velocity with two components ends at kRest and begins at kSeed of the velocities: at zero it has no direction.
   static constexpr long double kRest = 1e-12L, kSeed = 1e-10L;
-  // A place is known to this part of the size of its terms.
-  static constexpr long double kRounded = 1e-14L;
   // The jump that stops a velocity leaves this part of what the velocity has been.
   static constexpr long double kLeftOver = 1e-16L;
   // Impacts at one instant; others follow after a segment.
@@ -80,44 +80,17 @@ class HybridMotion {
   };
   std::string when() const { return " at t = " + number_text(at_.t.get_d(), 12); }
 
-  // A gap of this size is none: the state is rounded to doubles.
-  bool closed(std::size_t c) const {
-    constexpr long double kClosed = 1e-12L;
-    return dynamics_.place(c).gap <= kClosed * place_size(c);
-  }
-  // The size of the terms of a gap.
-  long double place_size(std::size_t c) const {
-    long double size = 1e-300L;
-    for (std::size_t a = 0; a < at_.q.size(); ++a)
-      size = std::max(size, std::abs(dynamics_.accelerations().contacts[c].normal[a]) * (1 + std::abs(at_.q[a])));
-    return size;
-  }
-  // The velocity of the gap, 0 within round-off of the velocities that the motion had.
-  long double gap_rate(std::size_t c) const {
-    constexpr long double kZero = 1e-12L;
-    const long double v = dynamics_.place(c).gap_rate;
-    long double size = 0;
-    for (std::size_t a = 0; a < at_.q.size(); ++a)
-      size = std::max(size, std::abs(dynamics_.accelerations().contacts[c].normal[a] * dynamics_.most(a)));
-    return std::abs(v) <= kZero * size ? 0 : v;
-  }
-
   // An outcome if a gap is negative.
   Outcome not_inside(const std::string& where, const std::string& hint) {
     dynamics_.go(at_);
     for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (dynamics_.place(c).gap < 0 && !negligible(c))
+      if (dynamics_.place(c).gap < 0 && !near_.negligible(c))
         return {OutcomeKind::inconsistent,
                 "the gap of contact '" + contacts_[c].name + "' is " +
                     number_text(static_cast<double>(dynamics_.place(c).gap), 6) + where + ", and a gap is not negative",
                 hint};
     return {};
   }
-  bool negligible(std::size_t c) const {
-    constexpr long double kMissed = 1e-8L;
-    return dynamics_.place(c).gap > -kMissed;
-  }
-
   // Impacts where a closed gap shrinks, then the modes by the accelerations.
   Outcome choose() {
     dynamics_.go(at_);
@@ -128,15 +101,16 @@ class HybridMotion {
     for (std::size_t c = 0; c < contacts_.size(); ++c)
       if (excluded_[c].stick && contacts_[c].slip.size() == 2) against_friction(p, c);
     const std::vector<ContactSolution> list = consistent_modes(p);
-    if (list.size() != 1) return undecided(list);
+    if (list.size() != 1) return undecided(list.size());
     modes_ = list[0].modes;
     come_to_rest();
     long double force = 0;
     for (const long double b : p.b) force = std::max(force, std::abs(b));
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       modes_[c].rest = kRest * dynamics_.place(c).slip_scale;
-      modes_[c].depth = kRounded / 2 * place_size(c) + std::max(0.0L, -dynamics_.place(c).gap);
+      modes_[c].depth = RoundOff::kPlace / 2 * near_.place_size(c) + std::max(0.0L, -dynamics_.place(c).gap);
       modes_[c].slack = kRest * (force > 0 ? force : 1);
+      if (contacts_[c].under) modes_[c].slack *= p.contacts[c].friction;
       if (contacts_[c].slip.size() < 2 || modes_[c].free) continue;
       const bool begins = modes_[c].touch == Touch::slips && contacts_[c].rough() && !p.contacts[c].moves;
       if (begins) set_slip(c, modes_[c].direction, first_slip(c, list[0].x));
@@ -144,10 +118,23 @@ class HybridMotion {
     // The velocities at the end of a segment have the round-off of those before, which may be much larger.
     dynamics_.go(at_);
     stop(modes_);
-    // What the jump leaves of a velocity that it stops.
+    drop_left_over();
+    return {};
+  }
+
+  // What the jump leaves of velocities that it stops. Those that a constraint joins, as the norm of a quaternion does, are
+  // dropped together: a part of them would contradict the constraint.
+  void drop_left_over() {
     for (std::size_t a = 0; a < at_.qd.size(); ++a)
       if (std::abs(at_.qd[a]) <= kLeftOver * dynamics_.most(a)) at_.qd[a] = 0;
-    return {};
+    for (const std::vector<long double>& row : dynamics_.accelerations().Phi) {
+      long double now = 0, most = 0;
+      for (std::size_t a = 0; a < row.size(); ++a)
+        if (row[a] != 0)
+          now = std::max<long double>(now, std::abs(at_.qd[a])), most = std::max(most, dynamics_.most(a));
+      for (std::size_t a = 0; a < row.size(); ++a)
+        if (row[a] != 0 && now <= RoundOff::kPlace * most) at_.qd[a] = 0;
+    }
   }
 
   // The accelerations, in which each contact may do what its gap and the event at which the last segment ended allow.
@@ -155,11 +142,11 @@ class HybridMotion {
     ContactProblem p = dynamics_.accelerations();
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       ContactRows& rows = p.contacts[c];
-      rows.may_touch = closed(c) && gap_rate(c) == 0 && !excluded_[c].touch;
+      rows.may_touch = near_.closed(c) && near_.gap_rate(c) == 0 && !excluded_[c].touch;
       rows.may_stick = !excluded_[c].stick;
       rows.moves = rows.moves && !excluded_[c].slips;
       // A gap that is open, or opens, is not bounded by its acceleration.
-      if (!closed(c) || gap_rate(c) > 0) rows.normal.assign(at_.q.size(), 0), rows.normal_rate = 0;
+      if (!near_.closed(c) || near_.gap_rate(c) > 0) rows.normal.assign(at_.q.size(), 0), rows.normal_rate = 0;
     }
     return p;
   }
@@ -176,24 +163,23 @@ class HybridMotion {
     }
   }
 
-  Outcome undecided(const std::vector<ContactSolution>& list) const {
+  Outcome undecided(std::size_t modes) const {
     std::string names;
     for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (closed(c)) names += (names.empty() ? "'" : ", '") + contacts_[c].name + "'";
-    if (list.empty())
+      if (near_.closed(c) && !contacts_[c].under) names += (names.empty() ? "'" : ", '") + contacts_[c].name + "'";
+    if (modes == 0)
       return {OutcomeKind::inconsistent,
               "no mode of the contacts " + names + " is consistent (Painlevé's paradox)" + when(),
               "rigid bodies with this friction have no motion here: take less friction, or end the motion before"};
     return {OutcomeKind::inconsistent,
-            std::to_string(list.size()) + " modes of the contacts " + names + " are consistent (Painlevé's paradox)" +
-                when(),
+            std::to_string(modes) + " modes of the contacts " + names + " are consistent (Painlevé's paradox)" + when(),
             "rigid bodies with this friction have several motions here: take less friction, or end the motion before"};
   }
 
   // Whether a closed gap shrinks.
   bool shrinks() const {
     bool any = false;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) any = any || (closed(c) && gap_rate(c) < 0);
+    for (std::size_t c = 0; c < contacts_.size(); ++c) any = any || (near_.closed(c) && near_.gap_rate(c) < 0);
     return any;
   }
 
@@ -201,29 +187,32 @@ class HybridMotion {
   void first_alone(std::vector<bool>& touches) const {
     std::size_t first = contacts_.size();
     for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (touches[c] && gap_rate(c) < 0 &&
+      if (touches[c] && near_.gap_rate(c) < 0 &&
           (first == contacts_.size() || dynamics_.place(c).gap < dynamics_.place(first).gap))
         first = c;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) touches[c] = touches[c] && (c == first || gap_rate(c) == 0);
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      touches[c] = touches[c] && (c == first || near_.gap_rate(c) == 0);
   }
 
   Outcome impact() {
     const std::size_t n = at_.q.size();
     std::vector<bool> touches;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) touches.push_back(closed(c) && gap_rate(c) <= 0);
-    std::vector<ContactSolution> list = consistent_modes(dynamics_.impact(touches));
+    for (std::size_t c = 0; c < contacts_.size(); ++c) touches.push_back(near_.closed(c) && near_.gap_rate(c) <= 0);
+    std::vector<std::vector<long double>> list = impact_jumps(dynamics_, contacts_, touches);
     if (list.size() != 1) {
       first_alone(touches);
-      list = consistent_modes(dynamics_.impact(touches));
+      list = impact_jumps(dynamics_, contacts_, touches);
     }
-    if (list.size() != 1) return undecided(list);
+    if (list.size() != 1) return undecided(list.size());
     std::vector<long double> before(at_.qd.begin(), at_.qd.end()), after = before;
-    for (std::size_t a = 0; a < n; ++a) after[a] += list[0].x[a];
+    for (std::size_t a = 0; a < n; ++a) after[a] += list[0][a];
     constexpr long double kGrows = 1e-12L;
     // Formulas that hold t move a wall, which may give energy.
     if (!moving_walls() && dynamics_.energy(after) > dynamics_.energy(before) * (1 + kGrows))
       return {OutcomeKind::inconsistent, "the impact would raise the energy" + when(),
-              "Newton's law of impacts with friction does so for this direction: take a smaller restitution"};
+              contacts_[0].law == ImpactLaw::newton
+                  ? "Newton's law with friction does so in this direction: impact = \"poisson\" in the contacts"
+                  : "take a smaller restitution"};
     std::vector<EventReport::Change> changes;
     for (std::size_t a = 0; a < n; ++a) {
       const auto v = static_cast<double>(after[a]);
@@ -232,7 +221,7 @@ class HybridMotion {
     }
     joined_.set(at_.t.get_d(), changes);
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      if (touches[c] && gap_rate(c) != 0) accumulation_.impact(c, at_.t.get_d());
+      if (touches[c] && near_.gap_rate(c) != 0 && !contacts_[c].under) accumulation_.impact(c, at_.t.get_d());
       excluded_[c] = {};
     }
     dynamics_.go(at_);
@@ -256,10 +245,10 @@ class HybridMotion {
     ContactModes stops(contacts_.size());
     bool any = false;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      if (!closed(c)) continue;
+      if (!near_.closed(c) || contacts_[c].under) continue;
       const std::optional<double> limit = accumulation_.limit(c);
-      const bool rests = gap_rate(c) != 0 && ((limit && *limit - t < kLeft) || hardly_rises(c));
-      if (rests || gap_rate(c) == 0) stops[c].touch = Touch::slips;
+      const bool rests = near_.gap_rate(c) != 0 && ((limit && *limit - t < kLeft) || near_.hardly_rises(c));
+      if (rests || near_.gap_rate(c) == 0) stops[c].touch = Touch::slips;
       if (!rests) continue;
       any = true;
       joined_.event(contacts_[c].name + ".rests", limit ? std::max(*limit, t) : t);
@@ -268,28 +257,8 @@ class HybridMotion {
     if (!any) return;
     stop(stops);
     for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (stops[c].touch != Touch::open && hardly_slips(c)) stops[c].touch = Touch::sticks;
+      if (stops[c].touch != Touch::open && near_.hardly_slips(c)) stops[c].touch = Touch::sticks;
     stop(stops);
-  }
-
-  // The acceleration with which a gap would close without contacts.
-  long double pressed(std::size_t c) const {
-    const ContactProblem& p = dynamics_.accelerations();
-    const auto free = of_modes(p, ContactModes(contacts_.size()));
-    if (!free) return 0;
-    long double a = p.contacts[c].normal_rate;
-    for (std::size_t i = 0; i < free->x.size(); ++i) a += p.contacts[c].normal[i] * free->x[i];
-    return std::max(-a, 0.0L);
-  }
-  // Whether a velocity ends against the deceleration a within round-off of the place.
-  bool hardly_moves(std::size_t c, long double v, long double a) const {
-    return a > 0 && v * v <= 2 * a * kRounded * place_size(c);
-  }
-  bool hardly_rises(std::size_t c) const { return hardly_moves(c, gap_rate(c), pressed(c)); }
-  bool hardly_slips(std::size_t c) const {
-    const auto& slip = dynamics_.place(c).slip;
-    return contacts_[c].rough() &&
-           hardly_moves(c, std::hypot(slip[0], slip[1]), dynamics_.accelerations().contacts[c].friction * pressed(c));
   }
 
   // The jump of least change after which what touches does not move along its normal, and what sticks does not slip. A
@@ -378,9 +347,10 @@ class HybridMotion {
   }
 
   // A slip that begins where the friction that holds has become too large begins against this friction.
-  static void against_friction(ContactProblem& p, std::size_t c) {
+  void against_friction(ContactProblem& p, std::size_t c) const {
     ContactModes modes(p.contacts.size());
     modes[c].touch = Touch::sticks;
+    if (const auto& under = contacts_[c].under) modes[*under] = modes_[*under];
     const auto held = of_modes(p, modes);
     const long double size = held ? std::hypot(held->friction[c][0], held->friction[c][1]) : 0;
     if (size > 0) p.contacts[c].direction = {-held->friction[c][0] / size, -held->friction[c][1] / size};
@@ -414,7 +384,7 @@ class HybridMotion {
         for (std::size_t a = 0; a < at_.qd.size(); ++a) size = std::max(size, std::abs(t[a] * dynamics_.most(a)));
       if (std::hypot(slip[0], slip[1]) > kVanished * size) continue;
       set_slip(c, {}, 0);
-      joined_.event(contacts_[c].name + ".sticks", at_.t.get_d());
+      joined_.event(contacts_[c].name + "." + word(contacts_[c], ModeChange::sticks), at_.t.get_d());
       any = true;
     }
     return any;
@@ -443,7 +413,9 @@ class HybridMotion {
     rows_.begin_segment();
     const SimulationReport r = simulate_in(own, o, rows_);
     outcome = r.outcome;
+    const ContactState from = at_;
     rows_.last_state(at_);
+    dynamics_.pass(from, at_);
     const bool every_event_known = joined_.add(r, mode.events);
     if (outcome.kind == OutcomeKind::step_collapse && slip_vanishes()) {
       outcome = {};
@@ -468,9 +440,10 @@ class HybridMotion {
   const std::vector<Contact>& contacts_;
   const SimulationOptions& o_;
   ContactDynamics dynamics_;
+  ContactState at_;
+  RoundOff near_;
   SegmentRows rows_;
   JoinedReport joined_;
-  ContactState at_;
   Rational end_;
   std::vector<Rational> times_;
   ContactModes modes_;

@@ -14,7 +14,11 @@ class ModeBuilder {
     for (Expr& v : c.slip) v = g_.own(v);
     c.friction = g_.own(c.friction), c.static_friction = g_.own(c.static_friction);
     Expr normal = g_.zero(), friction = g_.zero();
-    if (mode.touch == Touch::open) {
+    if (c.under) {
+      normal = normals_[*c.under];
+      if (mode.touch != Touch::open && c.rough())
+        friction = mode.touch == Touch::sticks ? stick(c, mode, normal) : slip(c, mode, normal);
+    } else if (mode.touch == Touch::open) {
       event(c, ModeChange::hits, c.gap, -1);
       // A gap that is zero at the start passes no zero when it closes again at once.
       event(c, ModeChange::hits, c.gap + g_.number(Rational(static_cast<double>(mode.depth))), -1);
@@ -30,9 +34,14 @@ class ModeBuilder {
       model_->monitors.push_back({c.name + what, put_masses(*model_, e), c.span});
     };
     record(".mode", g_.number(mode.touch == Touch::open ? 0 : mode.touch == Touch::slips ? 1 : 2));
-    record(".gap", c.gap);
-    record(".normal", normal);
-    record(".friction", friction);
+    if (c.under) {
+      record(".moment", friction);
+    } else {
+      record(".gap", c.gap);
+      record(".normal", normal);
+      record(".friction", friction);
+    }
+    normals_.push_back(normal);
     ++contact_;
   }
 
@@ -125,8 +134,7 @@ class ModeBuilder {
   }
 
   void event(const Contact& c, ModeChange change, Expr when, int direction) {
-    static constexpr const char* kNames[] = {".hits", ".leaves", ".slips", ".sticks", ".turns"};
-    std::string name = c.name + kNames[static_cast<std::size_t>(change)];
+    std::string name = c.name + "." + word(c, change);
     while (events_.count(name)) name += "'";
     events_[name] = {contact_, change};
     model_->events.push_back({name, put_masses(*model_, when), direction, {}, true, c.span});
@@ -135,15 +143,37 @@ class ModeBuilder {
   std::shared_ptr<Model> model_;
   Graph& g_;
   std::map<std::string, ModeEvent> events_;
+  std::vector<Expr> normals_;
   std::size_t contact_ = 0;
 };
 
 }  // namespace
 
+std::string word(const Contact& c, ModeChange change) {
+  switch (change) {
+  case ModeChange::hits:
+    return "hits";
+  case ModeChange::leaves:
+    return "leaves";
+  case ModeChange::slips:
+    return c.under ? "starts" : "slips";
+  case ModeChange::sticks:
+    return c.under ? "stops" : "sticks";
+  case ModeChange::turns:
+    return "turns";
+  }
+  return {};
+}
+
 std::vector<std::string> contact_columns(const std::vector<Contact>& contacts) {
   std::vector<std::string> names;
-  for (const Contact& c : contacts)
-    for (const char* what : {".mode", ".gap", ".normal", ".friction"}) names.push_back(c.name + what);
+  for (const Contact& c : contacts) {
+    names.push_back(c.name + ".mode");
+    if (c.under)
+      names.push_back(c.name + ".moment");
+    else
+      for (const char* what : {".gap", ".normal", ".friction"}) names.push_back(c.name + what);
+  }
   return names;
 }
 

@@ -27,6 +27,9 @@ struct ModeModel {
   std::map<std::string, ModeEvent> events;  // by their names
 };
 
+// Of the name NAME.WORD of this change: a resistance starts and stops.
+std::string word(const Contact& contact, ModeChange change);
+
 // The columns of rows that contacts add after those of the model.
 std::vector<std::string> contact_columns(const std::vector<Contact>& contacts);
 

@@ -1,6 +1,9 @@
 // The steps that a motion may make. It is interrupted where the caller cancels it, at the step limit, and as soon as its
-// end lies beyond that limit at the present pace.
+// end lies beyond that limit at its pace.
 #pragma once
+#include <algorithm>
+#include <cmath>
+
 #include "base/outcome.h"
 #include "integrate/step_control.h"
 
@@ -19,20 +22,48 @@ inline Outcome may_step(const StepSettings& settings, std::size_t steps) {
   return cancelled || steps >= settings.most_steps ? interrupted(cancelled) : Outcome{};
 }
 
-// The span of time that the steps made have passed, the length of the next one, the span that is left.
-struct StepPace {
-  double passed, step, left;
-};
+// Judges whether the end of a motion lies beyond its step limit. Steps are short for a while after an impact, where a slip
+// begins and where a motion starts, so no single step counts: the paces of the whole motion and of the last kWindow steps
+// are both too slow, and the pace does not grow from window to window. An end that lies just beyond the limit is waited
+// for longer than a hopeless one.
+class StepPaces {
+ public:
+  // The motion starts, or goes on, at the time t after so many steps.
+  void begin(long double t, std::size_t steps) {
+    now_ = before_ = last_ = {0, steps};
+    started_ = t;
+    first_ = steps;
+  }
 
-// Whether the end lies beyond the step limit, both at the present pace and at that of the whole motion so far.
-inline bool out_of_reach(const StepSettings& settings, std::size_t steps, const StepPace& pace) {
-  constexpr std::size_t kStepsToJudge = 1000;
-  if (steps < kStepsToJudge) return false;
-  const double most = static_cast<double>(settings.most_steps - steps);
-  if (std::abs(pace.left) <= pace.step * most) return false;
-  const double mean = std::abs(pace.passed) / static_cast<double>(steps);
-  return std::abs(pace.left) > std::max(mean, pace.step) * most;
-}
+  // Asked before each step from the time t, whose length would be `step`; `left` is the span to the end.
+  bool out_of_reach(const StepSettings& settings, std::size_t steps, long double t, double step, double left) {
+    const double passed = std::abs(static_cast<double>(t - started_));
+    if (steps - now_.steps >= kWindow) before_ = last_, last_ = now_, now_ = {passed, steps};
+    const std::size_t made = steps - first_;
+    if (made < kStepsToJudge) return false;
+    const double most = static_cast<double>(settings.most_steps - steps);
+    if (std::abs(left) <= step * most) return false;
+    const double pace = of(last_, now_), mean = passed / static_cast<double>(made);
+    const double steps_ahead = std::abs(left) / std::max({pace, mean, step});
+    if (!(steps_ahead > most) || pace > kGrows * of(before_, last_)) return false;
+    return steps_ahead > kHopeless * most || made >= kStepsIfNear;
+  }
+
+ private:
+  static constexpr std::size_t kWindow = 500, kStepsToJudge = 1000, kStepsIfNear = 20'000;
+  static constexpr double kGrows = 1.25, kHopeless = 1000;
+  struct Mark {
+    double passed = 0;
+    std::size_t steps = 0;
+  };
+  static double of(const Mark& a, const Mark& b) {
+    return b.steps > a.steps ? (b.passed - a.passed) / static_cast<double>(b.steps - a.steps) : 0;
+  }
+
+  long double started_ = 0;
+  std::size_t first_ = 0;
+  Mark before_, last_, now_;
+};
 
 inline Outcome end_out_of_reach(const StepSettings& settings, double step) {
   return {OutcomeKind::interrupted,

@@ -450,9 +450,8 @@ bool Stepper<N>::aim_one_sided(const W& left) {
 }
 
 template <Number N>
-bool Stepper<N>::out_of_reach(const W& h, const W& left) const {
-  return anholon::out_of_reach(settings_, record().steps,
-                               {to_double(W(time() - started_)), to_double(h), to_double(left)});
+bool Stepper<N>::out_of_reach(const W& h, const W& left) {
+  return paces_.out_of_reach(settings_, record().steps, to_double(time()), to_double(h), to_double(left));
 }
 
 // ---- where it starts ------------------------------------------------------------------------------------------------
@@ -460,7 +459,8 @@ bool Stepper<N>::out_of_reach(const W& h, const W& left) const {
 template <Number N>
 void Stepper<N>::place(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
   track_ = {motion_from<N>(t, state, leading, program_->quadratures), {}, 0};
-  started_ = before_ = t;
+  before_ = t;
+  paces_.begin(to_double(t), 0);
   phase_ = Phase::placed;
   expansions_ = 0;
   expander_.reset();
@@ -483,7 +483,7 @@ void Stepper<N>::adopt(const Stepper& other) {
   track_.now = other.motion();
   track_.now.own.clear();
   record() = with_other_equations(other.record());
-  started_ = other.started_;
+  paces_ = other.paces_;
   before_ = time();
   events_ = other.events_;
   phase_ = Phase::placed;
@@ -517,7 +517,8 @@ Outcome Stepper<N>::restart(const std::vector<W>& state) {
 template <Number N>
 Outcome Stepper<N>::resume(const StepperState<N>& begun) {
   track_.now = begun.motion;
-  started_ = before_ = time();
+  before_ = time();
+  paces_.begin(to_double(time()), record().steps);
   expander_.restart();
   expander_.series().set_weakest_direction(begun.direction);
   guard_.set_sigma(record().sigma_before);

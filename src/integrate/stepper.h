@@ -11,6 +11,7 @@
 #pragma once
 #include "integrate/one_sided_start.h"
 #include "integrate/regularity.h"
+#include "integrate/step_budget.h"
 #include "integrate/step_end.h"
 #include "integrate/stretch.h"
 
@@ -170,7 +171,7 @@ class Stepper {
   bool aim_one_sided(const W& left);
   bool shorten_at_singular_point(W& h, const W& floor);
   void shorten_at_event(W& h, const std::optional<N>& kink);
-  bool out_of_reach(const W& h, const W& left) const;
+  bool out_of_reach(const W& h, const W& left);
 
   bool fail(Outcome why);
   bool expanded() const { return phase_ == Phase::expanded || phase_ == Phase::aimed; }
@@ -186,7 +187,8 @@ class Stepper {
   Tolerance tolerance_;
   Phase phase_ = Phase::placed;
   MotionTrack<N> track_;
-  W started_{0}, before_{0};
+  StepPaces paces_;
+  W before_{0};
   bool ordinary_ = false;  // the step that is aimed: it ends there
   W ordinary_end_{0};
   Expander<N> expander_;

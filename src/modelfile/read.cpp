@@ -136,8 +136,10 @@ class Reader {  // its references are used only while it runs
   void note_contacts() {
     if (contacts_.empty()) return;
     std::string names;
-    for (const Contact& c : contacts_) names += (names.empty() ? "'" : ", '") + c.name + "'";
-    const bool one = contacts_.size() == 1;
+    std::size_t count = 0;
+    for (const Contact& c : contacts_)
+      if (!c.under) names += (count++ == 0 ? "'" : ", '") + c.name + "'";
+    const bool one = count == 1;
     model_.notes.push_back((one ? "contact " : "contacts ") + names +
                            (one ? " is no part of these equations, which hold while it is open"
                                 : " are no part of these equations, which hold while all of them are open"));

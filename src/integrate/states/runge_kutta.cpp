@@ -88,7 +88,7 @@ RungeKutta::RungeKutta(StateRate rate, const StepSettings& settings)
 
 Outcome RungeKutta::start(const MotionPoint& from, long double end) {
   now_ = before_ = from;
-  started_ = from.t;
+  paces_.begin(from.t, steps_);
   carry_.state.assign(from.state.size(), 0);
   carry_.integrals.assign(from.integrals.size(), 0);
   rate_.set_leading(from.leading);
@@ -240,10 +240,10 @@ void RungeKutta::advance(MotionPoint& to, RoundOffs& carry, double h) {
   for (std::size_t i = 0; i < n; ++i) add(to.state[i], carry.state[i], h * change_[i]);
 }
 
-Outcome RungeKutta::may_go_on(long double left) const {
+Outcome RungeKutta::may_go_on(long double left) {
   if (Outcome o = may_step(settings_, steps_); !o.ok()) return o;
-  const StepPace pace{static_cast<double>(now_.t - started_), h_, static_cast<double>(left)};
-  return out_of_reach(settings_, steps_, pace) ? end_out_of_reach(settings_, h_) : Outcome{};
+  return paces_.out_of_reach(settings_, steps_, now_.t, h_, static_cast<double>(left)) ? end_out_of_reach(settings_, h_)
+                                                                                       : Outcome{};
 }
 
 Outcome RungeKutta::step(long double end) {

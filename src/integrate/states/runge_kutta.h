@@ -7,6 +7,7 @@
 #pragma once
 #include "integrate/states/dormand_prince.h"
 #include "integrate/states/state_rate.h"
+#include "integrate/step_budget.h"
 
 namespace anholon {
 
@@ -25,7 +26,7 @@ class RungeKutta final : public StateStepper {
  private:
   using Stages = std::array<std::vector<double>, dormand_prince::kStages>;
 
-  Outcome may_go_on(long double left) const;
+  Outcome may_go_on(long double left);
   Outcome first_rate();
   double first_step(double direction);
   Outcome stages(const MotionPoint& from, double h);
@@ -47,7 +48,7 @@ class RungeKutta final : public StateStepper {
   std::vector<double> start_, y_, change_, sizes_, e5_, e3_;
   std::vector<std::pair<double, double>> most_;
   RoundOffs carry_;
-  long double started_ = 0;
+  StepPaces paces_;
   double h_ = 0, error_before_ = 1;
   std::size_t refused_ = 0;
   struct Kinks {  // at now()

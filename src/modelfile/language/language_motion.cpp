@@ -78,7 +78,12 @@ set = {stage = "stage + 1"}
         {"on", text, "not a plane: `ball(R)`, or `bowl(R)`, whose inside is touched"},
         {"friction", number, "Coulomb's coefficient while it slips; 0 without it"},
         {"static_friction", number, "the coefficient while it sticks; `friction` without it"},
-        {"restitution", number, "Newton's coefficient of impacts, 0 to 1; 0 without it"}},
+        {"rolling_resistance", number,
+         "a length: times the normal force, the largest moment against rolling; of a `body` that is a ball or a disc"},
+        {"drilling_resistance", number,
+         "a length: the same about the normal, of a ball, a disc or a point of a `body`"},
+        {"restitution", number, "the coefficient of impacts, 0 to 1; 0 without it"},
+        {"impact", choice, "the law of impacts with that coefficient; `newton` without it", {"newton", "poisson"}}},
        R"md(```toml
 [[contact]]
 name = "floor"
@@ -88,6 +93,7 @@ along = ["ex"]
 friction = 0.3
 static_friction = 0.4
 restitution = 0.5
+impact = "poisson"
 [initial]
 y = 1
 ```
@@ -99,6 +105,7 @@ shape  = "ball(R)"                 # which lies on a plane
 normal = "ey"
 through = "-3*ey"
 friction = 0.3
+rolling_resistance = "R/50"
 
 [[contact]]
 name = "pin"
@@ -107,14 +114,27 @@ at   = "P"                         # a point of the body
 on   = "bowl(9)"                   # inside a ball of radius 9 about 0
 ```
 
+```toml
+coordinates = ["z", "phi"]         # a top that spins and stops
+body = [{name = "top", mass = 1, shape = "ball(1)", center = "z*ez", orientation = "rotz(phi)"}]
+gravity.field = "-9.81*ez"
+contact = [{body = "top", drilling_resistance = 0.02}]
+initial = {z = 1, "phi'" = 9}
+```
+
 - With `body` the gap and the slip velocity follow from the shape of the body and the plane. A disc is turned about its axis z and touches with
   its rim; a box touches with its corners, whose contacts are called `NAME1`, `NAME2`, …; in a plane motion these are four. `at` without `shape` is a point of the body.
 - The normal of a plane does not turn; `through` may move. On a ball the directions of slip are those across `ey`.
 - A contact pushes and does not pull: it is open, sticks or slips. The normal force N acts along the gradient of the gap, friction against the slip velocity:
   μN while it slips, at most the static coefficient times N while it sticks. Without `slip` there is no friction.
+- `rolling_resistance` δ and `drilling_resistance` hold moments against the angular velocity of the body: δN against its part along the surface while the body
+  rolls, at most δN while it does not; the same about the normal. They need a `body` with an orientation. Columns are `NAME.rolling.mode` (0 open, 1 rolls, 2 rests),
+  `NAME.rolling.moment`, `NAME.drilling.mode`, `NAME.drilling.moment`; events are `NAME.rolling.starts`, `NAME.rolling.stops`, and the same of `NAME.drilling`.
 - Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. Rows have the columns `NAME.mode` (0 open,
   1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
-- Impacts follow Newton's law in Moreau's form. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
+- Impacts follow Newton's law in Moreau's form: the velocity of the gap is reversed and multiplied by the restitution e. With `impact = "poisson"` they follow
+  Poisson's law: the impulse that stops the gap is followed by e times this impulse. Both agree without friction; with friction Newton's law may raise the energy, which ends the
+  motion. All contacts of a model have one law. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
   That limit is found for the impacts of one contact. A box that bounces from corner to corner may instead take many impacts and stop with the outcome that a gap is negative.
 - At most eight contacts; those that touch at one time are few, as all their modes are tried. Motions, reports and sweeps know them, in the libraries, too; derivations, proofs and linear models refuse a model with
   contacts. They do not go with events that set values, nor with servo constraints. [Recipes](contact.md).
@@ -127,6 +147,16 @@ friction = 0.3
 ```
 ```text
 error: the contact 'floor' has friction and no slip velocity
+```
+```toml
+[[contact]]
+body = "plate"
+normal = "ey"
+shape = "point"
+rolling_resistance = 0.01
+```
+```text
+error: a point does not roll
 ```
 )md"},
       {"event",

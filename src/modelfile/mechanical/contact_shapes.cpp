@@ -140,7 +140,9 @@ class TouchingReader {
     else if (!is_zero(from_center))
       throw Failure(c_.find("body")->span, "the body '" + body().name + "' has no orientation",
                     "a body without one touches with its centre, as a point");
-    return {gap, v, tangents(n)};
+    std::optional<Vector> rate;
+    if (body().orientation) rate = body().orientation->rate;
+    return {gap, v, tangents(n), n, rate, shape_.kind};
   }
 
   const Item& c_;

@@ -1,6 +1,9 @@
 // body = "ball" in a [[contact]]: gap and slip velocity of a point, a ball, a disc or the corners of a box on a plane, on
 // a ball or in a bowl.
 #pragma once
+#include <optional>
+#include <string>
+
 #include "modelfile/names/names.h"
 
 namespace anholon {
@@ -9,6 +12,9 @@ struct Touching {
   Expr gap;
   Vector slip;                     // the velocity of the material point of the body, relative to what it touches
   std::vector<Vector> directions;  // two, tangential
+  Vector normal;                   // of length 1, away from what it touches
+  std::optional<Vector> rate;      // the angular velocity relative to what it touches, of a body with an orientation
+  std::string shape;               // point, ball, disc or box
 };
 
 // One place of a point, a ball or a disc; of a box the corners, without those whose gaps are equal. Throws Failure.

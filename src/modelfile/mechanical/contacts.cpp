@@ -18,7 +18,7 @@ class ContactReader {
  public:
   ContactReader(Scope& scope, Model& model) : scope_(scope), model_(model) {}
 
-  // One contact; of a box those of its corners.
+  // One contact with its resistance; of a box those of its corners.
   std::vector<Contact> read(const Item& c, std::size_t number) const {
     Contact contact = begin(c, "contact" + std::to_string(number + 1));
     if (!c.find("body")) read_formulas(c, contact);
@@ -27,7 +27,13 @@ class ContactReader {
     contact.friction = friction ? coefficient(*friction) : g.zero();
     contact.static_friction = fixed ? coefficient(*fixed) : contact.friction;
     contact.restitution = e ? coefficient(*e) : g.zero();
+    if (const Item* law = c.find("impact")) contact.law = impact_law(*law);
     if (c.find("body")) return by_shape(c, contact);
+    for (const char* key : {"rolling_resistance", "drilling_resistance"})
+      if (const Item* i = c.find(key))
+        throw Failure(i->key_span,
+                      "'" + std::string(key) + "' needs the angular velocity of a body, and this contact names none",
+                      "body = \"ball\" in place of gap and slip");
     if (contact.slip.empty() && (friction || fixed))
       throw Failure(
           (friction ? friction : fixed)->key_span,
@@ -69,6 +75,13 @@ class ContactReader {
     return contact;
   }
 
+  static ImpactLaw impact_law(const Item& law) {
+    const std::string word = law.kind == Item::Kind::string ? law.text() : std::string();
+    if (word == "newton") return ImpactLaw::newton;
+    if (word != "poisson") throw Failure(law.span, "the law of impacts is newton or poisson", "impact = \"poisson\"");
+    return ImpactLaw::poisson;
+  }
+
   void read_formulas(const Item& c, Contact& contact) const {
     for (const char* key : {"shape", "at", "on", "normal", "through"})
       if (const Item* i = c.find(key))
@@ -105,9 +118,45 @@ class ContactReader {
         if (!proved_zero(v)) contact.slip.push_back(v);
       }
       if (contact.slip.size() > 2) throw Failure(c.find("along")->span, "a slip velocity has one or two components");
-      list.push_back(std::move(contact));
+      list.push_back(contact);
+      const std::size_t place = list.size() - 1;
+      add_resistance(c, "rolling_resistance", t, t.directions, contact, place, list);
+      add_resistance(c, "drilling_resistance", t, {t.normal}, contact, place, list);
     }
     return list;
+  }
+
+  // The moment about the directions that is at most the length of this key times the normal force.
+  void add_resistance(const Item& c, const std::string& key, const Touching& t, const std::vector<Vector>& directions,
+                      const Contact& contact, std::size_t place, std::vector<Contact>& list) const {
+    const Item* given = c.find(key);
+    if (!given) return;
+    const bool rolling = directions.size() > 1;
+    if (t.shape == "box" || (rolling && t.shape == "point"))
+      throw Failure(given->key_span,
+                    "a " + t.shape +
+                        (rolling ? " does not roll" : " touches with its corners, which resist drilling by friction"),
+                    "leave out '" + key + "', or shape = \"ball(R)\" or \"disc(R)\"");
+    if (!t.rate)
+      throw Failure(given->key_span,
+                    "the body of the contact '" + contact.name + "' has no orientation, so it has no angular velocity",
+                    "orientation = \"roty(phi)\" in the body");
+    Contact resistance = contact;
+    resistance.name += rolling ? ".rolling" : ".drilling";
+    resistance.span = given->span;
+    resistance.friction = resistance.static_friction = coefficient(*given);
+    resistance.under = place;
+    resistance.slip.clear();
+    for (const Vector& d : directions) {
+      const Expr w = put_masses(model_, dot(*t.rate, d));
+      if (!proved_zero(w)) resistance.slip.push_back(w);
+    }
+    if (resistance.slip.empty())
+      throw Failure(given->key_span,
+                    "the body of the contact '" + contact.name + "' never " +
+                        (rolling ? "rolls: it turns about the normal alone" : "turns about the normal"),
+                    "leave out '" + key + "'");
+    list.push_back(std::move(resistance));
   }
 
   Expr formula(const Item& i, const std::string& what) const {
@@ -174,8 +223,11 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
   constexpr std::size_t kMost = 8;  // the modes of those that touch are enumerated
   std::vector<Contact> list;
   const ContactReader reader(scope, model);
+  const auto touching = [&] {
+    return static_cast<std::size_t>(std::count_if(list.begin(), list.end(), [](const Contact& o) { return !o.under; }));
+  };
   const auto add = [&](Contact contact) {
-    if (list.size() == kMost)
+    if (!contact.under && touching() == kMost)
       throw Failure(contact.span, "more than " + std::to_string(kMost) + " contacts; a box has one for each corner");
     if (std::any_of(list.begin(), list.end(), [&](const Contact& o) { return o.name == contact.name; }))
       throw Failure(contact.span, "there are two contacts '" + contact.name + "'");
@@ -185,7 +237,15 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
   if (items && items->items.size() <= kMost)
     for_each_table(*items, "contact", diagnostics, [&](const Item& c, std::size_t k) {
       check_keys(c, "a contact", "contact", diagnostics);
-      for (Contact& contact : reader.read(c, k)) add(std::move(contact));
+      const std::size_t before = list.size();
+      for (Contact& contact : reader.read(c, k)) {
+        if (!list.empty() && list[0].law != contact.law)
+          throw Failure(contact.span,
+                        "the contacts '" + list[0].name + "' and '" + contact.name + "' have different laws of impacts",
+                        "one value of 'impact' in all contacts: they may strike at one time");
+        if (contact.under) *contact.under += before;
+        add(std::move(contact));
+      }
     });
   std::size_t count = items ? items->items.size() : 0;
   const Item* last = items;

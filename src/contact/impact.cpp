@@ -1,0 +1,66 @@
+#include "contact/impact.h"
+
+#include <algorithm>
+
+namespace anholon {
+
+namespace {
+
+using Jump = std::vector<long double>;
+
+std::vector<Jump> jumps(const std::vector<ContactSolution>& solutions) {
+  std::vector<Jump> list;
+  for (const ContactSolution& s : solutions) list.push_back(s.x);
+  return list;
+}
+
+void add_rates(long double& rate, const std::vector<long double>& row, const Jump& x) {
+  for (std::size_t a = 0; a < x.size(); ++a) rate += row[a] * x[a];
+}
+
+// The expansion after a compression: the impulses e N_c are given, so each contact is its normal part, and its friction is
+// one that this impulse presses as well.
+ContactProblem expansion(const ContactDynamics& dynamics, ContactProblem p, const ContactSolution& compression) {
+  const std::size_t count = p.contacts.size();
+  std::vector<ContactRows> friction;
+  for (std::size_t c = 0; c < count; ++c) {
+    ContactRows& rows = p.contacts[c];
+    const std::size_t normal = rows.under.value_or(c);
+    const ContactMode& mode = compression.modes[c];
+    rows.pressed = dynamics.place(normal).restitution * std::max(compression.normal[normal], 0.0L);
+    for (std::size_t k = 0; k < rows.tangential.size(); ++k) {
+      add_rates(rows.tangential_rate[k], rows.tangential[k], compression.x);
+      if (mode.touch == Touch::sticks) rows.tangential_rate[k] = 0;
+    }
+    rows.direction = mode.touch == Touch::slips ? mode.direction : rows.direction;
+    if (rows.under) continue;
+    add_rates(rows.normal_rate, rows.normal, compression.x);
+    if (mode.touch != Touch::open) rows.normal_rate = 0;
+    for (std::size_t a = 0; a < p.b.size(); ++a) p.b[a] -= rows.normal[a] * rows.pressed;
+    if (rows.rough) friction.push_back(rows), friction.back().under = c;
+    rows.rough = false;
+    rows.tangential.clear();
+    rows.pressed = 0;
+  }
+  p.contacts.insert(p.contacts.end(), friction.begin(), friction.end());
+  return p;
+}
+
+}  // namespace
+
+std::vector<Jump> impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
+                               const std::vector<bool>& touches) {
+  const bool poisson =
+      std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.law == ImpactLaw::poisson; });
+  if (!poisson) return jumps(consistent_modes(dynamics.impact(touches)));
+  ContactProblem p = dynamics.impact(touches, 0);
+  const std::vector<ContactSolution> compression = consistent_modes(p);
+  if (compression.size() != 1) return jumps(compression);
+  p = expansion(dynamics, std::move(p), compression[0]);
+  std::vector<Jump> list = jumps(consistent_modes(p));
+  for (Jump& x : list)
+    for (std::size_t a = 0; a < x.size(); ++a) x[a] += compression[0].x[a];
+  return list;
+}
+
+}  // namespace anholon

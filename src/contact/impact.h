@@ -1,0 +1,16 @@
+// The jumps of the velocities at an impact (theory: contact).
+//
+// Newton: the velocity of the gap is reversed and multiplied by the restitution e. Poisson: an impact is a compression,
+// whose impulse N_c stops the gap, and an expansion with the impulse e N_c, or more where the gap would close; friction
+// obeys Coulomb's law in both.
+#pragma once
+#include "contact/contact_dynamics.h"
+
+namespace anholon {
+
+// The consistent jumps, of which there is one unless bodies jam (Painlevé's paradox). touches: the contacts that take part;
+// all contacts that strike have one law.
+std::vector<std::vector<long double>>
+impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts, const std::vector<bool>& touches);
+
+}  // namespace anholon

@@ -1,0 +1,57 @@
+#include "contact/round_off.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace anholon {
+
+bool RoundOff::closed(std::size_t c) const {
+  constexpr long double kClosed = 1e-12L;
+  return dynamics_.place(c).gap <= kClosed * place_size(c);
+}
+
+bool RoundOff::negligible(std::size_t c) const {
+  constexpr long double kMissed = 1e-8L;
+  return dynamics_.place(c).gap > -kMissed;
+}
+
+long double RoundOff::place_size(std::size_t c) const {
+  long double size = 1e-300L;
+  for (std::size_t a = 0; a < at_.q.size(); ++a)
+    size = std::max(size, std::abs(dynamics_.accelerations().contacts[c].normal[a]) * (1 + std::abs(at_.q[a])));
+  return size;
+}
+
+long double RoundOff::gap_rate(std::size_t c) const {
+  constexpr long double kZero = 1e-12L;
+  const long double v = dynamics_.place(c).gap_rate;
+  long double size = 0;
+  for (std::size_t a = 0; a < at_.q.size(); ++a)
+    size = std::max(size, std::abs(dynamics_.accelerations().contacts[c].normal[a] * dynamics_.most(a)));
+  return std::abs(v) <= kZero * size ? 0 : v;
+}
+
+// The acceleration with which a gap would close without contacts.
+long double RoundOff::pressed(std::size_t c) const {
+  const ContactProblem& p = dynamics_.accelerations();
+  const auto free = of_modes(p, ContactModes(contacts_.size()));
+  if (!free) return 0;
+  long double a = p.contacts[c].normal_rate;
+  for (std::size_t i = 0; i < free->x.size(); ++i) a += p.contacts[c].normal[i] * free->x[i];
+  return std::max(-a, 0.0L);
+}
+
+// Whether a velocity ends against the deceleration a within round-off of the place.
+bool RoundOff::hardly_moves(std::size_t c, long double v, long double a) const {
+  return a > 0 && v * v <= 2 * a * kPlace * place_size(c);
+}
+
+bool RoundOff::hardly_rises(std::size_t c) const { return hardly_moves(c, gap_rate(c), pressed(c)); }
+
+bool RoundOff::hardly_slips(std::size_t c) const {
+  const auto& slip = dynamics_.place(c).slip;
+  return contacts_[c].rough() &&
+         hardly_moves(c, std::hypot(slip[0], slip[1]), dynamics_.accelerations().contacts[c].friction * pressed(c));
+}
+
+}  // namespace anholon

@@ -1,0 +1,39 @@
+// What is zero within round-off at a state of a motion with contacts: gaps, their velocities, and motions that end within
+// round-off of the place (theory: contact).
+#pragma once
+#include "contact/contact_dynamics.h"
+
+namespace anholon {
+
+class RoundOff {
+ public:
+  // Refers to all three, which outlive it; `dynamics` has been evaluated at the state.
+  RoundOff(const std::vector<Contact>& contacts, const ContactDynamics& dynamics, const ContactState& at)
+      : contacts_(contacts), dynamics_(dynamics), at_(at) {}
+
+  // A place is known to this part of the size of its terms.
+  static constexpr long double kPlace = 1e-14L;
+
+  // A gap of this size is none: the state is rounded to doubles.
+  bool closed(std::size_t contact) const;
+  // Whether a negative gap is the error with which an event is located.
+  bool negligible(std::size_t contact) const;
+  // The size of the terms of a gap.
+  long double place_size(std::size_t contact) const;
+  // The velocity of the gap, 0 within round-off of the velocities that the motion had.
+  long double gap_rate(std::size_t contact) const;
+  // Whether a gap that is pressed together would rise, with its velocity, by round-off of its place only; and whether
+  // friction ends a slip within this distance.
+  bool hardly_rises(std::size_t contact) const;
+  bool hardly_slips(std::size_t contact) const;
+
+ private:
+  long double pressed(std::size_t contact) const;
+  bool hardly_moves(std::size_t contact, long double v, long double a) const;
+
+  const std::vector<Contact>& contacts_;
+  const ContactDynamics& dynamics_;
+  const ContactState& at_;
+};
+
+}  // namespace anholon
