@@ -118,6 +118,8 @@ class Reader {  // its references are used only while it runs
     });
     if (!diagnostics_.has_errors()) check_values(model_, diagnostics_);
     if (!diagnostics_.has_errors()) check_dimensions(root, scope_, model_, diagnostics_);
+    if (!diagnostics_.has_errors())
+      for (const Replaced& r : replaced_) guard([&] { must_have_unit_of(r); });
     // From here on, expressions grow in proportion to the model.
     model_.graph->allow(kWorkLater);
     if (!diagnostics_.has_errors() && model_.bodies.empty())
@@ -260,7 +262,7 @@ class Reader {  // its references are used only while it runs
               else
                 throw Failure(value->span, "the value of a parameter is a number, a formula or a vector");
               if (const auto o = overrides_.find(i.key); o != overrides_.end()) {
-                must_have_unit_of(d.formula.text(), o->second, "--set " + o->first + "=" + o->second + ": ");
+                replaced_.push_back({d.formula.text(), o->second, "--set " + o->first + "=" + o->second + ": "});
                 d.formula = FormulaText(o->second, Span{});
                 d.override = "--set " + o->first + "=" + o->second;
                 d.item = nullptr;
@@ -282,8 +284,14 @@ class Reader {  // its references are used only while it runs
       }
   }
 
-  // Throws if a value from outside has the unit of another quantity than the value that it replaces.
-  static void must_have_unit_of(const std::string& before, const std::string& given, const std::string& called) {
+  // A value of the file, and the one from outside that replaces it.
+  struct Replaced {
+    std::string before, given, called;
+  };
+
+  // Throws if a value from outside has the unit of another quantity than the one that it replaces. A value that clashes
+  // with a formula is reported there.
+  static void must_have_unit_of(const Replaced& r) {
     const auto dimension = [](const std::string& text) -> std::optional<Dimension> {
       try {
         return read_constant(text).dimension;
@@ -291,9 +299,9 @@ class Reader {  // its references are used only while it runs
         return std::nullopt;  // a formula
       }
     };
-    const std::optional<Dimension> wanted = dimension(before), here = dimension(given);
+    const std::optional<Dimension> wanted = dimension(r.before), here = dimension(r.given);
     if (wanted && here && *wanted != *here)
-      throw Failure({}, called + describe(*wanted) + " is expected here, this is " + describe(*here),
+      throw Failure({}, r.called + describe(*wanted) + " is expected here, this is " + describe(*here),
                     *wanted == Dimension{} ? "a bare number, or an angle: 30 deg"
                                            : "a number in " + print(*wanted) + ", or a bare number in SI units");
   }
@@ -370,6 +378,7 @@ class Reader {  // its references are used only while it runs
   const Overrides& overrides_;
   const std::vector<std::string>& cases_;
   std::set<std::string> index_overrides_;
+  std::vector<Replaced> replaced_;
   Item root_;  // referenced by the scope
   Model model_;
   Scope scope_;
