@@ -9,6 +9,10 @@ from ._errors import ModelError
 from ._numbers import text_of
 from ._sympy_parts import mechanics_module, Parts, sympy_module
 
+_SAME = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "sign"}
+_RECIPROCAL = {"cot": "tan", "sec": "cos", "csc": "sin", "coth": "tanh", "sech": "cosh", "csch": "sinh"}
+_OTHER_NAMES = {"Abs": "abs", "Max": "max", "Min": "min"}
+
 RESERVED = {"t", "pi", "ex", "ey", "ez", "e", "i", "D", "lambda"}
 
 
@@ -53,9 +57,9 @@ class Writer:
             return self.names[e]
         if isinstance(e, sm.Derivative):
             inner, (variable, order) = e.args[0], e.args[1]
-            if inner in self.names and variable == self.time:
-                return self.names[inner] + "'" * int(order)
-            raise ModelError(f"the derivative {e} is not one of a coordinate by the time")
+            if len(e.args) == 2 and variable == self.time and (inner in self.names or inner.args == (self.time,)):
+                return self.formula(inner) + "'" * int(order)
+            raise ModelError(f"the derivative {e} is not one by the time of a coordinate or a given function\nhint: e.doit() works derivatives out")
         if e == self.time:
             return "t"
         if e is sm.pi:
@@ -81,9 +85,53 @@ class Writer:
         if e.is_Pow:
             base, exponent = e.as_base_exp()
             return f"sqrt({self.formula(base)})" if exponent == sm.Rational(1, 2) else f"({self.formula(base)})^({self.formula(exponent)})"
-        known = {sm.Abs: "abs", sm.log: "log", sm.sign: "sign"}
-        function = known.get(e.func, str(e.func))
-        return f"{function}({', '.join(self.formula(x) for x in e.args)})"
+        return self._function(e)
+
+    def _function(self, e: Any) -> str:
+        """The formula of a function of SymPy."""
+        sm, name = self._sm, str(e.func)
+        if isinstance(e, sm.Piecewise):
+            return self._piecewise(e)
+        if isinstance(e, sm.Heaviside):
+            return self._where(e.args[0] > 0, "1", self._where(e.args[0] < 0, "0", self.formula(e.args[1])))
+        arguments = [self.formula(x) for x in e.args]
+        if name in ("Max", "Min"):
+            made = arguments[0]
+            for argument in arguments[1:]:
+                made = f"{_OTHER_NAMES[name]}({made}, {argument})"
+            return made
+        if name in _RECIPROCAL:
+            return f"(1/{_RECIPROCAL[name]}({arguments[0]}))"
+        if name not in _SAME and name not in _OTHER_NAMES and (plain := e.doit()) != e:
+            return self.formula(plain)  # as curves of muscles
+        if name not in _SAME and name not in _OTHER_NAMES:
+            raise ModelError(
+                f"{name} in {e} has no counterpart in a model\n"
+                "hint: put a formula of elementary functions or Piecewise in its place, or a function of time that is given by values={f: …}"
+            )
+        return f"{_OTHER_NAMES.get(name, name)}({', '.join(arguments)})"
+
+    def _piecewise(self, e: Any) -> str:
+        """The pieces, of which the last one holds everywhere."""
+        *pieces, (last, otherwise) = e.args
+        if otherwise != True:  # noqa: E712
+            raise ModelError(f"{e} has no value elsewhere\nhint: let it end with (value, True)")
+        made = self.formula(last)
+        for value, condition in reversed(pieces):
+            made = self._where(condition, self.formula(value), made)
+        return made
+
+    def _where(self, condition: Any, value: str, otherwise: str) -> str:
+        """The value where the condition holds."""
+        sm = self._sm
+        signs = {sm.StrictGreaterThan: ">", sm.GreaterThan: ">=", sm.StrictLessThan: "<", sm.LessThan: "<="}
+        if condition.func in signs:
+            return f"piecewise({self.formula(condition.lhs)} {signs[condition.func]} {self.formula(condition.rhs)}, {value}, {otherwise})"
+        if isinstance(condition, (sm.And, sm.Or)):
+            first, *others = condition.args
+            rest = self._where(condition.func(*others), value, otherwise)
+            return self._where(first, rest, otherwise) if isinstance(condition, sm.And) else self._where(first, value, rest)
+        raise ModelError(f"the condition {condition} is none of >, >=, < and <=\nhint: compare two formulas; And and Or join comparisons")
 
     def _parameter(self, symbol: Any) -> str:
         self.parameters[symbol] = name = self.new(symbol.name)

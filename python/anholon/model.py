@@ -13,6 +13,7 @@ from ._errors import Interrupted, ModelError, MotionError
 from ._numbers import Number, float_of, list_of, spaced, text_of, texts_of
 from ._progress import Progress, Shown
 from ._source import Source
+from ._sweep_filling import SweepRequest, Words
 from .analysis import Comparison, LinearModel, PublishedEquations, Stability, State, equation_text
 from .check import Check
 from .dynamics import Dynamics
@@ -20,7 +21,7 @@ from .equations import Equations, Proof
 from .expressions import Expr
 from .run import Run
 from .sweep import Law, Sweep
-from .sweep_folder import SweepFolder, SweepRequest, Words
+from .sweep_folder import SweepFolder
 
 if TYPE_CHECKING:
     from distributed import Client

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _core
-from ._errors import Interrupted, ModelError
-from ._progress import Progress, Shown
+from ._errors import ModelError
+from ._progress import Progress
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,26 +19,7 @@ if TYPE_CHECKING:
     import pyarrow
     from distributed import Client
 
-    from .model import Model
     from .run import Run
-
-Words = tuple[
-    list[tuple[str, list[str]]],
-    dict[str, str],
-    "int | None",
-    int,
-    str,
-    bool,
-    "str | None",
-    "str | None",
-    list[str],
-    list[str],
-    list[str],
-]
-"""What is asked of a sweep: values, laws, cases, seed, draw, together, to, tolerance, at, columns, reduce."""
-
-_MOST_TASKS = 10_000  # of one call: a scheduler holds some kB for each
-_ATTEMPTS = 5  # rounds in which no part was added before the trouble of the workers is raised
 
 
 class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
@@ -169,8 +149,10 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
             >>> judged["error_estimate"]["digits"] >= 10, judged["residuals"]["newton"]["worst"] < 1e-12
             (True, True)
         """
+        from ._sweep_filling import computing
+
         kept = os.path.exists(os.path.join(self.path, "_judgement.json"))
-        judged, raised = (self._core if kept else _computing(self.path)).judge(stop)
+        judged, raised = (self._core if kept else computing(self.path)).judge(stop)
         if isinstance(raised, BaseException):
             raise raised
         answer: dict[str, Any] = json.loads(judged)
@@ -208,6 +190,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         import numpy as np
 
         from ._sweep_case import run_of
+        from ._sweep_filling import computing
 
         if not 0 <= case < self.cases:
             raise IndexError(f"there are {self.cases} cases")
@@ -219,7 +202,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
             if at.size == 0:
                 raise IndexError(f"the part of case {case} is missing")
             row = {name: float(self[name][at[0]]) for name in self.varied}
-        return run_of(self._core, lambda: _computing(self.path), case, row, options)
+        return run_of(self._core, lambda: computing(self.path), case, row, options)
 
     def scan(self) -> polars.LazyFrame:
         """A lazy frame of polars over the parts that are there: it reads the columns and rows that are asked for. Needs polars."""
@@ -283,8 +266,10 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
             OSError: a part could not be written.
             Interrupted: Ctrl-C; the complete parts are kept.
         """
-        core = _computing(self.path)
-        return _fill(core, on=on, share=share, threads=threads, stop=stop, progress=progress, refine=refine, refine_by=refine_by)
+        from ._sweep_filling import computing, fill
+
+        core = computing(self.path)
+        return fill(core, on=on, share=share, threads=threads, stop=stop, progress=progress, refine=refine, refine_by=refine_by)
 
     def _repr_html_(self) -> str:
         import html
@@ -317,44 +302,6 @@ def open_sweep(folder: str | os.PathLike[str]) -> SweepFolder:
     return SweepFolder(_core.open_sweep(os.fspath(folder)))
 
 
-class SweepRequest:
-    """What is asked of a sweep, in words that another process understands."""
-
-    def __init__(self, model: Model, form: str, initial: dict[str, str], words: Words) -> None:
-        self._model, self._form, self._initial, self._words = model, form, initial, words
-
-    def fill(
-        self,
-        folder: str,
-        chunk: int,
-        *,
-        on: Client | str | None,
-        share: tuple[int, int],
-        threads: int,
-        stop: Callable[[], bool] | None,
-        progress: Progress,
-        refine: int,
-        refine_by: tuple[str, float] | None,
-    ) -> SweepFolder:
-        """Opens the folder or makes it, and computes what is missing there."""
-        core = self.open(folder, chunk)
-        _opened[_key(core.path)] = core
-        return _fill(core, on=on, share=share, threads=threads, stop=stop, progress=progress, refine=refine, refine_by=refine_by)
-
-    def open(self, folder: str, chunk: int) -> _core.SweepFolder:
-        """Opens the folder or makes it."""
-        system = self._model._system(self._form, self._initial, ())
-        return _core.sweep_into(system, self._words, folder, chunk, self._recipe())
-
-    def _recipe(self) -> str:
-        model = self._model
-        # The text of the model is in the folder; a text that refers to further files is read where it lies.
-        path = "" if model._core.stands_alone or model._again.text is not None else model._again.name
-        return json.dumps(
-            {"path": path, "set": model._given, "case": model._cases, "form": self._form, "initial": self._initial, "words": self._words}
-        )
-
-
 def _array(column: Any) -> npt.NDArray[Any]:
     import numpy as np
 
@@ -362,148 +309,3 @@ def _array(column: Any) -> npt.NDArray[Any]:
         return np.asarray(column)
     words, rows = column
     return np.array(words, dtype=object)[rows] if words else np.array([], dtype=object)
-
-
-# The equations of a sweep are derived once in a process.
-_opened: dict[tuple[str, bytes], _core.SweepFolder] = {}
-
-
-def _key(folder: str) -> tuple[str, bytes]:
-    import hashlib
-
-    path = os.path.realpath(folder)
-    with open(os.path.join(path, "sweep.json"), "rb") as file:
-        return path, hashlib.sha256(file.read()).digest()
-
-
-def _computing(folder: str) -> _core.SweepFolder:
-    """The sweep of a folder, ready to be computed, from what its sweep.json says."""
-    looked_at = _core.open_sweep(folder)
-    key = _key(folder)
-    if key not in _opened:
-        if not looked_at.recipe:
-            raise ModelError(f"{looked_at.path} was made by the command line\nhint: its command goes on, or anholon sweep … -o {looked_at.path}/")
-        from ._sweep_case import model_of
-
-        recipe = json.loads(looked_at.recipe)
-        model = model_of(looked_at, recipe)
-        words = recipe["words"]
-        words[0] = [(name, values) for name, values in words[0]]
-        while len(_opened) >= 4:
-            _opened.pop(next(iter(_opened)))
-        _opened[key] = SweepRequest(model, recipe["form"], recipe["initial"], tuple(words)).open(looked_at.path, 0)
-    return _opened[key]
-
-
-def _fill(
-    core: _core.SweepFolder,
-    *,
-    on: Client | str | None,
-    share: tuple[int, int],
-    threads: int,
-    stop: Callable[[], bool] | None,
-    progress: Progress,
-    refine: int = 0,
-    refine_by: tuple[str, float] | None = None,
-) -> SweepFolder:
-    """Computes what is missing, and plans generations until there are `refine` of them after the first, or no border is left."""
-    rule = "" if refine_by is None else f"{refine_by[0]}:{float(refine_by[1])!r}"
-    if refine_by is not None and refine < 1:
-        raise ModelError("refine_by tells what a border is, and refine how often it is refined\nhint: refine=4")
-    while True:
-        folder = _fill_generation(core, on=on, share=share, threads=threads, stop=stop, progress=progress)
-        # Other shares may have parts to compute before the borders are known; other processes may plan the same generation.
-        if refine < 1 or core.missing():
-            return folder
-        generations = len(core.progress().generations)
-        if generations > refine or not core.refine(rule, generations):
-            return folder
-
-
-def _fill_generation(
-    core: _core.SweepFolder, *, on: Client | str | None, share: tuple[int, int], threads: int, stop: Callable[[], bool] | None, progress: Progress
-) -> SweepFolder:
-    folder = SweepFolder(core)
-    missing = [part for part in core.missing() if part % share[1] == share[0] - 1] if on is not None else None
-    left = core.cases if missing is None else min(core.cases, len(missing) * core.chunk)
-    with Shown(progress, f"sweep in {core.path}", float(left), unit="cases") as tell:
-        if on is not None:
-            _fill_by_workers(core, on, share, threads or 1, stop, tell)
-            return folder
-        _, _, error, raised = core.fill(None, share[0], share[1], threads, stop, tell)
-    if isinstance(raised, KeyboardInterrupt):
-        raise Interrupted(folder) from None
-    if isinstance(raised, BaseException):
-        raise raised
-    if error:
-        raise OSError(f"{error}\nhint: the parts before it are kept; the same call goes on")
-    return folder
-
-
-def fill_parts(folder: str, parts: list[int], threads: int) -> int:
-    """The task of a worker: computes parts, and returns how many cases it computed.
-
-    Raises:
-        OSError: a part could not be written.
-    """
-    cases, _, error, _ = _computing(folder).fill(parts, 1, 1, threads, None, None)
-    if error:
-        raise OSError(error)
-    return cases
-
-
-def _fill_by_workers(
-    core: _core.SweepFolder,
-    on: Any,
-    share: tuple[int, int],
-    threads: int,
-    stop: Callable[[], bool] | None,
-    tell: Callable[[float, int], object] | None,
-) -> None:
-    """Gives parts to the workers of Dask until all are there. The folder says what is done, not the scheduler."""
-    from asyncio import CancelledError
-
-    import distributed
-
-    # Its functions have no types.
-    api: Any = distributed
-    client = api.Client(on) if isinstance(on, str) else on
-    path = os.path.realpath(core.path)
-    idle, first = 0, None
-    try:
-        while missing := [part for part in core.missing() if part % share[1] == share[0] - 1]:
-            first = len(missing) if first is None else first
-            size = math.ceil(len(missing) / _MOST_TASKS)
-            groups = [missing[k : k + size] for k in range(0, len(missing), size)]
-            waiting = set(client.map(fill_parts, [path] * len(groups), groups, [threads] * len(groups), pure=False, retries=3))
-            trouble: BaseException | None = None
-            try:
-                while waiting:
-                    try:
-                        done, waiting = api.wait(waiting, timeout=0.5, return_when="FIRST_COMPLETED")
-                        trouble = next((task.exception() for task in done if task.status == "error"), trouble)
-                        if isinstance(trouble, (OSError, ModelError)):
-                            break
-                    except api.TimeoutError:
-                        pass
-                    if tell is not None:
-                        cases = (first - len(missing) + len(groups) * size - len(waiting) * size) * core.chunk
-                        tell(float(cases), cases)
-                    if stop is not None and stop():
-                        client.cancel(list(waiting))
-                        return
-            except KeyboardInterrupt:
-                client.cancel(list(waiting))
-                raise Interrupted(SweepFolder(core)) from None
-            except (Exception, CancelledError) as error:  # the scheduler is gone
-                trouble = error
-            if isinstance(trouble, (OSError, ModelError)):
-                client.cancel(list(waiting))
-                raise trouble
-            left = sum(part % share[1] == share[0] - 1 for part in core.missing())
-            idle = idle + 1 if left >= len(missing) else 0
-            if left > 0 and (idle >= _ATTEMPTS or client.status != "running"):
-                raise OSError(f"{left} parts are missing: {trouble or 'the workers failed'}\nhint: the same call goes on") from trouble
-    finally:
-        if client is not on:
-            client.close()

@@ -44,6 +44,34 @@ def test_independent_velocities_give_the_same_motion(name: str) -> None:
     assert any(not np.allclose(other, f(0.5, f.start), rtol=1e-6) for other in others)
 
 
+SLEIGH_WITH_A_SPRING = """
+coordinates = ["x", "y", "th"]
+parameters = {{m = 2, a = "3/5", J = "1/2"}}
+frame.blade = "rotz(th)"
+body = [{{name = "sleigh", mass = "m", inertia = "J", center = "x*ex + y*ey + a*blade.x", orientation = "blade"}}]
+constraint = [{{name = "edge", equation = "y'*cos(th) - x'*sin(th) = 0"}}]
+force = [{{name = "spring", generalized = {{x = "{force}"}}}}]
+initial = {{th = 0, "x'" = 1}}
+"""
+
+
+@pytest.mark.parametrize("force", ["sqrt(2 + x^2)", "(2 + x^2)^(3/2)", "x'*sqrt(1 + x'^2 + y^2)", "sqrt(1 + t^2)", "tanh(x)"])
+def test_smooth_forces_leave_velocities_independent(force: str) -> None:
+    model = an.loads(SLEIGH_WITH_A_SPRING.format(force=force))
+    f, whole = model.dynamics(), model.dynamics(minimal=False)
+    assert f.minimal and len(f.states) == 5 and not whole.minimal
+    names = [c.name for c in model.coordinates]
+    x = np.array([0.4, -0.3, 0.7, 0.9, -0.6])
+    motion, slopes, t = f.motion(x, 0.25), f(0.25, x), 0.25
+    state = whole.state(t, q={n: motion[n] for n in names}, qdot={n + "'": motion[n + "'"] for n in names})
+    expected = dict(zip((s.name for s in whole.states), whole(t, state), strict=True))
+    # A velocity is linear in the independent ones and trigonometric in th: differences of order 4 of its rate along the motion.
+    h = 1e-3
+    for n in names:
+        up, down, up2, down2 = (f.motion(x + k * h * slopes, t)[n + "'"] for k in (1, -1, 2, -2))
+        assert (8 * (up - down) - (up2 - down2)) / (12 * h) == pytest.approx(expected[n + "'"], rel=1e-10, abs=1e-10)
+
+
 def by_differences(f: an.Dynamics, t: float, x: Any, u: Any, p: Any, directions: Any) -> Any:
     """The derivatives of the rates along directions of (x, u, p): differences of order 4 in 40 digits, from the formulas."""
     mpmath = pytest.importorskip("mpmath")

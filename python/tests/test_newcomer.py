@@ -104,6 +104,63 @@ def test_a_unit_of_another_quantity_is_refused(disc: an.Model) -> None:
     assert spring.check(initial={"x": "30 cm", "x'": "36 km/h"}).initial[0].value == 0.3
 
 
+def test_times_have_the_unit_of_a_time(disc: an.Model) -> None:
+    for made, said in (
+        (lambda: disc.simulate(to="3 kg"), ("to: a time (s) is expected here, this is a mass (kg)", "hint: a number in s")),
+        (lambda: disc.simulate(to=1, every="1 m"), ("every: a time (s) is expected here, this is a length (m)",)),
+        (lambda: disc.simulate(at=["1 kg"]), ("at: a time (s) is expected here",)),
+        (lambda: disc.simulate(to="30 deg"), ("to: a time (s) is expected here, this is a pure number",)),
+        (lambda: disc.simulate(to=1, tolerance="1 m"), ("tolerance: a pure number is expected here, this is a length (m)",)),
+        (lambda: disc.check(initial={"t": "3 kg"}), ("initial t: a time (s) is expected here",)),
+        (lambda: disc.evaluate(t="3 m"), ("initial t: a time (s) is expected here",)),
+        (lambda: disc.sweep({"m": [1]}, to="1 kg"), ("to: a time (s) is expected here",)),
+        (lambda: disc.sweep({"m": [1]}, at=["1 kg"]), ("at: a time (s) is expected here",)),
+    ):
+        with pytest.raises(an.ModelError) as raised:
+            made()
+        for part in said:
+            assert part in str(raised.value)
+    assert disc.simulate(to="100 ms", at=["0.1 s"])["t"].tolist() == [0.1]
+
+
+def test_lists_have_units_of_their_quantity() -> None:
+    for text in (SPRING, SPRING_WITHOUT_UNITS):
+        spring = an.loads(text)
+        for made, said in (
+            (lambda: spring.sweep({"m": ["1 m", "2 m"]}, to=1), "vary m: a mass (kg) is expected here, this is a length (m)"),
+            (lambda: spring.sweep({"x": [0, "1 kg"]}, to=1), "vary x: a length (m) is expected here, this is a mass (kg)"),
+            (lambda: spring.sweep({"x'": ["1 m"]}, to=1), "vary x': a velocity (m/s) is expected here"),
+            (lambda: spring.sweep({"m": an.normal("1 m", "2 m")}, cases=3, to=1), "a mass (kg) is expected here"),
+            (lambda: spring.stability("m", ["1 m", "2 m"]), "m: a mass (kg) is expected here, this is a length (m)"),
+            (lambda: spring.initial(x="3 kg"), "initial x: a length (m) is expected here"),
+        ):
+            with pytest.raises(an.ModelError) as raised:
+                made()
+            assert said in str(raised.value)
+        assert spring.sweep({"m": ["500 g", 2]}, to=1).cases == 2
+        assert spring.check(initial={"x": "30 cm"}).initial[0].value == 0.3
+
+
+def test_a_file_without_units_says_so() -> None:
+    scaled = an.loads(SPRING_WITHOUT_UNITS.replace('["x", 0, 0]', '["x^2 + x^3", 0, 0]'))
+    with pytest.raises(an.ModelError) as raised:
+        scaled.simulate(to=1, initial={"x": "3 kg"})
+    assert "initial x: the model has no units from which that of 'x' follows, and this is a mass (kg)" in str(raised.value)
+    assert "hint: a bare number" in str(raised.value)
+
+
+def test_another_value_has_the_unit_of_that_of_the_file() -> None:
+    with pytest.raises(an.ModelError, match=r"--set k=3 m: a stiffness \(N/m\) is expected here, this is a length \(m\)"):
+        an.loads(SPRING).with_(k="3 m")
+
+
+SPRING_WITHOUT_UNITS = """
+coordinates = ["x"]
+parameters = {m = 1, k = 3}
+particle = [{name = "p", mass = "m", position = ["x", 0, 0]}]
+potential.spring = "k*x^2/2"
+"""
+
 SPRING = """
 coordinates = ["x"]
 parameters = {m = "1 kg", k = "3 N/m"}

@@ -59,7 +59,12 @@ Error mistake(const std::string& message, const std::string& hint) {
   return {{d}, {}, "error: " + message + "\n" + (hint.empty() ? "" : "hint: " + hint + "\n")};
 }
 
-inner::Rational exact(const Number& number, const std::string& argument) { return constant(number, argument).value; }
+inner::Rational option_value(const Number& number, const inner::MotionOption& option) {
+  const inner::Constant value = constant(number, option.name);
+  const std::string called = std::string(option.name) + ": ";
+  return option.part == inner::MotionOption::Part::times ? inner::time_value(value, called)
+                                                         : inner::pure_value(value, called);
+}
 
 inner::Constant constant(const Number& number, const std::string& argument) {
   try {
@@ -83,7 +88,7 @@ inner::StateChoice state_choice(const PrepareOptions& options, const inner::Mode
   for (const auto& [name, number] : options.initial) {
     const inner::Constant value = constant(number, "initial " + name);
     if (name == "t")
-      choice.t = value.value;
+      choice.t = inner::time_value(value, "initial t: ");
     else
       inner::give(choice, model, inner::initial_name(name), value, "initial " + name + ": ");
   }

@@ -54,9 +54,10 @@ auto guarded(const inner::SourceText& source, F f) -> decltype(f()) {
   }
 }
 
-// The number as an exact rational in SI units. Throws Failure that names the argument.
-inner::Rational exact(const Number& number, const std::string& argument);
-// The same with the dimension of its unit.
+// The number of an option of motions, exact and in SI units. Throws Failure that names the option, also if the number has
+// the unit of another quantity than a time, or than a pure number.
+inner::Rational option_value(const Number& number, const inner::MotionOption& option);
+// The number as an exact rational in SI units, with the dimension of its unit. Throws Failure that names the argument.
 inner::Constant constant(const Number& number, const std::string& argument);
 
 // The form of that name. Throws Failure if there is none; with mechanics also if it does not apply.

@@ -62,8 +62,9 @@ Report public_report(const inner::SimulationReport& r) {
 inner::MotionSettings settings_of(const MotionOptions& asked) {
   inner::MotionSettings settings;
   const auto set = [&](const std::string& name, const std::vector<std::string>& words) {
-    inner::set(settings, inner::motion_option(name), words, name,
-               [&](const std::string& text) { return exact(Number(text), name); });
+    const inner::MotionOption& option = inner::motion_option(name);
+    inner::set(settings, option, words, name,
+               [&](const std::string& text) { return option_value(Number(text), option); });
   };
   for (const auto& [name, number] :
        {std::pair{"to", asked.to}, std::pair{"every", asked.every}, std::pair{"tolerance", asked.tolerance}})

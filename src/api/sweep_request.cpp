@@ -32,9 +32,9 @@ inner::Variation variation_of(const SweepOptions& asked, const inner::Model& mod
         v.add(text_of(each), model);
         continue;
       }
-      std::vector<inner::Rational> values;
-      for (const Number& n : each.values) values.push_back(exact(n, each.name));
-      v.add(each.name, std::move(values), model);
+      std::vector<inner::Constant> values;
+      for (const Number& n : each.values) values.push_back(constant(n, each.name));
+      v.add(each.name, values, model);
     }
   } catch (const inner::MistakeInWord& m) {
     refuse(m, "vary");
@@ -91,8 +91,9 @@ PreparedSweep::PreparedSweep(const System::Data& of, const SweepOptions& asked) 
   options.cases = variation->cases();
   options.numbers = [this](std::size_t number) { return inner::EnsembleCase{(*variation)(number), {}}; };
   const auto set = [&](const char* name, const std::vector<std::string>& words) {
-    inner::set(settings, inner::motion_option(name), words, name,
-               [&](const std::string& text) { return exact(Number(text), name); });
+    const inner::MotionOption& option = inner::motion_option(name);
+    inner::set(settings, option, words, name,
+               [&](const std::string& text) { return option_value(Number(text), option); });
   };
   if (asked.to) set("to", {asked.to->text()});
   if (asked.tolerance) set("tolerance", {asked.tolerance->text()});

@@ -5,6 +5,7 @@
 #include "cli/input.h"
 #include "cli/say.h"
 #include "result/format.h"
+#include "setup/choice.h"
 
 namespace anholon::cli {
 
@@ -110,7 +111,10 @@ void motion_option(CLI::App* c, SystemCommand& o, const char* name, const char* 
   const MotionOption& row = anholon::motion_option(name);
   const std::string flag = "--" + std::string(name);
   const auto take = [&o, &row, flag](const std::vector<std::string>& words) {
-    set(o.motion, row, words, flag, [&](const std::string& text) { return exact(text, flag); });
+    set(o.motion, row, words, flag, [&](const std::string& text) {
+      return row.part == MotionOption::Part::times ? time_value(constant(text, flag), flag + ": ")
+                                                   : pure_value(constant(text, flag), flag + ": ");
+    });
   };
   CLI::Option* option =
       std::holds_alternative<std::vector<WrittenTime> MotionSettings::*>(row.member)

@@ -73,12 +73,14 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
   const double t = made->start_time_ = static_cast<double>(here.t);
   made->coordinates_ = n;
   made->model_states_ = all - mechanical;
-  std::vector<Representation> list;
+  std::optional<Representation> mapped;
   if (no_plan(*made->program_).empty()) {
     const auto derived = KernelPlan::make(made->program_, 1, made->parameters_, t, state, Company::in_lanes);
     if (!derived) return no("the equations are singular at the start");
-    list = representations({derived, s.structure, {}, made->parameters_, t, state, s.mechanics.get()},
-                           WritingEffort::long_motion);
+    const ToRepresent equations{derived, s.structure, {}, made->parameters_, t, state, s.mechanics.get()};
+    if (ordinary && wanted.minimal) mapped = in_independent_velocities(equations);
+    made->plan_ =
+        mapped ? mapped->plan : cheapest_unmapped(representations(equations, WritingEffort::long_motion)).plan;
   } else {
     Expansion<long double> point(*made->program_, made->parameters_, 1);
     point.load(here.t, here.state, here.leading);
@@ -87,9 +89,6 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
     if (!o.ok()) return no(o.message);
     point.leading(made->start_leading_);
   }
-  const auto quasi = std::find_if(list.begin(), list.end(), [](const Representation& r) { return r.plan->map(); });
-  const Representation* mapped = ordinary && wanted.minimal && quasi != list.end() ? &*quasi : nullptr;
-  if (!list.empty()) made->plan_ = (mapped ? *mapped : cheapest_unmapped(list)).plan;
   if (mapped)
     made->put_independent_velocities(s.system, *mapped);
   else

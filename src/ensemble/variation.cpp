@@ -5,7 +5,6 @@
 #include "modelfile/names/constant.h"
 #include "numeric/philox.h"
 #include "numeric/sobol.h"
-#include "setup/choice.h"
 
 namespace anholon {
 
@@ -36,37 +35,37 @@ std::vector<Part> parts(const std::string& word, std::size_t from, std::size_t t
 
 constexpr const char* kHint = "--vary m=1:3:5 (from, to, how many), m=1,2,5, 'm~normal(1,0.1)' or 'm~uniform(0,2)'";
 
-// A number, a formula of numbers and pi, or a number with a unit, which must be that of the varied quantity.
-Rational number(const std::string& word, const Part& p, const std::string& unit) {
+// A number, a formula of numbers and pi, or a number with a unit.
+Constant constant_in(const std::string& word, const Part& p) {
+  try {
+    return read_constant(p.text);
+  } catch (const Failure& f) {
+    const std::string& why = f.diagnostic.message;
+    mistake_in(word, p.at, p.text.size(),
+               "'" + p.text + "' is not a number" + (why.rfind("'" + p.text, 0) == 0 ? "" : ": " + why), kHint);
+  }
+}
+
+// The part without blanks around it.
+Part without_blanks(const std::string& word, const Part& p) {
   std::size_t skip = 0;
   while (skip < p.text.size() && p.text[skip] == ' ') ++skip;
   std::string text = p.text.substr(skip);
   while (!text.empty() && text.back() == ' ') text.pop_back();
   if (text.empty()) mistake_in(word, p.at + skip, 1, "a number is missing here", kHint);
-  Constant c;
-  try {
-    c = read_constant(text);
-  } catch (const Failure& f) {
-    const std::string& why = f.diagnostic.message;
-    mistake_in(word, p.at + skip, text.size(),
-               "'" + text + "' is not a number" + (why.rfind("'" + text, 0) == 0 ? "" : ": " + why), kHint);
-  }
-  const std::optional<Unit> own = unit == "1" ? Unit{} : read_unit(unit);
-  if (c.dimension && own && own->dimension != *c.dimension)
-    mistake_in(word, p.at + skip, text.size(),
-               describe(own->dimension) + " is expected here, this is " + describe(*c.dimension),
-               unit == "1" ? "a bare number, or an angle: 30 deg" : "in " + unit + ", or a bare number in SI units");
-  return c.value;
+  return {p.at + skip, std::move(text)};
 }
 
-// The SI unit of the varied quantity; empty if it is unknown.
-std::string unit_of(const Varied& v, const Model& model) {
-  const std::vector<std::string>& units =
-      v.kind == Varied::Kind::parameter ? model.parameter_units : model.coordinate_units;
-  const std::string base = v.index < units.size() ? units[v.index] : std::string();
-  if (base.empty() || v.order == 0) return base;
-  const std::string power = std::to_string(v.order);
-  return base == "1" ? "s^-" + power : base + "/s" + (v.order > 1 ? "^" + power : "");
+Rational number(const std::string& word, const Part& part) {
+  return constant_in(word, without_blanks(word, part)).value;
+}
+
+// The same; a unit must be that of the varied quantity.
+Rational number(const std::string& word, const Part& part, GivenQuantity& of) {
+  const Part p = without_blanks(word, part);
+  const Constant c = constant_in(word, p);
+  if (const auto wrong = of.misfit(c)) mistake_in(word, p.at, p.text.size(), wrong->message, wrong->hint(""));
+  return c.value;
 }
 
 Varied named(const std::string& word, const std::string& text, const Model& model) {
@@ -99,7 +98,7 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
 }  // namespace
 
 // The law of random values, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO).
-Variation::Values Variation::law(const std::string& word, std::size_t sign, const std::string& unit) {
+Variation::Values Variation::law(const std::string& word, std::size_t sign, GivenQuantity& of) {
   Values values;
   const std::size_t open = word.find('(', sign);
   const std::string law = word.substr(sign + 1, (open == std::string::npos ? word.size() : open) - sign - 1);
@@ -115,7 +114,7 @@ Variation::Values Variation::law(const std::string& word, std::size_t sign, cons
   if (list.size() != 2)
     mistake_in(word, open, word.size() - open, "two numbers are expected here",
                "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
-  const Rational a = number(word, list[0], unit), b = number(word, list[1], unit);
+  const Rational a = number(word, list[0], of), b = number(word, list[1], of);
   values.law = law == "normal" ? Values::Law::normal : Values::Law::uniform;
   if (values.law == Values::Law::normal ? b < 0 : b < a)
     mistake_in(word, list[1].at, list[1].text.size(),
@@ -128,18 +127,17 @@ Variation::Values Variation::law(const std::string& word, std::size_t sign, cons
 }
 
 // A grid, NAME=FROM:TO:COUNT, or a list, NAME=A,B,….
-Variation::Values Variation::listed(const std::string& word, std::size_t sign, const std::string& unit) const {
+Variation::Values Variation::listed(const std::string& word, std::size_t sign, GivenQuantity& of) const {
   Values values;
   if (word.find(':', sign) == std::string::npos) {
-    for (const Part& p : parts(word, sign + 1, word.size(), ',')) values.list.push_back(number(word, p, unit));
+    for (const Part& p : parts(word, sign + 1, word.size(), ',')) values.list.push_back(number(word, p, of));
     return values;
   }
   const auto list = parts(word, sign + 1, word.size(), ':');
   if (list.size() != 3)
     mistake_in(word, sign + 1, word.size() - sign - 1, "a grid has three numbers",
                "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
-  const Rational from = number(word, list[0], unit), to = number(word, list[1], unit),
-                 count = number(word, list[2], "");
+  const Rational from = number(word, list[0], of), to = number(word, list[1], of), count = number(word, list[2]);
   if (count.get_den() != 1 || count < 1 || count > static_cast<unsigned long>(kMostPoints) ||
       (count == 1 && from != to))
     mistake_in(word, list[2].at, list[2].text.size(),
@@ -155,12 +153,13 @@ Rational Variation::Grid::operator[](std::size_t k) const {
   return from + (to - from) * part;
 }
 
-void Variation::name(const std::string& word, std::size_t sign, const Model& model) {
+GivenQuantity Variation::name(const std::string& word, std::size_t sign, const Model& model) {
   const Varied v = named(word, word.substr(0, sign), model);
   for (const Varied& before : varied_)
     if (before.name == v.name) mistake_in(word, 0, sign, "'" + v.name + "' is varied twice", "each name varies once");
   varied_.push_back(v);
-  units_.push_back(unit_of(v, model));
+  return v.kind == Varied::Kind::parameter ? GivenQuantity::of_parameter(model, v.index)
+                                           : GivenQuantity::of_coordinate(model, v.index, v.order);
 }
 
 std::size_t Variation::new_axis(std::size_t size) {
@@ -175,13 +174,13 @@ void Variation::add(const std::string& word, const Model& model) {
   const std::size_t sign = word.find_first_of("=~");
   if (sign == std::string::npos || sign == 0)
     mistake_in(word, 0, word.size(), "this is not of the form NAME=VALUES or NAME~LAW(…)", kHint);
-  name(word, sign, model);
-  values_.push_back(word[sign] == '~' ? law(word, sign, units_.back()) : listed(word, sign, units_.back()));
+  GivenQuantity of = name(word, sign, model);
+  values_.push_back(word[sign] == '~' ? law(word, sign, of) : listed(word, sign, of));
   if (!values_.back().drawn()) values_.back().axis = new_axis(values_.back().points());
 }
 
-void Variation::add(const std::string& name, std::vector<Rational> values, const Model& model) {
-  this->name(name, name.size(), model);
+void Variation::add(const std::string& name, const std::vector<Constant>& values, const Model& model) {
+  GivenQuantity of = this->name(name, name.size(), model);
   if (values.empty()) mistake_in(name, 0, name.size(), "there are no values to take", "one value at least");
   if (together_ && common_ && axes_[*common_] != values.size())
     mistake_in(name, 0, name.size(),
@@ -190,14 +189,18 @@ void Variation::add(const std::string& name, std::vector<Rational> values, const
   Values& listed = values_.emplace_back();
   listed.axis = together_ && common_ ? *common_ : new_axis(values.size());
   if (together_) common_ = listed.axis;
-  listed.list = std::move(values);
+  for (const Constant& value : values) {
+    if (const auto wrong = of.misfit(value)) mistake_in(name, 0, name.size(), wrong->message, wrong->hint(""));
+    listed.list.push_back(value.value);
+  }
 }
 
 void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) {
-  const std::size_t first = varied_.size(), axis = new_axis(table->rows());
+  const std::size_t axis = new_axis(table->rows());
+  std::vector<GivenQuantity> quantities;
   for (std::size_t k = 0; k < table->names().size(); ++k) {
     try {
-      name(table->names()[k], table->names()[k].size(), model);
+      quantities.push_back(name(table->names()[k], table->names()[k].size(), model));
     } catch (const MistakeInWord& m) {
       const bool unit = table->names()[k].find_first_of("([") != std::string::npos;
       table->mistake_in_header(k, m.diagnostic.message,
@@ -212,7 +215,7 @@ void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) 
   for (std::size_t row = 0; row < table_->rows(); ++row) {
     const std::vector<std::string> cells = table_->cells(row);
     for (std::size_t k = 0; k < cells.size(); ++k) try {
-        number(cells[k], {0, cells[k]}, units_[first + k]);
+        number(cells[k], {0, cells[k]}, quantities[k]);
       } catch (const MistakeInWord& m) {
         table_->mistake(row, k, m.diagnostic.message, "a number, pi/2, or a number with a unit: 8 cm");
       }
@@ -272,7 +275,7 @@ std::vector<Rational> Variation::operator()(std::size_t number) const {
       out[i] = Rational(draw(v, number));
     } else if (v.cell) {
       if (cells.empty()) cells = table_->cells(points[v.axis]);
-      out[i] = anholon::number(cells[*v.cell], {0, cells[*v.cell]}, units_[i]);
+      out[i] = anholon::number(cells[*v.cell], {0, cells[*v.cell]});
     } else {
       out[i] = v.at(points[v.axis]);
     }

@@ -9,6 +9,7 @@
 #include "ensemble/case_table.h"
 #include "ensemble/ensemble.h"
 #include "ensemble/mistake_in_word.h"
+#include "setup/choice.h"
 
 namespace anholon {
 
@@ -20,8 +21,8 @@ class Variation {
   // NAME=FROM:TO:COUNT, NAME=A,B,…, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO). The points of a grid are
   // computed when they are asked for. Throws MistakeInWord.
   void add(const std::string& word, const Model& model);
-  // A list of values in SI units. Throws MistakeInWord.
-  void add(const std::string& name, std::vector<Rational> values, const Model& model);
+  // A list of values. Throws MistakeInWord, also if one has the unit of another quantity.
+  void add(const std::string& name, const std::vector<Constant>& values, const Model& model);
   // The cases of a table, all of which are read once. Throws MistakeInWord.
   void add(std::shared_ptr<const CaseTable> table, const Model& model);
   // The lists that are added from here on go together, value by value: they are one axis. Throws MistakeInWord if one of
@@ -67,15 +68,14 @@ class Variation {
     std::size_t points() const { return grid ? grid->points : list.size(); }  // of a list or a grid
     Rational at(std::size_t k) const { return grid ? (*grid)[k] : list[k]; }
   };
-  Values law(const std::string& word, std::size_t sign, const std::string& unit);
-  Values listed(const std::string& word, std::size_t sign, const std::string& unit) const;
-  void name(const std::string& word, std::size_t sign, const Model& model);
+  Values law(const std::string& word, std::size_t sign, GivenQuantity& of);
+  Values listed(const std::string& word, std::size_t sign, GivenQuantity& of) const;
+  GivenQuantity name(const std::string& word, std::size_t sign, const Model& model);
   std::size_t new_axis(std::size_t size);
   double draw(const Values& v, std::size_t number) const;
 
   std::vector<Varied> varied_;
   std::vector<Values> values_;
-  std::vector<std::string> units_;
   std::vector<std::size_t> axes_;  // their sizes
   std::shared_ptr<const CaseTable> table_;
   std::optional<std::size_t> common_;  // the axis of lists that go together

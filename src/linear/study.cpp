@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "linear/equilibrium.h"
-#include "modelfile/names/constant.h"
+#include "setup/choice.h"
 
 namespace anholon {
 
@@ -14,9 +14,9 @@ namespace {
 constexpr std::size_t kMostValues = 10000;
 constexpr int kWorkingDigits = 36, kGuardDigits = 24;  // 36: two words of 64 bits, with which MPFR is fastest
 
-Rational number(const std::string& text, const std::string& called) {
+Constant constant_of(const std::string& text, const std::string& called) {
   try {
-    return read_constant(text).value;
+    return read_constant(text);
   } catch (const Failure& f) {
     const std::string why = f.diagnostic.message.rfind("'" + text, 0) == 0 ? "" : ": " + f.diagnostic.message;
     throw Failure({}, called + "'" + text + "' is not a number" + why,
@@ -24,18 +24,25 @@ Rational number(const std::string& text, const std::string& called) {
   }
 }
 
+Rational number(const std::string& text, const std::string& called, GivenQuantity& of) {
+  const Constant c = constant_of(text, called);
+  if (const auto wrong = of.misfit(c)) throw Failure({}, called + wrong->message, wrong->hint("a number "));
+  return c.value;
+}
+
 [[noreturn]] void wrong(const std::string& called, const std::string& name, const std::string& why) {
   throw Failure({}, called + why,
                 "a range NAME=FROM..TO:STEP such as " + name + "=0..10:1, or values " + name + "=0,1,2");
 }
 
-std::vector<Rational> values_of(const std::string& text, const std::string& name, const std::string& called) {
+std::vector<Rational> values_of(const std::string& text, const std::string& name, const std::string& called,
+                                GivenQuantity of) {
   std::vector<Rational> values;
   const std::size_t dots = text.find("..");
   if (dots == std::string::npos) {
     for (std::size_t at = 0; at <= text.size();) {
       const std::size_t comma = std::min(text.find(',', at), text.size());
-      if (comma > at) values.push_back(number(text.substr(at, comma - at), called));
+      if (comma > at) values.push_back(number(text.substr(at, comma - at), called, of));
       at = comma + 1;
     }
     if (values.empty()) wrong(called, name, "no value is given");
@@ -43,9 +50,9 @@ std::vector<Rational> values_of(const std::string& text, const std::string& name
   }
   const std::size_t colon = text.find(':', dots);
   if (colon == std::string::npos) wrong(called, name, "'" + text + "' has no step");
-  const Rational from = number(text.substr(0, dots), called),
-                 to = number(text.substr(dots + 2, colon - dots - 2), called),
-                 step = number(text.substr(colon + 1), called);
+  const Rational from = number(text.substr(0, dots), called, of),
+                 to = number(text.substr(dots + 2, colon - dots - 2), called, of),
+                 step = number(text.substr(colon + 1), called, of);
   if (step == 0 || (to - from) / step < 0)
     wrong(called, name, "no step of " + to_string(step) + " leads from " + to_string(from) + " to " + to_string(to));
   if ((to - from) / step > static_cast<long>(kMostValues))
@@ -81,7 +88,7 @@ ParameterRange read_range(const std::string& text, const Model& model, const std
                   "a range such as v=0..10:1, or values v=0,1,2");
   const std::string name = text.substr(0, equals);
   const std::size_t parameter = parameter_of(model, name, called);
-  return {parameter, values_of(text.substr(equals + 1), name, called)};
+  return {parameter, values_of(text.substr(equals + 1), name, called, GivenQuantity::of_parameter(model, parameter))};
 }
 
 LinearStudy::LinearStudy(std::shared_ptr<const Model> model, LinearRequest request) : request_(std::move(request)) {

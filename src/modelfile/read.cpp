@@ -9,6 +9,7 @@
 #include "modelfile/check/dimensions.h"
 #include "modelfile/check/values.h"
 #include "modelfile/contacts.h"
+#include "modelfile/implied_units.h"
 #include "modelfile/mechanical/bodies.h"
 #include "modelfile/mechanical/constraints.h"
 #include "modelfile/mechanical/control.h"
@@ -20,6 +21,7 @@
 #include "modelfile/motion/monitor.h"
 #include "modelfile/motion/simulate.h"
 #include "modelfile/motion/view.h"
+#include "modelfile/names/constant.h"
 #include "modelfile/names/names.h"
 #include "modelfile/names/notation.h"
 #include "modelfile/text/collect.h"
@@ -116,6 +118,8 @@ class Reader {  // its references are used only while it runs
     });
     if (!diagnostics_.has_errors()) check_values(model_, diagnostics_);
     if (!diagnostics_.has_errors()) check_dimensions(root, scope_, model_, diagnostics_);
+    if (!diagnostics_.has_errors())
+      for (const Replaced& r : replaced_) guard([&] { must_have_unit_of(r); });
     // From here on, expressions grow in proportion to the model.
     model_.graph->allow(kWorkLater);
     if (!diagnostics_.has_errors() && model_.bodies.empty())
@@ -123,6 +127,8 @@ class Reader {  // its references are used only while it runs
                          "add [[body]] or [[particle]] with name, mass and center or position");
     return !diagnostics_.has_errors();
   }
+
+  std::map<std::string, std::string> implied_units() const { return anholon::implied_units(root_, scope_, model_); }
 
   Model& model() { return model_; }
   Scope& scope() { return scope_; }
@@ -258,6 +264,7 @@ class Reader {  // its references are used only while it runs
               else
                 throw Failure(value->span, "the value of a parameter is a number, a formula or a vector");
               if (const auto o = overrides_.find(i.key); o != overrides_.end()) {
+                replaced_.push_back({d.formula.text(), o->second, "--set " + o->first + "=" + o->second + ": "});
                 d.formula = FormulaText(o->second, Span{});
                 d.override = "--set " + o->first + "=" + o->second;
                 d.item = nullptr;
@@ -277,6 +284,28 @@ class Reader {  // its references are used only while it runs
             {}, "--set: there is no parameter '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
             parameters_known(known));
       }
+  }
+
+  // A value of the file, and the one from outside that replaces it.
+  struct Replaced {
+    std::string before, given, called;
+  };
+
+  // Throws if a value from outside has the unit of another quantity than the one that it replaces. A value that clashes
+  // with a formula is reported there.
+  static void must_have_unit_of(const Replaced& r) {
+    const auto dimension = [](const std::string& text) -> std::optional<Dimension> {
+      try {
+        return read_constant(text).dimension;
+      } catch (const Failure&) {
+        return std::nullopt;  // a formula
+      }
+    };
+    const std::optional<Dimension> wanted = dimension(r.before), here = dimension(r.given);
+    if (wanted && here && *wanted != *here)
+      throw Failure({}, r.called + describe(*wanted) + " is expected here, this is " + describe(*here),
+                    *wanted == Dimension{} ? "a bare number, or an angle: 30 deg"
+                                           : "a number in " + print(*wanted) + ", or a bare number in SI units");
   }
 
   static std::string parameters_known(const std::vector<std::string>& names) {
@@ -351,6 +380,7 @@ class Reader {  // its references are used only while it runs
   const Overrides& overrides_;
   const std::vector<std::string>& cases_;
   std::set<std::string> index_overrides_;
+  std::vector<Replaced> replaced_;
   Item root_;  // referenced by the scope
   Model model_;
   Scope scope_;
@@ -421,6 +451,15 @@ std::optional<OpenModel> open_model(const SourceText& source, Diagnostics& diagn
   const auto reader = std::make_shared<Reader>(source, diagnostics, overrides, cases);
   if (!reader->run()) return std::nullopt;
   return OpenModel{std::shared_ptr<const Model>(reader, &reader->model()), std::make_shared<DerivedNames>(reader)};
+}
+
+std::map<std::string, std::string> implied_units(const Model& model) {
+  Diagnostics diagnostics;
+  const Overrides overrides;
+  const std::vector<std::string> cases;
+  Reader reader(model.source_text, diagnostics, overrides, cases);
+  if (!reader.run()) return {};
+  return reader.implied_units();
 }
 
 const std::vector<Contact>& contacts(const Names& names) { return dynamic_cast<const DerivedNames&>(names).contacts(); }

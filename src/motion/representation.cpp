@@ -127,7 +127,8 @@ double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>&
 std::optional<Representation> in_quasi_velocities(const ToRepresent& e) {
   const Program& derived = e.derived->program();
   const System& s = *derived.system;
-  if (!e.mechanics || s.form != find_formulation("routh") || s.constraints.empty() || derived.unknowns() > kMostInQuasi)
+  if (e.derived->tables().refine || !e.mechanics || s.form != find_formulation("routh") || s.constraints.empty() ||
+      derived.unknowns() > kMostInQuasi)
     return std::nullopt;
   for (std::size_t j = 0; j < derived.unknowns(); ++j)
     if (derived.d[j] != (j < s.coordinates ? 2 : j < s.mechanical() ? 0 : 1)) return std::nullopt;
@@ -195,14 +196,15 @@ std::vector<Representation> representations(const ToRepresent& e, WritingEffort 
   if (followed_by_slots(first)) return list;
   if (!first.tables().refine || (large(first) && derived.unknowns() <= kMostRefined))
     add(e, Writing::rates, left_to_series(e), list);
-  if (!first.tables().refine)
-    if (auto quasi = in_quasi_velocities(e)) list.push_back(std::move(*quasi));
+  if (auto quasi = in_quasi_velocities(e)) list.push_back(std::move(*quasi));
   if (large(first)) return list;
   add(e, Writing::paired, std::make_shared<const Program>(program(*derived.system, e.structure, e.quadratures, true)),
       list);
   add_representations(e, effort, list);
   return list;
 }
+
+std::optional<Representation> in_independent_velocities(const ToRepresent& e) { return in_quasi_velocities(e); }
 
 void add_representations(const ToRepresent& e, WritingEffort effort, std::vector<Representation>& list) {
   const KernelPlan& first = *e.derived;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "modelfile/implied_units.h"
+
 namespace anholon {
 
 static std::string suggestion(const std::string& name, const std::vector<std::string>& names) {
@@ -80,20 +82,70 @@ unsigned first_determined_order(const Model& model) {
   return order;
 }
 
-// Throws if the value has a unit that the derivative of a coordinate cannot have.
-static void must_fit(const Model& model, std::size_t coordinate, unsigned order, const Constant& value,
-                     const std::string& called) {
-  const std::string unit =
-      coordinate < model.coordinate_units.size() ? model.coordinate_units[coordinate] : std::string();
-  const std::optional<Unit> own = unit == "1" ? Unit{} : read_unit(unit);
-  if (!value.dimension || !own) return;
-  Dimension wanted = own->dimension;
-  wanted[2] -= order;
-  if (wanted == *value.dimension) return;
-  throw Failure({}, called + describe(wanted) + " is expected here, this is " + describe(*value.dimension),
-                wanted == Dimension{} ? "a bare number, or an angle: 30 deg"
-                                      : "a number in " + print(wanted) + ", or a bare number in SI units");
+GivenQuantity::GivenQuantity(const Model& model, std::string name, std::string unit, unsigned order)
+    : model_(&model), name_(std::move(name)), unit_(std::move(unit)), order_(order) {}
+
+static std::string unit_at(const std::vector<std::string>& units, std::size_t index) {
+  return index < units.size() ? units[index] : std::string();
 }
+
+GivenQuantity GivenQuantity::of_parameter(const Model& model, std::size_t index) {
+  return {model, model.parameters[index].name, unit_at(model.parameter_units, index), 0};
+}
+GivenQuantity GivenQuantity::of_coordinate(const Model& model, std::size_t index, unsigned order) {
+  return {model, model.coordinates[index].name, unit_at(model.coordinate_units, index), order};
+}
+
+static std::optional<Dimension> dimension_of(const std::string& unit) {
+  if (unit == "1") return Dimension{};
+  const std::optional<Unit> read = read_unit(unit);
+  return read ? std::optional(read->dimension) : std::nullopt;
+}
+
+// The message about a value of another quantity.
+static GivenQuantity::Misfit other_quantity(const Dimension& wanted, const Dimension& here) {
+  return {describe(wanted) + " is expected here, this is " + describe(here), print(wanted)};
+}
+
+std::optional<GivenQuantity::Misfit> GivenQuantity::misfit(const Constant& value) {
+  if (!value.dimension) return std::nullopt;
+  const bool units = !model_->coordinate_units.empty() || !model_->parameter_units.empty();
+  // In a file without units an angle may stand for any number.
+  if (!units && *value.dimension == Dimension{}) return std::nullopt;
+  if (!units && !looked_) {
+    const auto all = implied_units(*model_);
+    const auto own = all.find(name_);
+    unit_ = own == all.end() ? "" : own->second;
+    looked_ = true;
+  }
+  std::optional<Dimension> wanted = dimension_of(unit_);
+  if (!wanted && units) return std::nullopt;
+  if (!wanted)
+    return Misfit{"the model has no units from which that of '" + name_ + "' follows, and this is " +
+                      describe(*value.dimension),
+                  ""};
+  (*wanted)[2] -= order_;
+  if (*wanted == *value.dimension) return std::nullopt;
+  return other_quantity(*wanted, *value.dimension);
+}
+
+std::string GivenQuantity::Misfit::hint(const std::string& before) const {
+  if (unit.empty()) return "a bare number, in the units that the model is meant in";
+  return unit == "1" ? "a bare number, or an angle: 30 deg" : before + "in " + unit + ", or a bare number in SI units";
+}
+
+static Rational value_in(const Dimension& wanted, const Constant& value, const std::string& called) {
+  if (value.dimension && *value.dimension != wanted) {
+    const GivenQuantity::Misfit m = other_quantity(wanted, *value.dimension);
+    throw Failure({}, called + m.message, m.hint("a number "));
+  }
+  return value.value;
+}
+
+Rational time_value(const Constant& value, const std::string& called) {
+  return value_in(*dimension_of("s"), value, called);
+}
+Rational pure_value(const Constant& value, const std::string& called) { return value_in({}, value, called); }
 
 void give(StateChoice& choice, const Model& model, const InitialName& of, const Constant& value,
           const std::string& called) {
@@ -111,7 +163,9 @@ void give(StateChoice& choice, const Model& model, const InitialName& of, const 
   for (const StateOverride& before : choice.overrides)
     if (before.multiplier == of.multiplier && before.order == of.order && before.coordinate == index)
       throw Failure({}, called + "'" + of.name + "' is given twice");
-  if (!of.multiplier) must_fit(model, index, of.order, value, called);
+  if (!of.multiplier)
+    if (const auto wrong = GivenQuantity::of_coordinate(model, index, of.order).misfit(value))
+      throw Failure({}, called + wrong->message, wrong->hint("a number "));
   choice.overrides.push_back({of.order, index, value.value, of.multiplier});
 }
 

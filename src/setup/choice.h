@@ -29,6 +29,35 @@ InitialName initial_name(const std::string& written);
 void give(StateChoice& choice, const Model& model, const InitialName& of, const Constant& value,
           const std::string& called = {});
 
+// The quantity of values that are given beside a model: of a parameter, or of a derivative of a coordinate. In a file
+// without units it follows from the formulas; the text of the file is then read again, once.
+class GivenQuantity {
+ public:
+  // REQUIRES: the model outlives the object.
+  static GivenQuantity of_parameter(const Model& model, std::size_t index);
+  static GivenQuantity of_coordinate(const Model& model, std::size_t index, unsigned order);
+
+  struct Misfit {
+    std::string message;  // "a length (m) is expected here, this is a mass (kg)"
+    std::string unit;     // the SI unit that is expected; "1" of a pure number; empty if there is none
+    // "a number in m, or a bare number in SI units"; `before` is "a number " or empty.
+    std::string hint(const std::string& before) const;
+  };
+  // Returns nullopt if the value has no unit, or one of this quantity.
+  std::optional<Misfit> misfit(const Constant& value);
+
+ private:
+  GivenQuantity(const Model& model, std::string name, std::string unit, unsigned order);
+
+  const Model* model_;
+  std::string name_, unit_;  // unit_: that of the file, empty if it is unknown
+  unsigned order_;
+  bool looked_ = false;
+};
+// The value of a time in s, and of a pure number. Both throw if the value has another unit; `called` begins the message: "--to: ".
+Rational time_value(const Constant& value, const std::string& called);
+Rational pure_value(const Constant& value, const std::string& called);
+
 // Derivatives of this order and above follow from the state.
 unsigned first_determined_order(const Model& model);
 

@@ -19,6 +19,7 @@
 #include "plot/drawing.h"
 #include "plot/terminal.h"
 #include "result/file.h"
+#include "setup/choice.h"
 
 namespace anholon::cli {
 
@@ -87,7 +88,9 @@ void take_size(const std::string& text, Target t, FigureOptions& figure, Termina
   }
 }
 
-double time(const std::string& text, const char* option) { return exact(text, option).get_d(); }
+double time(const std::string& text, const char* option) {
+  return time_value(constant(text, option), std::string(option) + ": ").get_d();
+}
 
 bool colours() {
   const char* no = std::getenv("NO_COLOR");

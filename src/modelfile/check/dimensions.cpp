@@ -309,4 +309,15 @@ void check_dimensions(const Item& root, const Scope& scope, Model& model, Diagno
   note_bare_numbers(scope, model);
 }
 
+std::map<std::string, std::string> implied_units(const Item& root, const Scope& scope, const Model& model) {
+  Elements elements(root, scope, model);
+  elements.run();
+  std::map<std::string, std::string> units;
+  if (!elements.found().empty()) return units;
+  for (const auto* names : {&model.names.coordinates, &model.names.parameters})
+    for (const std::string& name : *names)
+      if (const auto d = elements.formulas().known(name)) units.emplace(name, print(*d));
+  return units;
+}
+
 }  // namespace anholon

@@ -4,11 +4,16 @@
 // consistent. In such a file formulas may contradict one another, as those with scaled quantities do; a value with a unit
 // from outside (--set) may not.
 #pragma once
+#include <map>
+
 #include "modelfile/names/names.h"
 
 namespace anholon {
 
 // Reports clashes, and stores the units that were found in the model. The file must have no errors.
 void check_dimensions(const Item& root, const Scope& scope, Model& model, Diagnostics& diagnostics);
+// The units of the coordinates and parameters of a file without units, as far as they follow from its formulas: a position
+// is a length. Empty if the formulas contradict one another.
+std::map<std::string, std::string> implied_units(const Item& root, const Scope& scope, const Model& model);
 
 }  // namespace anholon
