@@ -55,6 +55,41 @@ std::shared_ptr<const Model> searched_from(const Model& at_rest, StateChoice& ch
   return m;
 }
 
+std::vector<std::size_t> without_influence(const Scenario& scenario) {
+  Workspace s(scenario);
+  Graph& g = s.graph();
+  const System& system = s.routh ? *s.routh : s.system;
+  Column conditions = system.equations;
+  conditions.insert(conditions.end(), s.mechanics->phi.begin(), s.mechanics->phi.end());
+  try {
+    conditions = substitute(conditions, [&](NodeId id) {
+      const Node& n = g.node(id);
+      return n.kind == Kind::jet && n.order > 0 ? g.zero() : Expr{};
+    });
+  } catch (const Failure&) {
+    // A formula divides by a velocity. What occurs in it may then have influence.
+  }
+  const std::vector<NodeId> met = symbols(conditions);
+  std::vector<std::size_t> list;
+  for (std::size_t a = 0; a < s.mechanics->q.size(); ++a)
+    if (std::find(met.begin(), met.end(), s.mechanics->q[a].id) == met.end()) list.push_back(a);
+  return list;
+}
+
+std::shared_ptr<const Model> held_at_start(const Model& at_rest, const std::vector<std::size_t>& coordinates) {
+  auto m = std::make_shared<Model>(at_rest);
+  InitialData& data = m->initial;
+  for (std::size_t a : coordinates) {
+    const Expr q = m->graph->jet(static_cast<std::uint32_t>(a), 0);
+    GivenValue start{q, m->graph->zero(), {}};
+    for (const GivenValue& v : data.guess)
+      if (v.symbol == q) start = v;
+    std::erase_if(data.guess, [&](const GivenValue& v) { return v.symbol == q; });
+    data.given.push_back(start);
+  }
+  return m;
+}
+
 void say_no_rest(Outcome& o) {
   if (o.kind != OutcomeKind::inconsistent) return;
   o.message = "no equilibrium was found near the initial positions";

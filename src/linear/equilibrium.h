@@ -16,6 +16,13 @@ std::shared_ptr<const Model> at_rest(const Model& model);
 // they would not be an equilibrium. Throws Failure if the choice gives more than positions.
 std::shared_ptr<const Model> searched_from(const Model& at_rest, StateChoice& choice);
 
+// The coordinates that occur in no condition of rest: neither in a constraint nor in a law with all velocities and
+// accelerations zero. The search moves such a coordinate with the others, if the mass matrix couples them.
+std::vector<std::size_t> without_influence(const Scenario& at_rest);
+
+// The model with the start values of these coordinates given, so that the search leaves them as they are.
+std::shared_ptr<const Model> held_at_start(const Model& at_rest, const std::vector<std::size_t>& coordinates);
+
 // If no equilibrium was found, the failed conditions are those of the search, not of the file: replaces the message.
 void say_no_rest(Outcome& outcome);
 

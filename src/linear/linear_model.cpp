@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/assert.h"
+#include "numeric/more_digits.h"
 #include "tape/bind.h"
 
 namespace anholon {
@@ -424,7 +425,8 @@ Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearM
   for (std::size_t i = 0; i < core.rows; ++i)
     for (std::size_t k = 0; k < core.cols; ++k) core(i, k) = out.A(out.core[i], out.core[k]);
   if (!eigenvalues(core, out.spectrum))
-    return {OutcomeKind::no_convergence, "the eigenvalues of A were not found", "ask for more digits: --digits 60"};
+    return {OutcomeKind::no_convergence, "the eigenvalues of A were not found",
+            "ask for more digits: --digits " + std::to_string(more_digits<Multi>())};
   return {};
 }
 

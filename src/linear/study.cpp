@@ -97,6 +97,9 @@ LinearStudy::LinearStudy(std::shared_ptr<const Model> model, LinearRequest reque
   if (request_.equilibrium) model = searched_from(*model, request_.choice);
   if (const auto d = not_integrated(*model)) throw Failure(*d);
   start_ = make_scenario(model, *request_.form, request_.choice, scenario_);
+  if (!request_.equilibrium || !start_.ok()) return;
+  if (const std::vector<std::size_t> held = without_influence(scenario_); !held.empty())
+    start_ = make_scenario(held_at_start(*model, held), *request_.form, request_.choice, scenario_);
 }
 
 int LinearStudy::working_digits() const { return std::max(kWorkingDigits, request_.digits + kGuardDigits); }

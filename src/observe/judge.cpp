@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "numeric/more_digits.h"
+
 namespace anholon {
 
 template <Number N>
@@ -75,7 +77,9 @@ void Judge<N>::estimate(const Course<N>& course, const std::vector<Expr>& quadra
   report.warnings.push_back(
       {"no digit of " + e.lost_of + " can be trusted from t = " + number_text(*e.lost, 6) +
            " on: the error is as large as the motion",
-       "end the motion earlier, or take a smaller tolerance, with more digits where it is below 1e-15 (--digits 30)"});
+       "end the motion earlier, or take a smaller tolerance, " +
+           std::string(has_many_digits<N>() ? "which more digits bring" : "with more digits where it is below 1e-15") +
+           " (--digits " + std::to_string(more_digits<N>()) + ")"});
 }
 
 template class Judge<double>;

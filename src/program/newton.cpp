@@ -1,4 +1,5 @@
 // The part of an expansion that solves for the leading derivatives.
+#include "numeric/more_digits.h"
 #include "numeric/relative.h"
 #include "program/expansion.h"
 #include "program/fault.h"
@@ -109,7 +110,8 @@ Outcome Expansion<N>::unsolved() const {
             "the equations may have no real solution here (a branch ends), or another branch is near: give a guess"};
   return {OutcomeKind::no_convergence,
           "the equations are so nearly singular that round-off hides their solution for the leading derivatives",
-          "ask for more digits (--digits 30), or write coordinates and constraints so that they are regular here"};
+          "ask for more digits (--digits " + std::to_string(more_digits<N>()) +
+              "), or write coordinates and constraints so that they are regular here"};
 }
 
 #define INSTANTIATE(N)                                                                                                 \

@@ -33,7 +33,8 @@ void Borders::count_keys() {
   for (std::size_t axis = size_.size(); axis-- > 0;) {
     stride_[axis] = all;
     if (size_[axis] > kMost / all)
-      throw Failure({}, "the refined grid would have more than 2^62 points", "fewer generations: --refine 5");
+      throw Failure({}, "the refined grid would have more than 2^62 points",
+                    "fewer generations (--refine), or fewer values along an axis");
     all *= size_[axis];
   }
 }

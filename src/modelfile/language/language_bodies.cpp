@@ -230,8 +230,8 @@ torque = "u*ez"
   note. `0` is also the zero vector.
 - With `one_sided = true` the left side may become larger than the right one: the constraint opens where its force would pull, and closes again
   without rebound. It is a [contact](#contact) without friction, with its events and columns (`NAME.leaves`, `NAME.normal`), and has no `lambda.NAME`.
-- With `by` no ideal reaction acts: the input becomes the unknown instead of λ, and its formula is not used. An input keeps one equation only. Forms that
-  eliminate do not apply.
+- With `by` no ideal reaction acts: the input, which has no formula (`u = {}`), becomes the unknown instead of λ. An input keeps one
+  equation only. Forms that eliminate do not apply.
 - An input with a formula may occur in a constraint: its formula is put in.
 - An equation that always holds, or never, is an error; one that follows from others is found when the motion starts.
 

@@ -95,11 +95,14 @@ void keep_by(const Item& by, std::size_t first, const Scope& scope, Model& model
     if (u.constraint)
       throw Failure(names[k]->span, "the input '" + name + "' keeps the constraint '" +
                                         model.constraints[*u.constraint].name + "' already");
+    if (u.value)
+      throw Failure(names[k]->span,
+                    "the input '" + name + "' has a formula, so it cannot be the unknown that keeps a constraint",
+                    name + " = {} in [input] leaves it open, or name another input");
     u.constraint = first + k;
     model.constraints[first + k].by = it->second.index;
     model.notes.push_back("constraint '" + model.constraints[first + k].name + "' is kept by the input '" + name +
-                          "' (servo): no ideal reaction acts" +
-                          (u.value ? ", and the formula of '" + name + "' is not used" : ""));
+                          "' (servo): no ideal reaction acts");
   }
 }
 

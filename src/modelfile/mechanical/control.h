@@ -1,8 +1,8 @@
 // [input] and [output]: the inputs of a control, and recorded quantities.
 //
 // An input is a formula in any symbols. It is a symbol of its own while the equations are derived; its formula is
-// substituted when the system is made. An input named in `by = "u"` of a constraint maintains that constraint: the
-// input is an unknown in place of lambda (servo constraint), and its formula, if there is one, is not used.
+// substituted when the system is made. An input without a formula, named in `by = "u"` of a constraint, maintains that
+// constraint: the input is an unknown in place of lambda (servo constraint).
 #pragma once
 #include "modelfile/names/names.h"
 
@@ -11,7 +11,7 @@ namespace anholon {
 void declare_controls(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
 // Call it after all names are declared and before constraints are read.
 void read_controls(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
-// Reads `by` of the constraints from `first` on: one input for each of them.
+// Reads `by` of the constraints from `first` on: one input without a formula for each of them.
 void keep_by(const Item& by, std::size_t first, const Scope& scope, Model& model);
 // Checks that an input without a formula maintains a constraint.
 void check_kept(const Model& model, Diagnostics& diagnostics);
