@@ -19,7 +19,7 @@ LEVEL = {
     "modelfile/motion": 5.4, "modelfile/check": 5.5, "modelfile": 5.6, "mechanics": 5.7,
     "formulation": 6, "formulation/forms/multipliers": 6.1, "formulation/forms/coordinates": 6.1,
     "formulation/forms/quasi_velocities": 6.1, "system": 7, "lowering": 7.5, "structure": 8, "proof/checker": 7.8, "proof": 8,
-    "program": 9, "emit": 9, "setup": 9.2, "kernel/plan": 9.4, "kernel": 9.5, "kernel/tiers": 9.6, "jit": 10,
+    "program": 9, "emit": 9, "setup": 9.2, "kernel/plan": 9.4, "kernel": 9.5, "kernel/tiers": 9.6, "jit/x86": 9.9, "jit": 10,
     "integrate/series": 9.8, "integrate": 10, "integrate/states": 10.1, "result": 11, "result/hdf5": 11.1, "result/parquet": 11.1, "motion": 11.5, "dynamics": 11.7, "observe/rows": 11.9, "observe": 12, "linear": 12, "simulation": 12.2, "contact": 12.25,
     "ensemble": 12.3, "ensemble/store": 12.3, "ensemble/parts": 12.4, "ensemble/refine": 12.4, "published": 12.5, "published/findings": 12.6, "plot": 13, "report": 13.5, "report/page": 13.6, "api": 13.8, "studio": 13.9, "cli": 14, "cli/models": 14.1, "cli/equations": 14.2, "cli/motions": 14.2, "cli/pictures": 14.3, "python": 14,
 }  # fmt: skip
@@ -34,7 +34,8 @@ ONLY = {
     "result/parquet": {"base", "numeric", "result"},
     "ensemble/store": {"base", "result", "result/parquet"},
     "proof/checker": {"base", "numeric"},  # it must not trust the simplifier
-    "jit": {"kernel", "kernel/plan"},  # a module of its own
+    "jit": {"kernel", "kernel/plan", "jit/x86"},  # a module of its own
+    "jit/x86": {"kernel"},
     "plot": {"base", "numeric", "expr", "print", "formula", "result"},
 }
 NOT = {
@@ -54,8 +55,8 @@ NOT = {
     "integrate": MODELFILE | {"proof", "proof/checker", "setup"},
     "integrate/series": MODELFILE | {"proof", "proof/checker", "setup"},
     "integrate/states": MODELFILE | {"proof", "proof/checker", "setup"},
-    "report": {"jit", "integrate", "integrate/series", "integrate/states"},
-    "report/page": {"jit", "integrate", "integrate/series", "integrate/states"},
+    "report": {"jit", "jit/x86", "integrate", "integrate/series", "integrate/states"},
+    "report/page": {"jit", "jit/x86", "integrate", "integrate/series", "integrate/states"},
 } | {room: MODELFILE for room in FORMS}
 
 # header pattern, what we call it, layers that may include it, number of files in each that may
@@ -64,7 +65,7 @@ OUTSIDE = [
     (r"(gmp|gmpxx|mpfr|mpf2mpfr|mpc)\.h$", "GMP/MPFR", {"expr", "formula", "numeric"}, None),
     (r"toml\+\+/", "toml++", {"modelfile/text"}, 1),
     (r"CLI/", "CLI11", {"cli"}, 1),
-    (r"(llvm|llvm-c)/", "LLVM", {"jit"}, None),
+    (r"(llvm|llvm-c)/", "LLVM", {"jit", "jit/x86"}, None),
     (r"sleef", "SLEEF", {"jit"}, None),
     (r"mpi\.h$", "MPI", {"ensemble"}, 1),
     (r"(hdf5|H5\w*)(_hl)?\.h$", "HDF5", {"result/hdf5"}, 1),

@@ -205,6 +205,7 @@ void compile(const KernelTables& tables, int lanes, CodeEffort effort, const Cal
       code = std::move(*made);
       // In lanes of 256 bits no better code is known.
       code.effort = lanes == 1 ? CodeEffort::quick : CodeEffort::full;
+      code.translated = true;
       return;
     }
   static std::once_flag once;

@@ -83,10 +83,12 @@ void Emitter::known_before(std::uint8_t lead, const std::vector<InLanes>& group)
   for (std::size_t k = 0; k < count; ++k) b_.CreateAlignedStore(sums[k], group[k].sums, llvm::Align(32));
 }
 
-// As above if every order is a vector of lanes: b_(K-j) .. b_(K-j+3) move by one with j.
+// As above if every order is a vector of lanes: b_(K-j) .. b_(K-j+3) move by one with j. Machines with vectors of eight
+// have registers for those that come again; others load them again.
 void Emitter::known_before_in_lanes(llvm::Type* lane, std::uint8_t lead, const std::vector<InLanes>& group) {
   constexpr std::size_t n = kBlock;
-  const std::size_t count = group.size();
+  const std::size_t count = group.size(),
+                    kept = llvm::cast<llvm::FixedVectorType>(lane)->getNumElements() > kBlock ? n - 1 : 0;
   const llvm::Align align(m_.getDataLayout().getTypeStoreSize(lane).getFixedValue());
   std::vector<Value*> sums(count * n, llvm::ConstantFP::get(lane, 0));
   const auto b_at = [&](const InLanes& c, Value* j, int i) {
@@ -99,17 +101,20 @@ void Emitter::known_before_in_lanes(llvm::Type* lane, std::uint8_t lead, const s
   const auto a_at = [&](const InLanes& c, Value* j) {
     return b_.CreateAlignedLoad(lane, b_.CreateInBoundsGEP(lane, c.a, j), align);
   };
-  // After the sums: b of the orders 0 .. 2 of the block for the present j.
+  // After the sums: b of the first orders of the block for the present j.
   for (const InLanes& c : group)
-    for (int i = 0; i + 1 < kBlock; ++i) sums.push_back(b_at(c, b_.getInt64(kBlock), i + 1));
+    for (std::size_t i = 0; i < kept; ++i) sums.push_back(b_at(c, b_.getInt64(kBlock), static_cast<int>(i) + 1));
   sums = over_known(lead, sums, [&](Value* j, const std::vector<Value*>& so_far) {
     std::vector<Value*> r(so_far.size(), nullptr);
     for (std::size_t k = 0; k < count; ++k) {
       Value* a = a_at(group[k], j);
-      Value* const* window = &so_far[count * n + k * (n - 1)];
-      Value* newest = b_at(group[k], j, 0);
-      for (std::size_t i = 0; i < n; ++i) r[k * n + i] = fma(a, i == 0 ? newest : window[i - 1], so_far[k * n + i]);
-      for (std::size_t i = 0; i + 1 < n; ++i) r[count * n + k * (n - 1) + i] = i == 0 ? newest : window[i - 1];
+      Value* const* window = so_far.data() + count * n + k * kept;
+      Value* newest = kept > 0 ? b_at(group[k], j, 0) : nullptr;
+      for (std::size_t i = 0; i < n; ++i) {
+        Value* b = kept == 0 ? b_at(group[k], j, static_cast<int>(i)) : i == 0 ? newest : window[i - 1];
+        r[k * n + i] = fma(a, b, so_far[k * n + i]);
+      }
+      for (std::size_t i = 0; i < kept; ++i) r[count * n + k * kept + i] = i == 0 ? newest : window[i - 1];
     }
     return r;
   });

@@ -25,6 +25,7 @@ struct Code {
   // whether a state is displaced by it
   std::shared_ptr<void> keeper;
   CodeEffort effort = CodeEffort::full;
+  bool translated = false;  // instruction by instruction (jit/x86), not by the compiler
 };
 
 // Functions that compiled code calls: those of the tiers (arithmetic.h), so that the bits are the same.
@@ -44,7 +45,7 @@ struct CompilerModule {
   void (*compile)(const KernelTables& tables, int lanes, CodeEffort effort, const CalledFunctions& called,
                   const std::string& cache, Code& code, std::string& message);
 };
-inline constexpr int kCompilerVersion = 7;
+inline constexpr int kCompilerVersion = 8;
 
 // Whether code of little effort is translated instruction by instruction, for AVX2, in a tenth of the time that the
 // compiler of the module takes. Code for eight lanes is not.

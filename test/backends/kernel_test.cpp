@@ -321,6 +321,7 @@ TEST_P(CompiledKernelOf, HasTheSameBits) {
     ASSERT_EQ(compiled->code() != nullptr, compiler() != nullptr);
     if (compiler()) {
       EXPECT_EQ(compiled->code()->effort, shift == 0 ? CodeEffort::quick : CodeEffort::full);
+      EXPECT_EQ(compiled->code()->translated, shift == 0);
     }
     for (double& x : state) x += shift;
     for (Kernel* k : {&a, &b}) {
@@ -347,6 +348,9 @@ TEST_P(CompiledKernelOf, MovesWithTheSameBits) {
     const auto plain = r.plan(), compiled = r.plan();
     ASSERT_TRUE(plain && compiled);
     ASSERT_EQ(compiled->compile({}, lanes, effort), compiler() ? "" : "there is no compiler beside the program");
+    if (compiler()) {
+      EXPECT_EQ(compiled->code(lanes)->translated, effort == CodeEffort::quick && compiles_at_once(lanes));
+    }
     Kernel a(plain, lanes), b(compiled, lanes);
     int comparison = 0;
     walk(r, {&a, &b}, [&] {
