@@ -145,7 +145,7 @@ function(anholon_compiler_module)
   target_include_directories(anholon_jit SYSTEM PRIVATE ${LLVM_INCLUDE_DIRS})
   # From archives, and of them what is used: the shared library of all of LLVM takes several times longer to load, and
   # would meet others of its kind in processes that load this one.
-  llvm_map_components_to_libnames(llvm orcjit x86codegen x86desc x86info)
+  llvm_map_components_to_libnames(llvm orcjit scalaropts x86codegen x86desc x86info)
   target_link_libraries(anholon_jit PRIVATE ${llvm} anholon_options anholon_warnings)
   # By ld itself, which packs the relocations of LLVM's tables: they are a twentieth of the file.
   target_link_options(anholon_jit PRIVATE -Wl,--exclude-libs,ALL -Wl,--gc-sections

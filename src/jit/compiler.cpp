@@ -14,7 +14,7 @@
 
 #include "jit/emitter.h"
 #include "jit/store.h"
-#include "jit/x86/straight_code.h"
+#include "jit/x86/translated_module.h"
 
 extern "C" __attribute__((visibility("default"))) const anholon::CompilerModule anholon_compiler;
 extern "C" __attribute__((visibility("default"))) const char anholon_compiler_layout[];
@@ -78,14 +78,15 @@ bool name(const KernelTables& tables, int lanes, CodeEffort effort, int several_
   return true;
 }
 
-// Code that LLVM has no part in but that of the notation. Returns nullopt for a plan that this way does not know.
-std::optional<Code> straight(const KernelTables& tables, int lanes, const CalledFunctions& called) {
-  if (!compiles_at_once(lanes) || Emitter::parts(tables) > 1) return std::nullopt;
+// Returns nullopt for a plan that is to be compiled.
+std::optional<Code> translated(const KernelTables& tables, int lanes, const CalledFunctions& called) try {
+  if (!translated_at_first(lanes) || Emitter::parts(tables) > 1) return std::nullopt;
   llvm::LLVMContext context;
   llvm::Module module("kernel", context);
   Emitter(tables, module, lanes, called.several).run();
-  std::string why;
-  return x86::straight_code(module, Emitter::levels(tables), called, why);
+  return x86::translated_module(module, Emitter::levels(tables), called);
+} catch (const std::exception&) {
+  return std::nullopt;
 }
 
 // The selection of instructions takes more than half of the time, most of it for patterns that the emitter leaves
@@ -158,11 +159,7 @@ Code linked(Objects objects, const Builder& builder, int levels, const CalledFun
     symbols[(*jit)->mangleAndIntern(symbol)] = {llvm::orc::ExecutorAddr::fromPtr(function),
                                                 llvm::JITSymbolFlags::Exported | llvm::JITSymbolFlags::Callable};
   };
-  add("anholon_sines", called.sines);
-  add("anholon_several_sines", called.several_sines);
-  add("anholon_power", called.power);
-  add("anholon_function", called.function);
-  add("atan2", static_cast<double (*)(double, double)>(&std::atan2));
+  called.for_each(add);
   if (auto error = (*jit)->getMainJITDylib().define(llvm::orc::absoluteSymbols(std::move(symbols))))
     return message = text_of(std::move(error)), Code{};
   for (auto& object : objects)
@@ -175,19 +172,10 @@ Code linked(Objects objects, const Builder& builder, int levels, const CalledFun
       message = text_of(symbol.takeError());
   };
   Code made;
-  find("extend", made.extend);
-  if (objects.size() == 1) {
-    find("values", made.values);
-    find("factor", made.factor);
-    find("lead", made.lead);
-    find("measure", made.measure);
-    find("advance", made.advance);
-    find("begin", made.begin);
-    find("go_on", made.go_on);
-    made.level.resize(static_cast<std::size_t>(levels));
-    for (int level = 1; level <= levels; ++level)
-      find(Emitter::level_name(level), made.level[static_cast<std::size_t>(level - 1)]);
-  }
+  if (objects.size() == 1)
+    made.for_each_part(levels, find);
+  else
+    find("extend", made.extend);
   if (!message.empty()) return {};
   made.keeper = std::shared_ptr<void>(jit->release(), [](void* p) { delete static_cast<llvm::orc::LLJIT*>(p); });
   return made;
@@ -201,13 +189,7 @@ void set_option(const char* name, const char* value) {
 void compile(const KernelTables& tables, int lanes, CodeEffort effort, const CalledFunctions& called,
              const std::string& cache, Code& code, std::string& message) {
   if (effort == CodeEffort::quick)
-    if (auto made = straight(tables, lanes, called)) {
-      code = std::move(*made);
-      // In lanes of 256 bits no better code is known.
-      code.effort = lanes == 1 ? CodeEffort::quick : CodeEffort::full;
-      code.translated = true;
-      return;
-    }
+    if (auto made = translated(tables, lanes, called)) return void(code = std::move(*made));
   static std::once_flag once;
   std::call_once(once, [] {
     llvm::InitializeNativeTarget();

@@ -76,7 +76,7 @@ void Emitter::lead() {
 }
 
 void Emitter::level(int level) {
-  begin(level_name(level).c_str(), 0, true);
+  begin(Code::level_name(level).c_str(), 0, true);
   side_.clear();
   for (std::size_t i = 0; i < p_.roots.size(); ++i) {
     const int order = p_.c[i] - level;

@@ -41,7 +41,6 @@ class Emitter : StageCode {
   static int levels(const KernelTables& tables) {
     return *std::max_element(tables.plan->c.begin(), tables.plan->c.end());
   }
-  static std::string level_name(int level) { return "level" + std::to_string(level); }
 
  private:
   // Series and sums of a convolution if orders are vectors: of the first factor from order 0 on, of the second from the

@@ -53,7 +53,7 @@ void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double
   // Seconds: what is observed before, what the compiler takes to be loaded, and for each step of a stage; it works on
   // another core if there is one.
   constexpr double kObserved = 0.001, kEachStep = 0.002, kLoadedSoon = 0.02;
-  const double each_step_soon = compiles_at_once(lanes) ? 0.00015 : 0.0015;
+  const double each_step_soon = translated_at_first(lanes) ? 0.00025 : 0.0015;
   // By so much the better code is faster at least, if it is; in lanes less of the time is spent in it, and the compiler
   // takes its time from the cases.
   const double better = lanes == 1 ? 0.05 : 0.02;

@@ -349,7 +349,7 @@ TEST_P(CompiledKernelOf, MovesWithTheSameBits) {
     ASSERT_TRUE(plain && compiled);
     ASSERT_EQ(compiled->compile({}, lanes, effort), compiler() ? "" : "there is no compiler beside the program");
     if (compiler()) {
-      EXPECT_EQ(compiled->code(lanes)->translated, effort == CodeEffort::quick && compiles_at_once(lanes));
+      EXPECT_EQ(compiled->code(lanes)->translated, effort == CodeEffort::quick && translated_at_first(lanes));
     }
     Kernel a(plain, lanes), b(compiled, lanes);
     int comparison = 0;

@@ -31,10 +31,8 @@ bool is_shuffle_of_zeros(const llvm::Value* v) {
   return shuffle && shuffle->isZeroEltSplat();
 }
 
-bool is_intrinsic(const llvm::Instruction& i) { return llvm::isa<llvm::IntrinsicInst>(i); }
-
 bool changes_memory(const llvm::Instruction& i) {
-  return llvm::isa<llvm::StoreInst>(i) || (llvm::isa<llvm::CallInst>(i) && !is_intrinsic(i));
+  return llvm::isa<llvm::StoreInst>(i) || (llvm::isa<llvm::CallInst>(i) && !llvm::isa<llvm::IntrinsicInst>(i));
 }
 
 bool is_double_type(const llvm::Type* type) { return type->getScalarType()->isDoubleTy(); }
@@ -150,10 +148,7 @@ void Numbers::number_all() {
     for (const llvm::Instruction& i : *b.block) {
       if (folded(&i) || !holds_numbers(i)) continue;
       first_[&i] = count();
-      for (unsigned part = 0; part < parts_of(i.getType()); ++part) {
-        const unsigned left = lanes_of(i.getType()) - part * kWidth;
-        wide_.push_back(lanes_of(i.getType()) > 1 && left > 0);
-      }
+      wide_.insert(wide_.end(), parts_of(i.getType()), lanes_of(i.getType()) > 1);
     }
   uses_.resize(wide_.size());
 }

@@ -20,8 +20,9 @@ inline constexpr unsigned kWidth = 4;  // lanes of a register
 unsigned lanes_of(const llvm::Type* type);
 inline unsigned parts_of(const llvm::Type* type) { return (lanes_of(type) + kWidth - 1) / kWidth; }
 
-// Of an insertion, an element or an intrinsic function, whether it is the one named.
-bool is_splat(const llvm::Value* v);  // a shuffle that repeats the element 0 of an insertion
+// Whether a value is a shuffle that repeats the element 0 of an insertion into a vector without other elements.
+bool is_splat(const llvm::Value* v);
+// Whether a value is a fused product and sum.
 bool is_fma(const llvm::Value* v);
 
 // A number is a part of a value: a double, or up to four of them side by side. Positions count the instructions in the

@@ -57,7 +57,6 @@ class Registers {
   void bind(int number, int reg);
   void bind_to_memory(int number, std::int64_t place);
   Memory slot(int number);
-  bool stored(int number) const { return state(number).stored; }
 
  private:
   struct State {

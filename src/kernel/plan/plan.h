@@ -7,7 +7,7 @@
 //   - only slots that a convolution needs store their series; all others are one number per stage;
 //   - terms that are zero in a sweep because the unknowns of the stage are not known yet are omitted beyond stage 0;
 //   - J is never formed: the linearized tape itself, one row for every slot that depends on the unknowns, is eliminated by a sparse
-//     LU (sparse_lu.h). For a chain that is the O(n) recursion of articulated bodies, found by the order of elimination.
+//     LU (program/sparse_lu.h). For a chain that is the O(n) recursion of articulated bodies, found by the order of elimination.
 #pragma once
 #include <cstdint>
 #include <optional>

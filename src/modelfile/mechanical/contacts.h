@@ -31,8 +31,9 @@ struct Contact {
 // Whether a [[constraint]] has one_sided = true. Throws Failure if that is neither true nor false.
 bool is_one_sided(const Item& constraint);
 
-// Reads the contacts of a file whose names are declared. Those with friction or rebound have one law of impacts. They are its [[contact]]s, each followed by its resistance to rolling
-// (NAME.rolling) and drilling (NAME.drilling), then its constraints of one side, whose gaps are left - right.
+// Reads the contacts of a file whose names are declared: its [[contact]]s, each followed by its resistance to rolling
+// (NAME.rolling) and drilling (NAME.drilling), then its constraints of one side, whose gaps are left - right. Contacts that
+// rub or rebound have one law of impacts. Errors go to the diagnostics.
 std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
 
 }  // namespace anholon

@@ -1,9 +1,11 @@
-#include "jit/x86/straight_code.h"
+#include "jit/x86/translated_module.h"
 
-#include <cmath>
 #include <cstring>
 #include <map>
 
+#include <llvm/IR/LegacyPassManager.h>
+#include <llvm/Pass.h>
+#include <llvm/Transforms/Scalar.h>
 #include <sys/mman.h>
 
 #include "jit/x86/translator.h"
@@ -18,15 +20,16 @@ class Executable {
   explicit Executable(const std::vector<std::uint8_t>& bytes) : size_(bytes.size()) {
     void* place = mmap(nullptr, size_, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (place == MAP_FAILED) throw Unknown("there is no memory for code");
+    std::memcpy(place, bytes.data(), size_);
+    if (mprotect(place, size_, PROT_READ | PROT_EXEC) != 0) {
+      munmap(place, size_);
+      throw Unknown("memory cannot be executed");
+    }
     memory_ = static_cast<std::uint8_t*>(place);
-    std::memcpy(memory_, bytes.data(), size_);
-    if (mprotect(memory_, size_, PROT_READ | PROT_EXEC) != 0) throw Unknown("memory cannot be executed");
   }
   Executable(const Executable&) = delete;
   Executable& operator=(const Executable&) = delete;
-  ~Executable() {
-    if (memory_) munmap(memory_, size_);
-  }
+  ~Executable() { munmap(memory_, size_); }
   std::uint8_t* at(std::size_t place) const { return memory_ + place; }
 
  private:
@@ -48,6 +51,14 @@ struct Placed {
   std::vector<std::uint8_t> bytes;
   std::map<std::string, std::size_t, std::less<>> places;
 };
+
+// The Emitter asks for some numbers twice.
+void compute_once(llvm::Module& module) {
+  llvm::legacy::FunctionPassManager passes(&module);
+  passes.add(llvm::createEarlyCSEPass());
+  for (llvm::Function& f : module)
+    if (!f.isDeclaration()) passes.run(f);
+}
 
 Placed translated(llvm::Module& module, Surroundings& around) {
   std::vector<llvm::Function*> functions;
@@ -81,41 +92,24 @@ Placed translated(llvm::Module& module, Surroundings& around) {
 
 }  // namespace
 
-std::optional<Code> straight_code(llvm::Module& module, int levels, const CalledFunctions& called, std::string& why) {
+Code translated_module(llvm::Module& module, int levels, const CalledFunctions& called) {
   Surroundings around;
-  const auto add = [&](const char* name, auto* function) {
+  called.for_each([&](const char* name, auto* function) {
     around.outside[name] = static_cast<std::int64_t>(reinterpret_cast<std::intptr_t>(function));
-  };
-  add("anholon_sines", called.sines);
-  add("anholon_several_sines", called.several_sines);
-  add("anholon_power", called.power);
-  add("anholon_function", called.function);
-  add("atan2", static_cast<double (*)(double, double)>(&std::atan2));
-  try {
-    const Placed all = translated(module, around);
-    const auto memory = std::make_shared<Executable>(all.bytes);
-    Code code;
-    const auto find = [&](const std::string& name, auto& function) {
-      const auto place = all.places.find(name);
-      if (place == all.places.end()) throw Unknown("there is no " + name);
-      function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(memory->at(place->second));
-    };
-    find("values", code.values);
-    find("factor", code.factor);
-    find("lead", code.lead);
-    find("extend", code.extend);
-    find("measure", code.measure);
-    find("advance", code.advance);
-    find("begin", code.begin);
-    find("go_on", code.go_on);
-    code.level.resize(static_cast<std::size_t>(levels));
-    for (int l = 1; l <= levels; ++l) find("level" + std::to_string(l), code.level[static_cast<std::size_t>(l - 1)]);
-    code.keeper = memory;
-    return code;
-  } catch (const Unknown& what) {
-    why = what.what();
-    return std::nullopt;
-  }
+  });
+  compute_once(module);
+  const Placed all = translated(module, around);
+  const auto memory = std::make_shared<Executable>(all.bytes);
+  Code code;
+  code.for_each_part(levels, [&](const std::string& name, auto& function) {
+    const auto place = all.places.find(name);
+    if (place == all.places.end()) throw Unknown("there is no " + name);
+    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(memory->at(place->second));
+  });
+  code.effort = CodeEffort::quick;
+  code.translated = true;
+  code.keeper = memory;
+  return code;
 }
 
 }  // namespace anholon::jit::x86
