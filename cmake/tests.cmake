@@ -115,6 +115,21 @@ anholon_test_set(oracle      SHARDS 4 LABELS oracle long)
 anholon_test_set(laws        SHARDS 4 LABELS laws long)
 anholon_test_set(backends    SHARDS 2 LABELS backends long)
 target_sources(test_backends PRIVATE src/jit/packs.cpp src/jit/packed_memory.cpp)  # what of the module is not LLVM's
+
+# The translator of machine code alone: the program does not link it, as it is part of a module.
+if(TARGET anholon_jit)
+  find_package(LLVM 19.1 REQUIRED CONFIG)
+  file(GLOB translator CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/jit/x86/*.cpp")
+  add_executable(test_jit test/jit/translator_test.cpp test/jit/random_code.cpp ${translator})
+  target_include_directories(test_jit PRIVATE "${PROJECT_SOURCE_DIR}/src" "${PROJECT_SOURCE_DIR}/test")
+  target_include_directories(test_jit SYSTEM PRIVATE ${LLVM_INCLUDE_DIRS})
+  target_compile_options(test_jit PRIVATE -ffp-contract=off)
+  anholon_use_precompiled(test_jit compiler)
+  anholon_in_batches(test_jit)
+  llvm_map_components_to_libnames(llvm core scalaropts)
+  target_link_libraries(test_jit PRIVATE ${llvm} anholon_options anholon_warnings GTest::gtest GTest::gtest_main)
+  gtest_discover_tests(test_jit TEST_PREFIX "unit.jit." PROPERTIES LABELS unit DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
+endif()
 anholon_test_set(determinism SHARDS 2 LABELS determinism long)
 anholon_test_set(long        SHARDS 4 LABELS long-only)
 

@@ -1,8 +1,11 @@
 #include "motion/code_for_long_runs.h"
 
+#include <chrono>
 #include <cmath>
 #include <mutex>
 #include <vector>
+
+#include <time.h>
 
 namespace anholon {
 
@@ -48,36 +51,50 @@ void CodeForLongRuns::leave() {
   left_behind().push_back({compilation_.done, std::move(compilation_.thread)});
 }
 
+// Seconds of processor time that this thread has used: those in which it waited for a core are not counted.
+static double seconds_of_this_thread() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes,
                            std::optional<double> spent) {
-  // Seconds: what is observed before, what the compiler takes to be loaded, and for each step of a stage; it works on
-  // another core if there is one.
-  constexpr double kObserved = 0.001, kEachStep = 0.002, kLoadedSoon = 0.02;
+  // Seconds: what is observed before, what the compiler takes to be loaded, and what it takes for each step of a stage.
+  constexpr double kObserved = 0.001, kObservedLonger = 0.005, kLoadedSoon = 0.02, kEachStep = 0.006;
   const double each_step_soon = translated_at_first(lanes) ? 0.00025 : 0.0015;
-  // By so much the better code is faster at least, if it is; in lanes less of the time is spent in it, and the compiler
-  // takes its time from the cases.
-  const double better = lanes == 1 ? 0.05 : 0.02;
+  // By so much the better code is faster at least. In lanes less of the time is spent in the code, the less the shorter
+  // it is, and the compiler takes its time from the cases.
+  const double stage = plan ? static_cast<double>(plan->plan().stage.size()) : 0;
+  const double better = lanes == 1 ? 0.15 : std::min(0.1, 0.001 * stage);
   constexpr std::size_t kSometimes = 64;
-  if (!first_) first_ = {.at = at};
+  if (!first_) first_ = point(at, spent, lanes);
   const bool known = compilation_.plan == plan;
   if (!plan || (known && compilation_.effort == CodeEffort::full) || (lanes == 1 && ++asked_ < kSometimes) ||
       (compilation_.done && !*compilation_.done))
     return;
   asked_ = 0;
   const Code* code = plan->code(lanes);
-  const double stage = static_cast<double>(plan->plan().stage.size());
-  const auto left = [&](const First& since, std::optional<double> seconds) {
-    const double elapsed =
-        seconds ? *seconds : std::chrono::duration<double>(std::chrono::steady_clock::now() - since.when).count();
-    const double done = std::abs(at - since.at);
-    return elapsed < kObserved ? 0 : elapsed / done * (std::abs(end - at) * times_ + done * (times_ - 1));
+  const Point now = point(at, spent, lanes);
+  const auto left = [&](const Point& since, double observed) {
+    const double elapsed = now.seconds - since.seconds, done = std::abs(at - since.at);
+    return elapsed < observed ? 0 : elapsed / done * (std::abs(end - at) * times_ + done * (times_ - 1));
   };
   if (!code) {
-    if (!known && left(*first_, spent) > kLoadedSoon + each_step_soon * stage) begin(plan, lanes, CodeEffort::quick);
+    if (!known && left(*first_, kObserved) > kLoadedSoon + each_step_soon * stage)
+      begin(plan, lanes, CodeEffort::quick);
   } else if (code->effort == CodeEffort::quick) {
-    if (!since_quick_) since_quick_ = {.at = at};
-    if (left(*since_quick_, {}) * better > kEachStep * stage) begin(plan, lanes, CodeEffort::full);
+    if (!since_quick_) since_quick_ = now;
+    if (left(*since_quick_, kObservedLonger) * better > kEachStep * stage) begin(plan, lanes, CodeEffort::full);
   }
+}
+
+// A motion alone is computed by one thread, whose time counts; cases in lanes by any number of threads.
+CodeForLongRuns::Point CodeForLongRuns::point(double at, std::optional<double> spent, int lanes) {
+  using Seconds = std::chrono::duration<double>;
+  if (spent) return {*spent, at};
+  return {lanes == 1 ? seconds_of_this_thread() : Seconds(std::chrono::steady_clock::now().time_since_epoch()).count(),
+          at};
 }
 
 void CodeForLongRuns::begin(const std::shared_ptr<const KernelPlan>& plan, int lanes, CodeEffort effort) {

@@ -1,7 +1,6 @@
 // Machine code for a kernel that has been at work for a while, made beside the motion; its bits are the same.
 #pragma once
 #include <atomic>
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -19,8 +18,8 @@ class CodeForLongRuns {
   CodeForLongRuns& operator=(const CodeForLongRuns&) = delete;
 
   // Asked at every step, by one thread at a time: begins a compilation for this plan if what is left to do takes longer
-  // than that. `at`: how far the work has come on its way to `end`; `spent`: the seconds that it took since the first
-  // request, if these are not all that have passed. The first code is made quickly.
+  // than that. `at`: how far the work has come on its way to `end`; `spent`: the seconds that it took until now, if these
+  // are not all that have passed. The first code is made quickly.
   void step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes = 1,
             std::optional<double> spent = {});
   // The rest takes so many times as long, because the motion is computed once more.
@@ -39,13 +38,14 @@ class CodeForLongRuns {
   void begin(const std::shared_ptr<const KernelPlan>& plan, int lanes, CodeEffort effort);
 
   Compilation compilation_;
-  struct First {
-    std::chrono::steady_clock::time_point when = std::chrono::steady_clock::now();
-    double at;
+  // How far the work had come after so many seconds of a clock that is always the same one.
+  struct Point {
+    double seconds, at;
   };
-  // When it was asked first, and where; the same since there is code that was made quickly.
-  std::optional<First> first_, since_quick_;
-  std::size_t asked_ = 0;  // since the clock was read
+  static Point point(double at, std::optional<double> spent, int lanes);
+
+  std::optional<Point> first_, since_quick_;  // of the first request, and of the first with code that was made quickly
+  std::size_t asked_ = 0;                     // since the clock was read
   double times_ = 1;
 };
 
