@@ -299,7 +299,7 @@ def draw(program, model, folder):
     """The page of a model: what it is, its motion as a figure, its equations, its file. -> (title, sentence, page, name of the figure or None)"""
     text, name, file = model.read_text(encoding="utf-8"), model.stem, page_name(model)
     title, figure = key(text, "title") or name, None
-    run = lambda *words: subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=ROOT, timeout=120, stdin=subprocess.DEVNULL, env=os.environ | {"ANHOLON_CACHE": ""})
+    run = lambda *words: subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=ROOT, timeout=600, stdin=subprocess.DEVNULL, env=os.environ | {"ANHOLON_CACHE": ""})
     with tempfile.TemporaryDirectory() as scratch:
         rows = pathlib.Path(scratch) / "run.csv"
         done = run("simulate", model, "-o", rows, "--quiet", "--error-estimate", "never")
