@@ -389,7 +389,7 @@ FOR_READERS = [
     (re.compile(r'<aside class="sidebar-drawer">'), '<aside class="sidebar-drawer" aria-label="The site">'),
     (re.compile(r'<aside class="toc-drawer'), '<aside aria-label="This page" class="toc-drawer'),
     (re.compile(r"<pre>"), '<pre tabindex="0">'),  # it scrolls
-    (re.compile(r'<div class="(formula|table-wrapper)(?=[" ])'), r'<div tabindex="0" class="\1'),
+    (re.compile(r'<div class="(formula-scroll|formula|table-wrapper)(?=[" ])'), r'<div tabindex="0" class="\1'),
     (re.compile(r'<th class="head([^"]*)"><p></p></th>'), r'<td class="head\1"></td>'),
     (re.compile(r'(<article role="main" id="furo-main-content">)(?=((?!<h1).)*<div id="search-results">)', re.S), r"\1<h1>Search</h1>"),
 ]
