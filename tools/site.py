@@ -53,7 +53,7 @@ RUN_ELSEWHERE = {  # commands that no transcript can run, and the test that does
     "sweep status": "test/sweeps/folders.py",  # needs a sweep that other processes compute
     "sweep collect": "test/sweeps/folders.py",
 }
-GALLERY = {"papers": "Papers", "asked": "Asked and answered", "templates": "Templates", "zoo": "Systems of the literature"}
+GALLERY = {"papers": "Papers", "asked": "Asked and answered", "contacts": "Contacts", "templates": "Templates", "zoo": "Systems of the literature"}  # folder of models/ -> caption
 
 
 def say(text):
@@ -168,6 +168,8 @@ def check(root, least=LEAST_EXAMPLES):
     for case in sorted((root / "test/golden").glob("*/*.md")):
         count += examples_of(case.read_text(encoding="utf-8"))
     problems += commands_without_example(root)
+    for folder in sorted({model.parent.name for model in (root / "models").glob("*/*.toml")} - GALLERY.keys()):
+        problems.append(f"models/{folder}: the gallery has no such part (GALLERY in tools/site.py)")
     if count < least:
         problems.append(f"{count} examples are executed, {least} are wanted")
     return problems, count
@@ -282,6 +284,12 @@ def comment_of(text):
     return " ".join(lines)
 
 
+def about(model, text):
+    """What a model is: its first comment, else its row in models/README.md."""
+    row = re.search(rf"^\| `{model.stem}` \| (.+) \|$", (ROOT / "models/README.md").read_text(encoding="utf-8"), re.M)
+    return comment_of(text) or (row[1][0].upper() + row[1][1:] + "." if row else "")
+
+
 def key(text, name):
     found = re.search(rf'^{name} *= *"((?:[^"\\]|\\.)*)"', text, re.M)
     return found[1] if found else ""
@@ -291,10 +299,12 @@ def draw(program, model, folder):
     """The page of a model: what it is, its motion as a figure, its equations, its file. -> (title, sentence, page, name of the figure or None)"""
     text, name, file = model.read_text(encoding="utf-8"), model.stem, page_name(model)
     title, figure = key(text, "title") or name, None
-    run = lambda *words: subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=ROOT, timeout=120, stdin=subprocess.DEVNULL, env=os.environ | {"ANHOLON_CACHE": ""})
+    run = lambda *words: subprocess.run([program, *map(str, words)], capture_output=True, text=True, cwd=ROOT, timeout=600, stdin=subprocess.DEVNULL, env=os.environ | {"ANHOLON_CACHE": ""})
     with tempfile.TemporaryDirectory() as scratch:
         rows = pathlib.Path(scratch) / "run.csv"
-        done = run("simulate", model, "-o", rows, "--quiet", "--error-estimate", "never")
+        # Between rows the curves are interpolated, and a contact bends them: it gets many rows.
+        end = re.search(r"^to *= *([\d.]+)", text, re.M) if model.parent.name == "contacts" else None
+        done = run("simulate", model, "-o", rows, "--quiet", "--error-estimate", "never", *(["--every", f"{float(end[1]) / 400:.6g}"] if end else []))
         if done.returncode not in (0, 1) or not rows.exists():
             if not name.endswith("-symbolic") and model.parent.name != "templates":
                 raise RuntimeError(f"{name}: {done.stderr.strip().splitlines()[:1]}")
@@ -302,17 +312,21 @@ def draw(program, model, folder):
             done = run("plot", rows, "--size", "14cmx8cm", "--each" if len(key_list(text, "coordinates")) <= 3 else "--together", "-o", folder / f"{file}.svg")
             if done.returncode == 0:
                 figure = f"{file}.svg"
-    done = run("derive", model, "--format", "mathml", "--quiet")
-    if done.returncode != 0:
-        raise RuntimeError(f"{name}: derive: {done.stderr.strip().splitlines()[:1]}")
     shown = f"{name}.toml" if model.parent.name == "templates" else name
-    formulas = re.findall(r"<math.*?</math>", done.stdout, re.S)
-    page = [f"# {title}\n", comment_of(text), "", f"Source: {key(text, 'source')}." if key(text, "source") else "", ""]
+    page = [f"# {title}\n", about(model, text), "", f"Source: {key(text, 'source')}." if key(text, "source") else "", ""]
     if figure:
         page += [f"![The coordinates of {title} against time]({figure})\n", f"The figure shows the coordinates against time; `anholon report {shown}` plays the motion.\n"]
-    page += ["## The model\n", f"`anholon {'new' if model.parent.name == 'templates' else 'models'} {name}` prints this file.\n", "```toml", text.rstrip(), "```\n", "## Its equations\n", f"`anholon derive {shown}` prints them as text, LaTeX or MathML.\n",
-             '<div class="formula-scroll">', *(f"<p>{re.sub(chr(10) + '+', ' ', f)}</p>" for f in formulas), "</div>\n"]  # fmt: skip
-    sentence = re.split(r"(?<=[a-z)])\. ", comment_of(text))[0].rstrip(".")
+    page += ["## The model\n", f"`anholon {'new' if model.parent.name == 'templates' else 'models'} {name}` prints this file.\n", "```toml", text.rstrip(), "```\n"]  # fmt: skip
+    if model.parent.name == "contacts":
+        page.append("Each mode of the contacts has equations of its own; [contacts](../doc/contact.md) shows motions of this kind.\n")
+    else:
+        done = run("derive", model, "--format", "mathml", "--quiet")
+        if done.returncode != 0:
+            raise RuntimeError(f"{name}: derive: {done.stderr.strip().splitlines()[:1]}")
+        formulas = re.findall(r"<math.*?</math>", done.stdout, re.S)
+        page += ["## Its equations\n", f"`anholon derive {shown}` prints them as text, LaTeX or MathML.\n",
+                 '<div class="formula-scroll">', *(f"<p>{re.sub(chr(10) + '+', ' ', f)}</p>" for f in formulas), "</div>\n"]  # fmt: skip
+    sentence = re.split(r"(?<=[a-z)])\. ", about(model, text))[0].rstrip(".")
     return title, sentence, "\n".join(page), figure
 
 
@@ -375,7 +389,7 @@ FOR_READERS = [
     (re.compile(r'<aside class="sidebar-drawer">'), '<aside class="sidebar-drawer" aria-label="The site">'),
     (re.compile(r'<aside class="toc-drawer'), '<aside aria-label="This page" class="toc-drawer'),
     (re.compile(r"<pre>"), '<pre tabindex="0">'),  # it scrolls
-    (re.compile(r'<div class="(formula|table-wrapper)(?=[" ])'), r'<div tabindex="0" class="\1'),
+    (re.compile(r'<div class="(formula-scroll|formula|table-wrapper)(?=[" ])'), r'<div tabindex="0" class="\1'),
     (re.compile(r'<th class="head([^"]*)"><p></p></th>'), r'<td class="head\1"></td>'),
     (re.compile(r'(<article role="main" id="furo-main-content">)(?=((?!<h1).)*<div id="search-results">)', re.S), r"\1<h1>Search</h1>"),
 ]
@@ -523,6 +537,7 @@ MUTANTS = {
     "answer without its question": ("doc/asked/q.md", "# Q\n```console\n$ anholon check x\n```\n"),
     "command without an example": ("doc/commands.md", "# Commands\n### `anholon check`\n### `anholon fly`\n"),
     "too few examples": ("doc/b.md", "# B\n"),
+    "models that the gallery does not show": ("models/others/a.toml", ""),
     "commands that nothing runs": ("doc/b.md", "# B\n```python\nx = 1\n```\n```console\n$ anholon models\n```\n"),
     "Python that nothing runs": ("doc/theory/README.md", "# T\n```python\nx = 1\n```\n"),
 }

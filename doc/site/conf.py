@@ -3,6 +3,9 @@
 import sys
 from pathlib import Path
 
+from pygments.lexer import RegexLexer, bygroups
+from pygments.token import Generic, Name, Text
+
 sys.path.insert(0, str(Path(__file__).parent))
 
 project = "Anholon"
@@ -34,3 +37,19 @@ pygments_dark_style = "a11y-high-contrast-dark"
 copybutton_prompt_text = "$ "
 copybutton_only_copy_prompt_lines = True
 copybutton_remove_prompts = True
+
+
+class Transcript(RegexLexer):
+    """Commands after a prompt, a line that ends in \\ going on in the next one, and what they print."""
+
+    name = "Transcript"
+    tokens = {
+        "root": [
+            (r"(\$ )((?:.*\\\n)*.*\n?)", bygroups(Generic.Prompt, Name.Function)),
+            (r".*\n|.+", Text),
+        ]
+    }
+
+
+def setup(app):
+    app.add_lexer("console", Transcript)

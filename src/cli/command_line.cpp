@@ -1,5 +1,6 @@
 #include "cli/command_line.h"
 
+#include "base/utf8.h"
 #include "cli/command_words.h"
 #include "cli/completion.h"
 #include "cli/input.h"
@@ -27,8 +28,21 @@ static CommandWords words_of(const CLI::App& app, const std::string& words) {
   return c;
 }
 
+// The help of an option. The library counts bytes where it pads names to the column of the descriptions, and an ellipsis
+// has three of them.
+class HelpLines : public CLI::Formatter {
+ public:
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    std::string line = CLI::Formatter::make_option(option, is_positional);
+    const std::string name = "  " + make_option_name(option, is_positional) + make_option_opts(option);
+    if (name.size() < get_column_width()) line.insert(name.size(), name.size() - utf8_length(name), ' ');
+    return line;
+  }
+};
+
 CommandLine::CommandLine() {
   app_.name("anholon");
+  app_.formatter(std::make_shared<HelpLines>());
   app_.set_version_flag("--version", "anholon " ANHOLON_VERSION);
   app_.require_subcommand(1);
   app_.footer(

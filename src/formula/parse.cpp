@@ -42,7 +42,8 @@ class Parser {
     if (peek().token == Token::equals) {
       next();
       sides.push_back(expression(0));
-      if (peek().token == Token::equals) fail(peek(), "an equation has one '='", "write two constraints");
+      if (peek().token == Token::equals)
+        fail(peek(), "an equation has one '='", "write two equations, each with one '='");
     }
     if (peek().token == Token::compare) inequality(sides[0]);
     finish();

@@ -93,7 +93,9 @@ std::shared_ptr<const Model> held_at_start(const Model& at_rest, const std::vect
 void say_no_rest(Outcome& o) {
   if (o.kind != OutcomeKind::inconsistent) return;
   o.message = "no equilibrium was found near the initial positions";
-  o.hint = "there may be none; the search begins at other positions by --q or [initial]";
+  o.hint = "there may be none, also where a rounded number stands for a formula; the search begins at other positions "
+           "by --q "
+           "or [initial]";
 }
 
 }  // namespace anholon

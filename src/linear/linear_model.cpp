@@ -341,6 +341,9 @@ std::vector<bool> without_cyclic(const LinearModel& m, const LinearPoint& p, std
   return kept;
 }
 
+// A rate below this, in relation to the state, may come from numbers that were copied with sixteen digits.
+constexpr double kCopied = 1e-13;
+
 void tell(LinearModel& m, LinearModel::Motion motion, std::string why) {
   m.motion = motion;
   m.why = std::move(why);
@@ -383,8 +386,10 @@ static void look_for_steadiness(const LinearPoint& point, bool check, LinearMode
   for (std::size_t i : out.core) {
     // The rate of a coordinate is a velocity, which is a state itself or follows from states.
     if (abs(out.rates[i]) > still) {
+      const bool rounding = abs(out.rates[i]) < Multi(kCopied) * (Multi(1) + largest(point.x));
       tell(out, LinearModel::Motion::unsteady,
-           "the rate of " + out.states[i] + " is " + number_text(to_double(out.rates[i]), 6));
+           "the rate of " + out.states[i] + " is " + number_text(to_double(out.rates[i]), 6) +
+               (rounding ? ", as of a rounded number that stands for a formula" : ""));
       break;
     }
     if (!moved) continue;

@@ -90,6 +90,19 @@ static bool switched(const Scenario& s) {
   });
 }
 
+// What to do where a constraint becomes dependent on the others. A component that was left out at the start, because it
+// followed from the others there, may be independent elsewhere.
+static std::string hint_of_dependence(const Scenario& s) {
+  std::vector<std::string> left_out;
+  for (std::size_t r : s.redundant) left_out.push_back("'" + s.model->constraints[r].name + "'");
+  if (left_out.empty())
+    return "end the motion before; coordinates or constraints written otherwise may be regular there";
+  return joined(left_out) +
+         (left_out.size() == 1 ? " was left out at the start and may count here: name the directions in which the "
+                               : " were left out at the start and may count here: name the directions in which the ") +
+         "constraints stay independent, along = […]";
+}
+
 // " (x = 1, y = 2)": where the motion is, if that is not too long to be read.
 template <Number N>
 static std::string where(const Scenario& s, const Motion<N>& motion) {
@@ -145,11 +158,11 @@ void explain_stop(Workspace& s, const Motion<N>& motion, Outcome& outcome) {
                              : (j < s.system.coordinates ? "the equations no longer determine the acceleration of "
                                                          : "the equations no longer determine the multiplier ") +
                                    s.system.variable_names[j]);
-    if (outcome.hint.empty() || !lost.empty())
+    if (outcome.hint.empty() || !lost.empty() || !s.redundant.empty())
       outcome.hint = switched(s)
                          ? "a mode switches a constraint off, and nothing is left to determine its multiplier: write "
                            "what opens as a [[contact]], or as a constraint with one_sided = true"
-                         : "end the motion before; coordinates or constraints written otherwise may be regular there";
+                         : hint_of_dependence(s);
   }
   if (const std::string root = vanishing_root(motion); !root.empty() && outcome.kind != OutcomeKind::not_a_number)
     message += "; " + root + " is at the edge of where it has a value";

@@ -5,6 +5,7 @@
 #include "base/join.h"
 #include "formula/functions.h"
 #include "mechanics/mechanics.h"
+#include "modelfile/names/hints.h"
 
 namespace anholon {
 
@@ -157,7 +158,14 @@ Value Vocabulary::name(const std::string& name, Span span) {
   const std::string first = path[0];
   path.erase(path.begin());
   if (const std::optional<Value> v = word(first, path, span)) return *v;
-  return model_->name(name, span);
+  try {
+    return model_->name(name, span);
+  } catch (Failure& f) {
+    // Equations have definitions of their own, so the model need not change.
+    if (f.diagnostic.hint == kGiveItAValue)
+      f.diagnostic.hint = "define it above, in the names of the model: let " + name + " = …";
+    throw;
+  }
 }
 
 std::size_t Vocabulary::coordinate(const std::string& name, Span span) const {

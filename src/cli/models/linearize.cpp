@@ -190,7 +190,7 @@ void print_model(const LinearModel& m, int digits) {
   if (!m.dependent.empty()) {
     std::string list;
     for (const std::string& d : m.dependent) list += (list.empty() ? "" : ", ") + d;
-    say(stdout, "; %s follow from them", list.c_str());
+    say(stdout, "; %s %s from them", list.c_str(), m.dependent.size() == 1 ? "follows" : "follow");
   }
   say(stdout, "\n");
   for (std::size_t i = 0; i < m.states.size(); ++i)

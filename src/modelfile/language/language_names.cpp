@@ -116,6 +116,8 @@ monitor = {l = "lift(1)"}
 - Knots are located and stepped to. `linear` may be differentiated once, `monotone` twice, `spline` three times, the last derivative
   a step; `hold` not at all. A formula that needs more is an error.
 - With `outside = "error"` the motion stops with an outcome where the argument leaves the knots, also at the start.
+- The numbers of a table have no units and fit any dimension. In a file with units the call says which are meant:
+  `Cd(t/(1 ms))*(1 N)` for columns of milliseconds and newtons.
 
 ```toml
 table = [{name = "a", x = [0, 1], y = [0, 1]}]

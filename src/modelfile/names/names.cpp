@@ -7,6 +7,7 @@
 #include "formula/indices.h"
 #include "formula/units.h"
 #include "modelfile/language/language.h"
+#include "modelfile/names/hints.h"
 
 namespace anholon {
 
@@ -86,7 +87,7 @@ void Scope::unknown(const std::string& name, Span span) const {
   const std::string near = did_you_mean(name, known);
   throw Failure(span,
                 "unknown name '" + name.substr(0, 60) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-                near.empty() ? "give it a value under [parameters] or [define]" : "");
+                near.empty() ? kGiveItAValue : "");
 }
 
 // ---- evaluation ------------------------------------------------------------------------------

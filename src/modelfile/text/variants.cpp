@@ -50,16 +50,30 @@ bool is_declared(const std::string& name, const std::vector<std::string>& known)
                      [&](const std::string& k) { return k == name || (!family.empty() && k.rfind(family, 0) == 0); });
 }
 
-[[noreturn]] void there_is_no(const std::string& what, const Item& at, const std::vector<std::string>& known,
-                              const std::string& hint = {}) {
-  const std::string near = did_you_mean(at.key, known);
+// "there is a, b": the first of the names that are there.
+std::string those_there(const std::vector<std::string>& known) {
   std::string list;
   for (std::size_t k = 0; k < known.size() && k < 12; ++k) list += (k ? ", " : "there is ") + known[k];
+  return list;
+}
+
+[[noreturn]] void there_is_no(const std::string& what, const Item& at, const std::vector<std::string>& known,
+                              const std::string& hint) {
+  const std::string near = did_you_mean(at.key, known);
   throw Failure(at.key_span,
                 "there is no " + what + " '" + at.key + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-                !hint.empty()  ? hint
-                : near.empty() ? list
-                               : "");
+                hint);
+}
+
+// What to do where a list `section` has no element of this name.
+std::string hint_of_element(const std::string& section, const std::string& name,
+                            const std::vector<std::string>& known) {
+  if (name.find('[') != std::string::npos)
+    return "of a family the element goes by the name in the file; a member of its own is written out in [[" + section +
+           "]]";
+  if (!did_you_mean(name, known).empty()) return {};
+  return "a new one stands in a list: " + section + " = [{name = \"" + name + "\", …}]" +
+         (known.empty() ? "" : "; " + those_there(known));
 }
 
 class Overlay {
@@ -126,11 +140,7 @@ class Overlay {
                 std::vector<std::string> known;
                 for (const Item& k : there->items)
                   if (const std::string name = name_of(k); !name.empty()) known.push_back(name);
-                there_is_no(i.key, e, known,
-                            e.key.find('[') == std::string::npos ? ""
-                                                                 : "of a family the element goes by the name in the "
-                                                                   "file; a member of its own is written out in [[" +
-                                                                       i.key + "]]");
+                there_is_no(i.key, e, known, hint_of_element(i.key, e.key, known));
               }
               if (e.kind != Item::Kind::table)
                 throw Failure(e.span, "what is changed of " + i.key + " '" + e.key + "'?",
