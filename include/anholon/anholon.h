@@ -9,6 +9,7 @@
 #include "anholon/motion.h"
 #include "anholon/page.h"
 #include "anholon/proof.h"
+#include "anholon/stop.h"
 #include "anholon/sweep.h"
 #include "anholon/sweep_folder.h"
 #include "anholon/system.h"

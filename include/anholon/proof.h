@@ -18,8 +18,11 @@ struct FormVerdict {
 
 struct Proof {
   std::vector<FormVerdict> forms;
-  // A certificate in JSON, which `verify` and `anholon verify` check without the prover.
+  // A certificate in JSON, which `verify` and `anholon verify` check without the prover; empty if the proof was stopped.
   std::string certificate;
+  // A StopRequest ended it: forms that it did not reach are `unknown`, with "stopped" as their detail.
+  bool stopped = false;
+  // Whether the proof is complete and all its forms are proved.
   ANHOLON_API bool all_proved() const;
 };
 

@@ -33,6 +33,18 @@ Words = tuple[
 ]
 """What is asked of a sweep: values, laws, cases, seed, draw, together, to, tolerance, at, columns, reduce."""
 
+
+def number_of_cases(values: list[tuple[str, list[str]]], laws: dict[str, str], cases: int | None, together: bool) -> float | None:
+    """How many cases a sweep has; None if that is not known before it begins."""
+    if cases is not None:
+        return float(cases)
+    if together:
+        return float(max((len(of) for _, of in values), default=0))
+    if any("(" in law for law in laws.values()):
+        return None
+    return float(math.prod(int(laws[name].rpartition(":")[2]) if name in laws else len(of) for name, of in values))
+
+
 _MOST_TASKS = 10_000  # of one call: a scheduler holds some kB for each
 _ATTEMPTS = 5  # rounds in which no part was added before the trouble of the workers is raised
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, SupportsFloat, Union
 
 from . import _core
 from ._errors import ModelError
+from ._torch import torch_function
 from .formulas import NOT_LINEAR, Formulas, compile_c
 
 if TYPE_CHECKING:
@@ -338,6 +339,23 @@ class Dynamics:
         import casadi
 
         return casadi.external(name, compile_c(self.c_code(name)))
+
+    def torch(self) -> Callable[..., Any]:
+        """The function as one of PyTorch, (t, x, u, p) -> x', whose gradients by x, u and p are :meth:`vjp` and :meth:`jvp`.
+
+        Tensors have the shapes of ``f(t, x, u, p)``; u and p may be left out. They may have any device and precision: the
+        numbers are computed in double on the processor. Autograd refuses second derivatives and those by t.
+
+        Raises:
+            ModuleNotFoundError: PyTorch is not installed.
+
+        Example:
+            >>> import anholon as an
+            >>> f = an.load("disc").dynamics()
+            >>> x = torch.tensor(f.start, requires_grad=True)  # doctest: +SKIP
+            >>> f.torch()(0.0, x).sum().backward()             # doctest: +SKIP
+        """
+        return torch_function(self)
 
     def state(self, t: float | None = None, *, q: Mapping[str, float], qdot: Mapping[str, float], z: Mapping[str, float] | None = None) -> Array:
         """x from values of coordinates, velocities ("x'") and states of the model by name; 0 for those left out.

@@ -1,23 +1,20 @@
-"""Models: what they say, their equations and their motions."""
+"""Models and their motions."""
 
 from __future__ import annotations
 
-import html
-import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, overload
 
 from . import _core
+from ._analysed import Analysed
 from ._errors import Interrupted, ModelError, MotionError
-from ._numbers import Number, float_of, list_of, spaced, text_of, texts_of
+from ._numbers import Number, float_of, list_of, text_of, texts_of
 from ._progress import Progress, Shown
 from ._source import Source
-from ._sweep_filling import SweepRequest, Words
-from .analysis import Comparison, LinearModel, PublishedEquations, Stability, State, equation_text
+from ._sweep_filling import number_of_cases, SweepRequest, Words
 from .check import Check
 from .dynamics import Dynamics
-from .equations import Equations, Proof
 from .expressions import Expr
 from .run import Run
 from .sweep import Law, Sweep
@@ -26,10 +23,8 @@ from .sweep_folder import SweepFolder
 if TYPE_CHECKING:
     from distributed import Client
 
-_KEPT = 16  # prepared systems of a model
 
-
-class Model:
+class Model(Analysed):
     """A mechanical system, as a model file has it. It never changes: :meth:`with_` makes another one.
 
     Get one from :func:`load`, :func:`loads` or :func:`zoo`. Computations release the interpreter's lock; threads may share
@@ -42,66 +37,9 @@ class Model:
         <model 'Disc rolling on a plane': coordinates x, y, psi, theta, phi; 2 constraints>
     """
 
-    def __init__(self, core: _core.Model, again: Source, given: dict[str, str], cases: list[str]) -> None:
-        self._core = core
-        self._again, self._given, self._cases = again, given, cases
-        self._prepared: dict[Any, _core.System] = {}
-
     def __reduce__(self) -> tuple[Callable[..., Model], tuple[Source, dict[str, str], list[str]]]:
         """Another process reads the model again."""
         return made, (self._again, self._given, self._cases)
-
-    # ---- what it says ----
-
-    @property
-    def title(self) -> str:
-        """The title of the file."""
-        return self._core.title
-
-    @property
-    def text(self) -> str:
-        """The text it was read from."""
-        return self._core.text
-
-    @property
-    def coordinates(self) -> list[_core.Coordinate]:
-        """Names and units of the coordinates."""
-        return self._core.coordinates
-
-    @property
-    def parameters(self) -> dict[str, float]:
-        """The values of the parameters by name, in SI units."""
-        return {p.name: p.value for p in self._core.parameters}
-
-    @property
-    def constraints(self) -> list[_core.Constraint]:
-        """Names and orders of the constraints."""
-        return self._core.constraints
-
-    @property
-    def states(self) -> list[str]:
-        """Further states with rates of their own."""
-        return self._core.states
-
-    @property
-    def inputs(self) -> list[str]:
-        """The names of [input]."""
-        return self._core.inputs
-
-    @property
-    def monitors(self) -> list[str]:
-        """The names of [monitor] and [output], which are columns of a run."""
-        return self._core.monitors
-
-    @property
-    def cases(self) -> list[str]:
-        """The scenarios [case.NAME] of the file."""
-        return self._core.cases
-
-    @property
-    def remarks(self) -> list[_core.Diagnostic]:
-        """Warnings and notes of the reader."""
-        return self._core.remarks
 
     def with_(self, *, case: str | Sequence[str] = (), **parameters: Number) -> Model:
         """The same model with other values of parameters, or with scenarios of the file laid over it.
@@ -121,44 +59,6 @@ class Model:
         given = {**self._given, **texts_of(parameters)}
         cases = [*self._cases, *([case] if isinstance(case, str) else case)]
         return Model(self._again(given, cases), self._again, given, cases)
-
-    # ---- its equations ----
-
-    def forms(self) -> list[_core.Form]:
-        """All classical forms of the equations, with whether they apply, and why not.
-
-        Example:
-            >>> import anholon as an
-            >>> [form.name for form in an.load("disc").forms() if form.name.startswith("chaplygin")]
-            ['chaplygin']
-        """
-        return self._core.forms()
-
-    def equations(self, form: str = "routh", *, expand: str = "auto", steps: bool = False, reactions: bool = False) -> Equations:
-        """The equations of motion in a classical form.
-
-        Args:
-            form: a name that :meth:`forms` lists.
-            expand: ``auto``, ``none``, ``paper``, ``full`` or ``parts``: how far sums and products are written out.
-            steps: with the quantities that lead to them: energies, momenta, forces.
-            reactions: with the ideal reactions.
-
-        Raises:
-            ModelError: the form is not known, or does not apply.
-        """
-        return Equations(_core.derive(self._core, form, expand, steps, reactions))
-
-    def reactions(self, form: str = "routh") -> Equations:
-        """The equations together with the ideal reactions of the constraints."""
-        return self.equations(form, reactions=True)
-
-    def prove(self, *forms: str) -> Proof:
-        """Proves that forms (all that apply if none is named) agree with Routh's equations.
-
-        Raises:
-            ModelError: a form is not known.
-        """
-        return Proof(_core.prove(self._core, list(forms)))
 
     def check(self, *, form: str = "routh", initial: Mapping[str, Number] | None = None) -> Check:
         """What kind of system this is: degrees of freedom, kinds of constraints, the consistent initial state.
@@ -183,14 +83,6 @@ class Model:
             MotionError: no state satisfies the constraints with the values given.
         """
         return self._system(form, texts_of(values), eliminate).initial
-
-    def _system(self, form: str, initial: Mapping[str, str], eliminate: Iterable[str]) -> _core.System:
-        key = (form, tuple(sorted(initial.items())), tuple(eliminate))
-        if key not in self._prepared:
-            while len(self._prepared) >= _KEPT:
-                self._prepared.pop(next(iter(self._prepared)), None)
-            self._prepared[key] = _core.prepare(self._core, form, dict(initial), list(key[2]))
-        return self._prepared[key]
 
     def simulate(
         self,
@@ -273,154 +165,6 @@ class Model:
         if isinstance(raised, BaseException):
             raise raised
         return run
-
-    def compare(self, equations: PublishedEquations, *, eliminate: Iterable[str] = (), initial: Mapping[str, Number] | None = None) -> Comparison:
-        """Compares published equations with the derived ones: which are true, and where the others are wrong.
-
-        Args:
-            equations: a text with one equation per line, ``LABEL: left = right``, in the names of the model; a path, or
-                the name of shipped equations; ``{label: equation}``; or a list.
-            eliminate: coordinates that reduced forms eliminate.
-            initial: the state near which they are eliminated.
-
-        Returns:
-            A list of lines with ``verdict``, ``nearest``, ``difference`` and ``suggestions``; true if all are.
-
-        Raises:
-            ModelError: an equation has a mistake, or there is no such file.
-
-        Example:
-            >>> import anholon as an
-            >>> sleigh = an.load("chaplygin-sleigh")
-            >>> sleigh.compare(["blade: x'*sin(th) - y'*cos(th) = 0"])["blade"].verdict
-            'true'
-
-        Source: the criterion of ``anholon compare`` (theory: proof).
-        """
-        text, is_file = equation_text(equations)
-        return Comparison(self.title, _core.compare(self._core, text, is_file, "equations", list(eliminate), texts_of(initial)))
-
-    def evaluate(
-        self,
-        *,
-        initial: Mapping[str, Number] | None = None,
-        t: Number | None = None,
-        form: str = "routh",
-        eliminate: Iterable[str] = (),
-        digits: int = 16,
-    ) -> State:
-        """Everything about one state: forces, accelerations, multipliers, reactions, energies, residuals.
-
-        Args:
-            initial: values instead of those of the file: ``{"theta": 1.3, "phi'": 6}``, SI.
-            t: the time, s.
-            form: of the equations.
-            eliminate: coordinates that forms without multipliers eliminate.
-            digits: of the numbers; more than 16 come as ``mpmath.mpf``.
-
-        Raises:
-            ModelError: an argument makes no sense.
-            MotionError: no state satisfies the constraints, the configuration is singular, or a formula has no value.
-
-        Example:
-            >>> import anholon as an
-            >>> state = an.load("disc").evaluate(initial={"phi'": 6})
-            >>> len(state.accelerations), state.residuals["newton"] < 1e-14
-            (5, True)
-        """
-        given = texts_of(initial)
-        if t is not None:
-            given["t"] = text_of(t)
-        return State(_core.evaluate(self._system(form, given, eliminate), digits), [c.name for c in self.coordinates], digits)
-
-    def linearize(
-        self,
-        *,
-        about: str = "state",
-        initial: Mapping[str, Number] | None = None,
-        t: Number | None = None,
-        form: str = "routh",
-        eliminate: Iterable[str] = (),
-        digits: int = 16,
-    ) -> LinearModel:
-        """The linear model z' = A z + B u, y = C z + D u, with [input] as u and [output] as y.
-
-        Args:
-            about: ``"state"``: the initial state; ``"equilibrium"``: the state of rest near the initial positions.
-            initial: values instead of those of the file; for an equilibrium, positions where the search begins.
-            t: the time, s.
-            form: of the equations.
-            eliminate: coordinates that forms without multipliers eliminate.
-            digits: more than 16: :meth:`LinearModel.exact` has them.
-
-        Raises:
-            ModelError: an argument makes no sense.
-            MotionError: the configuration is singular, there is no equilibrium, or eigenvalues could not be enclosed.
-
-        Example:
-            >>> import anholon as an
-            >>> tractor = an.load("trailers").linearize()
-            >>> tractor.inputs, tractor.B.shape[1]
-            (['drive', 'steer'], 2)
-
-        Source: dE/dx of the equations and of their derivatives (theory: linear-models).
-        """
-        return LinearModel(_core.linearize(self._core, form, self._linear(about, initial, t), list(eliminate), about == "equilibrium", digits))
-
-    @staticmethod
-    def _linear(about: str, initial: Mapping[str, Number] | None, t: Number | None) -> dict[str, str]:
-        if about not in ("state", "equilibrium"):
-            raise ModelError(f"about: {about!r}\nhint: 'state' or 'equilibrium'")
-        given = texts_of(initial)
-        if t is not None:
-            given["t"] = text_of(t)
-        return given
-
-    def stability(
-        self,
-        parameter: str,
-        low: Number | Iterable[Number],
-        high: Number | None = None,
-        n: int = 101,
-        *,
-        about: str = "state",
-        initial: Mapping[str, Number] | None = None,
-        t: Number | None = None,
-        form: str = "routh",
-        eliminate: Iterable[str] = (),
-        digits: int = 16,
-    ) -> Stability:
-        """Eigenvalues over a parameter, as curves, and the values at which they cross the imaginary axis.
-
-        The initial data are solved anew for each value. Two opposite crossings between neighbouring values are not
-        detected.
-
-        Args:
-            parameter: its name.
-            low: the first value, SI, or all values.
-            high: the last value.
-            n: how many values, equally far apart.
-            about: ``"state"`` or ``"equilibrium"``, as in :meth:`linearize`, likewise the others.
-
-        Raises:
-            ModelError: there is no such parameter, or an argument makes no sense.
-            MotionError: no initial state satisfies the constraints.
-
-        Example:
-            >>> import anholon as an
-            >>> [c.value for c in an.load("whipple").stability("v", 0, 10, 11).crossings]
-            [4.292382536341104, 6.024262015388359]
-        """
-        if isinstance(low, Iterable) and not isinstance(low, str):
-            values = list_of(low)
-        elif high is None:
-            values = [text_of(low)]
-        elif n < 2:
-            raise ModelError(f"n: {n} values do not reach from low to high\nhint: 2 or more")
-        else:
-            values = spaced(low, high, n)
-        given = self._linear(about, initial, t)
-        return Stability(_core.stability(self._core, parameter, values, form, given, list(eliminate), about == "equilibrium", digits))
 
     @overload
     def sweep(
@@ -549,7 +293,7 @@ class Model:
         if on is not None or chunk is not None or share != (1, 1) or refine or refine_by is not None:
             raise ModelError('on, chunk, share and refine belong to a sweep in a folder\nhint: out="falls/"')
         system = self._system(form, texts_of(initial), ())
-        with Shown(progress, self.title, _count(values, laws, cases, together), unit="cases") as tell:
+        with Shown(progress, self.title, number_of_cases(values, laws, cases, together), unit="cases") as tell:
             core, raised = _core.sweep(system, words, threads, stop, tell)
         sweep = Sweep(self, core, list(vary), list(reduce))
         if isinstance(raised, KeyboardInterrupt):
@@ -607,30 +351,6 @@ class Model:
         """The same as a module of NumPy."""
         return _core.program_text(self._system(form, texts_of(initial), ()), "python")
 
-    def __repr__(self) -> str:
-        names = ", ".join(c.name for c in self.coordinates)
-        return f"<model {self.title!r}: coordinates {names}; {len(self.constraints)} constraints>"
-
-    def _repr_html_(self) -> str:
-        rows = [
-            ("coordinates", ", ".join(repr(c) for c in self.coordinates)),
-            ("parameters", ", ".join(repr(p) for p in self._core.parameters)),
-            ("constraints", ", ".join(repr(c) for c in self.constraints)),
-            ("outputs", ", ".join(self.monitors)),
-        ]
-        body = "".join(f"<tr><th style='text-align:left'>{k}</th><td style='text-align:left'>{html.escape(v)}</td></tr>" for k, v in rows if v)
-        return f"<table><caption>{html.escape(self.title)}</caption><tbody>{body}</tbody></table>"
-
-
-def _count(values: list[tuple[str, list[str]]], laws: dict[str, str], cases: int | None, together: bool) -> float | None:
-    """How many cases a sweep has, if that is known before it begins."""
-    if cases is not None:
-        return float(cases)
-    if together:
-        return float(max((len(of) for _, of in values), default=0))
-    if any("(" in law for law in laws.values()):
-        return None
-    return float(math.prod(int(laws[name].rpartition(":")[2]) if name in laws else len(of) for name, of in values))
 
 
 def made(again: Source, given: dict[str, str], cases: list[str]) -> Model:

@@ -62,6 +62,19 @@ auto unlocked(const F& f) {
   return f();
 }
 
+// Exists as long as a thread of the library computes.
+class Running {
+ public:
+  Running() { ++count_; }
+  ~Running() { --count_; }
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+  static std::size_t count() { return count_; }
+
+ private:
+  static inline std::atomic<std::size_t> count_{0};
+};
+
 // Looks after a computation that runs in a thread of its own, while this thread waits for it with the interpreter's lock
 // released: every 20 ms it lets Python's signal handlers run, of which one raises KeyboardInterrupt, asks `stop` and
 // tells `progress` (functions of the user, or None). Any of them that raises ends the computation.
@@ -87,6 +100,7 @@ class Attendant {
     {
       const nb::gil_scoped_release release;
       std::thread computing([&] {
+        const Running running;
         try {
           value.emplace(f());
         } catch (...) {

@@ -10,6 +10,8 @@ NB_MODULE(_core, m) {
   anholon::python::bind_sweep_folders(m);
   anholon::python::bind_dynamics(m);
   anholon::python::bind_analysis(m);
+  m.def("running", anholon::python::Running::count,
+        "How many threads of the library compute for a call; 0 once all calls have ended, by Ctrl-C or by themselves.");
   nanobind::module_::import_("atexit").attr("register")(
       nanobind::cpp_function([] { anholon::python::Abandoned::threads().wait(); }));
 }

@@ -1,8 +1,11 @@
 """compare, evaluate, linearize and stability: the numbers and verdicts of the command line."""
 
 import json
+import os
 import pathlib
+import re
 import signal
+import subprocess
 import threading
 import time
 from collections.abc import Callable
@@ -11,6 +14,7 @@ from typing import Any
 import anholon as an
 import numpy as np
 import pytest
+from anholon import _core
 
 Program = Callable[..., str]
 
@@ -232,6 +236,24 @@ LONG: list[tuple[str, str, Callable[[an.Model], object]]] = [
 ]
 
 
+def test_a_computation_is_counted_while_it_runs() -> None:
+    model, counts = an.load("spherical-robot"), set[int]()
+    ended = threading.Event()
+
+    def look() -> None:
+        while not ended.is_set():
+            counts.add(_core.running())
+            time.sleep(0.001)
+
+    beside = threading.Thread(target=look)
+    beside.start()
+    model.equations("kane")
+    model.prove("maggi")
+    ended.set()
+    beside.join()
+    assert 1 in counts and _core.running() == 0
+
+
 @pytest.mark.parametrize(("name", "call"), [row[1:] for row in LONG], ids=[row[0] for row in LONG])
 def test_ctrl_c_ends_what_keeps_nothing(name: str, call: Callable[[an.Model], object]) -> None:
     model = an.load(name)
@@ -246,8 +268,28 @@ def test_ctrl_c_ends_what_keeps_nothing(name: str, call: Callable[[an.Model], ob
         threading.Timer(0.05, press).start()
         with pytest.raises(KeyboardInterrupt):
             call(model)
-        return time.perf_counter() - pressed[0]
+        seconds = time.perf_counter() - pressed[0]
+        assert _core.running() == 0  # the computation has ended, too
+        return seconds
 
     # On a busy machine one call may wait for a core; a call that answers late by itself does so each time.
     assert any(latency() < 0.1 for _ in range(5))
-    assert model.coordinates[0].name == "x"  # the model is as it was, while the computation ends by itself
+    assert model.coordinates[0].name == "x"  # the model is as it was
+
+
+def test_ctrl_c_ends_a_proof_of_the_command() -> None:
+    """It says which forms were compared until then, and calls nothing equal."""
+    for delay in (0.1, 0.2, 0.4, 0.8, 1.6, 3.2):
+        process = subprocess.Popen([os.environ["ANHOLON_PROGRAM"], "prove", "snake"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(delay)
+        process.send_signal(signal.SIGINT)
+        shown, said = process.communicate(timeout=60)
+        if process.returncode == -signal.SIGINT:
+            continue  # it came before the proof began
+        assert process.returncode == 1 and shown == ""
+        told = re.match(r"stopped \(interrupted\): (\d+) of (\d+) forms were compared with Routh's equations\n((?:proved: .*\n)?)$", said)
+        assert told, said
+        assert int(told[1]) < int(told[2]) and len(told[3].removeprefix("proved: ").strip().split(", ") if told[3] else []) == int(told[1])
+        if told[3]:
+            return
+    raise AssertionError("no request came during the proof")

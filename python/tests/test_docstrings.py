@@ -16,14 +16,23 @@ PACKAGE = pathlib.Path(an.__file__).parent
 
 def definitions() -> Iterator[tuple[str, ast.AST, str]]:
     """(name, definition, class) of the public classes, functions and members that are written in Python."""
-    for path in sorted(PACKAGE.glob("*.py")):
-        for node in ast.parse(path.read_text(encoding="utf-8")).body:
-            if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and node.name in an.__all__:
-                yield node.name, node, ""
-                if isinstance(node, ast.ClassDef):
-                    for member in node.body:
-                        if isinstance(member, ast.FunctionDef) and (not member.name.startswith("_") or member.name in ("__call__", "__getitem__")):
-                            yield f"{node.name}.{member.name}", member, node.name
+    parts = [node for path in sorted(PACKAGE.glob("*.py")) for node in ast.parse(path.read_text(encoding="utf-8")).body]
+    classes = {node.name: node for node in parts if isinstance(node, ast.ClassDef)}
+
+    def members(node: ast.ClassDef) -> Iterator[ast.FunctionDef]:
+        """Those of the class, then those of the classes of the package that it extends."""
+        yield from (member for member in node.body if isinstance(member, ast.FunctionDef))
+        for base in node.bases:
+            if isinstance(base, ast.Name) and base.id in classes and base.id not in an.__all__:
+                yield from members(classes[base.id])
+
+    for node in parts:
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and node.name in an.__all__:
+            yield node.name, node, ""
+            if isinstance(node, ast.ClassDef):
+                for member in members(node):
+                    if not member.name.startswith("_") or member.name in ("__call__", "__getitem__"):
+                        yield f"{node.name}.{member.name}", member, node.name
 
 
 ALL = {name: (node, of) for name, node, of in definitions()}
@@ -88,6 +97,11 @@ def test_what_is_raised_and_the_shapes_are_told(name: str) -> None:
     returns = ast.unparse(node.returns) if node.returns else ""
     if re.fullmatch(r"(Complex)?Array|npt\.NDArray.*", returns):
         assert "shape" in text.lower() or "view" in text, f"{name}: no shape"
+
+
+def test_members_of_the_parts_of_a_class_are_found() -> None:
+    assert {f"Model.{name}" for name in vars(an.Model) if not name.startswith("_")} < ALL.keys()
+    assert {"Model.title", "Model.prove", "Model.simulate", "Model.linearize"} < ALL.keys()
 
 
 def test_the_test_finds_what_is_missing() -> None:

@@ -1,6 +1,7 @@
 // What stands behind the types of the public headers, and how the trouble of the layers becomes theirs.
 #pragma once
 #include "anholon/motion.h"
+#include "base/stop.h"
 #include "modelfile/contacts.h"
 #include "modelfile/names/constant.h"
 #include "modelfile/read.h"
@@ -41,13 +42,15 @@ Error error_of(const inner::Outcome& outcome);
 // Of an argument of a call.
 Error mistake(const std::string& message, const std::string& hint = {});
 
-// Calls f, which returns a Result; a Failure that it throws becomes the error.
+// Calls f, which returns a Result; a Failure that it throws becomes the error, and so does a stop request.
 template <class F>
 auto guarded(const inner::SourceText& source, F f) -> decltype(f()) {
   try {
     return f();
   } catch (const inner::Failure& failure) {
     return error_of(failure, source);
+  } catch (const inner::StopRequested&) {
+    return error_of(inner::Outcome{inner::OutcomeKind::interrupted, "the computation was stopped", ""});
   } catch (const std::bad_alloc&) {
     return error_of(
         inner::Outcome{inner::OutcomeKind::too_large, "out of memory", "the model is too large for this machine"});

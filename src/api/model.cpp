@@ -106,7 +106,7 @@ Result<Model> read_file(const std::string& path, const ReadOptions& options) {
 }
 
 Result<Model> read_text(const std::string& text, const ReadOptions& options, const std::string& name) {
-  return opened({name, text}, options);
+  return guarded({name, text}, [&] { return opened({name, text}, options); });
 }
 
 }  // namespace anholon::v1

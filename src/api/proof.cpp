@@ -14,7 +14,8 @@ namespace anholon::v1 {
 static_assert(static_cast<int>(Verdict::refuted) == static_cast<int>(inner::Verdict::refuted));
 
 bool Proof::all_proved() const {
-  return std::all_of(forms.begin(), forms.end(), [](const FormVerdict& f) { return f.verdict == Verdict::proved; });
+  return !stopped &&
+         std::all_of(forms.begin(), forms.end(), [](const FormVerdict& f) { return f.verdict == Verdict::proved; });
 }
 
 Result<Proof> prove(const Model& model, const std::vector<std::string>& names) {
@@ -33,16 +34,22 @@ Result<Proof> prove(const Model& model, const std::vector<std::string>& names) {
                               inner::elimination_for(m, inner::Unknowns::quasi_velocities, {}, {}, solve, 0)});
     const inner::Proof p = inner::prove(m, forms, eliminations);
     Proof result;
+    result.stopped = p.stopped;
     for (const inner::FormProof& f : p.forms) {
       FormVerdict& v = result.forms.emplace_back();
       v.form = f.form->name;
       v.verdict = static_cast<Verdict>(f.verdict);
       for (const inner::Difference& d : f.differences)
         if (d.verdict != inner::Verdict::proved && v.detail.empty()) v.detail = d.component + ": " + d.detail;
+      if (result.forms.size() > p.compared) v.detail = "stopped";
     }
-    result.certificate =
-        inner::to_json(inner::certificate(m, p, eliminations.front(), std::string("anholon ") + version(),
-                                          inner::model_hash(model.data().model->source_text)));
+    if (p.stopped) return result;
+    inner::Certificate c = inner::certificate(m, p, eliminations.front(), std::string("anholon ") + version(),
+                                              inner::model_hash(model.data().model->source_text));
+    std::vector<std::string> values;
+    for (const auto& [name, value] : model.data().overrides) values.push_back(name + "=" + value);
+    inner::add_reading(c, model.data().cases, values);
+    result.certificate = inner::to_json(c);
     return result;
   });
 }

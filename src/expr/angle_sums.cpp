@@ -1,6 +1,7 @@
 // Sines and cosines in sums of monomials: applies sin^2 + cos^2 = 1 and the addition theorems backwards.
 #include <algorithm>
 
+#include "base/stop.h"
 #include "expr/monomial_sums.h"
 
 namespace anholon::arrangement {
@@ -11,6 +12,7 @@ namespace {
 void shorten_squares(Sum& s, std::size_t kept, std::size_t other) {
   for (bool found = true; found;) {
     found = false;
+    look_for_stop();
     for (const auto& [exponents, c] : s) {
       Exponents squared = exponents;
       squared[kept] += 2;
@@ -33,6 +35,7 @@ void shorten_squares(Sum& s, std::size_t kept, std::size_t other) {
 Sum without_square(const Sum& s, std::size_t gone, std::size_t other) {
   Sum result;
   for (const auto& [exponents, c] : s) {
+    look_for_stop();
     const unsigned long k = exponents[gone] / 2;
     Exponents e = exponents;
     e[gone] -= 2 * k;

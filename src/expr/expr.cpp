@@ -6,6 +6,7 @@
 
 #include "base/assert.h"
 #include "base/diagnostic.h"
+#include "base/stop.h"
 
 namespace anholon {
 
@@ -121,6 +122,7 @@ std::uint32_t Graph::rational_index(const Rational& r) {
 }
 
 NodeId Graph::intern(Node node, std::span<const Term> operands, std::span<const Term> view) {
+  look_for_stop();
   std::uint64_t h = mix(static_cast<std::uint64_t>(node.kind), node.index);
   h = mix(h, node.order);
   for (const Term& t : operands) h = mix(mix(h, t.weight), t.node);

@@ -9,6 +9,7 @@
 #include <flint/fmpq_mpoly.h>
 #include <flint/fmpq_mpoly_factor.h>
 
+#include "base/stop.h"
 #include "expr/monomial.h"
 
 namespace anholon {
@@ -34,6 +35,7 @@ class Ring {
   const fmpq_mpoly_ctx_struct* context() const { return context_; }
   long generators() const { return generators_; }
   void spend(long work) const {
+    look_for_stop();
     if (work > kNormalTermLimit || (work_ += work) > most_work_) throw TooLarge{};
   }
 

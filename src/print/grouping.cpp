@@ -3,6 +3,7 @@
 #include <bit>
 #include <optional>
 
+#include "base/stop.h"
 #include "expr/diff.h"
 #include "expr/polynomial.h"
 
@@ -224,7 +225,7 @@ class Grouping {
     Sum rest = s;
     while (rest.size() > 1 && comparisons_ < kMostComparisons) {
       std::map<Exponents, std::size_t> shared;  // factor -> terms that hold it
-      for (auto i = rest.begin(); i != rest.end(); ++i)
+      for (auto i = rest.begin(); i != rest.end(); ++i, look_for_stop())
         for (auto j = std::next(i); j != rest.end(); ++j) {
           Exponents factor = common(i->first, j->first);
           if (!trivial(factor)) shared.emplace(std::move(factor), 0);
@@ -232,6 +233,7 @@ class Grouping {
       const Exponents* best = nullptr;
       std::pair<std::size_t, int> most{3, -1};  // a smaller saving does not pay for the brackets
       for (auto& [factor, count] : shared) {
+        look_for_stop();
         for (const auto& [exponents, c] : rest) count += divides(factor, exponents);
         int order = -1;
         for (std::size_t k = 0; k < factor.size(); ++k)

@@ -1,5 +1,6 @@
 #include "proof/enclose.h"
 
+#include "base/stop.h"
 #include "tape/function_value.h"
 
 namespace anholon {
@@ -19,6 +20,7 @@ std::vector<Ball> enclose(std::span<const Expr> es, const BallPoint& at) {
   const Graph& g = *es[0].graph;
   BallPoint value;
   for (NodeId id : reachable(es)) {
+    look_for_stop();
     const Node& n = g.node(id);
     Ball v;
     switch (n.kind) {

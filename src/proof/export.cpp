@@ -146,6 +146,11 @@ void hypotheses(const Mechanics& M, const Proof& proof, const Eliminations& elim
 
 }  // namespace
 
+void add_reading(Certificate& c, const std::vector<std::string>& cases, const std::vector<std::string>& values) {
+  for (const std::string& name : cases) c.hypotheses.push_back("the case '" + name + "' is laid over the file");
+  for (const std::string& value : values) c.hypotheses.push_back(value + " is given beside the file");
+}
+
 Certificate certificate(const Mechanics& M, const Proof& proof, const Eliminations& eliminations,
                         const std::string& program, const std::string& source_hash) {
   Certificate c;

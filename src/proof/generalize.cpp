@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/stop.h"
 #include "expr/diff.h"
 #include "proof/scattered.h"
 #include "tape/function_value.h"
@@ -46,6 +47,7 @@ class Values {
   bool vanishes() const { return std::abs(value_.back()) <= kVanishes * scale_.back(); }
 
   void evaluate(std::size_t from) {
+    look_for_stop();
     for (std::size_t i = from; i < ids_.size(); ++i) {
       const Node& n = g_.node(ids_[i]);
       if (free_[i] || n.view_count == 0) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/stop.h"
 #include "expr/normal.h"
 #include "proof/generalize.h"
 #include "proof/witness.h"
@@ -129,24 +130,33 @@ FormProof prove_form(const Mechanics& M, const Formulation& form, const Equation
 Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms,
             const std::vector<Eliminations>& eliminations, const ProofOptions& options) {
   Proof proof;
-  std::vector<const Elimination*> used;
-  for (const Formulation* form : forms) {
-    if (options.progress) options.progress(*form);
-    proof.forms.push_back(prove_form(M, *form, form->equations, eliminations, options));
-    const Elimination* e = &eliminations[proof.forms.back().elimination].of(*form);
-    if (form->unknowns != Unknowns::multipliers && std::find(used.begin(), used.end(), e) == used.end())
-      used.push_back(e);
+  try {
+    std::vector<const Elimination*> used;
+    for (const Formulation* form : forms) {
+      if (options.progress) options.progress(*form);
+      proof.forms.push_back(prove_form(M, *form, form->equations, eliminations, options));
+      const Elimination* e = &eliminations[proof.forms.back().elimination].of(*form);
+      if (form->unknowns != Unknowns::multipliers && std::find(used.begin(), used.end(), e) == used.end())
+        used.push_back(e);
+    }
+    for (const Elimination* e : used) {
+      kernel_claims(M, *e, options.bits(), proof.kernel);
+      pivot_claims(M, *e, options.bits(), proof.pivots);
+    }
+  } catch (const StopRequested&) {
+    proof.stopped = true;
+    proof.compared = proof.forms.size();
+    for (std::size_t k = proof.forms.size(); k < forms.size(); ++k)
+      proof.forms.push_back({forms[k], Verdict::unknown, {}});
+    return proof;
   }
-  for (const Elimination* e : used) {
-    kernel_claims(M, *e, options.bits(), proof.kernel);
-    pivot_claims(M, *e, options.bits(), proof.pivots);
-  }
+  proof.compared = proof.forms.size();
   return proof;
 }
 
 Verdict Proof::between(std::size_t a, std::size_t b) const {
   const Verdict va = forms[a].verdict, vb = forms[b].verdict;
-  const bool tangents = of_all(kernel) == Verdict::proved;
+  const bool tangents = !stopped && of_all(kernel) == Verdict::proved;
   const auto rests_on_tangents = [&](std::size_t i) { return forms[i].form->unknowns != Unknowns::multipliers; };
   if (!tangents && (rests_on_tangents(a) || rests_on_tangents(b))) return Verdict::unknown;
   if (va == Verdict::proved && vb == Verdict::proved) return Verdict::proved;

@@ -34,6 +34,10 @@ struct Proof {
   std::vector<FormProof> forms;    // comparisons with Routh's equations
   std::vector<Difference> kernel;  // B spans the kernel, and the solved constraints satisfy the constraints
   std::vector<Difference> pivots;  // no divisor is identically zero
+  // A stop request (base/stop.h) ended it: forms that were not compared are unknown, and so are all pairs that rest on
+  // the tangents of the constraints.
+  bool stopped = false;
+  std::size_t compared = 0;  // the first so many forms were compared
   Verdict between(std::size_t a, std::size_t b) const;
 };
 
@@ -53,8 +57,13 @@ struct ProofOptions {
 using EquationsOf = std::function<Equations(const Mechanics&, const Elimination&)>;
 FormProof prove_form(const Mechanics& M, const Formulation& form, const EquationsOf& equations,
                      const std::vector<Eliminations>& eliminations, const ProofOptions& options = {});
+// A stop request ends it and keeps the comparisons that are complete.
 Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms,
             const std::vector<Eliminations>& eliminations, const ProofOptions& options = {});
+
+// States in the hypotheses which cases were laid over the file of the model, and which values were given beside it
+// ("m=2").
+void add_reading(Certificate& c, const std::vector<std::string>& cases, const std::vector<std::string>& values);
 
 // All results, for an independent checker.
 Certificate certificate(const Mechanics& M, const Proof& proof, const Eliminations& eliminations,

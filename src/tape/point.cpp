@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/stop.h"
 #include "tape/function_value.h"
 
 namespace anholon {
@@ -68,6 +69,7 @@ N ValuesAt<N>::evaluate(const Graph& g, NodeId id) const {
 
 template <Number N>
 N ValuesAt<N>::operator()(Expr e) {
+  look_for_stop();
   const Graph& g = *e.graph;
   if (place_.size() <= e.id) place_.resize(g.size(), 0);
   constexpr std::uint32_t kFound = ~std::uint32_t{0};

@@ -166,6 +166,19 @@ int main() {
   if (!equations) std::printf("%s", equations.text().c_str());
   const auto proof = anholon::prove(*model);
   expect(proof && proof->all_proved(), "all forms are proved equal");
+  for (const std::size_t after : {std::size_t{0}, std::size_t{200}}) {
+    std::size_t looks = 0;
+    const anholon::StopRequest request([&] { return looks++ >= after; });
+    const auto stopped = anholon::prove(*model);
+    // A request that comes before the proof begins leaves no proof at all.
+    expect(stopped ? stopped->stopped && !stopped->all_proved() && stopped->certificate.empty()
+                   : stopped.error().outcome && stopped.error().outcome->kind == anholon::OutcomeKind::interrupted,
+           "a stopped proof says so");
+    const auto derived = anholon::derive(*model);
+    expect(!derived && derived.error().outcome && derived.error().outcome->kind == anholon::OutcomeKind::interrupted,
+           "a stopped derivation is an outcome");
+  }
+  expect(bool(anholon::derive(*model)), "the request ends with its block");
   const auto verified = anholon::verify(proof->certificate);
   expect(verified && verified->all_confirmed() && verified->claims > 0, "the certificate is confirmed");
   const auto system = anholon::prepare(*model);

@@ -6,9 +6,11 @@
 #include <unistd.h>
 
 #include "base/json.h"
+#include "base/stop.h"
 #include "cli/contacts.h"
 #include "cli/input.h"
 #include "cli/say.h"
+#include "cli/stop.h"
 #include "modelfile/hash.h"
 #include "result/file.h"
 
@@ -74,6 +76,7 @@ void print_differences(const Proof& p, const SymbolNames& names) {
       if (d.witness) say(stdout, "  at %s\n", point_text(*d.witness, names).c_str());
       if (d.verdict == Verdict::refuted) break;  // one point suffices
     }
+  if (p.stopped) return;
   for (const Difference& d : p.kernel)
     if (d.verdict != Verdict::proved)
       say(stdout, "not shown: the tangents of the constraints, %s: %s\n", d.component.c_str(), d.detail.c_str());
@@ -120,6 +123,44 @@ std::string json(const Model& model, const Proof& p, const Certificate& c, const
   return j.text();
 }
 
+// Ctrl-C ended the proof: its text says which forms were compared until then, with their verdicts.
+int say_stopped(const ProveCommand& o, const Proof& p) {
+  say(stderr, "stopped (interrupted): %zu of %zu forms were compared with Routh's equations\n", p.compared,
+      p.forms.size());
+  for (const Verdict v : {Verdict::proved, Verdict::refuted, Verdict::unknown}) {
+    std::string list;
+    for (std::size_t k = 0; k < p.compared; ++k)
+      if (p.forms[k].verdict == v) list += std::string(list.empty() ? "" : ", ") + p.forms[k].form->name;
+    if (!list.empty()) say(stderr, "%s: %s\n", name(v), list.c_str());
+  }
+  if (!o.output.empty()) say(stderr, "%s was not written: a certificate is of a whole proof\n", o.output.c_str());
+  return kStopped;
+}
+
+// The proof, which Ctrl-C ends; `eliminations` are those that it offers to the forms.
+Proof proof(const ProveCommand& o, const Reader& in, const Mechanics& m, const std::vector<const Formulation*>& forms,
+            std::vector<Eliminations>& eliminations) {
+  ProofOptions options;
+  options.digits = o.digits_of_enclosures;
+  const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
+  std::size_t done = 0;
+  if (terminal)
+    options.progress = [&](const Formulation& f) {
+      say(stderr, "\r\033[K%zu of %zu: %s", ++done, forms.size(), f.name);
+    };
+  const StopScope stop(stop_requested);
+  Proof p;
+  try {
+    eliminations = eliminations_of(in, m, state_choice(o, *in.model), static_cast<unsigned>(o.m));
+    p = anholon::prove(m, forms, eliminations, options);
+  } catch (const StopRequested&) {
+    p.stopped = true;
+    for (const Formulation* f : forms) p.forms.push_back({f, Verdict::unknown, {}});
+  }
+  if (terminal) say(stderr, "\r\033[K");
+  return p;
+}
+
 void must_be_written(const std::string& why) {
   if (!why.empty()) throw UsageError{"error: " + why + "\n"};
 }
@@ -135,19 +176,12 @@ int prove(const ProveCommand& o) {
   const Mechanics m = mechanics(model);
   if (o.m) must_lift(m, static_cast<unsigned>(o.m));
   const std::vector<const Formulation*> forms = wanted_forms(o, m);
-  const std::vector<Eliminations> eliminations =
-      eliminations_of(in, m, state_choice(o, model), static_cast<unsigned>(o.m));
-  ProofOptions options;
-  options.digits = o.digits_of_enclosures;
-  const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
-  std::size_t done = 0;
-  if (terminal)
-    options.progress = [&](const Formulation& f) {
-      say(stderr, "\r\033[K%zu of %zu: %s", ++done, forms.size(), f.name);
-    };
-  const Proof p = anholon::prove(m, forms, eliminations, options);
-  if (terminal) say(stderr, "\r\033[K");
-  const Certificate c = certificate(m, p, eliminations.front(), "anholon " ANHOLON_VERSION, model_hash(in.source));
+  catch_stop("");
+  std::vector<Eliminations> eliminations;
+  const Proof p = proof(o, in, m, forms, eliminations);
+  if (p.stopped) return say_stopped(o, p);
+  Certificate c = certificate(m, p, eliminations.front(), "anholon " ANHOLON_VERSION, model_hash(in.source));
+  add_reading(c, o.cases, split(o.set));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   SymbolNames names = model.names;
   if (eliminations.front().quasi.quasi) names.quasi = eliminations.front().quasi.free.names;

@@ -33,11 +33,13 @@ void add_derive(CommandLine& line) {
 void add_prove(CommandLine& line) {
   const auto [c, o] =
       line.model_command("prove", "prove that the forms of the equations agree, and show which do not", cli::prove,
-                         "Exit status: 0 every pair is decided, 1 one stays unknown, 2 bad input.\n"
+                         "Ctrl-C ends the proof and says which forms were compared until then.\n"
+                         "Exit status: 0 every pair is decided, 1 one stays unknown or Ctrl-C, 2 bad input.\n"
                          "Example: anholon prove luo-zhao-example-2 -o proof.json && anholon verify proof.json");
   c->add_option("--forms", o.forms, "only these forms: routh,chaplygin (default: all that apply)")
       ->type_name("NAME,…")
       ->allow_extra_args(false);
+  parameters(c, o);
   c->add_option("--eliminate", o.eliminate, "dependent coordinates of the forms without multipliers (default: chosen)")
       ->type_name("NAME,…")
       ->allow_extra_args(false);

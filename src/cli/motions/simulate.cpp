@@ -16,6 +16,7 @@
 #include "cli/motions/run_info.h"
 #include "cli/motions/saved.h"
 #include "cli/say.h"
+#include "cli/stop.h"
 #include "contact/hybrid.h"
 #include "modelfile/hash.h"
 #include "result/file.h"

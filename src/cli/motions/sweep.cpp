@@ -11,6 +11,7 @@
 #include "cli/motions/sweep_folder.h"
 #include "cli/motions/sweep_output.h"
 #include "cli/say.h"
+#include "cli/stop.h"
 #include "ensemble/request.h"
 #include "ensemble/variation.h"
 #include "ensemble/with_contacts.h"

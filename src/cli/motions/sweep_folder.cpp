@@ -12,6 +12,7 @@
 #include "cli/motions/progress.h"
 #include "cli/motions/sweep_output.h"
 #include "cli/say.h"
+#include "cli/stop.h"
 #include "ensemble/parts/judgement.h"
 #include "ensemble/refine/refine.h"
 #include "result/file.h"

@@ -16,6 +16,7 @@
 #include "cli/pictures/child.h"
 #include "cli/pictures/recording.h"
 #include "cli/say.h"
+#include "cli/stop.h"
 #include "numeric/number.h"
 #include "report/assets.h"
 #include "report/page/page.h"

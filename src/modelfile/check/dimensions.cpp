@@ -307,6 +307,10 @@ void check_dimensions(const Item& root, const Scope& scope, Model& model, Diagno
   model.coordinate_units = units(model.names.coordinates);
   model.parameter_units = units(model.names.parameters);
   note_bare_numbers(scope, model);
+  for (const FormulaDimensions::BareTerm& b : elements.formulas().bare_terms())
+    diagnostics.warning(b.span, b.text + " without a unit stands beside " + describe(b.dimension),
+                        b.text + " " + print(b.dimension) + ", or 1*" + b.text +
+                            " where the number has its unit in SI");
 }
 
 std::map<std::string, std::string> implied_units(const Item& root, const Scope& scope, const Model& model) {

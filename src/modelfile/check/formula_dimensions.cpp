@@ -185,6 +185,32 @@ Measured FormulaDimensions::raised(const Syntax& s) {
   return known && *known == Dimension{} ? number() : anything();
 }
 
+Measured FormulaDimensions::sum(const Syntax& s) {
+  const auto summand = [&](const Syntax& a) {
+    Measured m = term(a);
+    const Syntax& number = a.op == Syntax::Op::negate ? a.args[0] : a;
+    if (number.op == Syntax::Op::number && !in_override_ && parse_rational(number.text).value_or(0) != 0)
+      bare_.insert_or_assign({number.span.file, number.span.line, number.span.column},
+                             BareNumber{number.span, number.text, m.dimension});
+    return m;
+  };
+  Measured total = summand(s.args[0]);
+  for (std::size_t i = 1; i < s.args.size(); ++i) {
+    const Measured next = summand(s.args[i]);
+    alike(total, next, s.operators[i - 1].span, s.operators[i - 1].op == Syntax::Op::subtract ? " minus " : " plus ");
+    if (total.type == Type::other || next.type == Type::vector) total = next;  // 0 is also the zero vector
+  }
+  return total;
+}
+
+std::vector<FormulaDimensions::BareTerm> FormulaDimensions::bare_terms() const {
+  std::vector<BareTerm> list;
+  for (const auto& [place, number] : bare_)
+    if (const auto d = dimensions_.known(number.dimension); d && *d != Dimension{})
+      list.push_back({number.span, number.text, *d});
+  return list;
+}
+
 Measured FormulaDimensions::product(const Syntax& s) {
   Measured total = of(s.args[0]);
   for (std::size_t i = 1; i < s.args.size(); ++i) {
@@ -252,15 +278,8 @@ Measured FormulaDimensions::measured(const Syntax& s) {
     return raised(s);
   case Syntax::Op::multiply:
     return product(s);
-  case Syntax::Op::add: {
-    Measured total = term(s.args[0]);
-    for (std::size_t i = 1; i < s.args.size(); ++i) {
-      const Measured next = term(s.args[i]);
-      alike(total, next, s.operators[i - 1].span, s.operators[i - 1].op == Syntax::Op::subtract ? " minus " : " plus ");
-      if (total.type == Type::other || next.type == Type::vector) total = next;  // 0 is also the zero vector
-    }
-    return total;
-  }
+  case Syntax::Op::add:
+    return sum(s);
   case Syntax::Op::array: {
     if (s.args.size() != 3) return anything();
     const Measured first = of(s.args[0]);

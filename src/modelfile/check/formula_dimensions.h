@@ -1,5 +1,7 @@
 // The dimension of a formula, by its syntax tree.
 #pragma once
+#include <tuple>
+
 #include "formula/functions.h"
 #include "modelfile/check/unify.h"
 #include "modelfile/names/names.h"
@@ -42,6 +44,15 @@ class FormulaDimensions {
   // The dimension of a unit that is given beside a value.
   DimensionForm given_unit(const std::string& text);
 
+  // A number without a unit, other than 0, as a term of a sum whose terms have a unit: the 2 of "2 + r" with a length r.
+  struct BareTerm {
+    Span span;
+    std::string text;  // of the number
+    Dimension dimension;
+  };
+  // Those of all formulas that were looked at, in the order of the file.
+  std::vector<BareTerm> bare_terms() const;
+
   bool units_seen = false;  // in the file, not in --set
   bool in_field = false;    // in [gravity], where 'here' is a place
 
@@ -57,6 +68,7 @@ class FormulaDimensions {
   Measured one_of_values(const Syntax& s, DimensionRule rule);
   Measured rate_of_point(const Syntax& s, int times);
   Measured user_call(const Syntax& s, const Scope::Declaration& d);
+  Measured sum(const Syntax& s);
   Measured product(const Syntax& s);
   Measured raised(const Syntax& s);
   Measured number(DimensionForm d = {}) const { return {Measured::Type::number, std::move(d)}; }
@@ -66,6 +78,13 @@ class FormulaDimensions {
   void pure(const Syntax& argument);
   bool is_body(const std::string& name) const;
 
+  // A number that is a term of a sum.
+  struct BareNumber {
+    Span span;
+    std::string text;
+    DimensionForm dimension;
+  };
+
   const Scope& scope_;
   Dimensions dimensions_;
   std::map<std::string, Measured> names_;
@@ -73,6 +92,7 @@ class FormulaDimensions {
   std::map<std::string, Syntax> functions_;
   std::vector<std::map<std::string, Measured>> arguments_;
   Diagnostics* found_ = nullptr;
+  std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>, BareNumber> bare_;  // by file, line and column
   std::vector<std::string> open_;
   std::size_t calls_ = 0;
   int depth_ = 0;

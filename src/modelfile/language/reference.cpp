@@ -97,7 +97,8 @@ push   = "2*(10 N + 3 kp)"
   the parameter. A unit ends before a name that is none: `10 m/s*R` is a velocity times the parameter R; `(10 m/s)*m` keeps a parameter m apart.
 - `t` is a tonne only right after the number: `5 t`; elsewhere, as in `5 m/s*t`, it is the time.
 - A bare number fits any dimension, so that files without units are never asked. Where a file has units, all its formulas must fit together:
-  sums, both sides of equations, arguments of `sin`, and what forces and bodies are.
+  sums, both sides of equations, arguments of `sin`, and what forces and bodies are. There a bare number as a term of a sum, the 2 of `2 + r` with a
+  length r, is named by a warning and counts in SI units; `0` has any unit, and `1*2` says that 2 is meant in SI.
 - An angle is a pure number: `rad` is 1, `deg` is pi/180.
 - Prefixes `Y Z E P T G M k h da d c m u (or mu) n p f a z y` stand before units marked ⁺.
 

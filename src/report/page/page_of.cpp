@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/stop.h"
 #include "modelfile/hash.h"
 #include "proof/checker/verify.h"
 #include "report/page/page.h"
@@ -108,6 +109,7 @@ Proof add_proof(Page& page, const PageRequest& request, const Model& fresh) {
   if (request.progress)
     options.progress = [&](const Formulation& f) { request.progress(++done, forms.size(), f.name); };
   Proof proof = prove(own, forms, offered, options);
+  if (proof.stopped) throw StopRequested{};
   const Certificate c = certificate(own, proof, offered.front(), page.version, page.model_hash);
   page.hypotheses = c.hypotheses;
   page.meaning = c.meaning;

@@ -1,6 +1,7 @@
 // Units that fit together and units that do not; and that a file without units is never looked at.
 #include <gtest/gtest.h>
 
+#include "modelfile/shipped.h"
 #include "support/models.h"
 
 namespace anholon::dimensions_test {
@@ -125,6 +126,45 @@ TEST(DimensionsOfAModel, AreSetFromOutside) {
   ASSERT_FALSE(list.empty());
   EXPECT_EQ(messages(found(kCar, {{"l0", "3"}})), "");
   EXPECT_NE(messages(found(kCar, {{"L", "3 s"}})), "") << "not the unit that it was declared with";
+}
+
+// A number that is a term of a sum of lengths is named; 0, factors, exponents and what has no unit are not.
+TEST(DimensionsOfAModel, BareTermsOfASumAreNamed) {
+  const auto warned = [](const char* to) {
+    const std::vector<Diagnostic> list = found(test::replaced(kCar, "(x - l0)", to));
+    for (const Diagnostic& d : list) EXPECT_EQ(d.severity, Severity::warning) << to;
+    return messages(list);
+  };
+  EXPECT_EQ(warned("(x - 2)"), "24: 2 without a unit stands beside a length (m)\n");
+  EXPECT_EQ(warned("(2 + x)"), "24: 2 without a unit stands beside a length (m)\n");
+  EXPECT_EQ(warned("(-0.5 + x)"), "24: 0.5 without a unit stands beside a length (m)\n");
+  EXPECT_EQ(warned("(x - l0 + (1 + l0) + 3)"),
+            "24: 1 without a unit stands beside a length (m)\n24: 3 without a unit stands beside a length (m)\n");
+  for (const char* right : {"(x - 2 m)", "(x - 0)", "(x - 1*2)", "(x*(1 + th) - l0)", "(x - l0*(1 - cos(th)))",
+                            "(x - l0^2/(1 m))", "(x - l0*(2 - t/T0))"})
+    EXPECT_EQ(warned(right), "") << right;
+  // The hint works when it is pasted.
+  const std::vector<Diagnostic> list = found(test::replaced(kCar, "(x - l0)", "(x - 2)"));
+  ASSERT_EQ(list.size(), 1U);
+  EXPECT_EQ(list[0].hint, "2 m, or 1*2 where the number has its unit in SI");
+  EXPECT_EQ(list[0].span.column, std::string("vector = \"-k*(x - ").size() + 1);
+  // A file without units is not asked, and a value from outside is no term of the file.
+  EXPECT_EQ(messages(found("coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"(2 + x)*ex\"\n")),
+            "");
+  EXPECT_EQ(messages(found(kCar, {{"l0", "1 + 2"}})), "");
+}
+
+// Each shipped model names the units of its terms.
+TEST(DimensionsOfAModel, NoShippedModelHasABareTerm) {
+  std::size_t read = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(test::source_dir() / "models")) {
+    if (entry.path().extension() != ".toml") continue;
+    Diagnostics d;
+    open_model(model_text(entry.path().string(), ANHOLON_SOURCE_DIR "/models"), d);
+    EXPECT_EQ(messages(d.list()), "") << entry.path();
+    ++read;
+  }
+  EXPECT_GT(read, 60U);
 }
 
 // An axis alone is 1 along it, in whatever unit; with a factor it is a direction.

@@ -1,0 +1,204 @@
+"""What is computed of a model without its motion: equations, proofs, comparisons, states, linear models."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from . import _core
+from ._described import Described
+from ._errors import ModelError
+from ._numbers import Number, list_of, spaced, text_of, texts_of
+from .analysis import Comparison, LinearModel, PublishedEquations, Stability, State, equation_text
+from .equations import Equations, Proof
+
+
+class Analysed(Described):
+    """A model with its equations, their proofs, and what holds at a state or over a parameter."""
+
+    # ---- its equations ----
+
+    def forms(self) -> list[_core.Form]:
+        """All classical forms of the equations, with whether they apply, and why not.
+
+        Example:
+            >>> import anholon as an
+            >>> [form.name for form in an.load("disc").forms() if form.name.startswith("chaplygin")]
+            ['chaplygin']
+        """
+        return self._core.forms()
+
+    def equations(self, form: str = "routh", *, expand: str = "auto", steps: bool = False, reactions: bool = False) -> Equations:
+        """The equations of motion in a classical form.
+
+        Args:
+            form: a name that :meth:`forms` lists.
+            expand: ``auto``, ``none``, ``paper``, ``full`` or ``parts``: how far sums and products are written out.
+            steps: with the quantities that lead to them: energies, momenta, forces.
+            reactions: with the ideal reactions.
+
+        Raises:
+            ModelError: the form is not known, or does not apply.
+        """
+        return Equations(_core.derive(self._core, form, expand, steps, reactions))
+
+    def reactions(self, form: str = "routh") -> Equations:
+        """The equations together with the ideal reactions of the constraints."""
+        return self.equations(form, reactions=True)
+
+    def prove(self, *forms: str) -> Proof:
+        """Proves that forms (all that apply if none is named) agree with Routh's equations.
+
+        Raises:
+            ModelError: a form is not known.
+        """
+        return Proof(_core.prove(self._core, list(forms)))
+
+    # ---- at a state ----
+
+    def compare(self, equations: PublishedEquations, *, eliminate: Iterable[str] = (), initial: Mapping[str, Number] | None = None) -> Comparison:
+        """Compares published equations with the derived ones: which are true, and where the others are wrong.
+
+        Args:
+            equations: a text with one equation per line, ``LABEL: left = right``, in the names of the model; a path, or
+                the name of shipped equations; ``{label: equation}``; or a list.
+            eliminate: coordinates that reduced forms eliminate.
+            initial: the state near which they are eliminated.
+
+        Returns:
+            A list of lines with ``verdict``, ``nearest``, ``difference`` and ``suggestions``; true if all are.
+
+        Raises:
+            ModelError: an equation has a mistake, or there is no such file.
+
+        Example:
+            >>> import anholon as an
+            >>> sleigh = an.load("chaplygin-sleigh")
+            >>> sleigh.compare(["blade: x'*sin(th) - y'*cos(th) = 0"])["blade"].verdict
+            'true'
+
+        Source: the criterion of ``anholon compare`` (theory: proof).
+        """
+        text, is_file = equation_text(equations)
+        return Comparison(self.title, _core.compare(self._core, text, is_file, "equations", list(eliminate), texts_of(initial)))
+
+    def evaluate(
+        self,
+        *,
+        initial: Mapping[str, Number] | None = None,
+        t: Number | None = None,
+        form: str = "routh",
+        eliminate: Iterable[str] = (),
+        digits: int = 16,
+    ) -> State:
+        """Everything about one state: forces, accelerations, multipliers, reactions, energies, residuals.
+
+        Args:
+            initial: values instead of those of the file: ``{"theta": 1.3, "phi'": 6}``, SI.
+            t: the time, s.
+            form: of the equations.
+            eliminate: coordinates that forms without multipliers eliminate.
+            digits: of the numbers; more than 16 come as ``mpmath.mpf``.
+
+        Raises:
+            ModelError: an argument makes no sense.
+            MotionError: no state satisfies the constraints, the configuration is singular, or a formula has no value.
+
+        Example:
+            >>> import anholon as an
+            >>> state = an.load("disc").evaluate(initial={"phi'": 6})
+            >>> len(state.accelerations), state.residuals["newton"] < 1e-14
+            (5, True)
+        """
+        given = texts_of(initial)
+        if t is not None:
+            given["t"] = text_of(t)
+        return State(_core.evaluate(self._system(form, given, eliminate), digits), [c.name for c in self.coordinates], digits)
+
+    def linearize(
+        self,
+        *,
+        about: str = "state",
+        initial: Mapping[str, Number] | None = None,
+        t: Number | None = None,
+        form: str = "routh",
+        eliminate: Iterable[str] = (),
+        digits: int = 16,
+    ) -> LinearModel:
+        """The linear model z' = A z + B u, y = C z + D u, with [input] as u and [output] as y.
+
+        Args:
+            about: ``"state"``: the initial state; ``"equilibrium"``: the state of rest near the initial positions.
+            initial: values instead of those of the file; for an equilibrium, positions where the search begins.
+            t: the time, s.
+            form: of the equations.
+            eliminate: coordinates that forms without multipliers eliminate.
+            digits: more than 16: :meth:`LinearModel.exact` has them.
+
+        Raises:
+            ModelError: an argument makes no sense.
+            MotionError: the configuration is singular, there is no equilibrium, or eigenvalues could not be enclosed.
+
+        Example:
+            >>> import anholon as an
+            >>> tractor = an.load("trailers").linearize()
+            >>> tractor.inputs, tractor.B.shape[1]
+            (['drive', 'steer'], 2)
+
+        Source: dE/dx of the equations and of their derivatives (theory: linear-models).
+        """
+        return LinearModel(_core.linearize(self._core, form, self._linear(about, initial, t), list(eliminate), about == "equilibrium", digits))
+
+    @staticmethod
+    def _linear(about: str, initial: Mapping[str, Number] | None, t: Number | None) -> dict[str, str]:
+        if about not in ("state", "equilibrium"):
+            raise ModelError(f"about: {about!r}\nhint: 'state' or 'equilibrium'")
+        given = texts_of(initial)
+        if t is not None:
+            given["t"] = text_of(t)
+        return given
+
+    def stability(
+        self,
+        parameter: str,
+        low: Number | Iterable[Number],
+        high: Number | None = None,
+        n: int = 101,
+        *,
+        about: str = "state",
+        initial: Mapping[str, Number] | None = None,
+        t: Number | None = None,
+        form: str = "routh",
+        eliminate: Iterable[str] = (),
+        digits: int = 16,
+    ) -> Stability:
+        """Eigenvalues over a parameter, as curves, and the values at which they cross the imaginary axis.
+
+        The initial data are solved anew for each value. Two opposite crossings between neighbouring values are not
+        detected.
+
+        Args:
+            parameter: its name.
+            low: the first value, SI, or all values.
+            high: the last value.
+            n: how many values, equally far apart.
+            about: ``"state"`` or ``"equilibrium"``, as in :meth:`linearize`, likewise the others.
+
+        Raises:
+            ModelError: there is no such parameter, or an argument makes no sense.
+            MotionError: no initial state satisfies the constraints.
+
+        Example:
+            >>> import anholon as an
+            >>> [c.value for c in an.load("whipple").stability("v", 0, 10, 11).crossings]
+            [4.292382536341104, 6.024262015388359]
+        """
+        if isinstance(low, Iterable) and not isinstance(low, str):
+            values = list_of(low)
+        elif high is None:
+            values = [text_of(low)]
+        elif n < 2:
+            raise ModelError(f"n: {n} values do not reach from low to high\nhint: 2 or more")
+        else:
+            values = spaced(low, high, n)
+        given = self._linear(about, initial, t)
+        return Stability(_core.stability(self._core, parameter, values, form, given, list(eliminate), about == "equilibrium", digits))

@@ -1,0 +1,93 @@
+"""What a model says, and the systems that are prepared of it."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from . import _core
+from ._source import Source
+
+_KEPT = 16  # prepared systems of a model
+
+
+class Described:
+    """A model as its file has it: titles, names, values; and its prepared systems, which are kept."""
+
+    def __init__(self, core: _core.Model, again: Source, given: dict[str, str], cases: list[str]) -> None:
+        self._core = core
+        self._again, self._given, self._cases = again, given, cases
+        self._prepared: dict[Any, _core.System] = {}
+
+    @property
+    def title(self) -> str:
+        """The title of the file."""
+        return self._core.title
+
+    @property
+    def text(self) -> str:
+        """The text it was read from."""
+        return self._core.text
+
+    @property
+    def coordinates(self) -> list[_core.Coordinate]:
+        """Names and units of the coordinates."""
+        return self._core.coordinates
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """The values of the parameters by name, in SI units."""
+        return {p.name: p.value for p in self._core.parameters}
+
+    @property
+    def constraints(self) -> list[_core.Constraint]:
+        """Names and orders of the constraints."""
+        return self._core.constraints
+
+    @property
+    def states(self) -> list[str]:
+        """Further states with rates of their own."""
+        return self._core.states
+
+    @property
+    def inputs(self) -> list[str]:
+        """The names of [input]."""
+        return self._core.inputs
+
+    @property
+    def monitors(self) -> list[str]:
+        """The names of [monitor] and [output], which are columns of a run."""
+        return self._core.monitors
+
+    @property
+    def cases(self) -> list[str]:
+        """The scenarios [case.NAME] of the file."""
+        return self._core.cases
+
+    @property
+    def remarks(self) -> list[_core.Diagnostic]:
+        """Warnings and notes of the reader."""
+        return self._core.remarks
+
+    def _system(self, form: str, initial: Mapping[str, str], eliminate: Iterable[str]) -> _core.System:
+        key = (form, tuple(sorted(initial.items())), tuple(eliminate))
+        if key not in self._prepared:
+            while len(self._prepared) >= _KEPT:
+                self._prepared.pop(next(iter(self._prepared)), None)
+            self._prepared[key] = _core.prepare(self._core, form, dict(initial), list(key[2]))
+        return self._prepared[key]
+
+    def __repr__(self) -> str:
+        names = ", ".join(c.name for c in self.coordinates)
+        return f"<model {self.title!r}: coordinates {names}; {len(self.constraints)} constraints>"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            ("coordinates", ", ".join(repr(c) for c in self.coordinates)),
+            ("parameters", ", ".join(repr(p) for p in self._core.parameters)),
+            ("constraints", ", ".join(repr(c) for c in self.constraints)),
+            ("outputs", ", ".join(self.monitors)),
+        ]
+        body = "".join(f"<tr><th style='text-align:left'>{k}</th><td style='text-align:left'>{html.escape(v)}</td></tr>" for k, v in rows if v)
+        return f"<table><caption>{html.escape(self.title)}</caption><tbody>{body}</tbody></table>"
