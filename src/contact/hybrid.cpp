@@ -264,11 +264,11 @@ class HybridMotion {
   // The jump of least change after which what touches does not move along its normal, and what sticks does not slip. A
   // contact that the others stop already is left out.
   void stop(const ContactModes& modes) {
-    ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), true), 0);
+    const ContactProblem p = dynamics_.stop();
     ContactModes stopped(contacts_.size());
     std::optional<ContactSolution> jump;
+    if (!p.beta.empty()) jump = of_modes(p, stopped);
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      p.contacts[c].friction = 0;
       for (const Touch touch : {Touch::sticks, Touch::slips}) {
         if (touch > modes[c].touch) continue;
         stopped[c].touch = touch;
