@@ -121,8 +121,8 @@ z = 0.3072535738723125
 "x'" = 0.5
 "z'" = 0.03489293355475757
 [monitor]
-energy = "norm2(vel(disc.center))/2 + norm2(omega(disc))/32 + (omega(disc)*B.z)^2/32 + 9.81*z"
-spin = "omega(disc)*B.z"
+energy = "norm2(vel(disc.center))/2 + norm2(angvel(disc))/32 + dot(angvel(disc), B.z)^2/32 + 9.81*z"
+spin = "dot(angvel(disc), B.z)"
 )toml",
                                   to, {{"mu", mu}});
     EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
