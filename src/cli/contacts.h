@@ -1,4 +1,4 @@
-// Refuses models with contacts where a command does not know them.
+// Models with contacts in commands that do not compute their changes of mode.
 #pragma once
 #include "cli/input.h"
 #include "modelfile/contacts.h"
@@ -11,5 +11,8 @@ inline void without_contacts(const Reader& in, const std::string& command) {
     throw UsageError{"error: '" + command + "' knows no contacts, and the model has '" + list.front().name +
                      "'\nhint: 'simulate' and 'sweep' do; write what touches as a [[constraint]] for the others\n"};
 }
+
+// The model in the mode of its contacts that --mode names. Throws UsageError if it has contacts and no --mode is given.
+Reader in_mode(Reader in, const SystemCommand& o, const std::string& command);
 
 }  // namespace anholon::cli
