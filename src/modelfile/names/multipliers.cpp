@@ -59,19 +59,20 @@ Vector Scope::reaction_on(std::size_t body, const Syntax& call) {
 
 // Looks at the texts first, which spares most files the search below.
 bool Scope::speaks_of_multipliers() {
-  if (!speaks_of_multipliers_)
-    speaks_of_multipliers_ = std::any_of(declarations_.begin(), declarations_.end(), [](const auto& named) {
+  if (!with_multipliers_.any)
+    with_multipliers_.any = std::any_of(declarations_.begin(), declarations_.end(), [](const auto& named) {
       const std::string& text = named.second.formula.text();
       return text.find("lambda") != std::string::npos || text.find("λ") != std::string::npos ||
              text.find("reaction") != std::string::npos;
     });
-  return *speaks_of_multipliers_;
+  return *with_multipliers_.any;
 }
 
 // Whether a definition contains a multiplier or a reaction, itself or through others.
 bool Scope::holds_multiplier(const std::string& name) {
   if (!speaks_of_multipliers()) return false;
-  if (const auto known = holds_multiplier_.find(name); known != holds_multiplier_.end()) return known->second;
+  if (const auto known = with_multipliers_.known.find(name); known != with_multipliers_.known.end())
+    return known->second;
   std::set<std::string> seen = {name};
   std::vector<std::string> open = {name};
   bool found = false;
@@ -97,9 +98,9 @@ bool Scope::holds_multiplier(const std::string& name) {
     }
   }
   if (found)
-    holds_multiplier_[name] = true;
+    with_multipliers_.known[name] = true;
   else
-    for (const std::string& n : seen) holds_multiplier_[n] = false;
+    for (const std::string& n : seen) with_multipliers_.known[n] = false;
   return found;
 }
 

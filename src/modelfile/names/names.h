@@ -178,8 +178,10 @@ class Scope final : public Names {
   std::size_t depth_ = 0;                                // depth of nested definitions and parts of bodies
   std::vector<std::map<std::string, Value>> arguments_;  // of functions being called
   int multipliers_ = 0;                                  // number of callers that allow them
-  std::optional<bool> speaks_of_multipliers_;            // some definition may hold one
-  std::map<std::string, bool> holds_multiplier_;
+  struct DefinitionsWithMultipliers {
+    std::optional<bool> any;            // some definition may hold a multiplier
+    std::map<std::string, bool> known;  // whether this one does
+  } with_multipliers_;
   std::size_t calls_ = 0;  // of given functions, over the whole file
 };
 

@@ -1,8 +1,10 @@
 // Forces of contacts in formulas of the model, against closed forms. Each test has a mutant or a second way.
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "contact/mode_model.h"
 #include "support/contact_motion.h"
 
 namespace anholon {
@@ -129,6 +131,35 @@ q0 = 1
   expect_near(m.number(0, "X"), -0.2 * w * 0.6, 1e-14);
   expect_near(m.number(0, "Y"), -0.2 * w * 0.8, 1e-14);
   expect_near(m.number(0, "M"), -0.003 * w, 1e-14);
+}
+
+// In a mode with ideal forces the model of that mode moves as the contacts do, with their forces as multipliers.
+TEST(Forces, OfTheModelOfAMode) {
+  const auto last = [](const std::vector<Touch>& touches, const char* inertia) {
+    const std::string text = on_slope("ball(0.1)", "[initial]\nz = 0.1\n");
+    const SourceText source{"test.toml", text};
+    Diagnostics diagnostics;
+    const auto open = open_model(source, diagnostics, {{"R", inertia}});
+    if (!open) throw std::runtime_error(diagnostics.print(source));
+    Scenario s;
+    const auto model = ideal_model(*open->model, contacts(*open->names), touches);
+    const Outcome made = make_scenario(model, *find_formulation("routh"), {}, s);
+    if (!made.ok()) throw std::runtime_error(made.message);
+    SimulationOptions o;
+    o.to = Rational(1);
+    test::Motion m;
+    m.report = simulate(s, o, m.rows);
+    return std::array<double, 4>{m.last("x"), m.last("N"), m.last("T"), m.last("both.z")};
+  };
+  const auto m = contact_motion(on_slope("ball(0.1)", "[initial]\nz = 0.1\n"), 1);
+  const auto rolls = last({Touch::sticks}, "0.1");
+  expect_near(rolls[0], m.last("x"), 1e-13);
+  expect_near(rolls[1], m.last("N"), 1e-13);
+  expect_near(rolls[2], m.last("T"), 1e-13);
+  expect_near(rolls[3], 2 * rolls[1], 1e-14);
+  EXPECT_GT(std::abs(last({Touch::sticks}, "0.12")[0] - rolls[0]), 1e-2);  // the mutant: more inertia
+  EXPECT_EQ(last({Touch::open}, "0.1")[1], 0);
+  EXPECT_THROW(last({Touch::slips}, "0.1"), Failure);
 }
 
 // A constraint of one side has a force by the same name.
