@@ -151,6 +151,13 @@ void form_option(CLI::App* c, SystemCommand& o) {
       ->type_name("STAGE");
 }
 
+void mode_of_contacts(CLI::App* c, SystemCommand& o) {
+  c->add_option("--mode", o.mode,
+                "the mode of the contacts: floor=sticks,wall=slips (open, slips or sticks; open without its name)")
+      ->type_name("NAME=MODE")
+      ->allow_extra_args(false);
+}
+
 void accuracy(CLI::App* c, SystemCommand& o) { motion_options(c, o, MotionOption::Part::accuracy); }
 
 void motion(CLI::App* c, SystemCommand& o) {

@@ -62,6 +62,8 @@ void model_options(CLI::App* c, SystemCommand& o, ModelOption::Of of);
 void parameters(CLI::App* c, SystemCommand& o);
 void state(CLI::App* c, SystemCommand& o);
 void form_option(CLI::App* c, SystemCommand& o);
+// --mode of a command on the equations of one mode of the contacts
+void mode_of_contacts(CLI::App* c, SystemCommand& o);
 // An option of motions; `help` if the command means it in its own way.
 void motion_option(CLI::App* c, SystemCommand& o, const char* name, const char* help = nullptr);
 void motion_options(CLI::App* c, SystemCommand& o, MotionOption::Part part);

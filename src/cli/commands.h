@@ -22,7 +22,8 @@ struct ModelCommand {
 struct SystemCommand : ModelCommand {
   std::string t;
   std::vector<std::string> q, qdot, qddot, qdddot, lambda, lambdadot, eliminate;
-  MotionSettings motion;  // as asked for, without those of the file
+  std::vector<std::string> mode;  // of the contacts
+  MotionSettings motion;          // as asked for, without those of the file
   std::string show;
 
   int digits() const { return motion.digits.value_or(16); }

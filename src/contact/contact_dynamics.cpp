@@ -33,6 +33,7 @@ Column formulas(Workspace& s, const std::vector<Contact>& contacts) {
     const Expr phi = put_masses(*s.model, m.phi[r]);
     add_row(gradient(phi, order == 0 ? m.q : m.qd));
     es.push_back(total_derivative(phi, static_cast<unsigned>(2 - order)));
+    es.push_back(total_derivative(phi, static_cast<unsigned>(1 - order)));
   }
   for (const Contact& c : contacts) {
     es.push_back(c.gap);
@@ -81,7 +82,12 @@ void ContactDynamics::go(const ContactState& at) {
   problem_ = {};
   places_.clear();
   for (std::size_t i = 0; i < n_; ++i) problem_.A.push_back(row()), problem_.b.push_back(next());
-  for (std::size_t r = 0; r < independent_.size(); ++r) problem_.Phi.push_back(row()), problem_.beta.push_back(next());
+  constraint_rates_.clear();
+  for (std::size_t r = 0; r < independent_.size(); ++r) {
+    problem_.Phi.push_back(row());
+    problem_.beta.push_back(next());
+    constraint_rates_.push_back(next());
+  }
   speed_ = 0;
   most_.resize(n_, 0), met_.resize(n_, 0);
   for (std::size_t a = 0; a < n_; ++a) {
@@ -154,6 +160,13 @@ ContactProblem ContactDynamics::impact(const std::vector<bool>& touches, std::op
     if (!touches[c]) rows.normal.assign(n_, 0), rows.normal_rate = 0;
     p.contacts.push_back(std::move(rows));
   }
+  return p;
+}
+
+ContactProblem ContactDynamics::stop() const {
+  ContactProblem p = impact(std::vector<bool>(contacts_.size(), true), 0);
+  p.beta = constraint_rates_;
+  for (ContactRows& rows : p.contacts) rows.friction = 0;
   return p;
 }
 

@@ -29,6 +29,9 @@ class ContactDynamics {
   // The jumps of the velocities at an impact by Newton's law in Moreau's form, with the restitutions of the contacts or
   // with this one.
   ContactProblem impact(const std::vector<bool>& touches, std::optional<long double> restitution = std::nullopt) const;
+  // The jump of least change that stops what touches or sticks, without friction. The constraints hold after it: round-off
+  // of the velocities before may be larger than the velocities that are left.
+  ContactProblem stop() const;
   // The kinetic energy of velocities, in which the mass matrix is that of the state.
   long double energy(const std::vector<long double>& qd) const;
 
@@ -40,6 +43,7 @@ class ContactDynamics {
   Tape tape_;
   Machine<long double> machine_;
   ContactProblem problem_;
+  std::vector<long double> constraint_rates_;
   std::vector<Place> places_;
   long double speed_ = 0;
   std::vector<long double> most_, met_;  // up to now: with the means of segments, and at states alone

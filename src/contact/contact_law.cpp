@@ -218,7 +218,7 @@ bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
   for (std::size_t c = 0; c < p.contacts.size(); ++c) {
     const ContactRows& rows = p.contacts[c];
     const ContactMode& mode = f.modes[c];
-    const Real scale = kSame * (largest(rows.normal) * size + std::abs(rows.normal_rate));
+    const Real scale = kSame * (largest(rows.normal) * std::max(size, rows.before) + std::abs(rows.normal_rate));
     const Real N = f.normal[c];
     if (mode.touch == Touch::open) {
       if (rows.under) continue;

@@ -38,6 +38,7 @@ struct ContactRows {
   long double friction = 0, static_friction = 0;
   std::optional<std::size_t> under;  // of resistance: the contact whose N bounds it, which stands before it
   long double pressed = 0;           // a normal force that bounds friction besides N
+  long double before = 0;  // where a contact is left: accelerations before, of which the gap's may be round-off
   bool rough = false;
   bool may_open = true, may_touch = true, may_stick = true;
   bool moves = false;                      // it slips already, in `direction`

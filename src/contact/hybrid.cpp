@@ -49,6 +49,9 @@ class HybridMotion {
   SimulationReport go() {
     excluded_.assign(contacts_.size(), {});
     held_.assign(contacts_.size(), 0);
+    // A parameter that is varied may give a coefficient any value.
+    if (const std::vector<Diagnostic> wrong = wrong_coefficients(contacts_, *s_.model); !wrong.empty())
+      return joined_.report({OutcomeKind::inconsistent, wrong[0].message, wrong[0].hint}, at_.t.get_d(), 0);
     Outcome outcome = not_inside(" at the start", "start at a position where the gap is zero or positive");
     constexpr std::size_t kMostSegments = 100'000;
     for (std::size_t k = 0; outcome.ok() && at_.t < end_; ++k) {
@@ -103,6 +106,10 @@ class HybridMotion {
     const std::vector<ContactSolution> list = consistent_modes(p);
     if (list.size() != 1) return undecided(list.size());
     modes_ = list[0].modes;
+    if (const auto open = of_modes(p, ContactModes(contacts_.size()))) {
+      before_ = 0;
+      for (const long double a : open->x) before_ = std::max(before_, std::abs(a));
+    }
     come_to_rest();
     long double force = 0;
     for (const long double b : p.b) force = std::max(force, std::abs(b));
@@ -144,6 +151,7 @@ class HybridMotion {
       ContactRows& rows = p.contacts[c];
       rows.may_touch = near_.closed(c) && near_.gap_rate(c) == 0 && !excluded_[c].touch;
       rows.may_stick = !excluded_[c].stick;
+      if (excluded_[c].touch) rows.before = before_;
       rows.moves = rows.moves && !excluded_[c].slips;
       // A gap that is open, or opens, is not bounded by its acceleration.
       if (!near_.closed(c) || near_.gap_rate(c) > 0) rows.normal.assign(at_.q.size(), 0), rows.normal_rate = 0;
@@ -264,11 +272,11 @@ class HybridMotion {
   // The jump of least change after which what touches does not move along its normal, and what sticks does not slip. A
   // contact that the others stop already is left out.
   void stop(const ContactModes& modes) {
-    ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), true), 0);
+    const ContactProblem p = dynamics_.stop();
     ContactModes stopped(contacts_.size());
     std::optional<ContactSolution> jump;
+    if (!p.beta.empty()) jump = of_modes(p, stopped);
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      p.contacts[c].friction = 0;
       for (const Touch touch : {Touch::sticks, Touch::slips}) {
         if (touch > modes[c].touch) continue;
         stopped[c].touch = touch;
@@ -448,6 +456,7 @@ class HybridMotion {
   std::vector<Rational> times_;
   ContactModes modes_;
   std::vector<Excluded> excluded_;
+  long double before_ = 0;         // the largest acceleration without contacts where the last mode began
   std::vector<long double> held_;  // the time for which a contact that begins to slip was held
   Accumulation accumulation_;
   std::vector<long double> most_place_;  // the largest value of each coordinate at a change of mode

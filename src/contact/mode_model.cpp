@@ -4,6 +4,28 @@ namespace anholon {
 
 namespace {
 
+// Puts the forces of a mode, N and the components of friction of each contact, into the monitors and events that hold them.
+void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
+                const std::vector<std::vector<Expr>>& components, Model& model) {
+  Graph& g = *model.graph;
+  const auto force = [&](const Node& n) {
+    const ContactForces::Force& f = of.forces[n.index - kContactForces];
+    return total_derivative(f.friction ? components[f.contact][*f.friction] : normals[f.contact], n.order);
+  };
+  for (const ContactForces::Formula& f : of.formulas) {
+    const Expr own = g.own(f.value);
+    const Expr value = put_masses(model, substitute({&own, 1}, [&](NodeId id) {
+                                    const Node n = g.node(id);
+                                    return n.kind == Kind::multiplier && n.index >= kContactForces ? force(n) : Expr{};
+                                  })[0]);
+    if (f.of == ContactForces::Formula::Of::monitor)
+      model.monitors[f.index].value = value;
+    else
+      // A number passes no zero, and zero itself is no event.
+      model.events[f.index].when = is_zero(value) ? g.one() : value;
+  }
+}
+
 class ModeBuilder {
  public:
   ModeBuilder(const Model& model, const ContactState& at) : model_(clone(model)), g_(*model_->graph) { begin_at(at); }
@@ -14,6 +36,7 @@ class ModeBuilder {
     for (Expr& v : c.slip) v = g_.own(v);
     c.friction = g_.own(c.friction), c.static_friction = g_.own(c.static_friction);
     Expr normal = g_.zero(), friction = g_.zero();
+    components_.push_back(std::vector<Expr>(c.slip.size(), g_.zero()));
     if (c.under) {
       normal = normals_[*c.under];
       if (mode.touch != Touch::open && c.rough())
@@ -44,6 +67,8 @@ class ModeBuilder {
     normals_.push_back(normal);
     ++contact_;
   }
+
+  void put(const ContactForces& forces) { put_forces(forces, normals_, components_, *model_); }
 
   ModeModel take() { return {std::move(model_), std::move(events_)}; }
 
@@ -90,6 +115,7 @@ class ModeBuilder {
     for (std::size_t a = 0; a < c.slip.size(); ++a) {
       const std::string tag = std::to_string(a + 1);
       forces.push_back(keep(c.name + ".slip" + tag, c.name + ".t" + tag, c.slip[a], 1));
+      components_.back()[a] = forces.back();
       act(c, 1, forces.back(), c.slip[a]);
     }
     const Expr size =
@@ -118,6 +144,7 @@ class ModeBuilder {
     const auto number = [&](long double x) { return g_.number(Rational(static_cast<double>(x))); };
     if (c.slip.size() == 1) {
       const Expr sign = number(mode.direction[0]);
+      components_.back()[0] = force * sign;
       act(c, 1, force * sign, c.slip[0]);
       event(c, ModeChange::sticks, sign * c.slip[0], -1);
       return force * sign;
@@ -125,8 +152,9 @@ class ModeBuilder {
     const Expr e1 = number(mode.direction[0]), e2 = number(mode.direction[1]);
     const Expr along = c.slip[0] * e1 + c.slip[1] * e2, across = c.slip[1] * e1 - c.slip[0] * e2;
     const Expr r = across * pow(along, Rational(-1)), length = pow(g_.one() + r * r, Rational(-1, 2));
-    act(c, 1, force * (e1 - r * e2) * length, c.slip[0]);
-    act(c, 1, force * (e2 + r * e1) * length, c.slip[1]);
+    components_.back() = {force * (e1 - r * e2) * length, force * (e2 + r * e1) * length};
+    act(c, 1, components_.back()[0], c.slip[0]);
+    act(c, 1, components_.back()[1], c.slip[1]);
     // At v = 0 the direction has no derivatives, unless v passes zero on a straight line.
     event(c, ModeChange::sticks, along - number(mode.rest), -1);
     event(c, ModeChange::turns, across * across - along * along, 1);
@@ -144,6 +172,7 @@ class ModeBuilder {
   Graph& g_;
   std::map<std::string, ModeEvent> events_;
   std::vector<Expr> normals_;
+  std::vector<std::vector<Expr>> components_;  // of friction, along the components of the slip
   std::size_t contact_ = 0;
 };
 
@@ -181,7 +210,47 @@ ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, c
                      const ContactState& at) {
   ModeBuilder builder(model, at);
   for (std::size_t c = 0; c < contacts.size(); ++c) builder.add(contacts[c], modes[c]);
+  if (!contacts.empty() && contacts[0].forces) builder.put(*contacts[0].forces);
   return builder.take();
+}
+
+std::shared_ptr<Model> ideal_model(const Model& of, const std::vector<Contact>& contacts,
+                                   const std::vector<Touch>& touches) {
+  static const char* const kWords[] = {"open", "slips", "sticks"};
+  const std::shared_ptr<Model> model = clone(of);
+  Graph& g = *model->graph;
+  std::vector<Expr> normals;
+  std::vector<std::vector<Expr>> components;
+  const auto keep = [&](const std::string& name, Expr phi, int order, Span span) {
+    const auto r = static_cast<std::uint32_t>(model->constraints.size());
+    model->constraints.push_back({name, g.own(phi), order, name + " = 0", span});
+    model->names.multipliers.push_back(name);
+    return g.multiplier(r, 0);
+  };
+  std::string mode;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const Contact& contact = contacts[c];
+    const Touch touch = touches[c];
+    const bool open = touches[contact.under.value_or(c)] == Touch::open;
+    if (open && contact.under && touch != Touch::open)
+      throw Failure({}, "'" + contact.name + "' resists only while its contact touches",
+                    contacts[*contact.under].name + "=sticks as well");
+    if (!open && touch != Touch::sticks && contact.rough() && (contact.under || touch == Touch::slips))
+      throw Failure({},
+                    "the contact '" + contact.name + "' " + (contact.under ? "moves" : "slips") +
+                        " against friction, which is no ideal force",
+                    contact.name + "=sticks, or a coefficient 0 in the file");
+    normals.push_back(contact.under || open ? g.zero() : keep(contact.name, contact.gap, 0, contact.span));
+    components.push_back(std::vector<Expr>(contact.slip.size(), g.zero()));
+    for (std::size_t a = 0; touch == Touch::sticks && a < contact.slip.size(); ++a)
+      components[c][a] = keep(contact.name + ".t" + std::to_string(a + 1), contact.slip[a], 1, contact.span);
+    mode += (c == 0 ? "" : ", ") + contact.name + " " + (touch == Touch::open ? "is " : "") +
+            kWords[static_cast<std::size_t>(touch)];
+  }
+  if (!contacts.empty() && contacts[0].forces) put_forces(*contacts[0].forces, normals, components, *model);
+  model->title += (model->title.empty() ? "" : ": ") + mode;
+  std::erase_if(model->notes, [](const std::string& n) { return n.rfind(kOpenContacts) != std::string::npos; });
+  return model;
 }
 
 }  // namespace anholon

@@ -37,4 +37,10 @@ std::vector<std::string> contact_columns(const std::vector<Contact>& contacts);
 ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes,
                      const ContactState& at);
 
+// The model of a mode in which the contacts exert ideal forces alone: one that touches is a constraint NAME, gap = 0, one that
+// sticks has constraints NAME.t1, … as well, that its slip velocity is zero. Their multipliers are the forces of the
+// contact. touches: of each contact, a resistance among them. Throws Failure if one slips against friction.
+std::shared_ptr<Model> ideal_model(const Model& model, const std::vector<Contact>& contacts,
+                                   const std::vector<Touch>& touches);
+
 }  // namespace anholon

@@ -73,6 +73,7 @@ class Reader {  // its references are used only while it runs
     declare_hybrid(root, scope_, model_, diagnostics_);
     declare_controls(root, scope_, model_, diagnostics_);
     declare_tables(root, scope_, model_, diagnostics_);
+    declare_contacts(root, scope_);
     functions(root);
     named(root, "define", Scope::Role::define);
     named(root, "frame", Scope::Role::frame);
@@ -103,6 +104,8 @@ class Reader {  // its references are used only while it runs
     read_events(root, scope_, model_, diagnostics_);
     read_outputs(root, scope_, model_, diagnostics_);
     contacts_ = read_contacts(root, scope_, model_, diagnostics_);
+    settle_contact_forces(scope_, model_, contacts_, diagnostics_);
+    scope_.contact_forces.close();
     note_contacts();
     if (const Item* n = table(root, "notation")) {
       std::vector<std::string> declared;
@@ -117,6 +120,8 @@ class Reader {  // its references are used only while it runs
       return message.rfind("unknown name '", 0) == 0 || message.rfind("unknown function '", 0) == 0;
     });
     if (!diagnostics_.has_errors()) check_values(model_, diagnostics_);
+    if (!diagnostics_.has_errors())
+      for (Diagnostic& d : wrong_coefficients(contacts_, model_)) diagnostics_.add(std::move(d));
     if (!diagnostics_.has_errors()) check_dimensions(root, scope_, model_, diagnostics_);
     if (!diagnostics_.has_errors())
       for (const Replaced& r : replaced_) guard([&] { must_have_unit_of(r); });
@@ -146,9 +151,8 @@ class Reader {  // its references are used only while it runs
     for (const Contact& c : contacts_)
       if (!c.under) names += (count++ == 0 ? "'" : ", '") + c.name + "'";
     const bool one = count == 1;
-    model_.notes.push_back((one ? "contact " : "contacts ") + names +
-                           (one ? " is no part of these equations, which hold while it is open"
-                                : " are no part of these equations, which hold while all of them are open"));
+    model_.notes.push_back((one ? "contact " : "contacts ") + names + (one ? " is no " : " are no ") + kOpenContacts +
+                           (one ? "it is open" : "all of them are open"));
   }
 
   void scenarios(Item& root) {

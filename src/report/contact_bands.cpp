@@ -67,6 +67,11 @@ class BandMaker {
 
 }  // namespace
 
+bool has_contacts(const RunTable& table) {
+  return std::any_of(table.columns.begin(), table.columns.end(),
+                     [&](const std::string& column) { return contact_of(table, column).has_value(); });
+}
+
 std::vector<ContactBand> contact_bands(const RunTable& table, const std::vector<EventReport>& events) {
   std::vector<ContactBand> bands;
   for (std::size_t k = 1; k < table.columns.size(); ++k) {

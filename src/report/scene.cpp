@@ -13,7 +13,7 @@ using Place = std::array<std::size_t, 3>;
 
 class SceneMaker {
  public:
-  explicit SceneMaker(const Mechanics& m) : m_(m), model_(*m.model), view_(model_.view) {}
+  SceneMaker(const Mechanics& m, bool contacts) : m_(m), contacts_(contacts), model_(*m.model), view_(model_.view) {}
 
   Scene make() {
     for (const Body& b : model_.bodies) body(b);
@@ -167,7 +167,7 @@ class SceneMaker {
   }
 
   void reactions() {
-    if (model_.constraints.empty()) return;
+    if (model_.constraints.empty() && !contacts_) return;
     const std::vector<Load> loads = anholon::reactions(*m_.model);
     for (std::size_t k = 0; k < loads.size(); ++k) {
       const Vector& f = loads[k].force;
@@ -210,6 +210,7 @@ class SceneMaker {
   }
 
   const Mechanics& m_;
+  const bool contacts_;
   const Model& model_;
   const View& view_;
   Scene scene_;
@@ -408,7 +409,7 @@ class SceneWriter {
 
 }  // namespace
 
-Scene scene(const Mechanics& mechanics) { return SceneMaker(mechanics).make(); }
+Scene scene(const Mechanics& mechanics, bool contacts) { return SceneMaker(mechanics, contacts).make(); }
 
 std::vector<int> columns_of(const Scene& scene, const Graph& graph, const ColumnOf& column) {
   std::vector<int> list;

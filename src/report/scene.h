@@ -39,8 +39,8 @@ struct Scene {
 };
 
 // The default without [view]: bodies, points, tensions; the velocity of every mass centre, the reaction on every body
-// that has one.
-Scene scene(const Mechanics& mechanics);
+// that has one. contacts: whether contacts act on bodies, whose forces are reactions as well.
+Scene scene(const Mechanics& mechanics, bool contacts = false);
 
 // Returns the index of the column that holds a symbol; -1: the time; nullopt: no column.
 using ColumnOf = std::function<std::optional<int>(const Node& symbol)>;

@@ -75,8 +75,7 @@ int write_program(const DeriveCommand& o, const Reader& in, const Formulation& f
 int derive(const DeriveCommand& asked) {
   DeriveCommand o = asked;
   o.format = format_of_equations(asked);
-  const Reader in = read(o);
-  without_contacts(in, "derive");
+  const Reader in = in_mode(read(o), o, "derive");
   const Model& model = *in.model;
   if (o.format != "text" && o.format != "latex" && o.format != "mathml" && o.format != "c" && o.format != "python" &&
       o.format != "json")

@@ -169,8 +169,7 @@ void must_be_written(const std::string& why) {
 
 int prove(const ProveCommand& o) {
   const auto start = std::chrono::steady_clock::now();
-  const Reader in = read(o);
-  without_contacts(in, "prove");
+  const Reader in = in_mode(read(o), o, "prove");
   const Model& model = *in.model;
   if (!o.output.empty()) must_be_written(obstacle_to_writing(o.output));
   const Mechanics m = mechanics(model);

@@ -10,7 +10,7 @@ void add_derive(CommandLine& line) {
                          "Examples: anholon derive disc --format latex\n"
                          "          anholon derive luo-zhao-example-2 --reactions\n"
                          "          anholon derive chaplygin-sleigh --form nielsen-reduced --m 3 --steps");
-  parameters(c, o), form_option(c, o);
+  parameters(c, o), form_option(c, o), mode_of_contacts(c, o);
   c->add_option("--format", o.format,
                 "text, latex, mathml or json; c (C99) or python (NumPy): a program that computes the motion's right "
                 "side\n(default: by the end of FILE, else text)")
@@ -36,6 +36,7 @@ void add_prove(CommandLine& line) {
                          "Ctrl-C ends the proof and says which forms were compared until then.\n"
                          "Exit status: 0 every pair is decided, 1 one stays unknown or Ctrl-C, 2 bad input.\n"
                          "Example: anholon prove luo-zhao-example-2 -o proof.json && anholon verify proof.json");
+  mode_of_contacts(c, o);
   c->add_option("--forms", o.forms, "only these forms: routh,chaplygin (default: all that apply)")
       ->type_name("NAME,…")
       ->allow_extra_args(false);

@@ -290,8 +290,7 @@ void print_csv(const Scenario& s, const Linearization& l, const std::optional<Pa
 
 int linearize(const LinearizeCommand& o) {
   if (o.json && o.csv) throw UsageError{"error: --json and --csv are two formats\nhint: leave out one of them\n"};
-  const Reader in = read(o);
-  without_contacts(in, "linearize");
+  const Reader in = in_mode(read(o), o, "linearize");
   LinearRequest request;
   if (!o.vary.empty()) request.range = read_range(o.vary, *in.model, "--vary: ");
   request.form = &form(o, *in.model);

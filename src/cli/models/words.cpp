@@ -27,7 +27,7 @@ void add_linearize(CommandLine& line) {
       "[\"theta'' = 0\", …] finds one.\n"
       "Exit status: 0 ok, 1 no linear model at some value, 2 bad input.\n"
       "Example: anholon linearize whipple --vary v=0..10:1");
-  parameters(c, o), state(c, o), form_option(c, o);
+  parameters(c, o), state(c, o), form_option(c, o), mode_of_contacts(c, o);
   c->add_option("--about", o.about,
                 "state (default), or equilibrium: the one nearest to the initial positions, those of --q included")
       ->type_name("WHAT")

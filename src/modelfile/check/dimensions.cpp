@@ -56,6 +56,7 @@ class Elements {
     list("constraint", [&](const Item& c) {
       if (const Item* e = c.find("equation")) equation(*e);
     });
+    contacts();
     initial();
     each("monitor", [&](const Item& i) {
       if (i.is_formula()) formulas_.of(i);
@@ -168,6 +169,21 @@ class Elements {
       if (const Item* initial = s.find("initial")) expect(*initial, z);
     });
     each("input", [&](const Item& i) { expect(i, named(i.key)); });
+  }
+
+  // The power of friction is that of a force: a coefficient without a body is [gap]/([slip] s).
+  void contacts() {
+    list("contact", [&](const Item& c) {
+      DimensionForm friction;
+      const Item *gap = c.find("gap"), *slip = c.find("slip");
+      if (gap && slip && gap->is_formula() && slip->is_formula())
+        friction = formulas_.of(*gap).dimension / (formulas_.of(*slip).dimension * formulas_.unit("s"));
+      for (const char* key : {"friction", "static_friction"})
+        if (const Item* i = c.find(key); i && (c.find("body") || (slip && slip->is_formula()))) expect(*i, friction);
+      if (const Item* e = c.find("restitution")) expect(*e, DimensionForm{});
+      for (const char* length : {"rolling_resistance", "drilling_resistance", "at", "through"})
+        expect(c.find(length), "m");
+    });
   }
 
   // The knots may have units as well.

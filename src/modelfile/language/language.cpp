@@ -40,7 +40,7 @@ const std::vector<ReservedName>& reserved_names() {
       {"ey", ""},
       {"ez", "upward, where the author wants it so"},
       {"here", "the place at which the field of `[gravity]` is asked for"},
-      {"lambda", "`lambda.NAME`: the multiplier of the constraint NAME"},
+      {"lambda", "`lambda.NAME`: the multiplier of the constraint NAME, or the normal force of the contact NAME"},
       {"inertial", "as seen inertially: `vel(P, inertial)`"},
   };
   return list;

@@ -229,7 +229,8 @@ torque = "u*ez"
   of the frame or body B; with `along = ["v1", "v2"]` those along these vectors, `name.1`, `name.2`. Components that vanish identically are dropped with a
   note. `0` is also the zero vector.
 - With `one_sided = true` the left side may become larger than the right one: the constraint opens where its force would pull, and closes again
-  without rebound. It is a [contact](#contact) without friction, with its events and columns (`NAME.leaves`, `NAME.normal`), and has no `lambda.NAME`.
+  without rebound. It is a [contact](#contact) without friction, with its events and columns (`NAME.leaves`, `NAME.normal`), and
+  `lambda.NAME` is its force, as that of a contact.
 - With `by` no ideal reaction acts: the input, which has no formula (`u = {}`), becomes the unknown instead of λ. An input keeps one
   equation only. Forms that eliminate do not apply.
 - An input with a formula may occur in a constraint: its formula is put in.

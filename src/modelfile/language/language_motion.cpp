@@ -132,12 +132,16 @@ initial = {z = 1, "phi'" = 9}
   `NAME.rolling.moment`, `NAME.drilling.mode`, `NAME.drilling.moment`; events are `NAME.rolling.starts`, `NAME.rolling.stops`, and the same of `NAME.drilling`.
 - Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. Rows have the columns `NAME.mode` (0 open,
   1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
+- In monitors, outputs, events and the definitions they use, `lambda.NAME` is N, 0 while the contact is open, and `lambda.NAME.t1`, `lambda.NAME.t2` are the components
+  of friction along those of the slip velocity, as forces on what slips; `lambda.NAME.rolling.t1` and so on are the moments of resistance. `reaction(B)` holds the forces of contacts. A force that jumps over
+  the zero of an event at a change of mode does not make it happen.
+- Coefficients are not negative, and a restitution is at most 1. Where the file has units, friction and restitution are numbers, and resistances lengths.
 - Impacts follow Newton's law in Moreau's form: the velocity of the gap is reversed and multiplied by the restitution e. With `impact = "poisson"` they follow
   Poisson's law: the impulse that stops the gap is followed by e times this impulse. Both agree without friction; with friction Newton's law may raise the energy, which ends the
   motion. All contacts of a model have one law. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
   That limit is found for the impacts of one contact. A box that bounces from corner to corner may instead take many impacts and stop with the outcome that a gap is negative.
-- At most eight contacts; those that touch at one time are few, as all their modes are tried. Motions, reports and sweeps know them, in the libraries, too; derivations, proofs and linear models refuse a model with
-  contacts. They do not go with events that set values, nor with servo constraints. [Recipes](contact.md).
+- At most eight contacts; those that touch at one time are few, as all their modes are tried. Motions, reports and sweeps know them, in the libraries, too; derivations, proofs and linear models are those of
+  one mode, `--mode NAME=sticks`. They do not go with events that set values, nor with servo constraints. [Recipes](contact.md).
 
 ```toml
 [[contact]]

@@ -126,10 +126,11 @@ class TouchingReader {
       q = place - shape_.sizes[0] * n;
     }
     if (shape_.kind == "disc") {
-      // The lowest place of the rim lies against the part of the normal that is in the plane of the disc.
+      // The lowest place of the rim lies against the part of the normal that is in the plane of the disc, a x (n x a). Its
+      // size is |n x a|, whose digits a disc keeps that lies almost flat; 1 - (n a)^2 would cancel them.
       const Vector& a = orientation()[2];
-      const Vector across = n - dot(n, a) * a;
-      const Expr size = sqrt(g_.one() - pow(dot(n, a), Rational(2)));
+      const Vector axis = cross(n, a), across = cross(a, axis);
+      const Expr size = sqrt(dot(axis, axis));
       gap = gap - shape_.sizes[0] * size;
       q = place - (shape_.sizes[0] * pow(size, Rational(-1))) * across;
     }

@@ -7,6 +7,8 @@
 #include "modelfile/names/along.h"
 #include "modelfile/text/collect.h"
 #include "modelfile/text/keys.h"
+#include "numeric/number.h"
+#include "tape/tape.h"
 
 namespace anholon {
 
@@ -24,9 +26,9 @@ class ContactReader {
     if (!c.find("body")) read_formulas(c, contact);
     Graph& g = *model_.graph;
     const Item *friction = c.find("friction"), *fixed = c.find("static_friction"), *e = c.find("restitution");
-    contact.friction = friction ? coefficient(*friction) : g.zero();
-    contact.static_friction = fixed ? coefficient(*fixed) : contact.friction;
-    contact.restitution = e ? coefficient(*e) : g.zero();
+    contact.friction = friction ? coefficient(*friction, contact) : g.zero();
+    contact.static_friction = fixed ? coefficient(*fixed, contact) : contact.friction;
+    contact.restitution = e ? coefficient(*e, contact) : g.zero();
     if (const Item* law = c.find("impact")) contact.law = impact_law(*law);
     if (c.find("body")) return by_shape(c, contact);
     for (const char* key : {"rolling_resistance", "drilling_resistance"})
@@ -144,7 +146,8 @@ class ContactReader {
     Contact resistance = contact;
     resistance.name += rolling ? ".rolling" : ".drilling";
     resistance.span = given->span;
-    resistance.friction = resistance.static_friction = coefficient(*given);
+    resistance.given.clear();
+    resistance.friction = resistance.static_friction = coefficient(*given, resistance);
     resistance.under = place;
     resistance.slip.clear();
     for (const Vector& d : directions) {
@@ -164,12 +167,13 @@ class ContactReader {
     return put_masses(model_, evaluate_number(parse_formula(i.formula), scope_));
   }
 
-  // A formula of parameters.
-  Expr coefficient(const Item& i) const {
+  // A formula of parameters, which the contact notes.
+  Expr coefficient(const Item& i, Contact& contact) const {
     const Expr e = formula(i, "a coefficient");
     for (NodeId id : symbols({&e, 1}))
       if (model_.graph->node(id).kind != Kind::parameter)
         throw Failure(i.span, "a coefficient of a contact is a number or a formula of parameters");
+    contact.given.push_back({i.key, e, i.span});
     return e;
   }
 
@@ -264,6 +268,130 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
   if (count > kMost)
     diagnostics.error(last->key_span,
                       std::to_string(count) + " contacts; at most " + std::to_string(kMost) + " are accepted");
+  return list;
+}
+
+void declare_contacts(const Item& root, Scope& scope) {
+  for (const char* section : {"contact", "constraint"}) {
+    const Item* list = root.find(section);
+    if (!list || list->kind != Item::Kind::array) continue;
+    for (std::size_t k = 0; k < list->items.size(); ++k) {
+      const Item& c = list->items[k];
+      if (c.kind != Item::Kind::table) continue;
+      if (section == std::string("constraint")) {
+        const Item* word = c.find("one_sided");
+        if (!word || word->kind != Item::Kind::boolean || !word->truth) continue;
+      }
+      const Item* named = c.find("name");
+      scope.contact_forces.declare(named && named->kind == Item::Kind::string ? normal_name(named->text())
+                                                                              : section + std::to_string(k + 1));
+    }
+  }
+}
+
+namespace {
+
+// "floor", "floor.t1", "floor.rolling.t2" among the contacts.
+std::optional<ContactForces::Force> force_of(const std::string& path, const std::vector<Contact>& contacts) {
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (path == contacts[c].name && !contacts[c].under) return ContactForces::Force{c, std::nullopt};
+    for (std::size_t k = 0; k < contacts[c].slip.size(); ++k)
+      if (path == contacts[c].name + ".t" + std::to_string(k + 1)) return ContactForces::Force{c, k};
+  }
+  return std::nullopt;
+}
+
+// "lambda.floor, lambda.floor.t1".
+std::string known_forces(const std::vector<Contact>& contacts) {
+  std::string list;
+  for (const Contact& c : contacts) {
+    if (!c.under) list += (list.empty() ? "lambda." : ", lambda.") + c.name;
+    for (std::size_t k = 0; k < c.slip.size(); ++k) list += ", lambda." + c.name + ".t" + std::to_string(k + 1);
+  }
+  return "the forces of contacts are " + list;
+}
+
+bool is_contact_force(const Node& n) { return n.kind == Kind::multiplier && n.index >= kContactForces; }
+
+Expr with_open_contacts(const Model& model, Expr e) {
+  Graph& g = *model.graph;
+  return substitute({&e, 1}, [&](NodeId id) { return is_contact_force(g.node(id)) ? g.zero() : Expr{}; })[0];
+}
+
+}  // namespace
+
+void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact>& contacts, Diagnostics& diagnostics) {
+  const auto& asked = scope.contact_forces.asked();
+  if (asked.empty()) return;
+  auto found = std::make_shared<ContactForces>();
+  std::vector<bool>
+      unknown;  // paths that are a part of another one, as floor.rolling of floor.rolling.t1, are in no formula
+  for (const auto& [path, use] : asked) {
+    const std::optional<ContactForces::Force> force = force_of(path, contacts);
+    unknown.push_back(!force);
+    found->forces.push_back(force.value_or(ContactForces::Force{}));
+  }
+  // Without its contact, whose mistake is told, a force is unknown, too.
+  const bool tell = !diagnostics.has_errors();
+  const auto holds_force = [&](Expr e) {
+    bool any = false;
+    for (const NodeId id : symbols({&e, 1})) {
+      const Node& n = model.graph->node(id);
+      if (!is_contact_force(n)) continue;
+      any = true;
+      const std::size_t k = n.index - kContactForces;
+      if (!unknown[k]) continue;
+      unknown[k] = false;
+      if (tell)
+        diagnostics.error(asked[k].second, "there is no force '" + asked[k].first + "' of a contact",
+                          known_forces(contacts));
+    }
+    return any;
+  };
+  const auto settle = [&](Expr& value, ContactForces::Formula::Of of, std::size_t index) {
+    if (!holds_force(value)) return;
+    found->formulas.push_back({of, index, value});
+    value = with_open_contacts(model, value);
+  };
+  for (std::size_t k = 0; k < model.monitors.size(); ++k)
+    settle(model.monitors[k].value, ContactForces::Formula::Of::monitor, k);
+  for (std::size_t k = 0; k < model.events.size(); ++k)
+    settle(model.events[k].when, ContactForces::Formula::Of::event, k);
+  for (OutputQuantity& o : model.outputs)
+    for (Expr& e : o.values) e = with_open_contacts(model, e);
+  const auto refuse = [&](Expr& e, Span span, const char* what) {
+    if (!holds_force(e)) return;
+    diagnostics.error(span, std::string(what) + " holds the force of a contact",
+                      "such a formula stands in monitors, outputs and the 'when' of events");
+    e = with_open_contacts(model, e);
+  };
+  for (StateVariable& z : model.states) refuse(z.rate, z.span, "a rate");
+  for (Condition& c : model.initial.conditions) refuse(c.residual, c.span, "a condition");
+  for (Event& e : model.events)
+    for (Assignment& a : e.set) refuse(a.value, a.span, "a value that an event sets");
+  for (Contact& c : contacts) c.forces = found;
+}
+
+std::vector<Diagnostic> wrong_coefficients(const std::vector<Contact>& contacts, const Model& model) {
+  std::vector<Diagnostic> list;
+  Column values;
+  for (const Parameter& p : model.parameters) values.push_back(p.value);
+  for (const Contact& contact : contacts)
+    for (const Contact::Coefficient& c : contact.given) {
+      values.push_back(model.graph->own(c.value));
+      const double value = evaluate_parameters<double>(*model.graph, values).back();
+      values.pop_back();
+      const bool restitution = c.key == "restitution";
+      if (value >= 0 && (value <= 1 || !restitution)) continue;
+      if (std::any_of(list.begin(), list.end(), [&](const Diagnostic& o) {
+            return o.span.file == c.span.file && o.span.line == c.span.line && o.span.column == c.span.column;
+          }))
+        continue;
+      list.push_back({Severity::error, c.span,
+                      "'" + c.key + "' of the contact '" + contact.name + "' is " + number_text(value, 6) +
+                          (restitution ? ", and a restitution lies between 0 and 1" : ", and it must not be negative"),
+                      c.key + (restitution ? " = 0.5" : " = 0, or a positive number")});
+    }
   return list;
 }
 

@@ -4,6 +4,7 @@
 // Motions make a model for each mode of the contacts (contact/mode_model.h).
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,21 @@
 namespace anholon {
 
 enum class ImpactLaw : std::uint8_t { newton, poisson };
+
+// The forces of contacts in formulas of the model, lambda.NAME and so on: symbols whose values depend on the mode.
+struct ContactForces {
+  struct Force {
+    std::size_t contact = 0;
+    std::optional<std::size_t> friction;  // this component of the friction, or of the moment of resistance; else N
+  };
+  struct Formula {
+    enum class Of : std::uint8_t { monitor, event } of = Of::monitor;
+    std::size_t index = 0;  // of the monitor or event; in the model it holds the value with all contacts open
+    Expr value;             // multiplier kContactForces + k is force k
+  };
+  std::vector<Force> forces;
+  std::vector<Formula> formulas;
+};
 
 struct Contact {
   std::string name;
@@ -25,8 +41,19 @@ struct Contact {
   // Resistance to rolling or drilling stands behind its contact, whose place in the list this is, and whose gap it has. Its
   // `slip` is an angular velocity, and its coefficients of friction are the length that times N is the largest moment.
   std::optional<std::size_t> under;
-  bool rough() const;  // whether there is friction
+  // A coefficient as it is given, for errors.
+  struct Coefficient {
+    std::string key;
+    Expr value;
+    Span span;
+  };
+  std::vector<Coefficient> given;
+  std::shared_ptr<const ContactForces> forces;  // those of all contacts of the model; null if no formula holds any
+  bool rough() const;                           // whether there is friction
 };
+
+// In the note of a model whose contacts are open.
+inline constexpr const char* kOpenContacts = "part of these equations, which hold while ";
 
 // Whether a [[constraint]] has one_sided = true. Throws Failure if that is neither true nor false.
 bool is_one_sided(const Item& constraint);
@@ -35,5 +62,15 @@ bool is_one_sided(const Item& constraint);
 // (NAME.rolling) and drilling (NAME.drilling), then its constraints of one side, whose gaps are left - right. Contacts that
 // rub or rebound have one law of impacts. Errors go to the diagnostics.
 std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
+
+// Declares the names of the contacts, whose forces may stand in formulas that are read before the contacts.
+void declare_contacts(const Item& root, Scope& scope);
+// Finds the forces that monitors, outputs and events hold, and puts zeros in their places in the model. Errors, also those
+// of conditions, rates and values that hold a force, go to the diagnostics.
+void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact>& contacts, Diagnostics& diagnostics);
+
+// Coefficients that are negative, and restitutions above 1, at the values of the parameters of the model; the corners of a
+// box have theirs once. Throws Failure if a coefficient has no value.
+std::vector<Diagnostic> wrong_coefficients(const std::vector<Contact>& contacts, const Model& model);
 
 }  // namespace anholon

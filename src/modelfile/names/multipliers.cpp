@@ -20,8 +20,29 @@ Value Scope::multiplier(const std::string& path, Span use) {
     return graph().multiplier(static_cast<std::uint32_t>(it - names.begin()), 0);
   for (const std::string& n : names)
     if (n.rfind(path + ".", 0) == 0) return InertialName{};  // of a vector equation: a component must follow
+  if (const auto force = contact_forces.find(path, use))
+    return graph().multiplier(kContactForces + static_cast<std::uint32_t>(*force), 0);
   const std::string near = did_you_mean(path, names);
   throw Failure(use, "there is no constraint '" + path + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+}
+
+std::optional<std::size_t> Scope::ContactForcesAsked::find(const std::string& path, Span use) {
+  std::string contact = path.substr(0, path.find('.'));
+  while (!contact.empty() && !contacts_.count(contact) && contact.back() >= '0' && contact.back() <= '9')
+    contact.pop_back();
+  if (!contacts_.count(contact)) {
+    const std::string wanted = path.substr(0, path.find('.'));
+    const std::string near = did_you_mean(wanted, {contacts_.begin(), contacts_.end()});
+    if (near.empty()) return std::nullopt;
+    throw Failure(use, "there is no constraint or contact '" + wanted + "'; did you mean '" + near + "'?");
+  }
+  if (closed_)
+    throw Failure(use, "'lambda." + path + "' is the force of a contact, which has no value here",
+                  "an [output], [monitor] or [[event]] of the model file may hold it");
+  const auto known = std::find_if(asked_.begin(), asked_.end(), [&](const auto& a) { return a.first == path; });
+  if (known != asked_.end()) return static_cast<std::size_t>(known - asked_.begin());
+  asked_.push_back({path, use});
+  return asked_.size() - 1;
 }
 
 bool is_reaction(const std::string& function) { return function == "reaction" || function == "reaction_torque"; }
@@ -38,19 +59,20 @@ Vector Scope::reaction_on(std::size_t body, const Syntax& call) {
 
 // Looks at the texts first, which spares most files the search below.
 bool Scope::speaks_of_multipliers() {
-  if (!speaks_of_multipliers_)
-    speaks_of_multipliers_ = std::any_of(declarations_.begin(), declarations_.end(), [](const auto& named) {
+  if (!with_multipliers_.any)
+    with_multipliers_.any = std::any_of(declarations_.begin(), declarations_.end(), [](const auto& named) {
       const std::string& text = named.second.formula.text();
       return text.find("lambda") != std::string::npos || text.find("λ") != std::string::npos ||
              text.find("reaction") != std::string::npos;
     });
-  return *speaks_of_multipliers_;
+  return *with_multipliers_.any;
 }
 
 // Whether a definition contains a multiplier or a reaction, itself or through others.
 bool Scope::holds_multiplier(const std::string& name) {
   if (!speaks_of_multipliers()) return false;
-  if (const auto known = holds_multiplier_.find(name); known != holds_multiplier_.end()) return known->second;
+  if (const auto known = with_multipliers_.known.find(name); known != with_multipliers_.known.end())
+    return known->second;
   std::set<std::string> seen = {name};
   std::vector<std::string> open = {name};
   bool found = false;
@@ -76,9 +98,9 @@ bool Scope::holds_multiplier(const std::string& name) {
     }
   }
   if (found)
-    holds_multiplier_[name] = true;
+    with_multipliers_.known[name] = true;
   else
-    for (const std::string& n : seen) holds_multiplier_[n] = false;
+    for (const std::string& n : seen) with_multipliers_.known[n] = false;
   return found;
 }
 

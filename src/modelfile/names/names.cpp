@@ -397,7 +397,12 @@ Value Scope::member(const Value& object, const Syntax& s) {
     throw Failure(s.span, parts_[b->index].particle ? "a particle has the members position, x, y and z"
                                                     : "a body has the members center, x, y and z");
   }
-  if (multipliers_ > 0 && is_inertial(object))
+  const auto is_force = [&] {
+    const Expr* e = std::get_if<Expr>(&object);
+    const Node* n = e ? &graph().node(e->id) : nullptr;
+    return n && n->kind == Kind::multiplier && n->index >= kContactForces;
+  };
+  if (multipliers_ > 0 && (is_inertial(object) || is_force()))
     if (const std::string path = multiplier_path(s); !path.empty()) return multiplier(path, s.span);
   throw Failure(s.span, std::string(type_name(object)) + " has no member '" + m + "'",
                 is_scalar(object) ? habit_of_member(s) : "");

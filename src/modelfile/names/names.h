@@ -88,6 +88,23 @@ class Scope final : public Names {
    private:
     Scope& scope_;
   };
+  // The forces of contacts, which formulas may hold before the contacts are read: multipliers kContactForces + k of force
+  // asked()[k]. After that no formula may hold any, as its symbols have no values.
+  class ContactForcesAsked {
+   public:
+    using Asked = std::vector<std::pair<std::string, Span>>;  // "floor.t1", and where it is asked for first
+    void declare(const std::string& contact) { contacts_.insert(contact); }
+    // The force `path`; nullopt if there is no such contact. Corners of a box have the numbered names of their contact.
+    std::optional<std::size_t> find(const std::string& path, Span use);
+    const Asked& asked() const { return asked_; }
+    void close() { closed_ = true; }
+
+   private:
+    std::set<std::string> contacts_;
+    Asked asked_;
+    bool closed_ = false;
+  };
+  ContactForcesAsked contact_forces;
   Vector gravity_at(const Vector& place, Span use);
   // The derivatives of the field of gravity by the three coordinates of the place; none if the field is uniform.
   bool gravity_gradient = false;  // set by [gravity] gradient
@@ -161,10 +178,15 @@ class Scope final : public Names {
   std::size_t depth_ = 0;                                // depth of nested definitions and parts of bodies
   std::vector<std::map<std::string, Value>> arguments_;  // of functions being called
   int multipliers_ = 0;                                  // number of callers that allow them
-  std::optional<bool> speaks_of_multipliers_;            // some definition may hold one
-  std::map<std::string, bool> holds_multiplier_;
+  struct DefinitionsWithMultipliers {
+    std::optional<bool> any;            // some definition may hold a multiplier
+    std::map<std::string, bool> known;  // whether this one does
+  } with_multipliers_;
   std::size_t calls_ = 0;  // of given functions, over the whole file
 };
+
+// Multipliers from this one on are forces of contacts; models have far fewer constraints.
+inline constexpr std::uint32_t kContactForces = 1U << 20U;
 
 // The places in which multipliers and reactions are allowed.
 inline constexpr const char* kWhereMultipliers =

@@ -85,7 +85,7 @@ void observer(JsonWriter& j, const Model& model, const PlotData& d) {
 
 void one_case(JsonWriter& j, const PageCase& c) {
   const Model& model = *c.scenario->model;
-  const Scene picture = scene(*c.scenario->mechanics);
+  const Scene picture = scene(*c.scenario->mechanics, has_contacts(c.run.table));
   const PlotData d = plot_data(*c.scenario, c.conserved, c.run, picture);
   j.open_object()
       .key("name")

@@ -126,17 +126,13 @@ TEST(Drops, PoissonsLawFinishes) {
   }
 }
 
-// The mutants: a restitution above 1 raises the energy, and a floor that is pushed up lifts the body, whose energy grows.
+// The mutants: a floor that is pushed up lifts the body, whose energy grows.
 TEST(Drops, MutantsAreFound) {
-  std::size_t raised = 0;
   for (std::uint64_t k = 1; k <= 6; ++k) {
-    const Found f = look_at(drop(3 * k - 1), {{"e", "1.2"}});
-    raised += f.outcome.message.find("raise the energy") != std::string::npos;
+    std::string lifted = drop(3 * k - 1);
+    lifted.replace(lifted.find("gap = \"z - a\""), 13, "gap = \"z - a - t/9\"");
+    EXPECT_GT(look_at(lifted).gains, 1e-3) << k;
   }
-  EXPECT_EQ(raised, 6U);
-  std::string lifted = drop(2);
-  lifted.replace(lifted.find("gap = \"z - a\""), 13, "gap = \"z - a - t/9\"");
-  EXPECT_GT(look_at(lifted).gains, 1e-3);
 }
 
 }  // namespace drops_test

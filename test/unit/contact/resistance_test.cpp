@@ -255,6 +255,34 @@ drilling_resistance = 0.00744
   EXPECT_LT(m.report.power, 1e-10);
 }
 
+// The last stop of a ball with quaternion coordinates leaves a rate along the quaternion that is larger than those that turn
+// the ball: the jump that stops it removes this rate, too.
+TEST(Resistance, BallEndsRollingAndDrillingTogether) {
+  const auto m = contact_motion(R"toml(
+coordinates = ["x","y","z","a","b","c","d"]
+gravity.field = "-9.81*ez"
+body = [{name="B", mass=1, shape="ball(0.1)", center="x*ex+y*ey+z*ez", orientation="quat(a,b,c,d)"}]
+[[contact]]
+name = "f"
+body = "B"
+friction = 0.4299946761724623
+rolling_resistance = 0.0016204930323988655
+drilling_resistance = 0.0006689451258076937
+[initial]
+a = 1
+z = 0.1
+"x'" = -2.187652920991212
+"z'" = -0.20406550207191887
+"b'" = -1.3962150993860414
+)toml",
+                                20);
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  EXPECT_EQ(m.last("f.rolling.mode"), 2);
+  EXPECT_EQ(m.last("f.drilling.mode"), 2);
+  for (const char* q : {"x'", "y'", "a'", "b'", "c'", "d'"}) EXPECT_EQ(m.last(q), 0) << q;
+  EXPECT_LT(m.report.power, 1e-10);
+}
+
 TEST(Resistance, MistakesHavePlaces) {
   const auto refused = [](const std::string& text) {
     try {

@@ -52,10 +52,10 @@ std::vector<double> run(const Json& scene, const std::vector<double>& row, doubl
   return v;
 }
 
-Json scene_of(const Model& model) {
+Json scene_of(const Model& model, bool contacts = false) {
   const Mechanics m = mechanics(model);
   JsonWriter j;
-  write_scene(j, scene(m), *model.graph, jets_in_a_row(model.coordinates.size()), {});
+  write_scene(j, scene(m, contacts), *model.graph, jets_in_a_row(model.coordinates.size()), {});
   return Json::parse(j.text());
 }
 
@@ -122,6 +122,17 @@ TEST(Scene, TheReactionIsThatOfTheConstraint) {
   const double ax = 3 - a * (sn * 0.7 + c * 4), ay = -1 + a * (c * 0.7 - sn * 4);
   EXPECT_NEAR(v.at(f["vector"][0].get<std::size_t>()), m * ax, 1e-13);
   EXPECT_NEAR(v.at(f["vector"][1].get<std::size_t>()), m * ay, 1e-13);
+}
+
+// The force of a contact follows from the accelerations of the run.
+TEST(Scene, TheForceOfAContactIsAReaction) {
+  const auto model = test::shipped("contacts/bead-in-hoop");
+  const Json s = scene_of(*model, true);
+  const std::vector<double> v = run(s, {0.6, -0.8, 1, 2, -3, 4}, 0);
+  const Json& f = item(s, "vector", "reaction of bead");
+  EXPECT_NEAR(v.at(f["vector"][0].get<std::size_t>()), 0.1 * -3, 1e-15);
+  EXPECT_NEAR(v.at(f["vector"][2].get<std::size_t>()), 0.1 * (4 + 9.81), 1e-15);
+  EXPECT_EQ(scene_of(*model)["items"].dump().find("reaction of bead"), std::string::npos);
 }
 
 }  // namespace
