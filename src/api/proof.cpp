@@ -18,6 +18,13 @@ bool Proof::all_proved() const {
          std::all_of(forms.begin(), forms.end(), [](const FormVerdict& f) { return f.verdict == Verdict::proved; });
 }
 
+// Of those that are not proved to vanish, the first; empty if there is none.
+static std::string first_not_proved(const std::vector<inner::Difference>& differences) {
+  for (const inner::Difference& d : differences)
+    if (d.verdict != inner::Verdict::proved) return d.component + ": " + d.detail;
+  return {};
+}
+
 Result<Proof> prove(const Model& model, const std::vector<std::string>& names) {
   return guarded(model.data().source, [&]() -> Result<Proof> {
     model.data().without_contacts("prove");
@@ -35,13 +42,14 @@ Result<Proof> prove(const Model& model, const std::vector<std::string>& names) {
     const inner::Proof p = inner::prove(m, forms, eliminations);
     Proof result;
     result.stopped = p.stopped;
-    for (const inner::FormProof& f : p.forms) {
+    for (std::size_t i = 0; i < p.forms.size(); ++i) {
+      const inner::FormProof& f = p.forms[i];
       FormVerdict& v = result.forms.emplace_back();
       v.form = f.form->name;
-      v.verdict = static_cast<Verdict>(f.verdict);
-      for (const inner::Difference& d : f.differences)
-        if (d.verdict != inner::Verdict::proved && v.detail.empty()) v.detail = d.component + ": " + d.detail;
-      if (result.forms.size() > p.compared) v.detail = "stopped";
+      v.verdict = static_cast<Verdict>(p.with_routh(i));
+      v.detail = i < p.compared ? first_not_proved(f.differences) : "stopped";
+      if (v.detail.empty() && v.verdict != Verdict::proved)
+        v.detail = p.stopped ? "stopped" : "tangents of the constraints: " + first_not_proved(p.kernel);
     }
     if (p.stopped) return result;
     inner::Certificate c = inner::certificate(m, p, eliminations.front(), std::string("anholon ") + version(),

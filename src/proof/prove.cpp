@@ -154,11 +154,14 @@ Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms,
   return proof;
 }
 
-Verdict Proof::between(std::size_t a, std::size_t b) const {
-  const Verdict va = forms[a].verdict, vb = forms[b].verdict;
+Verdict Proof::with_routh(std::size_t a) const {
   const bool tangents = !stopped && of_all(kernel) == Verdict::proved;
-  const auto rests_on_tangents = [&](std::size_t i) { return forms[i].form->unknowns != Unknowns::multipliers; };
-  if (!tangents && (rests_on_tangents(a) || rests_on_tangents(b))) return Verdict::unknown;
+  const bool rests_on_tangents = forms[a].form->unknowns != Unknowns::multipliers;
+  return tangents || !rests_on_tangents ? forms[a].verdict : Verdict::unknown;
+}
+
+Verdict Proof::between(std::size_t a, std::size_t b) const {
+  const Verdict va = with_routh(a), vb = with_routh(b);
   if (va == Verdict::proved && vb == Verdict::proved) return Verdict::proved;
   if (va == Verdict::refuted && vb == Verdict::proved) return Verdict::refuted;
   if (va == Verdict::proved && vb == Verdict::refuted) return Verdict::refuted;

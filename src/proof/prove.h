@@ -38,6 +38,9 @@ struct Proof {
   // the tangents of the constraints.
   bool stopped = false;
   std::size_t compared = 0;  // the first so many forms were compared
+  // Of one form and Routh's equations. The comparison of a form without multipliers counts only if the tangents of the
+  // constraints are shown; it is unknown without them.
+  Verdict with_routh(std::size_t a) const;
   Verdict between(std::size_t a, std::size_t b) const;
 };
 

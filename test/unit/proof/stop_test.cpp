@@ -57,6 +57,7 @@ TEST(Stop, ProofThatIsStoppedAtAnyLookCallsNothingEqualThatWasNotShown) {
       EXPECT_EQ(p.forms[a].form, whole.proof.forms[a].form);
       const Verdict expected = a < p.compared ? whole.proof.forms[a].verdict : Verdict::unknown;
       EXPECT_EQ(p.forms[a].verdict, expected) << at << " " << p.forms[a].form->name;
+      EXPECT_EQ(p.with_routh(a), rests_on_tangents(p.forms[a]) ? Verdict::unknown : expected) << at << " " << a;
       for (std::size_t b = 0; b < a; ++b)
         if (rests_on_tangents(p.forms[a]) || rests_on_tangents(p.forms[b]) || a >= p.compared || b >= p.compared) {
           EXPECT_EQ(p.between(a, b), Verdict::unknown) << at << " " << a << " " << b;
@@ -70,6 +71,20 @@ TEST(Stop, ProofThatIsStoppedAtAnyLookCallsNothingEqualThatWasNotShown) {
   for (std::size_t a = 0; a < whole.proof.forms.size(); ++a)
     equal += rests_on_tangents(whole.proof.forms[a]) && whole.proof.between(0, a) == Verdict::proved;
   EXPECT_GT(equal, 0U);
+}
+
+TEST(Stop, FormsThatRestOnTangentsAreUnknownWhereTheseAreNotShown) {
+  Proof p = attempt("zoo/chaplygin-sleigh", kNever).proof;
+  std::size_t resting = 0;
+  for (std::size_t a = 0; a < p.forms.size(); ++a) EXPECT_EQ(p.with_routh(a), Verdict::proved) << a;
+  ASSERT_FALSE(p.kernel.empty());
+  p.kernel.back().verdict = Verdict::unknown;
+  for (std::size_t a = 0; a < p.forms.size(); ++a) {
+    const bool rests = rests_on_tangents(p.forms[a]);
+    EXPECT_EQ(p.with_routh(a), rests ? Verdict::unknown : Verdict::proved) << a;
+    resting += rests;
+  }
+  EXPECT_GT(resting, 0U);
 }
 
 TEST(Stop, FirstLookEndsAProof) {
