@@ -13,11 +13,7 @@ void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
     return total_derivative(f.friction ? components[f.contact][*f.friction] : normals[f.contact], n.order);
   };
   for (const ContactForces::Formula& f : of.formulas) {
-    const Expr own = g.own(f.value);
-    const Expr value = put_masses(model, substitute({&own, 1}, [&](NodeId id) {
-                                    const Node n = g.node(id);
-                                    return n.kind == Kind::multiplier && n.index >= kContactForces ? force(n) : Expr{};
-                                  })[0]);
+    const Expr value = put_masses(model, with_contact_forces(g, g.own(f.value), force));
     if (f.of == ContactForces::Formula::Of::monitor)
       model.monitors[f.index].value = value;
     else

@@ -315,10 +315,33 @@ bool is_contact_force(const Node& n) { return n.kind == Kind::multiplier && n.in
 
 Expr with_open_contacts(const Model& model, Expr e) {
   Graph& g = *model.graph;
-  return substitute({&e, 1}, [&](NodeId id) { return is_contact_force(g.node(id)) ? g.zero() : Expr{}; })[0];
+  return with_contact_forces(g, e, [&](const Node&) { return g.zero(); });
 }
 
 }  // namespace
+
+// Zeros that the graph does not know to be such: rows divide by them, and the graph does not. Each force has one of its
+// own, so that none cancels another.
+static Expr hidden_zero(Graph& g, const Node& force) {
+  const Expr positive = g.number(static_cast<long>(force.index - kContactForces) + 1) + g.time() * g.time();
+  return g.apply(Function::sign, positive) - g.one();
+}
+
+Expr with_contact_forces(Graph& g, Expr formula, const std::function<Expr(const Node&)>& force) {
+  const auto put = [&](bool hide_zeros) {
+    return substitute({&formula, 1}, [&](NodeId id) {
+      const Node n = g.node(id);
+      if (!is_contact_force(n)) return Expr{};
+      const Expr f = force(n);
+      return hide_zeros && is_zero(f) ? hidden_zero(g, n) : f;
+    })[0];
+  };
+  try {
+    return put(false);
+  } catch (const Failure&) {  // a division by zero
+    return put(true);
+  }
+}
 
 void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact>& contacts, Diagnostics& diagnostics) {
   const auto& asked = scope.contact_forces.asked();

@@ -4,6 +4,7 @@
 // Motions make a model for each mode of the contacts (contact/mode_model.h).
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -28,6 +29,10 @@ struct ContactForces {
   std::vector<Force> forces;
   std::vector<Formula> formulas;
 };
+
+// Puts the forces of contacts into a formula that holds them. Where a quotient by a force that is zero has no value, the
+// formula has none either: it is not a number.
+Expr with_contact_forces(Graph& g, Expr formula, const std::function<Expr(const Node&)>& force);
 
 struct Contact {
   std::string name;

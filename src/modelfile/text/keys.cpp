@@ -1,26 +1,63 @@
 #include "modelfile/text/keys.h"
 
 #include <algorithm>
+#include <string_view>
+#include <vector>
 
 #include "formula/units.h"
 #include "modelfile/language/language.h"
 
 namespace anholon {
 
+namespace {
+
+// What the language has for words that textbooks and other programs use at the top of a model.
+struct OtherWord {
+  std::vector<std::string_view> words;
+  const char* hint;
+};
+
+const std::vector<OtherWord>& other_words() {
+  static const std::vector<OtherWord> list = {
+      {{"T", "kinetic", "kinetic_energy"}, "the kinetic energy is that of the masses: write [[body]] or [[particle]]"},
+      {{"L", "lagrangian", "Lagrangian"},
+       "write the masses as [[body]] or [[particle]], and the potential energy under [potential] as V = \"…\""},
+      {{"V", "U", "potential_energy"}, "[potential] with V = \"m*g*y\", or [gravity]"},
+      {{"q", "variables", "generalized_coordinates", "dofs"}, "coordinates = [\"x\", \"y\"]"},
+      {{"constants", "values"}, "[parameters] with m = \"2 kg\""},
+      {{"generalized_forces", "Q"}, "[[force]] with generalized = {x = \"-k*x\"}"},
+      {{"initial_conditions", "x0", "ic"}, "[initial] with x = 1 and \"x'\" = 0"},
+  };
+  return list;
+}
+
+// Empty for a word that is none of these.
+std::string hint_for_other_word(const std::string& word) {
+  for (const OtherWord& o : other_words())
+    if (std::find(o.words.begin(), o.words.end(), word) != o.words.end()) return o.hint;
+  return "";
+}
+
+std::string list_of(const std::vector<std::string>& known) {
+  std::string list = "known here: ";
+  for (std::size_t k = 0; k < known.size(); ++k) list += (k ? ", " : "") + known[k];
+  return list;
+}
+
+}  // namespace
+
 void check_keys(const Item& table, const std::string& where, const std::string& section, Diagnostics& diagnostics) {
   const std::vector<std::string> known = known_keys(language_section(section));
   for (const Item& i : table.items) {
     if (std::find(known.begin(), known.end(), i.key) != known.end()) continue;
-    const std::string near = did_you_mean(i.key, known);
-    std::string hint;
-    if (near.empty()) {
-      hint = "known here: ";
-      for (std::size_t k = 0; k < known.size(); ++k) hint += (k ? ", " : "") + known[k];
-    }
+    const std::string other = section.empty() ? hint_for_other_word(i.key) : "",
+                      near = other.empty() ? did_you_mean(i.key, known) : "";
     diagnostics.error(i.key_span,
                       "unknown key '" + i.key.substr(0, 60) + "' in " + where +
                           (near.empty() ? "" : "; did you mean '" + near + "'?"),
-                      hint);
+                      !other.empty() ? other
+                      : near.empty() ? list_of(known)
+                                     : "");
   }
 }
 

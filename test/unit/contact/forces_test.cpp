@@ -43,6 +43,7 @@ friction = "mu"
 N = "load"
 T = "grip"
 rate = "load'"
+used = "grip/load"
 [output]
 all = "reaction(body)"
 both = ["lambda.floor.t1", 0, "2*lambda.floor"]
@@ -95,6 +96,14 @@ TEST(Forces, OfAnOpenContactAreZeroAndEventsFindThem) {
   ASSERT_EQ(found.size(), 1U);
   expect_near(found[0], (2 * 9.81 - 5) / 10, 1e-14);
   expect_near(times(m, "floor.leaves").at(0), 2 * 9.81 / 10, 1e-14);
+}
+
+TEST(Forces, QuotientOfForcesIsNotANumberWhileTheContactIsOpen) {
+  const auto m = contact_motion(on_slope("point", ""), 4, {{"lift", "10"}}, {0, 1, 4});
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  expect_near(m.number(0, "used"), -std::tan(0.3), 1e-14);
+  EXPECT_EQ(m.last("N"), 0);
+  EXPECT_TRUE(std::isnan(m.last("used")));
 }
 
 // In space the friction of a slip has two components, and a moment of resistance has its own.
