@@ -103,15 +103,19 @@ static std::string hint_of_dependence(const Scenario& s) {
          "constraints stay independent, along = […]";
 }
 
-// " (x = 1, y = 2)": where the motion is, if that is not too long to be read.
+// " (x = 1, y = 2)": where the motion is, if that is not too long to be read. The last step may have begun elsewhere.
 template <Number N>
 static std::string where(const Scenario& s, const Motion<N>& motion) {
   constexpr std::size_t kMost = 6;
+  if (s.system.coordinates == 0 || s.system.coordinates > kMost) return "";
+  const Stepper<N>& stepper = motion.stepper();
+  Expansion<Wider<N>> end(motion.program(), motion.parameters(), 1);
+  const bool reached = stepper.at(stepper.time(), end, false).ok();
+  const Expansion<Wider<N>>& point = reached ? end : stepper.point();
   std::vector<std::string> list;
-  for (std::size_t a = 0; a < s.system.coordinates && s.system.coordinates <= kMost; ++a)
-    list.push_back(s.system.variable_names[a] + " = " +
-                   number_text(to_double(motion.stepper().point().derivative(a, 0)), 6));
-  return list.empty() ? "" : " (" + joined(list) + ")";
+  for (std::size_t a = 0; a < s.system.coordinates; ++a)
+    list.push_back(s.system.variable_names[a] + " = " + number_text(to_double(point.derivative(a, 0)), 6));
+  return " (" + joined(list) + ")";
 }
 
 template <Number N>
