@@ -20,7 +20,8 @@ struct Proof {
   std::vector<FormVerdict> forms;
   // A certificate in JSON, which `verify` and `anholon verify` check without the prover; empty if the proof was stopped.
   std::string certificate;
-  // A StopRequest ended it: forms that it did not reach are `unknown`, with "stopped" as their detail.
+  // A StopRequest ended it. Forms that it did not reach are `unknown`, with "stopped" as their detail, and so are forms
+  // without multipliers, as the tangents of the constraints are shown last.
   bool stopped = false;
   // Whether the proof is complete and all its forms are proved.
   ANHOLON_API bool all_proved() const;

@@ -94,8 +94,7 @@ void say_no_rest(Outcome& o) {
   if (o.kind != OutcomeKind::inconsistent) return;
   o.message = "no equilibrium was found near the initial positions";
   o.hint = "there may be none, also where a rounded number stands for a formula; the search begins at other positions "
-           "by --q "
-           "or [initial]";
+           "by --q or [initial]";
 }
 
 }  // namespace anholon

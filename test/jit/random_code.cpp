@@ -1,5 +1,7 @@
 #include "jit/random_code.h"
 
+#include <algorithm>
+
 namespace anholon::jit {
 
 RandomCode::RandomCode(llvm::Module& module, const char* name, std::uint32_t seed, unsigned lanes, int operations)

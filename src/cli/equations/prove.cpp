@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <functional>
 
 #include <unistd.h>
 
@@ -123,16 +124,22 @@ std::string json(const Model& model, const Proof& p, const Certificate& c, const
   return j.text();
 }
 
-// Ctrl-C ended the proof: its text says which forms were compared until then, with their verdicts.
+// Ctrl-C ended the proof: its text says which forms were compared until then, with their verdicts. Without the tangents of
+// the constraints nothing is proved of the forms that rest on them.
 int say_stopped(const ProveCommand& o, const Proof& p) {
   say(stderr, "stopped (interrupted): %zu of %zu forms were compared with Routh's equations\n", p.compared,
       p.forms.size());
-  for (const Verdict v : {Verdict::proved, Verdict::refuted, Verdict::unknown}) {
-    std::string list;
+  const auto list = [&](const char* what, const std::function<bool(std::size_t)>& is) {
+    std::string names;
     for (std::size_t k = 0; k < p.compared; ++k)
-      if (p.forms[k].verdict == v) list += std::string(list.empty() ? "" : ", ") + p.forms[k].form->name;
-    if (!list.empty()) say(stderr, "%s: %s\n", name(v), list.c_str());
-  }
+      if (is(k)) names += std::string(names.empty() ? "" : ", ") + p.forms[k].form->name;
+    if (!names.empty()) say(stderr, "%s: %s\n", what, names.c_str());
+  };
+  for (const Verdict v : {Verdict::proved, Verdict::refuted})
+    list(name(v), [&](std::size_t k) { return p.with_routh(k) == v; });
+  list("unknown", [&](std::size_t k) { return p.forms[k].verdict == Verdict::unknown; });
+  list("compared, but the tangents of the constraints are not shown",
+       [&](std::size_t k) { return p.forms[k].verdict != p.with_routh(k); });
   if (!o.output.empty()) say(stderr, "%s was not written: a certificate is of a whole proof\n", o.output.c_str());
   return kStopped;
 }
