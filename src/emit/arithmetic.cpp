@@ -193,9 +193,9 @@ class Builder {
   }
 
   Value power(const Value& v, const Rational& exponent) {
-    if (exponent.get_den() == 1 && abs(exponent) <= kLargestPower) {
+    if (exponent.is_integer() && abs(exponent) <= kLargestPower) {
       Value out{1, kNone};
-      for (long k = std::abs(exponent.get_num().get_si()); k > 0; --k) out = multiplied(out, v, true, false);
+      for (long k = std::abs(exponent.to_long()); k > 0; --k) out = multiplied(out, v, true, false);
       return exponent < 0 ? reciprocal(out) : out;
     }
     if (exponent < 0) return reciprocal(whole(intern({Kind::power, {}, -exponent, {}, {node_of(v)}})));

@@ -23,7 +23,7 @@ const char* function_name(Function f, Language language) { return language == La
 // The number of times that the text of a power contains its base.
 std::size_t bases(const Rational& exponent) {
   const Rational r = abs(exponent);
-  if (r.get_den() == 1 && r <= kLargestProduct) return r.get_num().get_ui();
+  if (r.is_integer() && r <= kLargestProduct) return r.get_num().get_ui();
   return r == Rational(3, 2) ? 2 : 1;
 }
 
@@ -44,9 +44,9 @@ Writer::Text Writer::power(NodeId base, const Rational& exponent) const {
   const Text root{std::string(language_ == Language::c ? "sqrt(" : "np.sqrt(") + x.s + ")", kAtom};
   if (exponent == Rational(1, 2)) return root;
   if (exponent == Rational(3, 2)) return {wrapped(x, kAtom) + "*" + root.s, kProduct};
-  if (exponent.get_den() == 1 && exponent <= kLargestProduct) {
+  if (exponent.is_integer() && exponent <= kLargestProduct) {
     std::string out = wrapped(x, kAtom);
-    for (long k = exponent.get_num().get_si(); k > 1; --k) out += "*" + wrapped(x, kAtom);
+    for (long k = exponent.to_long(); k > 1; --k) out += "*" + wrapped(x, kAtom);
     return {out, kProduct};
   }
   const std::string e = number(exponent);
@@ -274,7 +274,7 @@ Statements Writer::body(const Column& es, const std::vector<std::string>& target
       const bool power = g_.node(id).kind == Kind::product;
       const Rational e = power ? g_.rational(t.weight) : Rational(1);
       uses_[t.node] += power ? bases(e) : 1;
-      if (power && (e < 0 || e.get_den() != 1)) ++power_uses_[{t.node, e}];
+      if (power && (e < 0 || !e.is_integer())) ++power_uses_[{t.node, e}];
     }
   load(ids, body);
   for (NodeId id : ids) write(id, body);

@@ -165,8 +165,8 @@ StraightLine::Coefficient StraightLine::constant(std::uint32_t s) const {
     return product(constant(in.a), constant_power(in.b, -1));
   case Op::power: {
     const Rational& exponent = tape_.rationals[in.index];
-    const bool whole = exponent.get_den() == 1 && abs(exponent) <= kLargestPower;
-    return whole ? constant_power(in.a, exponent.get_num().get_si()) : itself;
+    const bool whole = exponent.is_integer() && abs(exponent) <= kLargestPower;
+    return whole ? constant_power(in.a, exponent.to_long()) : itself;
   }
   default:
     return itself;
@@ -364,9 +364,9 @@ std::string StraightLine::power(const std::string& x, const Rational& exponent) 
     out = root + x + ")";
   } else if (e == Rational(3, 2)) {
     out = x + "*" + root + x + ")";
-  } else if (e.get_den() == 1 && e <= kLargestPower) {
+  } else if (e.is_integer() && e <= kLargestPower) {
     out = x;
-    for (long k = e.get_num().get_si(); k > 1; --k) out += "*" + x;
+    for (long k = e.to_long(); k > 1; --k) out += "*" + x;
   } else {
     return language_ == Language::python ? x + "**(" + number(exponent) + ")"
                                          : "pow(" + x + ", " + number(exponent) + ")";

@@ -94,7 +94,7 @@ std::string lines(const std::vector<std::string>& list, const std::string& inden
 }
 
 std::string number(const Rational& r) {
-  const mpz_class &num = r.get_num(), &den = r.get_den();
+  const mpz_class num = r.get_num(), den = r.get_den();
   if (num == 0) return "0.0";
   const mpz_class exact_limit = mpz_class(1) << std::numeric_limits<double>::digits;
   if (den == 1 && abs(num) < 1000000000) return num.get_str() + ".0";

@@ -138,8 +138,7 @@ Variation::Values Variation::listed(const std::string& word, std::size_t sign, G
     mistake_in(word, sign + 1, word.size() - sign - 1, "a grid has three numbers",
                "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
   const Rational from = number(word, list[0], of), to = number(word, list[1], of), count = number(word, list[2]);
-  if (count.get_den() != 1 || count < 1 || count > static_cast<unsigned long>(kMostPoints) ||
-      (count == 1 && from != to))
+  if (!count.is_integer() || count < 1 || count > static_cast<unsigned long>(kMostPoints) || (count == 1 && from != to))
     mistake_in(word, list[2].at, list[2].text.size(),
                "a grid has between 2 and " + std::to_string(kMostPoints) + " points",
                "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
@@ -148,8 +147,7 @@ Variation::Values Variation::listed(const std::string& word, std::size_t sign, G
 }
 
 Rational Variation::Grid::operator[](std::size_t k) const {
-  Rational part(k, std::max<std::size_t>(points - 1, 1));
-  part.canonicalize();
+  const Rational part(k, std::max<std::size_t>(points - 1, 1));
   return from + (to - from) * part;
 }
 
@@ -304,8 +302,7 @@ std::vector<Rational> Variation::between(std::span<const std::int64_t> places, u
   for (const Values& v : values_) {
     const std::int64_t place = places[v.axis];
     const auto k = static_cast<std::size_t>(place / fine);
-    Rational part(place % fine, fine);
-    part.canonicalize();
+    const Rational part(place % fine, fine);
     out.push_back(part == 0 ? v.at(k) : v.at(k) + (v.at(k + 1) - v.at(k)) * part);
   }
   return out;

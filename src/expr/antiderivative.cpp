@@ -75,7 +75,7 @@ std::optional<Expr> square_root(Expr e) {
   if (g.node(e.id).kind != Kind::product) return std::nullopt;
   for (const Term& t : g.terms(e.id)) {
     const Rational exponent = g.rational(t.weight) / 2;
-    if (exponent.get_den() != 1) return std::nullopt;
+    if (!exponent.is_integer()) return std::nullopt;
     half.emplace_back(Expr{&g, t.node}, exponent);
   }
   return factor * g.product(half);
@@ -177,7 +177,7 @@ std::optional<Expr> of_term(Expr term, Expr z, int parts) {
   // By parts: the power of z decreases.
   if (parts >= kMostParts) return std::nullopt;
   for (const Factor& f : s.factors) {
-    if (!(f.base == z) || f.exponent.get_den() != 1 || f.exponent < 1) continue;
+    if (!(f.base == z) || !f.exponent.is_integer() || f.exponent < 1) continue;
     const Expr power = f.value();
     const std::optional<Expr> G = of_term(term / power, z, kMostParts);
     if (!G) return std::nullopt;

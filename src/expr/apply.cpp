@@ -62,7 +62,7 @@ std::optional<Rational> value_at_pi(const Graph& g, Function f, NodeId x) {
     return std::nullopt;
   if (f != Function::sin && f != Function::cos) return std::nullopt;
   Rational sixths = turns * 6;
-  if (sixths.get_den() != 1) return std::nullopt;
+  if (!sixths.is_integer()) return std::nullopt;
   mpz_class k = f == Function::cos ? mpz_class(sixths.get_num() + 3) : sixths.get_num();
   const unsigned long step = mpz_fdiv_ui(k.get_mpz_t(), 12);  // sin(step * pi/6)
   switch (step) {

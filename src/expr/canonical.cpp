@@ -18,12 +18,6 @@ constexpr std::uint32_t kOpenedTerms = 32;
 // A sum of more terms than this is computed through the partial sum it grew from.
 constexpr std::size_t kShortWayFrom = 8;
 
-Rational floor(const Rational& r) {
-  mpz_class q;
-  mpz_fdiv_q(q.get_mpz_t(), r.get_num_mpz_t(), r.get_den_mpz_t());
-  return q;
-}
-
 // The rational content of a sum, with the sign that makes its first coefficient positive.
 Rational content(const Graph& g, NodeId id) {
   const std::span<const Term> terms = g.terms(id);
@@ -31,30 +25,37 @@ Rational content(const Graph& g, NodeId id) {
   bool whole = true, unit = false;
   for (const Term& t : terms) {
     const Rational& c = g.rational(t.weight);
-    whole = whole && c.get_den() == 1;
-    unit = unit || mpz_cmpabs_ui(c.get_num_mpz_t(), 1) == 0;
+    whole = whole && c.is_integer();
+    unit = unit || c == 1 || c == -1;
   }
   if (whole && unit) return negative ? -1 : 1;
-  mpz_class num = 0, den = 1;
-  for (const Term& t : terms) {
-    const Rational& c = g.rational(t.weight);
-    num = gcd(num, c.get_num());
-    den = lcm(den, c.get_den());
-  }
-  Rational r(num, den);
-  r.canonicalize();
-  return negative ? Rational(-r) : r;
+  Rational common = 0;
+  for (const Term& t : terms) common = gcd(common, g.rational(t.weight));
+  return negative ? -common : common;
+}
+
+struct Part {
+  NodeId node;
+  Rational coefficient;
+};
+
+// The lists of a sum under construction, whose memory the next sum uses again.
+struct SumLists {
+  std::vector<Part> parts, merged;
+  std::vector<Term> flat, view;
+};
+
+SumLists& cleared_sum_lists() {
+  thread_local SumLists lists;
+  lists.parts.clear(), lists.merged.clear(), lists.flat.clear(), lists.view.clear();
+  return lists;
 }
 
 }  // namespace
 
 Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
-  struct Part {
-    NodeId node;
-    Rational coefficient;
-  };
   spend(operands.size());
-  std::vector<Part> parts;
+  auto& [parts, merged, flat, view] = cleared_sum_lists();
   std::size_t most = 0;
   for (const auto& [factor, e] : operands) ANHOLON_ASSERT(e.graph == this);
   for (const auto& [factor, e] : operands)
@@ -78,8 +79,6 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
     }
   }
   std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.node < b.node; });
-  std::vector<Part> merged;
-  merged.reserve(parts.size());
   for (Part& p : parts) {
     if (!merged.empty() && merged.back().node == p.node)
       merged.back().coefficient += p.coefficient;
@@ -92,10 +91,8 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
     if (merged[0].node == one_) return number(merged[0].coefficient);
     if (merged[0].coefficient == 1) return {this, merged[0].node};
   }
-  std::vector<Term> flat;
   for (const Part& p : merged) flat.push_back({rational_index(p.coefficient), p.node});
 
-  std::vector<Term> view;
   if (longest != zero_ && flat.size() > kShortWayFrom) {
     // The short way holds if the longest operand survives whole: flat = factor * longest + rest.
     view.push_back({rational_index(longest_factor), longest});
@@ -137,7 +134,7 @@ class Graph::Product {
       if (p.exponent == 0) continue;
       const Node n = g_.nodes_[p.node];
       g_.spend(n.kind == Kind::sum ? 1 + n.count : 1);
-      const bool integer = p.exponent.get_den() == 1;
+      const bool integer = p.exponent.is_integer();
       if (n.kind == Kind::number) {
         if (!open_number(std::move(p), integer)) return false;
       } else if (n.kind == Kind::sum) {
@@ -199,11 +196,10 @@ class Graph::Product {
       return false;
     }
     std::optional<Rational> power;
-    if (integer && p.exponent.get_num().fits_slong_p()) {
-      power = exact_power(v, p.exponent.get_num().get_si());
-    } else if (p.exponent.get_den().fits_ulong_p() && p.exponent.get_num().fits_slong_p()) {
-      if (auto root = exact_root(v, p.exponent.get_den().get_ui()))
-        power = exact_power(*root, p.exponent.get_num().get_si());
+    if (integer && p.exponent.fits_long()) {
+      power = exact_power(v, p.exponent.to_long());
+    } else if (p.exponent.fits_long()) {
+      if (auto root = exact_root(v, p.exponent.get_den().get_ui())) power = exact_power(*root, p.exponent.to_long());
     }
     if (power)
       coefficient_ *= *power;
@@ -221,7 +217,7 @@ class Graph::Product {
                        : n.count > kOpenedTerms ? Rational(1)
                                                 : content(g_, p.node);
     const Rational out = integer ? c : Rational(abs(c));
-    const bool whole_out = integer && exact_power(c, p.exponent.get_num().get_si());
+    const bool whole_out = integer && exact_power(c, p.exponent.to_long());
     if (out != 1 && (whole_out || !integer)) {
       pending_.push_back({g_.number(out).id, p.exponent});
       pending_.push_back({g_.scaled(1 / out, p.node).id, p.exponent});
@@ -235,7 +231,7 @@ class Graph::Product {
   // (x^r)^n = x^(rn) for integer n; (x^r)^s = x^(rs) only where x^r keeps the sign of x.
   void open_product(Power p, bool integer) {
     const std::span<const Term> inner = g_.terms(p.node);
-    if (!integer && g_.rational(inner[0].weight).get_den() == 1) {
+    if (!integer && g_.rational(inner[0].weight).is_integer()) {
       powers_.push_back(std::move(p));
       return;
     }
@@ -255,7 +251,7 @@ class Graph::Product {
 
   bool opens(const Power& p) const {
     const Node& n = g_.nodes_[p.node];
-    const bool integer = p.exponent.get_den() == 1, proper = p.exponent > 0 && p.exponent < 1;
+    const bool integer = p.exponent.is_integer(), proper = p.exponent > 0 && p.exponent < 1;
     if (n.kind == Kind::number) return integer || !proper;
     if (n.kind == Kind::product) return integer && n.count <= kOpenedFactors;
     if (n.kind != Kind::sum) return false;

@@ -1,8 +1,6 @@
 #include "expr/expr.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 
 #include "base/assert.h"
 #include "base/diagnostic.h"
@@ -15,12 +13,6 @@ namespace {
 // Numbers of more machine words than the first cost more than one unit of work; numbers of more than the second are
 // refused.
 constexpr std::size_t kShortNumber = 16, kLongestNumber = 8'000;
-
-std::uint64_t mix(std::uint64_t h, std::uint64_t v) {
-  h ^= v + 0x9e3779b97f4a7c15ULL + (h << 6) + (h >> 2);
-  h *= 0xff51afd7ed558ccdULL;
-  return h ^ (h >> 33);
-}
 
 }  // namespace
 
@@ -47,9 +39,7 @@ std::unique_ptr<Graph> Graph::clone(std::size_t nodes) const {
     g->index_ = index_;
     g->rates_ = rates_;
   } else {
-    g->index_.clear();
-    for (const auto& [hash, id] : index_)
-      if (known(id)) g->index_.emplace(hash, id);
+    g->index_ = index_.before(static_cast<NodeId>(nodes));
     g->rates_.assign(rates_.begin(), rates_.begin() + static_cast<std::ptrdiff_t>(std::min(nodes, rates_.size())));
     for (NodeId& rate : g->rates_)
       if (!known(rate)) rate = kUnknown;
@@ -90,53 +80,37 @@ void Graph::spend(std::uint64_t work) {
                   "fewer derivatives or powers, or fewer definitions within definitions");
 }
 
-// Short numbers, most of them, without what GMP takes to write a number.
-static std::string key(const Rational& r) {
-  if (!r.get_num().fits_slong_p() || !r.get_den().fits_slong_p()) return r.get_str(62);
-  std::array<char, 24> digits;
-  const auto text = [&digits](long n) {
-    return std::string_view(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), n).ptr);
-  };
-  std::string key("#");  // no digit
-  key += text(r.get_num().get_si());
-  if (r.get_den() != 1) key += '/', key += text(r.get_den().get_si());
-  return key;
-}
-
 std::uint32_t Graph::rational_index(const Rational& r) {
   if (one_ != 0 && r == 1) return nodes_[one_].index;  // most of them
   // Arithmetic with long numbers and their text take time that grows with their square.
-  if (const std::size_t limbs = mpz_size(r.get_num_mpz_t()) + mpz_size(r.get_den_mpz_t()); limbs > kShortNumber) {
+  if (!r.fits_long()) {
+    const std::size_t limbs = r.limbs();
     if (limbs > kLongestNumber)
       throw Failure(Span{}, "a number of more than " + std::to_string(kLongestNumber * 19) + " digits");
-    spend(limbs * limbs / kShortNumber);
+    if (limbs > kShortNumber) spend(limbs * limbs / kShortNumber);
   }
-  if (frozen_) {
-    const auto known = rational_index_.find(key(r));
-    ANHOLON_ASSERT(known != rational_index_.end());
-    return known->second;
-  }
-  const auto [it, fresh] = rational_index_.try_emplace(key(r), static_cast<std::uint32_t>(rationals_.size()));
-  if (fresh) rationals_.push_back(r);
-  return it->second;
+  const std::uint64_t hash = mixed(r.hash(), 0);
+  const std::uint32_t known = rational_index_.find(hash, [&](std::uint32_t k) { return rationals_[k] == r; });
+  if (known != HashIndex::kNone) return known;
+  ANHOLON_ASSERT(!frozen_);
+  const auto index = static_cast<std::uint32_t>(rationals_.size());
+  rational_index_.insert(hash, index);
+  rationals_.push_back(r);
+  return index;
 }
 
 NodeId Graph::intern(Node node, std::span<const Term> operands, std::span<const Term> view) {
   look_for_stop();
-  std::uint64_t h = mix(static_cast<std::uint64_t>(node.kind), node.index);
-  h = mix(h, node.order);
-  for (const Term& t : operands) h = mix(mix(h, t.weight), t.node);
-  const auto [begin, end] = index_.equal_range(h);
-  for (auto it = begin; it != end; ++it) {
-    const Node& other = nodes_[it->second];
-    if (other.kind != node.kind || other.index != node.index || other.order != node.order ||
-        other.count != operands.size())
-      continue;
-    const std::span<const Term> theirs = terms(it->second);
-    if (std::equal(operands.begin(), operands.end(), theirs.begin(),
-                   [](const Term& a, const Term& b) { return a.weight == b.weight && a.node == b.node; }))
-      return it->second;
-  }
+  std::uint64_t h = mixed(static_cast<std::uint64_t>(node.kind), node.index);
+  h = mixed(h, node.order);
+  for (const Term& t : operands) h = mixed(mixed(h, t.weight), t.node);
+  const NodeId known = index_.find(h, [&](NodeId id) {
+    const Node& other = nodes_[id];
+    return other.kind == node.kind && other.index == node.index && other.order == node.order &&
+           std::ranges::equal(operands, terms(id),
+                              [](const Term& a, const Term& b) { return a.weight == b.weight && a.node == b.node; });
+  });
+  if (known != HashIndex::kNone) return known;
   ANHOLON_ASSERT(!frozen_);
   node.first = node.view_first = static_cast<std::uint32_t>(terms_.size());
   node.count = node.view_count = static_cast<std::uint32_t>(operands.size());
@@ -149,7 +123,7 @@ NodeId Graph::intern(Node node, std::span<const Term> operands, std::span<const 
   const NodeId id = static_cast<NodeId>(nodes_.size());
   ANHOLON_ASSERT(id < 0xffffffffU);
   nodes_.push_back(node);
-  index_.emplace(h, id);
+  index_.insert(h, id);
   return id;
 }
 
@@ -217,7 +191,16 @@ std::vector<NodeId> reachable(std::span<const Expr> roots) {
   for (std::size_t i = 0; i < found.size(); ++i)
     for (const Term& t : g.summands(found[i]))
       if (!seen[t.node]) seen[t.node] = true, found.push_back(t.node);
-  std::sort(found.begin(), found.end());
+  // Reading the marks in order takes less time than sorting, unless they are few and far between.
+  constexpr std::size_t kFar = 64;
+  const NodeId last = *std::max_element(found.begin(), found.end());
+  if (last / kFar > found.size()) {
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+  found.clear();
+  for (NodeId id = 0; id <= last; ++id)
+    if (seen[id]) found.push_back(id);
   return found;
 }
 

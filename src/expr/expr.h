@@ -25,9 +25,9 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
+#include "base/hash_index.h"
 #include "numeric/rational.h"
 
 namespace anholon {
@@ -108,7 +108,7 @@ struct Node {
 struct Exponent {
   Rational value;
   Exponent(int p) : value(p) {}
-  Exponent(int p, int q) : value(p, q) { value.canonicalize(); }
+  Exponent(int p, int q) : value(p, q) {}
   Exponent(Rational r) : value(std::move(r)) {}
 };
 
@@ -199,8 +199,7 @@ class Graph {
   std::vector<Node> nodes_;
   std::vector<Term> terms_;
   std::vector<Rational> rationals_;
-  std::unordered_multimap<std::uint64_t, NodeId> index_;
-  std::unordered_map<std::string, std::uint32_t> rational_index_;
+  HashIndex index_, rational_index_;
   std::vector<NodeId> rates_;
   std::vector<StepFunction> step_functions_;
   std::uint64_t work_ = 0, most_work_ = ~std::uint64_t{0};

@@ -51,13 +51,8 @@ inline bool one(const Sum& s) { return s.size() == 1 && trivial(s.begin()->first
 
 // The rational content with the sign of the first coefficient; s is divided by it.
 inline Rational take_content(Sum& s) {
-  mpz_class num = 0, den = 1;
-  for (const auto& [exponents, c] : s) {
-    num = gcd(num, c.get_num());
-    den = lcm(den, c.get_den());
-  }
-  Rational content(num, den);
-  content.canonicalize();
+  Rational content = 0;
+  for (const auto& [exponents, c] : s) content = gcd(content, c);
   if (s.begin()->second < 0) content = -content;
   for (auto& [exponents, c] : s) c /= content;
   return content;

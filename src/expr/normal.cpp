@@ -156,7 +156,7 @@ class Normalizer {
       } else if (n.kind == Kind::product) {
         for (const Term& t : g_.terms(id)) {
           const Rational& e = g_.rational(t.weight);
-          const mpz_class& k = e.get_den();
+          const mpz_class k = e.get_den();
           if (!k.fits_ulong_p()) throw TooLarge{};
           if (e < 0 && whole_.fractions)
             reciprocals.push_back({t.node, k.get_ui()});
@@ -209,7 +209,7 @@ class Normalizer {
     for (const auto& [node, coefficient] : angle(x)) {
       const Rational multiple = coefficient * Rational(denominator_.at(node));
       if (abs(multiple) > kLargestMultiple) throw TooLarge{};
-      const long k = multiple.get_num().get_si();
+      const long k = multiple.to_long();
       if (pythagoras_.insert(node).second) {
         const Poly a = generator(sine_.at(node)), b = generator(cosine_.at(node));
         relations_->add(a * a + b * b - constant(1));
@@ -267,11 +267,11 @@ class Normalizer {
         const Rational& e = g_.rational(t.weight);
         if (abs(e) > 1000) throw TooLarge{};
         if (e < 0 && whole_.fractions) {
-          total = multiply(total, power(reciprocal(t.node, e.get_den().get_ui()), -e.get_num().get_si()));
+          total = multiply(total, power(reciprocal(t.node, e.get_den().get_ui()), -e.to_long()));
           continue;
         }
-        const Fraction base = e.get_den() == 1 ? fractions_.at(t.node) : root(t.node, e.get_den().get_ui());
-        total = multiply(total, power(base, e.get_num().get_si()));
+        const Fraction base = e.is_integer() ? fractions_.at(t.node) : root(t.node, e.get_den().get_ui());
+        total = multiply(total, power(base, e.to_long()));
       }
       return total;
     }

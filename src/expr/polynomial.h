@@ -67,11 +67,7 @@ class Poly {
   ~Poly() { fmpq_mpoly_clear(p_, ring_->context()); }
   static Poly constant(const Ring& ring, const Rational& r) {
     Poly p(ring);
-    fmpq_t c;
-    fmpq_init(c);
-    fmpq_set_mpq(c, r.get_mpq_t());
-    fmpq_mpoly_set_fmpq(p.p_, c, ring.context());
-    fmpq_clear(c);
+    fmpq_mpoly_set_fmpq(p.p_, r.fraction(), ring.context());
     return p;
   }
   static Poly generator(const Ring& ring, long k) {
@@ -84,28 +80,19 @@ class Poly {
   bool same(const Poly& o) const { return fmpq_mpoly_equal(p_, o.p_, ring_->context()) != 0; }
   Monomials terms() const {
     Monomials out;
-    fmpq_t c;
-    fmpq_init(c);
     for (long k = 0; k < length(); ++k) {
-      fmpq_mpoly_get_term_coeff_fmpq(c, p_, k, ring_->context());
       Monomial m;
-      fmpq_get_mpq(m.coefficient.get_mpq_t(), c);
+      fmpq_mpoly_get_term_coeff_fmpq(m.coefficient.fraction(), p_, k, ring_->context());
       m.exponents.resize(static_cast<std::size_t>(ring_->generators()));
       fmpq_mpoly_get_term_exp_ui(m.exponents.data(), p_, k, ring_->context());
       out.push_back(std::move(m));
     }
-    fmpq_clear(c);
     return out;
   }
   static Poly of(const Ring& ring, const Monomials& terms) {
     Poly p(ring);
-    fmpq_t c;
-    fmpq_init(c);
-    for (const Monomial& m : terms) {
-      fmpq_set_mpq(c, m.coefficient.get_mpq_t());
-      fmpq_mpoly_push_term_fmpq_ui(p.p_, c, m.exponents.data(), ring.context());
-    }
-    fmpq_clear(c);
+    for (const Monomial& m : terms)
+      fmpq_mpoly_push_term_fmpq_ui(p.p_, m.coefficient.fraction(), m.exponents.data(), ring.context());
     fmpq_mpoly_sort_terms(p.p_, ring.context());
     fmpq_mpoly_combine_like_terms(p.p_, ring.context());
     return p;

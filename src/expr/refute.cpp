@@ -125,8 +125,8 @@ class FieldPoint {
   }
   Word power(Word x, const Rational& e) const {
     if (e == 1) return x;
-    if (!e.get_num().fits_slong_p()) throw NoValue{};
-    const long n = e.get_num().get_si();
+    if (!e.fits_long()) throw NoValue{};
+    const long n = e.to_long();
     const Word r = root(x, e.get_den());
     return n < 0 ? f_.power(inverse(r), -static_cast<unsigned long>(n)) : f_.power(r, static_cast<unsigned long>(n));
   }

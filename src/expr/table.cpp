@@ -19,9 +19,7 @@ Numbers natural_spline(const Numbers& x, const Numbers& y) {
   const std::size_t n = x.size();
   const auto rounded = [](const Rational& r) {
     mpz_class scaled = (r.get_num() << 400) / r.get_den();
-    Rational out(scaled, mpz_class(1) << 400);
-    out.canonicalize();
-    return out;
+    return Rational(scaled, mpz_class(1) << 400);
   };
   Numbers upper(n, 0), right(n, 0), m(n, 0);
   for (std::size_t i = 1; i + 1 < n; ++i) {

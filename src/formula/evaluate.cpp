@@ -174,10 +174,10 @@ struct Arguments {
   }
   long integer(std::size_t i, long most) const {
     const Expr e = number(i);
-    if (!is_number(e) || number_value(e).get_den() != 1 || number_value(e) < 0 || number_value(e) > most)
+    if (!is_number(e) || !number_value(e).is_integer() || number_value(e) < 0 || number_value(e) > most)
       throw Failure(call.args[i].span, "argument " + std::to_string(i + 1) + " of " + call.text +
                                            " is not a whole number between 0 and " + std::to_string(most));
-    return number_value(e).get_num().get_si();
+    return number_value(e).to_long();
   }
 };
 

@@ -122,7 +122,6 @@ static const UnitRow* find_row(const std::string& name) {
 static Unit of(const UnitRow& r) {
   Unit u;
   u.factor = Rational(r.factor);
-  u.factor.canonicalize();
   u.pi = r.pi;
   for (std::size_t k = 0; k < 7; ++k) u.dimension[k] = r.dimension[k];
   return u;
@@ -197,7 +196,7 @@ std::string print(const Dimension& d) {
     list += (list.empty() ? ""
              : d[k] > 0   ? "*"
                           : "/") +
-            std::string(kBase[k]) + (p == 1 ? "" : "^" + (p.get_den() == 1 ? p.get_str() : "(" + p.get_str() + ")"));
+            std::string(kBase[k]) + (p == 1 ? "" : "^" + (p.is_integer() ? p.get_str() : "(" + p.get_str() + ")"));
   }
   if (top.empty()) top = "1";
   return bottom.empty() ? top : top + "/" + bottom;

@@ -30,7 +30,7 @@ Root root_of(Expr e) {
   for (const auto& [base, exponent] : factors)
     if (is_constant(base))
       constant.push_back({base, exponent});
-    else if (const Rational half = exponent / 2; half.get_den() == 1)
+    else if (const Rational half = exponent / 2; half.is_integer())
       out.push_back({base, half});
     else
       rest.push_back({base, exponent});

@@ -316,9 +316,7 @@ std::optional<Rational> as_fraction(double x) {
   for (int d = 1; d <= kLargestDenominator; ++d) {
     const double n = std::round(x * d);
     if (std::abs(n) < 1e6 && std::abs(x - n / d) < kFraction) {
-      Rational r(static_cast<long>(n), d);
-      r.canonicalize();
-      return r;
+      return Rational(static_cast<long>(n), d);
     }
   }
   return std::nullopt;

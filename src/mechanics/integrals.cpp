@@ -242,12 +242,9 @@ Expr readable(const FormSpace& space, Expr f, const SymbolNames& names) {
   const Expr as_found = arranged(f, names);
   const std::optional<NormalForm> form = normal_form(f, {}, kMostWork);
   if (form && !form->numerator.empty()) {
-    mpz_class common = 0, denominators = 1;
-    for (const Monomial& m : form->numerator) {
-      common = gcd(common, m.coefficient.get_num());
-      denominators = lcm(denominators, m.coefficient.get_den());
-    }
-    Expr multiple = Rational(denominators, common) * expression(form->numerator, form->generators);
+    Rational common = 0;
+    for (const Monomial& m : form->numerator) common = gcd(common, m.coefficient);
+    Expr multiple = (1 / common) * expression(form->numerator, form->generators);
     const Expr below = expression(form->denominator, form->generators);
     bool varies = false;
     for (NodeId id : symbols({&below, 1}))

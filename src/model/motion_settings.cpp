@@ -188,10 +188,10 @@ class Setter {
   }
   void operator()(std::optional<int> S::* member) {
     const Rational x = number();
-    if (x.get_den() != 1 || x < option_.least || x > option_.most)
+    if (!x.is_integer() || x < option_.least || x > option_.most)
       throw Failure({}, called_ + " is a whole number from " + std::to_string(option_.least) + " to " +
                             std::to_string(option_.most));
-    settings_.*member = static_cast<int>(x.get_num().get_si());
+    settings_.*member = static_cast<int>(x.to_long());
   }
   void operator()(std::optional<std::string> S::* member) {
     if (std::holds_alternative<Rational>(value_) && option_.also_number) {

@@ -19,7 +19,7 @@ static std::string vanishing_root(const Motion<N>& motion) {
   const Tape& tape = motion.program().tape;
   for (std::uint32_t k = 0; k < tape.main_end; ++k) {
     const Instruction& in = tape.code[k];
-    const bool root = in.op == Op::power && tape.rationals[in.index].get_den() != 1;
+    const bool root = in.op == Op::power && !tape.rationals[in.index].is_integer();
     const bool logarithm = in.op == Op::function && in.index == static_cast<std::uint32_t>(Function::log);
     if ((root || logarithm) && std::abs(to_double(motion.stepper().point(true).machine().series(in.a)[0])) < 1e-9)
       return root ? "the root of a quantity that reaches zero" : "the logarithm of a quantity that reaches zero";

@@ -11,15 +11,6 @@ slong& Ball::working_bits() {
 
 namespace {
 
-// Converts a fraction of GMP into one of FLINT.
-struct Fraction {
-  fmpq_t v;
-  explicit Fraction(const Rational& r) { fmpq_init(v), fmpq_set_mpq(v, r.get_mpq_t()); }
-  ~Fraction() { fmpq_clear(v); }
-  Fraction(const Fraction&) = delete;
-  Fraction& operator=(const Fraction&) = delete;
-};
-
 // A dyadic number is written out if its exponent is within this many bits.
 constexpr slong kLargestExponent = 1 << 20;
 
@@ -27,12 +18,8 @@ std::optional<Rational> exactly(const arf_t x) {
   if (!arf_is_finite(x)) return std::nullopt;
   if (arf_is_zero(x)) return Rational(0);
   if (arf_cmpabs_2exp_si(x, kLargestExponent) > 0 || arf_cmpabs_2exp_si(x, -kLargestExponent) < 0) return std::nullopt;
-  fmpq_t q;
-  fmpq_init(q);
-  arf_get_fmpq(q, x);
   Rational r;
-  fmpq_get_mpq(r.get_mpq_t(), q);
-  fmpq_clear(q);
+  arf_get_fmpq(r.fraction(), x);
   return r;
 }
 
@@ -79,11 +66,11 @@ Ball::Ball(long double x) {
 
 Ball::Ball(const Rational& r) {
   arb_init(v_);
-  arb_set_fmpq(v_, Fraction(r).v, working_bits());
+  arb_set_fmpq(v_, r.fraction(), working_bits());
 }
 
 Ball::Ball(const Rational& midpoint, const Rational& radius) : Ball(midpoint) {
-  const Ball r(::abs(radius));
+  const Ball r(abs(radius));
   arb_add_error(v_, r.v_);
 }
 
@@ -99,7 +86,7 @@ Ball Ball::unknown() {
   return r;
 }
 
-bool Ball::contains(const Rational& r) const { return arb_contains_fmpq(v_, Fraction(r).v) != 0; }
+bool Ball::contains(const Rational& r) const { return arb_contains_fmpq(v_, r.fraction()) != 0; }
 
 Ball Ball::center() const {
   Ball r;
@@ -201,7 +188,7 @@ Ball sign(const Ball& x) {
 
 Ball pow(const Ball& x, const Rational& exponent) {
   Ball r;
-  arb_pow_fmpq(r.raw(), x.raw(), Fraction(exponent).v, Ball::working_bits());
+  arb_pow_fmpq(r.raw(), x.raw(), exponent.fraction(), Ball::working_bits());
   return std::move(r.settle());
 }
 

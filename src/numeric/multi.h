@@ -34,7 +34,7 @@ class Multi {
   }
   explicit Multi(const Rational& r) {
     init();
-    mpfr_set_q(v_, r.get_mpq_t(), MPFR_RNDN);
+    mpfr_set_q(v_, r.get_mpq().get_mpq_t(), MPFR_RNDN);
   }
   Multi(const Multi& o) {
     init();

@@ -58,15 +58,14 @@ N from_rational(const Rational& r) {
     // A quotient of two whole numbers that N holds is rounded once.
     if constexpr (!std::same_as<N, Quad>) {
       constexpr long kHeld = 1L << std::min(std::numeric_limits<N>::digits, 62);
-      if (r.get_num().fits_slong_p() && r.get_den().fits_slong_p())
-        if (const long num = r.get_num().get_si(), den = r.get_den().get_si();
-            num <= kHeld && num >= -kHeld && den <= kHeld)
+      if (r.fits_long())
+        if (const long num = r.to_long(), den = r.long_denominator(); num <= kHeld && num >= -kHeld && den <= kHeld)
           return static_cast<N>(num) / static_cast<N>(den);
     }
     // mpq_get_d truncates, and long double has no conversion: go through MPFR, which rounds.
     mpfr_t v;
     mpfr_init2(v, significand_bits<N>());
-    mpfr_set_q(v, r.get_mpq_t(), MPFR_RNDN);
+    mpfr_set_q(v, r.get_mpq().get_mpq_t(), MPFR_RNDN);
     N n;
     if constexpr (std::same_as<N, Quad>)
       n = quad_of(v);

@@ -10,7 +10,7 @@ PrimeField::Word PrimeField::power(Word a, Word exponent) const {
 }
 
 std::optional<PrimeField::Word> PrimeField::from(const Rational& r) const {
-  const Word n = mpz_fdiv_ui(r.get_num_mpz_t(), p_), d = mpz_fdiv_ui(r.get_den_mpz_t(), p_);
+  const auto [n, d] = r.modulo(p_);
   if (d == 0) return std::nullopt;
   return d == 1 ? n : multiply(n, inverse(d));
 }

@@ -3,8 +3,74 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
+#include <ostream>
 
 namespace anholon {
+
+Rational::Rational(const mpz_class& n) {
+  fmpq_init(q_);
+  fmpz_set_mpz(num(), n.get_mpz_t());
+}
+
+Rational::Rational(const mpz_class& p, const mpz_class& q) : Rational(p) {
+  fmpz_set_mpz(den(), q.get_mpz_t());
+  fmpq_canonicalise(q_);
+}
+
+Rational::Rational(double x) : Rational(from(mpq_class(x))) {}
+
+Rational::Rational(const char* text) : Rational(from(mpq_class(text))) { fmpq_canonicalise(q_); }
+
+Rational Rational::from(const mpq_class& r) {
+  Rational out;
+  fmpq_set_mpq(out.q_, r.get_mpq_t());
+  return out;
+}
+
+Rational Rational::from(const fmpq_t r) {
+  Rational out;
+  fmpq_set(out.q_, r);
+  return out;
+}
+
+mpz_class Rational::integer(const fmpz* n) {
+  mpz_class out;
+  fmpz_get_mpz(out.get_mpz_t(), n);
+  return out;
+}
+
+mpq_class Rational::get_mpq() const {
+  mpq_class out;
+  fmpq_get_mpq(out.get_mpq_t(), q_);
+  return out;
+}
+
+double Rational::get_d() const {
+  constexpr long kExact = 1L << std::numeric_limits<double>::digits;
+  if (whole() && -kExact <= *num() && *num() <= kExact) return static_cast<double>(*num());
+  return get_mpq().get_d();
+}
+
+std::string Rational::get_str(int base) const {
+  if (whole() && base == 10) return std::to_string(*num());
+  return get_mpq().get_str(base);
+}
+
+std::uint64_t Rational::hash() const {
+  // Two numbers whose remainders are equal are told apart by a comparison.
+  constexpr ulong kPrime = (ulong{1} << 61) - 1;
+  const auto part = [](const fmpz* n) -> std::uint64_t {
+    return COEFF_IS_MPZ(*n) ? fmpz_fdiv_ui(n, kPrime) : static_cast<std::uint64_t>(*n);
+  };
+  return part(num()) * 0x9e3779b97f4a7c15ULL + part(den()) * 0xc2b2ae3d27d4eb4fULL;
+}
+
+Rational floor(const Rational& a) {
+  Rational out;
+  fmpz_fdiv_q(out.num(), a.num(), a.den());
+  return out;
+}
 
 static constexpr long kLargestExponent = 5000;
 static constexpr std::size_t kLongestText = 5000;
@@ -41,9 +107,7 @@ static std::optional<Rational> parse_decimal(std::string_view text) {
   if (i != text.size()) return std::nullopt;
   mpz_class mantissa(digits, 10);
   if (negative) mantissa = -mantissa;
-  Rational r = scale >= 0 ? Rational(mantissa * power_of_ten(scale)) : Rational(mantissa, power_of_ten(-scale));
-  r.canonicalize();
-  return r;
+  return scale >= 0 ? Rational(mpz_class(mantissa * power_of_ten(scale))) : Rational(mantissa, power_of_ten(-scale));
 }
 
 std::optional<Rational> parse_rational(std::string_view text) {
@@ -57,17 +121,20 @@ std::optional<Rational> parse_rational(std::string_view text) {
 
 std::string to_string(const Rational& r) { return r.get_str(); }
 
+std::ostream& operator<<(std::ostream& out, const Rational& r) { return out << r.get_str(); }
+
 double natural_logarithm(const Rational& r) {
   long p = 0, q = 0;
-  const double num = mpz_get_d_2exp(&p, r.get_num_mpz_t()), den = mpz_get_d_2exp(&q, r.get_den_mpz_t());
+  const mpz_class above = r.get_num(), below = r.get_den();
+  const double num = mpz_get_d_2exp(&p, above.get_mpz_t()), den = mpz_get_d_2exp(&q, below.get_mpz_t());
   return std::log(num / den) + static_cast<double>(p - q) * 0.693147180559945309417;
 }
 
 std::optional<Rational> exact_root(const Rational& r, unsigned long n) {
   if (r < 0 && n % 2 == 0) return std::nullopt;
   mpz_class p, q;
-  const bool exact =
-      mpz_root(p.get_mpz_t(), r.get_num_mpz_t(), n) != 0 && mpz_root(q.get_mpz_t(), r.get_den_mpz_t(), n) != 0;
+  const bool exact = mpz_root(p.get_mpz_t(), r.get_num().get_mpz_t(), n) != 0 &&
+                     mpz_root(q.get_mpz_t(), r.get_den().get_mpz_t(), n) != 0;
   if (!exact) return std::nullopt;
   return Rational(p, q);
 }
@@ -75,15 +142,11 @@ std::optional<Rational> exact_root(const Rational& r, unsigned long n) {
 std::optional<Rational> exact_power(const Rational& base, long exponent) {
   if (exponent == 0) return Rational(1);
   if (base == 0) return exponent > 0 ? std::optional<Rational>(0) : std::nullopt;
-  const unsigned long n = static_cast<unsigned long>(exponent < 0 ? -exponent : exponent);
-  const std::size_t bits = mpz_sizeinbase(base.get_num_mpz_t(), 2) + mpz_sizeinbase(base.get_den_mpz_t(), 2);
-  if (n > 100000 || bits * n > 200000) return std::nullopt;
-  mpz_class p, q;
-  mpz_pow_ui(p.get_mpz_t(), base.get_num_mpz_t(), n);
-  mpz_pow_ui(q.get_mpz_t(), base.get_den_mpz_t(), n);
-  Rational r = exponent > 0 ? Rational(p, q) : Rational(q, p);
-  r.canonicalize();
-  return r;
+  const unsigned long n = exponent < 0 ? -static_cast<unsigned long>(exponent) : static_cast<unsigned long>(exponent);
+  if (n > 100000 || base.bits() * n > 200000) return std::nullopt;
+  Rational power;
+  fmpq_pow_si(power.fraction(), base.fraction(), exponent);
+  return power;
 }
 
 }  // namespace anholon

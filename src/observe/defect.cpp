@@ -146,8 +146,7 @@ void Defect::step(const DenseStep& step) {
   pieces_of_step_ = 0;
   if (times_ == 0) return piece(step, step.begin, step.end, 0);
   for (; reached_ < times_; ++reached_) {
-    Rational part(static_cast<long>(2 * reached_ + 1), static_cast<long>(2 * times_));
-    part.canonicalize();
+    const Rational part(static_cast<long>(2 * reached_ + 1), static_cast<long>(2 * times_));
     const Ball time = begin_ + (end_ - begin_) * Ball(part);
     if (((time - step.end) * (end_ - begin_)).is_positive()) break;
     keep(at_time(step, time));

@@ -149,7 +149,7 @@ class Grouping {
     Sum rest;
     for (const auto& [exponents, c] : s) rest.emplace(quotient(exponents, front), c);
     const Rational c = take_content(rest);
-    if (trivial(front) && c.get_den() == 1) return std::nullopt;
+    if (trivial(front) && c.is_integer()) return std::nullopt;
     const Built other = build(rest, depth + 1, true);
     return times(monomial(front, c), other);
   }

@@ -284,7 +284,7 @@ class Printer {
 
   Printed number(const Rational& r) const {
     if (r < 0) return negated(number(-r));
-    if (r.get_den() == 1) return {whole(r.get_num())};
+    if (r.is_integer()) return {whole(r.get_num())};
     return {fraction(whole(r.get_num()), whole(r.get_den())), kProduct};
   }
 
@@ -303,7 +303,7 @@ class Printer {
     const Printed& p = done_.at(id);
     const std::string body = p.opposite.empty() ? wrap(p, kProduct) : wrap(p.opposite, p.opposite_strength, kProduct);
     if (c == 1) return body;
-    if (c.get_den() == 1) return join(whole(c.get_num()), body);
+    if (c.is_integer()) return join(whole(c.get_num()), body);
     if (format_ != Format::text) return join(number(c).text, body);
     const std::string top = c.get_num() == 1 ? body : join(whole(c.get_num()), body);
     return top + "/" + c.get_den().get_str();
@@ -362,7 +362,7 @@ class Printer {
     const std::string b = wrap(base, kAtom);
     if (mathml()) return {"<msup>" + row(b) + row(number(exponent).text) + "</msup>", kPower};
     if (latex()) return {"{" + b + "}^{" + exponent.get_str() + "}", kPower};
-    const bool plain = exponent.get_den() == 1 && exponent > 0;
+    const bool plain = exponent.is_integer() && exponent > 0;
     return {b + "^" + (plain ? exponent.get_str() : "(" + exponent.get_str() + ")"), kPower};
   }
 
@@ -382,8 +382,8 @@ class Printer {
       } else {
         base = done_[t.node];
       }
-      if (!base.opposite.empty() && e.get_den() == 1) {
-        if (mpz_odd_p(e.get_num_mpz_t())) negative = !negative;
+      if (!base.opposite.empty() && e.is_integer()) {
+        if (mpz_odd_p(e.get_num().get_mpz_t())) negative = !negative;
         base = {base.opposite, base.opposite_strength};
       }
       const Printed p = power(base, abs(e));

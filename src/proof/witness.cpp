@@ -24,7 +24,6 @@ Rational arbitrary(const Node& n, int attempt) {
   const unsigned long step = (h >> 40) % 89;
   Rational r(13 + step, 64);
   if (n.kind == Kind::jet && n.order > 0) r /= 1 << (attempt % kSizes);
-  r.canonicalize();
   return n.kind == Kind::jet && n.order > 0 && (h & 1) ? Rational(-r) : r;
 }
 

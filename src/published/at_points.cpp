@@ -38,9 +38,7 @@ std::optional<Rational> constant_ratio(Expr a, Expr b, std::vector<PointValues>&
     if (!(std::abs(at(a) - ratio * at(b)) <= 1e-10 * std::abs(at(a)))) return std::nullopt;
   for (int d = 1; d <= kLongest; ++d)
     if (const double n = ratio * d; std::abs(n) < 1e6 && std::abs(n - std::round(n)) < 1e-9 * std::abs(n)) {
-      Rational r(static_cast<long>(std::round(n)), d);
-      r.canonicalize();
-      return r;
+      return Rational(static_cast<long>(std::round(n)), d);
     }
   return std::nullopt;
 }

@@ -50,10 +50,10 @@ const Formulation* form_named(std::string name) {
 
 long whole_number(const Value& v, const Syntax& s) {
   const Expr* e = std::get_if<Expr>(&v);
-  if (!e || !is_number(*e) || number_value(*e).get_den() != 1 || number_value(*e) < 0 ||
+  if (!e || !is_number(*e) || !number_value(*e).is_integer() || number_value(*e) < 0 ||
       number_value(*e) > kHighestDerivative)
     throw Failure(s.span, "a whole number between 0 and " + std::to_string(kHighestDerivative) + " is expected here");
-  return number_value(*e).get_num().get_si();
+  return number_value(*e).to_long();
 }
 
 void expect(const Syntax& call, std::size_t least, std::size_t most) {

@@ -40,7 +40,7 @@ ConstraintClass classify_one(const Mechanics& m, std::size_t r) {
   constexpr int kMost = 6;
   const auto by_structure =
       homogeneous_degree(m.phi[r], [&](const Node& n) { return n.kind == Kind::jet && n.order == order; });
-  c.homogeneous = by_structure && by_structure->get_den() == 1 && *by_structure >= 1 && *by_structure <= kMost;
+  c.homogeneous = by_structure && by_structure->is_integer() && *by_structure >= 1 && *by_structure <= kMost;
   for (int degree = 1; degree <= (linear ? 1 : kMost) && !c.homogeneous; ++degree)
     c.homogeneous = proved_zero(radial - Rational(degree) * m.phi[r]);
   c.kind = !linear ? "nonlinear" : c.homogeneous ? "linear" : "affine";

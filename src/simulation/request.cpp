@@ -52,7 +52,7 @@ std::optional<std::size_t> rigorous(const MotionSettings& settings, const Asker&
   if (!settings.rigorous) return std::nullopt;
   if (*settings.rigorous == "all") return 0;
   const std::optional<Rational> n = parse_rational(*settings.rigorous);
-  if (!n || n->get_den() != 1 || *n < 1 || *n > kMostTimes)
+  if (!n || !n->is_integer() || *n < 1 || *n > kMostTimes)
     throw Failure({},
                   asker.called("rigorous") + " takes a number of times up to " + std::to_string(kMostTimes) +
                       ", or the word all, not '" + *settings.rigorous + "'",

@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "base/assert.h"
+#include "base/hash_index.h"
 #include "tape/tape.h"
 
 namespace anholon {
@@ -66,9 +67,13 @@ class Compiler {
 
  private:
   std::uint32_t rational(const Rational& r) {
-    const auto [it, fresh] = rational_.try_emplace(r.get_str(62), static_cast<std::uint32_t>(tape_.rationals.size()));
-    if (fresh) tape_.rationals.push_back(r);
-    return it->second;
+    const std::uint64_t hash = r.hash();
+    const std::uint32_t known = rational_.find(hash, [&](std::uint32_t k) { return tape_.rationals[k] == r; });
+    if (known != HashIndex::kNone) return known;
+    const auto index = static_cast<std::uint32_t>(tape_.rationals.size());
+    rational_.insert(hash, index);
+    tape_.rationals.push_back(r);
+    return index;
   }
 
   std::uint32_t push(Instruction in) {
@@ -141,8 +146,8 @@ class Compiler {
       std::vector<std::uint64_t> list;
       for (const Term& t : g_.terms(id)) {
         const Rational& e = g_.rational(t.weight);
-        if (e.get_den() != 1 || e <= 0 || e > kMostRepeats || !varies(t.node)) continue;
-        list.insert(list.end(), static_cast<std::size_t>(e.get_num().get_si()), t.node);
+        if (!e.is_integer() || e <= 0 || e > kMostRepeats || !varies(t.node)) continue;
+        list.insert(list.end(), static_cast<std::size_t>(e.to_long()), t.node);
       }
       if (list.size() > 1) products.push_back({id, std::move(list)});
     }
@@ -209,10 +214,10 @@ class Compiler {
     for (const Term& t : g_.terms(id)) {
       const Rational& e = g_.rational(t.weight);
       const std::uint32_t x = slot_.at(t.node);
-      const bool whole = e.get_den() == 1 && abs(e) <= 1000;
+      const bool whole = e.is_integer() && abs(e) <= 1000;
       if (shared != factors_.end() && whole && e > 0 && e <= 4 && !constant(x)) continue;
       if (whole) {
-        const std::uint32_t p = whole_power(x, static_cast<unsigned long>(std::labs(e.get_num().get_si())));
+        const std::uint32_t p = whole_power(x, static_cast<unsigned long>(std::labs(e.to_long())));
         (constant(x) && e > 0 ? constants : e > 0 ? varying : below).push_back(p);
       } else {
         Instruction in{Op::power};
@@ -257,8 +262,8 @@ class Compiler {
     for (const Term& t : g_.terms(id)) {
       const Rational& e = g_.rational(t.weight);
       const std::uint32_t x = slot_.at(t.node);
-      if (e.get_den() == 1 && abs(e) <= 1000) {
-        const long n = e.get_num().get_si();
+      if (e.is_integer() && abs(e) <= 1000) {
+        const long n = e.to_long();
         (n > 0 ? top : bottom).push_back(whole_power(x, static_cast<unsigned long>(std::labs(n))));
       } else {
         Instruction in{Op::power};
@@ -468,7 +473,7 @@ class Compiler {
   std::unordered_map<NodeId, bool> expanded_;
   std::unordered_map<NodeId, std::pair<Expr, Expr>> derivative_;
   std::vector<std::pair<std::uint32_t, NodeId>> pending_derivatives_;
-  std::unordered_map<std::string, std::uint32_t> rational_;
+  HashIndex rational_;
   std::unordered_map<std::uint32_t, std::uint32_t> step_function_;
   std::unordered_map<std::uint64_t, std::uint32_t> whole_power_;
   std::optional<std::uint32_t> one_;

@@ -13,7 +13,7 @@ namespace {
 // Most weights are small integers.
 template <Number N>
 N number_of(const Rational& r) {
-  if (r.get_den() == 1 && abs(r.get_num()) < 1'000'000) return N(static_cast<int>(r.get_num().get_si()));
+  if (r.is_integer() && abs(r.get_num()) < 1'000'000) return N(static_cast<int>(r.to_long()));
   return from_rational<N>(r);
 }
 

@@ -33,7 +33,6 @@ void run(const std::string& model, double seconds_per_step, Motion& m) {
   const long end = static_cast<long>(std::ceil(seconds_per_step * static_cast<double>(wanted_steps())));
   const long rows = all_of_them() ? 1000 : 20;
   for (long k = 1; k <= rows; ++k) o.at.push_back(Rational(k * end, rows));
-  for (Rational& t : o.at) t.canonicalize();
   m.report = simulate(m.scenario, o, m.rows);
   ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
   ASSERT_GE(m.report.steps, wanted_steps());

@@ -13,8 +13,7 @@ class RandomExpr {
 
   int below(int n) { return static_cast<int>(random_() % static_cast<std::uint32_t>(n)); }
   Rational coefficient() {
-    Rational r(below(9) - 4, 1 + below(4));
-    r.canonicalize();
+    const Rational r(below(9) - 4, 1 + below(4));
     return r == 0 ? Rational(1, 3) : r;
   }
   Expr atom() { return atoms_[static_cast<std::size_t>(below(static_cast<int>(atoms_.size())))]; }

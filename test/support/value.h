@@ -52,8 +52,8 @@ inline Multi apply(Function f, const Multi& u) {
 
 inline Multi raise(const Multi& base, const Rational& exponent) {
   Multi r;
-  if (exponent.get_den() == 1)
-    mpfr_pow_si(r.raw(), base.raw(), exponent.get_num().get_si(), MPFR_RNDN);
+  if (exponent.is_integer())
+    mpfr_pow_si(r.raw(), base.raw(), exponent.to_long(), MPFR_RNDN);
   else
     r = pow(base, Multi(exponent));
   return r;

@@ -30,7 +30,7 @@ namespace {
 std::optional<std::size_t> count_of(const SweepCommand& o) {
   if (o.case_count.empty()) return std::nullopt;
   const auto n = parse_rational(o.case_count);
-  if (!n || n->get_den() != 1 || *n < 1 || *n > static_cast<unsigned long>(Variation::kMostCases))
+  if (!n || !n->is_integer() || *n < 1 || *n > static_cast<unsigned long>(Variation::kMostCases))
     throw UsageError{"error: -n takes a number of cases up to " + std::to_string(Variation::kMostCases) + ", not '" +
                      o.case_count + "'\nhint: -n 1000\n"};
   return n->get_num().get_ui();

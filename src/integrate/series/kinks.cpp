@@ -64,7 +64,7 @@ class Search {
         c_[0] -= *knot;
         leaves(c_.data(), knot == below);
       }
-    } else if (in.op == Op::power && tape.rationals[in.index].get_den() % 2 == 0) {
+    } else if (in.op == Op::power && tape.rationals[in.index].has_even_denominator()) {
       touches_zero(machine_.series(in.a));
     }
   }

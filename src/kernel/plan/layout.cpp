@@ -58,11 +58,16 @@ Place PlanLayout::place_of_series(std::uint32_t s, std::uint32_t zero) {
 }
 
 std::uint32_t PlanLayout::coefficient(const Coefficient& c) {
-  std::string key = c.rational.get_str(62);
-  for (std::uint32_t s : c.slots) key += "," + std::to_string(s);
-  const auto [it, fresh] = coefficient_.try_emplace(key, static_cast<std::uint32_t>(plan_.coefficients.size()));
-  if (fresh) plan_.coefficients.push_back(c);
-  return it->second;
+  std::uint64_t hash = c.rational.hash();
+  for (std::uint32_t s : c.slots) hash = mixed(hash, s);
+  const std::uint32_t known = coefficient_.find(hash, [&](std::uint32_t k) {
+    return plan_.coefficients[k].rational == c.rational && plan_.coefficients[k].slots == c.slots;
+  });
+  if (known != HashIndex::kNone) return known;
+  const auto index = static_cast<std::uint32_t>(plan_.coefficients.size());
+  coefficient_.insert(hash, index);
+  plan_.coefficients.push_back(c);
+  return index;
 }
 
 }  // namespace anholon

@@ -1,8 +1,8 @@
 // The arena of a plan: constants first, then series, then single numbers.
 #pragma once
 #include <map>
-#include <string>
 
+#include "base/hash_index.h"
 #include "kernel/plan/slots.h"
 
 namespace anholon {
@@ -34,7 +34,7 @@ class PlanLayout {
   const Slots& slots_;
   Plan& plan_;
   std::vector<Place> place_;
-  std::map<std::string, std::uint32_t> coefficient_;
+  HashIndex coefficient_;
   std::map<std::uint32_t, std::uint32_t> coordinate_at_;
 };
 

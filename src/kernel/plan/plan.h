@@ -69,13 +69,8 @@ struct Coefficient {
   static constexpr std::uint32_t kReciprocal = 0x80000000U;  // in a slot: the product is divided by it
   Rational rational{1};
   std::vector<std::uint32_t> slots;
-  bool one() const { return is_unit() && sgn(rational) > 0; }
-  bool minus_one() const { return is_unit() && sgn(rational) < 0; }
-
- private:
-  // By parts of GMP that are compiled in place: the compiler module asks, too, which has no GMP of its own.
-  static bool is_one(mpz_srcptr n) { return mpz_size(n) == 1 && mpz_getlimbn(n, 0) == 1; }
-  bool is_unit() const { return slots.empty() && is_one(rational.get_num_mpz_t()) && is_one(rational.get_den_mpz_t()); }
+  bool one() const { return slots.empty() && rational.is_one(); }
+  bool minus_one() const { return slots.empty() && rational.is_minus_one(); }
 };
 
 // A partial derivative that is no coefficient of a series: computed once per expansion.

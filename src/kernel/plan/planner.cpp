@@ -17,7 +17,7 @@ constexpr int kHighestOrder = 12;
 void note_watched(const Slots& slots, const PlanLayout& layout, Plan& plan) {
   const Tape& tape = slots.tape;
   for (std::uint32_t s = 0; s < tape.code.size(); ++s)
-    if (slots.varies(s) && tape.code[s].op == Op::power && tape.rationals[tape.code[s].index].get_den() % 2 == 0)
+    if (slots.varies(s) && tape.code[s].op == Op::power && tape.rationals[tape.code[s].index].has_even_denominator())
       plan.roots_of_even_powers.push_back({tape.code[s].a, layout.place(tape.code[s].a)});
   for (std::uint32_t s = 0; s < tape.main_end; ++s)
     if (const auto function = slots.varies(s) ? may_hide(tape, tape.code[s]) : std::nullopt)

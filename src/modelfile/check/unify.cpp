@@ -72,7 +72,7 @@ std::string Dimensions::text(const DimensionForm& f) const {
   std::string out = pure(r.known) ? "" : print(r.known);
   for (const auto& [x, p] : r.unknowns)
     out += (out.empty() ? "" : "*") + ("[" + (names_[x].empty() ? "?" : names_[x]) + "]") +
-           (p == 1 ? "" : "^" + (p.get_den() == 1 && p > 0 ? p.get_str() : "(" + p.get_str() + ")"));
+           (p == 1 ? "" : "^" + (p.is_integer() && p > 0 ? p.get_str() : "(" + p.get_str() + ")"));
   return "a quantity in " + out;
 }
 

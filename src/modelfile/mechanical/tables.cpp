@@ -161,7 +161,7 @@ class TableReader {
           const auto index = parse_rational(wanted[static_cast<std::size_t>(k)]);
           if (it != row.end() && !index)
             at[k] = static_cast<std::size_t>(it - row.begin()), heading = true;
-          else if (index && index->get_den() == 1 && *index >= 1 && *index <= 1000)
+          else if (index && index->is_integer() && *index >= 1 && *index <= 1000)
             at[k] = index->get_num().get_ui() - 1;
           else
             throw Failure(columns ? columns->items[static_cast<std::size_t>(k)].span : file.span,

@@ -242,7 +242,7 @@ class CertificateReader {
     const std::string text = string(value, where);
     const auto r = parse_rational(text);
     if (!r) fail(where, in_quotes(text) + " is not a rational number");
-    bits_ += mpz_sizeinbase(r->get_num_mpz_t(), 2) + mpz_sizeinbase(r->get_den_mpz_t(), 2);
+    bits_ += r->bits();
     if (bits_ > kMostBits) fail(where, "the numbers have too many digits altogether");
     return *r;
   }

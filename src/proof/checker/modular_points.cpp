@@ -13,7 +13,7 @@ namespace {
 Word modulo(const Rational& e, Word order) {
   mpz_class m, inverse;
   mpz_import(m.get_mpz_t(), 1, 1, sizeof order, 0, 0, &order);
-  mpz_invert(inverse.get_mpz_t(), e.get_den_mpz_t(), m.get_mpz_t());
+  mpz_invert(inverse.get_mpz_t(), e.get_den().get_mpz_t(), m.get_mpz_t());
   inverse *= e.get_num();
   return static_cast<Word>(mpz_fdiv_ui(inverse.get_mpz_t(), order));
 }
@@ -62,7 +62,7 @@ std::optional<ReducedProgram> ModularProgram::over(const Field& f) const {
         Factor factor;
         if (s.operands[k] != kNone) {
           const Rational& e = s.node->terms[k].weight;
-          const bool even = mpz_even_p(e.get_den_mpz_t());
+          const bool even = e.has_even_denominator();
           factor.exponent = modulo(e, even ? squares : p - 1);
           factor.zero_allowed = e > 0;
           if (even) factor.site = site_of_.at({s.operands[k], true});

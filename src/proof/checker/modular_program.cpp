@@ -60,7 +60,7 @@ void ModularProgram::compile(Step& s) {
   }
   if (n.operation == Operation::product)
     for (std::size_t k = 0; k < s.operands.size(); ++k)
-      if (s.operands[k] != kNone && mpz_even_p(n.terms[k].weight.get_den_mpz_t())) site(s.operands[k], true);
+      if (s.operands[k] != kNone && n.terms[k].weight.has_even_denominator()) site(s.operands[k], true);
   if (s.family == Family::branch) site(s.operands[0], false);
 }
 
@@ -76,8 +76,7 @@ Angle ModularProgram::flatten(Index argument, bool circle) {
   Rational ones = 0, pis = 0;
   std::map<Index, Rational, std::greater<>> open{{argument, 1}};
   const auto check = [](const Rational& r) {
-    if (mpz_sizeinbase(r.get_num_mpz_t(), 2) + mpz_sizeinbase(r.get_den_mpz_t(), 2) > kMostBits)
-      throw Unable{"an angle has a coefficient of too many digits"};
+    if (r.bits() > kMostBits) throw Unable{"an angle has a coefficient of too many digits"};
   };
   while (!open.empty()) {
     const Index at = open.begin()->first;
@@ -104,8 +103,8 @@ Angle ModularProgram::flatten(Index argument, bool circle) {
       for (const Certificate::Term& t : n.terms) {
         if (t.weight == 0) continue;
         const Certificate::Node& factor = c_.nodes[t.node];
-        const bool number = factor.operation == Operation::number && factor.value != 0 && t.weight.get_den() == 1;
-        const auto power = number ? exact_power(factor.value, t.weight.get_num().get_si()) : std::nullopt;
+        const bool number = factor.operation == Operation::number && factor.value != 0 && t.weight.is_integer();
+        const auto power = number ? exact_power(factor.value, t.weight.to_long()) : std::nullopt;
         if (power)
           content *= *power, check(content);
         else
@@ -129,9 +128,8 @@ Angle ModularProgram::flatten(Index argument, bool circle) {
   check(ones), check(pis);
   if (circle && pis != 0) {
     const Rational twelfths = pis * 12;
-    mpz_class whole;
-    mpz_fdiv_q(whole.get_mpz_t(), twelfths.get_num_mpz_t(), twelfths.get_den_mpz_t());
-    angle.twelfths = static_cast<unsigned>(mpz_fdiv_ui(whole.get_mpz_t(), 24));
+    const Rational whole = floor(twelfths);
+    angle.twelfths = static_cast<unsigned>(mpz_fdiv_ui(whole.get_num().get_mpz_t(), 24));
     pis = (twelfths - whole) / 12;
   }
   if (ones != 0) angle.parts.push_back({Part::Of::one, 0, 1, ones});
@@ -146,7 +144,7 @@ void ModularProgram::prepare() {
     s.angle = flatten(s.node->terms[0].node, circle);
     for (const Part& part : s.angle.parts) {
       mpz_class& q = circle ? circle_q_ : growth_q_;
-      mpz_lcm(q.get_mpz_t(), q.get_mpz_t(), part.coefficient.get_den_mpz_t());
+      mpz_lcm(q.get_mpz_t(), q.get_mpz_t(), part.coefficient.get_den().get_mpz_t());
       cost_ += 1500;
       if (mpz_sizeinbase(q.get_mpz_t(), 2) > 60) throw Unable{"angles of too fine a common denominator"};
     }
@@ -244,7 +242,7 @@ void ModularProgram::degrees() {
         if (s.operands[k] == kNone) continue;
         const Rational& weight = s.node->terms[k].weight;
         multiply_degree(d, operand(k), weight.get_d(), s.operands[k] * kBases + kInverted);
-        if (weight.get_den() != 1) roots.emplace_back(s.operands[k], weight.get_den());
+        if (!weight.is_integer()) roots.emplace_back(s.operands[k], weight.get_den());
       }
       break;
     case Operation::atan2:

@@ -46,7 +46,6 @@ std::vector<Rational> real_point(const Certificate& c, const HashKey& key, int a
     const auto h = siphash(key, words);
     const long most = attempt % 4 < 2 ? 192 : 60, digits = static_cast<long>(h % static_cast<std::uint64_t>(most)) + 1;
     point[s] = Rational(attempt % 2 == 0 || (h >> 32) % 2 == 0 ? digits : -digits, 64);
-    point[s].canonicalize();
   }
   return point;
 }

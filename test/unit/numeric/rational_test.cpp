@@ -1,5 +1,7 @@
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -8,6 +10,81 @@
 
 namespace anholon::rational_test {
 namespace {
+
+// Integers about the places where a number begins to take memory of its own, and where `long` ends.
+std::vector<mpz_class> remarkable_integers() {
+  std::vector<mpz_class> list{0, 1, 2, 3, 12, 997};
+  for (unsigned bits : {31U, 32U, 61U, 62U, 63U, 64U, 130U})
+    for (int d : {-1, 0, 1}) list.push_back((mpz_class(1) << bits) + d);
+  const std::size_t positive = list.size();
+  for (std::size_t k = 0; k < positive; ++k) list.push_back(-list[k]);
+  return list;
+}
+
+std::vector<mpq_class> remarkable_fractions() {
+  std::vector<mpq_class> list;
+  const std::vector<mpz_class> n = remarkable_integers();
+  for (const mpz_class& p : n) list.emplace_back(p);
+  for (std::size_t k = 0; k < n.size(); ++k) {
+    mpq_class r(n[k], abs(n[(5 * k + 3) % n.size()]) + 1);
+    r.canonicalize();
+    list.push_back(r);
+  }
+  return list;
+}
+
+// What is wrong with the arithmetic of a and b, by GMP's; empty if nothing is.
+std::string fault(const mpq_class& a, const mpq_class& b) {
+  const Rational x = Rational::from(a), y = Rational::from(b);
+  const auto differs = [](const Rational& r, const mpq_class& exact) { return r.get_mpq() != exact; };
+  if (differs(x + y, a + b)) return "sum";
+  if (differs(x - y, a - b)) return "difference";
+  if (differs(x * y, a * b)) return "product";
+  if (b != 0 && differs(x / y, a / b)) return "quotient";
+  if (differs(-x, -a) || differs(abs(x), abs(a))) return "sign";
+  if ((x < y) != (a < b) || (x == y) != (a == b) || sgn(x) != sgn(a) || (x > 3) != (a > 3) || (x == -1) != (a == -1))
+    return "comparison";
+  if (x.get_num() != a.get_num() || x.get_den() != a.get_den()) return "parts";
+  if (x.get_str() != a.get_str() || x.get_str(62) != a.get_str(62) || x.get_d() != a.get_d()) return "text or double";
+  if (x.is_integer() != (a.get_den() == 1) ||
+      x.fits_long() != (a.get_num().fits_slong_p() && a.get_den().fits_slong_p()))
+    return "size";
+  if (x.fits_long() && x.to_long() != a.get_num().get_si()) return "to_long";
+  if (x == y && x.hash() != y.hash()) return "hash";
+  const mpz_class common_den = lcm(a.get_den(), b.get_den()), common_num = gcd(a.get_num(), b.get_num());
+  mpq_class common(common_num, common_den);
+  common.canonicalize();
+  if (differs(gcd(x, y), common)) return "gcd";
+  mpz_class below;
+  mpz_fdiv_q(below.get_mpz_t(), a.get_num_mpz_t(), a.get_den_mpz_t());
+  if (differs(floor(x), below)) return "floor";
+  return "";
+}
+
+TEST(RationalNumber, HasTheArithmeticOfGmpForNumbersOfAllSizes) {
+  const std::vector<mpq_class> list = remarkable_fractions();
+  for (const mpq_class& a : list)
+    for (const mpq_class& b : list) EXPECT_EQ(fault(a, b), "") << a << " and " << b;
+}
+
+TEST(RationalNumber, IsInLowestTermsWithAPositiveDenominator) {
+  EXPECT_EQ(Rational(6, -4).get_str(), "-3/2");
+  EXPECT_EQ(Rational(-6, -4), Rational(3, 2));
+  EXPECT_EQ(Rational(0, -7).get_den(), 1);
+  EXPECT_EQ(Rational("10/4"), Rational(5, 2));
+  EXPECT_EQ(Rational(std::numeric_limits<long>::min()).get_str(), "-9223372036854775808");
+  EXPECT_EQ(Rational(std::numeric_limits<unsigned long>::max()).get_str(), "18446744073709551615");
+}
+
+TEST(RationalNumber, SurvivesMovesAndAssignmentsToItself) {
+  const mpz_class large = (mpz_class(1) << 200) + 1;
+  Rational a(large, 3), b = std::move(a);
+  EXPECT_EQ(b, Rational(large, 3));
+  a = b;
+  EXPECT_EQ(a, b);
+  a += a, a -= b, a *= a, a /= a;
+  EXPECT_EQ(a, 1);
+}
 
 TEST(ParseRational, DecimalsAreExact) {
   EXPECT_EQ(*parse_rational("3"), Rational(3));
@@ -65,19 +142,17 @@ bool is_nearest(N x, const Rational& r) {
     const PrecisionScope precision(60);
     mpq_class q;
     mpfr_get_q(q.get_mpq_t(), Multi(static_cast<long double>(y)).raw());
-    return q;
+    return Rational::from(q);
   };
-  const Rational miss = ::abs(exact(x) - r);
+  const Rational miss = abs(exact(x) - r);
   const N infinity = std::numeric_limits<N>::infinity();
-  return miss <= ::abs(exact(std::nextafter(x, infinity)) - r) &&
-         miss <= ::abs(exact(std::nextafter(x, -infinity)) - r);
+  return miss <= abs(exact(std::nextafter(x, infinity)) - r) && miss <= abs(exact(std::nextafter(x, -infinity)) - r);
 }
 
 TEST(FromRational, IsCorrectlyRounded) {
   for (long p = -40; p <= 40; p += 3)
     for (long q : {1L, 3L, 7L, 10L, 997L, 1000003L}) {
       Rational r(p, q);
-      r.canonicalize();
       r *= r * r;
       EXPECT_TRUE(is_nearest(from_rational<double>(r), r)) << r;
       EXPECT_TRUE(is_nearest(from_rational<long double>(r), r)) << r;
@@ -93,7 +168,7 @@ TEST(FromRational, IsCorrectlyRounded) {
 
 TEST(FromRational, TruncationWouldBeNoticed) {
   const Rational r(1, 10);
-  EXPECT_FALSE(is_nearest(mpq_get_d(r.get_mpq_t()), r)) << "the mutant of the test above: GMP truncates";
+  EXPECT_FALSE(is_nearest(r.get_d(), r)) << "the mutant of the test above: GMP truncates";
 }
 
 }  // namespace
