@@ -7,6 +7,7 @@
 // the term limit.
 #pragma once
 #include <optional>
+#include <unordered_map>
 
 #include "expr/expr.h"
 #include "expr/monomial.h"

@@ -11,6 +11,7 @@
 
 #include "base/stop.h"
 #include "expr/monomial.h"
+#include "numeric/flint_rational.h"
 
 namespace anholon {
 
@@ -67,7 +68,7 @@ class Poly {
   ~Poly() { fmpq_mpoly_clear(p_, ring_->context()); }
   static Poly constant(const Ring& ring, const Rational& r) {
     Poly p(ring);
-    fmpq_mpoly_set_fmpq(p.p_, r.fraction(), ring.context());
+    fmpq_mpoly_set_fmpq(p.p_, FlintRational::of(r), ring.context());
     return p;
   }
   static Poly generator(const Ring& ring, long k) {
@@ -82,7 +83,7 @@ class Poly {
     Monomials out;
     for (long k = 0; k < length(); ++k) {
       Monomial m;
-      fmpq_mpoly_get_term_coeff_fmpq(m.coefficient.fraction(), p_, k, ring_->context());
+      fmpq_mpoly_get_term_coeff_fmpq(FlintRational::of(m.coefficient), p_, k, ring_->context());
       m.exponents.resize(static_cast<std::size_t>(ring_->generators()));
       fmpq_mpoly_get_term_exp_ui(m.exponents.data(), p_, k, ring_->context());
       out.push_back(std::move(m));
@@ -92,7 +93,7 @@ class Poly {
   static Poly of(const Ring& ring, const Monomials& terms) {
     Poly p(ring);
     for (const Monomial& m : terms)
-      fmpq_mpoly_push_term_fmpq_ui(p.p_, m.coefficient.fraction(), m.exponents.data(), ring.context());
+      fmpq_mpoly_push_term_fmpq_ui(p.p_, FlintRational::of(m.coefficient), m.exponents.data(), ring.context());
     fmpq_mpoly_sort_terms(p.p_, ring.context());
     fmpq_mpoly_combine_like_terms(p.p_, ring.context());
     return p;

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "numeric/flint_rational.h"
+
 namespace anholon {
 
 slong& Ball::working_bits() {
@@ -19,7 +21,7 @@ std::optional<Rational> exactly(const arf_t x) {
   if (arf_is_zero(x)) return Rational(0);
   if (arf_cmpabs_2exp_si(x, kLargestExponent) > 0 || arf_cmpabs_2exp_si(x, -kLargestExponent) < 0) return std::nullopt;
   Rational r;
-  arf_get_fmpq(r.fraction(), x);
+  arf_get_fmpq(FlintRational::of(r), x);
   return r;
 }
 
@@ -66,7 +68,7 @@ Ball::Ball(long double x) {
 
 Ball::Ball(const Rational& r) {
   arb_init(v_);
-  arb_set_fmpq(v_, r.fraction(), working_bits());
+  arb_set_fmpq(v_, FlintRational::of(r), working_bits());
 }
 
 Ball::Ball(const Rational& midpoint, const Rational& radius) : Ball(midpoint) {
@@ -86,7 +88,7 @@ Ball Ball::unknown() {
   return r;
 }
 
-bool Ball::contains(const Rational& r) const { return arb_contains_fmpq(v_, r.fraction()) != 0; }
+bool Ball::contains(const Rational& r) const { return arb_contains_fmpq(v_, FlintRational::of(r)) != 0; }
 
 Ball Ball::center() const {
   Ball r;
@@ -188,7 +190,7 @@ Ball sign(const Ball& x) {
 
 Ball pow(const Ball& x, const Rational& exponent) {
   Ball r;
-  arb_pow_fmpq(r.raw(), x.raw(), exponent.fraction(), Ball::working_bits());
+  arb_pow_fmpq(r.raw(), x.raw(), FlintRational::of(exponent), Ball::working_bits());
   return std::move(r.settle());
 }
 

@@ -6,69 +6,127 @@
 #include <limits>
 #include <ostream>
 
+#include "numeric/flint_rational.h"
+
 namespace anholon {
 
-Rational::Rational(const mpz_class& n) {
-  fmpq_init(q_);
-  fmpz_set_mpz(num(), n.get_mpz_t());
-}
+namespace {
 
-Rational::Rational(const mpz_class& p, const mpz_class& q) : Rational(p) {
-  fmpz_set_mpz(den(), q.get_mpz_t());
-  fmpq_canonicalise(q_);
-}
+fmpq* flint(Rational& r) { return FlintRational::of(r); }
+const fmpq* flint(const Rational& r) { return FlintRational::of(r); }
+const fmpz* num(const Rational& r) { return FlintRational::num(r); }
+const fmpz* den(const Rational& r) { return FlintRational::den(r); }
 
-Rational::Rational(double x) : Rational(from(mpq_class(x))) {}
-
-Rational::Rational(const char* text) : Rational(from(mpq_class(text))) { fmpq_canonicalise(q_); }
-
-Rational Rational::from(const mpq_class& r) {
-  Rational out;
-  fmpq_set_mpq(out.q_, r.get_mpq_t());
-  return out;
-}
-
-Rational Rational::from(const fmpq_t r) {
-  Rational out;
-  fmpq_set(out.q_, r);
-  return out;
-}
-
-mpz_class Rational::integer(const fmpz* n) {
+mpz_class integer(const fmpz* n) {
   mpz_class out;
   fmpz_get_mpz(out.get_mpz_t(), n);
   return out;
 }
 
+}  // namespace
+
+Rational::Rational(const mpz_class& n) { fmpz_set_mpz(&num_, n.get_mpz_t()); }
+
+Rational::Rational(const mpz_class& p, const mpz_class& q) : Rational(p) {
+  fmpz_set_mpz(&den_, q.get_mpz_t());
+  fmpq_canonicalise(flint(*this));
+}
+
+Rational::Rational(double x) : Rational(from(mpq_class(x))) {}
+
+Rational::Rational(const char* text) : Rational(from(mpq_class(text))) { fmpq_canonicalise(flint(*this)); }
+
+Rational Rational::from(const mpq_class& r) {
+  Rational out;
+  fmpq_set_mpq(flint(out), r.get_mpq_t());
+  return out;
+}
+
+void Rational::set_long(long n) { fmpz_set_si(&num_, n); }
+void Rational::set_unsigned(unsigned long n) { fmpz_set_ui(&num_, n); }
+
+void Rational::copy(const Rational& r) {
+  fmpz_set(&num_, &r.num_);
+  fmpz_set(&den_, &r.den_);
+}
+
+void Rational::clear() { fmpq_clear(flint(*this)); }
+
+mpz_class Rational::get_num() const { return integer(&num_); }
+mpz_class Rational::get_den() const { return integer(&den_); }
+bool Rational::has_even_denominator() const { return fmpz_is_even(&den_) != 0; }
+bool Rational::fits_long() const { return is_in_place() || (fmpz_fits_si(&num_) != 0 && fmpz_fits_si(&den_) != 0); }
+std::uint64_t Rational::bits() const { return fmpz_bits(&num_) + fmpz_bits(&den_); }
+std::size_t Rational::limbs() const { return static_cast<std::size_t>(fmpz_size(&num_) + fmpz_size(&den_)); }
+
+std::pair<std::uint64_t, std::uint64_t> Rational::modulo(std::uint64_t p) const {
+  return {fmpz_fdiv_ui(&num_, p), fmpz_fdiv_ui(&den_, p)};
+}
+
 mpq_class Rational::get_mpq() const {
   mpq_class out;
-  fmpq_get_mpq(out.get_mpq_t(), q_);
+  fmpq_get_mpq(out.get_mpq_t(), flint(*this));
   return out;
 }
 
 double Rational::get_d() const {
   constexpr long kExact = 1L << std::numeric_limits<double>::digits;
-  if (whole() && -kExact <= *num() && *num() <= kExact) return static_cast<double>(*num());
+  if (den_ == 1 && -kExact <= num_ && num_ <= kExact) return static_cast<double>(num_);
   return get_mpq().get_d();
 }
 
 std::string Rational::get_str(int base) const {
-  if (whole() && base == 10) return std::to_string(*num());
+  if (den_ == 1 && in_place(num_) && base == 10) return std::to_string(num_);
   return get_mpq().get_str(base);
 }
 
 std::uint64_t Rational::hash() const {
   // Two numbers whose remainders are equal are told apart by a comparison.
-  constexpr ulong kPrime = (ulong{1} << 61) - 1;
-  const auto part = [](const fmpz* n) -> std::uint64_t {
-    return COEFF_IS_MPZ(*n) ? fmpz_fdiv_ui(n, kPrime) : static_cast<std::uint64_t>(*n);
+  constexpr std::uint64_t kPrime = (std::uint64_t{1} << 61) - 1;
+  const auto part = [](const long& n) {
+    return in_place(n) ? static_cast<std::uint64_t>(n) : fmpz_fdiv_ui(&n, kPrime);
   };
-  return part(num()) * 0x9e3779b97f4a7c15ULL + part(den()) * 0xc2b2ae3d27d4eb4fULL;
+  return part(num_) * 0x9e3779b97f4a7c15ULL + part(den_) * 0xc2b2ae3d27d4eb4fULL;
+}
+
+Rational& Rational::add(const Rational& r) {
+  fmpq_add(flint(*this), flint(*this), flint(r));
+  return *this;
+}
+
+Rational& Rational::subtract(const Rational& r) {
+  fmpq_sub(flint(*this), flint(*this), flint(r));
+  return *this;
+}
+
+Rational& Rational::multiply(const Rational& r) {
+  fmpq_mul(flint(*this), flint(*this), flint(r));
+  return *this;
+}
+
+Rational& Rational::divide(const Rational& r) {
+  fmpq_div(flint(*this), flint(*this), flint(r));
+  return *this;
+}
+
+Rational Rational::negated() const {
+  Rational out;
+  fmpq_neg(flint(out), flint(*this));
+  return out;
+}
+
+int Rational::long_sign() const { return fmpz_sgn(&num_); }
+int Rational::compare(const Rational& r) const { return fmpq_cmp(flint(*this), flint(r)); }
+
+Rational gcd(const Rational& a, const Rational& b) {
+  Rational out;
+  fmpq_gcd(flint(out), flint(a), flint(b));
+  return out;
 }
 
 Rational floor(const Rational& a) {
   Rational out;
-  fmpz_fdiv_q(out.num(), a.num(), a.den());
+  fmpz_fdiv_q(FlintRational::num(out), num(a), den(a));
   return out;
 }
 
@@ -145,7 +203,7 @@ std::optional<Rational> exact_power(const Rational& base, long exponent) {
   const unsigned long n = exponent < 0 ? -static_cast<unsigned long>(exponent) : static_cast<unsigned long>(exponent);
   if (n > 100000 || base.bits() * n > 200000) return std::nullopt;
   Rational power;
-  fmpq_pow_si(power.fraction(), base.fraction(), exponent);
+  fmpq_pow_si(flint(power), flint(base), exponent);
   return power;
 }
 

@@ -9,25 +9,27 @@
 #include <string_view>
 #include <utility>
 
-#include <flint/fmpq.h>
 #include <gmpxx.h>
 
 namespace anholon {
 
-// An exact rational number in lowest terms with a positive denominator. FLINT stores a numerator or denominator of at
-// most 62 bits in place, so that numbers of this size, almost all of those in formulas, take no memory of their own.
-// The members named `get_…` are called as those of GMP's classes. Division by zero is a broken invariant.
+// An exact rational number in lowest terms with a positive denominator. A numerator or denominator of at most 62 bits,
+// as almost all of those in formulas, is stored in place and takes no memory of its own; FLINT has the longer ones and
+// the arithmetic with them. The members named `get_…` are called as those of GMP's classes. Division by zero is a broken
+// invariant.
 class Rational {
  public:
-  Rational() { fmpq_init(q_); }
+  Rational() = default;
   template <std::integral T>
   Rational(T n) {
-    set(num(), n);
-    *den() = 1;
+    if constexpr (std::signed_integral<T>)
+      fits_in_place(n) ? static_cast<void>(num_ = n) : set_long(n);
+    else
+      n <= static_cast<unsigned long>(kMost) ? static_cast<void>(num_ = static_cast<long>(n)) : set_unsigned(n);
   }
   template <std::integral P, std::integral Q>
   Rational(P p, Q q) : Rational(p) {
-    if (!(q == 1)) *this /= Rational(q);
+    if (q != Q{1}) *this /= Rational(q);
   }
   Rational(const mpz_class& n);
   Rational(const mpz_class& p, const mpz_class& q);
@@ -36,116 +38,99 @@ class Rational {
   // "p" or "p/q" in decimal digits.
   explicit Rational(const char* text);
   static Rational from(const mpq_class& r);
-  static Rational from(const fmpq_t r);
 
   Rational(const Rational& r) {
-    fmpz_init_set(num(), r.num());
-    fmpz_init_set(den(), r.den());
+    if (r.is_in_place())
+      num_ = r.num_, den_ = r.den_;
+    else
+      copy(r);
   }
-  Rational(Rational&& r) noexcept {
-    *q_ = *r.q_;
-    fmpq_init(r.q_);
-  }
+  Rational(Rational&& r) noexcept : num_(std::exchange(r.num_, 0)), den_(std::exchange(r.den_, 1)) {}
   Rational& operator=(const Rational& r) {
-    fmpz_set(num(), r.num());
-    fmpz_set(den(), r.den());
+    if (is_in_place() && r.is_in_place())
+      num_ = r.num_, den_ = r.den_;
+    else
+      copy(r);
     return *this;
   }
   Rational& operator=(Rational&& r) noexcept {
-    std::swap(*q_, *r.q_);
+    std::swap(num_, r.num_), std::swap(den_, r.den_);
     return *this;
   }
   ~Rational() {
-    fmpz_clear(num());
-    fmpz_clear(den());
+    if (!is_in_place()) clear();
   }
 
-  mpz_class get_num() const { return integer(num()); }
-  mpz_class get_den() const { return integer(den()); }
-  bool is_integer() const { return *den() == 1; }
-  bool has_even_denominator() const { return fmpz_is_even(den()) != 0; }
-  // These two are compiled in place altogether: the compiler module, which is not linked with FLINT, asks them.
-  bool is_one() const { return *num() == 1 && *den() == 1; }
-  bool is_minus_one() const { return *num() == -1 && *den() == 1; }
+  mpz_class get_num() const;
+  mpz_class get_den() const;
+  bool is_integer() const { return den_ == 1; }
+  bool has_even_denominator() const;
+  bool is_one() const { return num_ == 1 && den_ == 1; }
+  bool is_minus_one() const { return num_ == -1 && den_ == 1; }
   // Whether numerator and denominator are numbers of type `long`.
-  bool fits_long() const {
-    return !COEFF_IS_MPZ(*num() | *den()) || (fmpz_fits_si(num()) != 0 && fmpz_fits_si(den()) != 0);
-  }
-  // The numerator. REQUIRES: it is a number of type `long`.
-  long to_long() const { return fmpz_get_si(num()); }
-  // The denominator. REQUIRES: it is a number of type `long`.
-  long long_denominator() const { return fmpz_get_si(den()); }
+  bool fits_long() const;
+  // The numerator, and the denominator. REQUIRES: it is a number of type `long`.
+  long to_long() const { return in_place(num_) ? num_ : get_num().get_si(); }
+  long long_denominator() const { return in_place(den_) ? den_ : get_den().get_si(); }
   // Numerator and denominator modulo p.
-  std::pair<std::uint64_t, std::uint64_t> modulo(std::uint64_t p) const {
-    return {fmpz_fdiv_ui(num(), p), fmpz_fdiv_ui(den(), p)};
-  }
+  std::pair<std::uint64_t, std::uint64_t> modulo(std::uint64_t p) const;
   // The bits, and the machine words, of numerator and denominator together.
-  std::uint64_t bits() const { return fmpz_bits(num()) + fmpz_bits(den()); }
-  std::size_t limbs() const { return fmpz_size(num()) + fmpz_size(den()); }
+  std::uint64_t bits() const;
+  std::size_t limbs() const;
   // The nearest double towards zero.
   double get_d() const;
   std::string get_str(int base = 10) const;
   mpq_class get_mpq() const;
-  fmpq* fraction() { return q_; }
-  const fmpq* fraction() const { return q_; }
   std::uint64_t hash() const;
 
   Rational& operator+=(const Rational& r) {
-    if (long sum; whole() && r.whole() && !__builtin_add_overflow(*num(), *r.num(), &sum) && in_place(sum))
-      *num() = sum;
-    else
-      fmpq_add(q_, q_, r.q_);
+    long sum;
+    if (!are_whole(*this, r) || __builtin_add_overflow(num_, r.num_, &sum) || !fits_in_place(sum)) return add(r);
+    num_ = sum;
     return *this;
   }
   Rational& operator-=(const Rational& r) {
-    if (long rest; whole() && r.whole() && !__builtin_sub_overflow(*num(), *r.num(), &rest) && in_place(rest))
-      *num() = rest;
-    else
-      fmpq_sub(q_, q_, r.q_);
+    long rest;
+    if (!are_whole(*this, r) || __builtin_sub_overflow(num_, r.num_, &rest) || !fits_in_place(rest)) return subtract(r);
+    num_ = rest;
     return *this;
   }
   Rational& operator*=(const Rational& r) {
-    if (long product; whole() && r.whole() && !__builtin_mul_overflow(*num(), *r.num(), &product) && in_place(product))
-      *num() = product;
-    else
-      fmpq_mul(q_, q_, r.q_);
+    long product;
+    if (!are_whole(*this, r) || __builtin_mul_overflow(num_, r.num_, &product) || !fits_in_place(product))
+      return multiply(r);
+    num_ = product;
     return *this;
   }
-  Rational& operator/=(const Rational& r) {
-    if (!(r == 1)) fmpq_div(q_, q_, r.q_);
-    return *this;
-  }
+  Rational& operator/=(const Rational& r) { return r.is_one() ? *this : divide(r); }
 
   friend Rational operator+(Rational a, const Rational& b) { return std::move(a += b); }
   friend Rational operator-(Rational a, const Rational& b) { return std::move(a -= b); }
   friend Rational operator*(Rational a, const Rational& b) { return std::move(a *= b); }
   friend Rational operator/(Rational a, const Rational& b) { return std::move(a /= b); }
   friend Rational operator-(Rational a) {
-    fmpz_neg(a.num(), a.num());
+    if (!in_place(a.num_)) return a.negated();
+    a.num_ = -a.num_;
     return a;
   }
-  friend Rational abs(Rational a) {
-    fmpz_abs(a.num(), a.num());
-    return a;
-  }
-  friend int sgn(const Rational& a) { return fmpz_sgn(a.num()); }
+  friend Rational abs(Rational a) { return sgn(a) < 0 ? -std::move(a) : a; }
+  friend int sgn(const Rational& a) { return in_place(a.num_) ? (a.num_ > 0) - (a.num_ < 0) : a.long_sign(); }
   friend int cmp(const Rational& a, const Rational& b) {
-    if (a.whole() && b.whole()) return *a.num() < *b.num() ? -1 : *a.num() > *b.num() ? 1 : 0;
-    return fmpq_cmp(a.q_, b.q_);
+    return are_whole(a, b) ? (a.num_ > b.num_) - (a.num_ < b.num_) : a.compare(b);
   }
   // The greatest rational of which both are integer multiples; 0 for two zeros.
-  friend Rational gcd(Rational a, const Rational& b) {
-    fmpq_gcd(a.q_, a.q_, b.q_);
-    return a;
-  }
+  friend Rational gcd(const Rational& a, const Rational& b);
   // The greatest integer that is not greater.
   friend Rational floor(const Rational& a);
 
-  friend bool operator==(const Rational& a, const Rational& b) { return fmpq_equal(a.q_, b.q_) != 0; }
+  friend bool operator==(const Rational& a, const Rational& b) {
+    if (a.is_in_place() || b.is_in_place()) return a.num_ == b.num_ && a.den_ == b.den_;
+    return a.compare(b) == 0;
+  }
   friend std::strong_ordering operator<=>(const Rational& a, const Rational& b) { return cmp(a, b) <=> 0; }
   template <std::integral T>
   friend bool operator==(const Rational& a, T n) {
-    return a.whole() ? std::cmp_equal(*a.num(), n) : a == Rational(n);
+    return a.den_ == 1 && (in_place(a.num_) ? std::cmp_equal(a.num_, n) : a.compare(Rational(n)) == 0);
   }
   template <std::integral T>
   friend std::strong_ordering operator<=>(const Rational& a, T n) {
@@ -153,27 +138,35 @@ class Rational {
   }
 
  private:
-  fmpz* num() { return fmpq_numref(q_); }
-  fmpz* den() { return fmpq_denref(q_); }
-  const fmpz* num() const { return fmpq_numref(q_); }
-  const fmpz* den() const { return fmpq_denref(q_); }
-  static bool in_place(long n) { return COEFF_MIN <= n && n <= COEFF_MAX; }
-  // An integer that is stored in place.
-  bool whole() const { return *den() == 1 && !COEFF_IS_MPZ(*num()); }
-  static mpz_class integer(const fmpz* n);
+  friend struct FlintRational;
 
-  template <std::integral T>
-  static void set(fmpz* to, T n) {
-    if constexpr (std::unsigned_integral<T>)
-      fmpz_init_set_ui(to, n);
-    else
-      fmpz_init_set_si(to, n);
+  // FLINT's rule: bit 62 without bit 63 marks the place of a longer number. The functions above that need none of the
+  // functions below are compiled in place: the compiler module, which is not linked with FLINT, asks some of them.
+  static constexpr bool in_place(long n) { return n >> 62 != 1; }
+  static constexpr long kMost = (1L << 62) - 1;
+  static constexpr bool fits_in_place(long n) { return -kMost <= n && n <= kMost; }
+  bool is_in_place() const { return in_place(num_) && in_place(den_); }
+  static bool are_whole(const Rational& a, const Rational& b) {
+    return a.den_ == 1 && b.den_ == 1 && in_place(a.num_) && in_place(b.num_);
   }
 
-  fmpq_t q_;
+  void set_long(long n);
+  void set_unsigned(unsigned long n);
+  void copy(const Rational& r);
+  void clear();
+  Rational& add(const Rational& r);
+  Rational& subtract(const Rational& r);
+  Rational& multiply(const Rational& r);
+  Rational& divide(const Rational& r);
+  Rational negated() const;
+  int long_sign() const;
+  int compare(const Rational& r) const;
+
+  long num_ = 0, den_ = 1;
 };
 
 Rational abs(Rational a);
+Rational gcd(const Rational& a, const Rational& b);
 Rational floor(const Rational& a);
 std::ostream& operator<<(std::ostream& out, const Rational& r);
 
