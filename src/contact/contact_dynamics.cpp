@@ -170,6 +170,26 @@ ContactProblem ContactDynamics::stop() const {
   return p;
 }
 
+bool walls_move(const std::vector<Contact>& contacts) {
+  return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) {
+    const std::vector<NodeId> all = symbols({&c.gap, 1});
+    return std::any_of(all.begin(), all.end(), [&](NodeId id) { return c.gap.graph->node(id).kind == Kind::time; });
+  });
+}
+
+std::optional<std::vector<double>> ContactDynamics::nearest(const std::vector<double>& qd,
+                                                            const ContactState& at) const {
+  ContactProblem p = stop();
+  p.contacts.clear();
+  for (std::size_t r = 0; r < p.Phi.size(); ++r)
+    for (std::size_t a = 0; a < n_; ++a) p.beta[r] += p.Phi[r][a] * (static_cast<long double>(qd[a]) - at.qd[a]);
+  const auto jump = of_modes(p, {});
+  if (!jump) return std::nullopt;
+  std::vector<double> list;
+  for (std::size_t a = 0; a < n_; ++a) list.push_back(static_cast<double>(qd[a] + jump->x[a]));
+  return list;
+}
+
 long double ContactDynamics::energy(const std::vector<long double>& qd) const {
   long double twice = 0;
   for (std::size_t i = 0; i < n_; ++i)

@@ -10,6 +10,7 @@
 #include "contact/joined_report.h"
 #include "contact/round_off.h"
 #include "contact/segment_rows.h"
+#include "contact/switched_motion.h"
 #include "numeric/number.h"
 #include "simulation/request.h"
 
@@ -17,9 +18,10 @@ namespace anholon {
 
 namespace {
 
-void refuse(const SimulationOptions& o, const Scenario& s) {
-  const auto no = [](const std::string& what, const std::string& hint) {
-    throw Failure({}, "a motion with contacts " + what, hint);
+void refuse(const SimulationOptions& o, const Scenario& s, bool switches) {
+  const auto no = [switches](const std::string& what, const std::string& hint) {
+    throw Failure(
+        {}, std::string("a motion with ") + (switches ? "constraints that are switched " : "contacts ") + what, hint);
   };
   if (o.precision != Precision::real || o.digits > 16) no("is computed in doubles", "leave out --digits and --numbers");
   if (o.save || o.resume) no("is not saved", "leave out --save and --continue");
@@ -27,7 +29,7 @@ void refuse(const SimulationOptions& o, const Scenario& s) {
   if (o.integrator != Method::taylor) no("is computed by Taylor's method", "leave out --integrator");
   if (!o.followed.empty() || o.dense) no("has no polynomials", "leave out the dense output");
   if (s.system.form->eliminates()) no("needs a form with multipliers", "--form routh");
-  if (sets_values(*s.model)) no("does not go with events that set values", "leave out 'set'");
+  if (!switches && sets_values(*s.model)) no("does not go with events that set values", "leave out 'set'");
 }
 
 class HybridMotion {
@@ -216,7 +218,7 @@ class HybridMotion {
     for (std::size_t a = 0; a < n; ++a) after[a] += list[0][a];
     constexpr long double kGrows = 1e-12L;
     // Formulas that hold t move a wall, which may give energy.
-    if (!moving_walls() && dynamics_.energy(after) > dynamics_.energy(before) * (1 + kGrows))
+    if (!walls_move(contacts_) && dynamics_.energy(after) > dynamics_.energy(before) * (1 + kGrows))
       return {OutcomeKind::inconsistent, "the impact would raise the energy" + when(),
               contacts_[0].law == ImpactLaw::newton
                   ? "Newton's law with friction does so in this direction: impact = \"poisson\" in the contacts"
@@ -235,13 +237,6 @@ class HybridMotion {
     dynamics_.go(at_);
     land();
     return {};
-  }
-
-  bool moving_walls() const {
-    return std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) {
-      const std::vector<NodeId> all = symbols({&c.gap, 1});
-      return std::any_of(all.begin(), all.end(), [&](NodeId id) { return c.gap.graph->node(id).kind == Kind::time; });
-    });
   }
 
   // A gap comes to rest if its impacts add up to a limit less than kLeft away, or if it is pressed together and would
@@ -398,12 +393,33 @@ class HybridMotion {
     return any;
   }
 
+  // The places at which a segment begins close the gaps of what touches, which may push an open gap below the depth at which
+  // it hits. Returns whether that is so; the depth is then that of the gap.
+  bool deeper(const std::vector<double>& q) {
+    ContactState begin = at_;
+    begin.q = q;
+    dynamics_.go(begin);
+    bool any = false;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      const long double gap = dynamics_.place(c).gap;
+      if (modes_[c].touch != Touch::open || gap > -modes_[c].depth || !near_.closed(c)) continue;
+      modes_[c].depth = RoundOff::kPlace / 2 * near_.place_size(c) - gap;
+      any = true;
+    }
+    dynamics_.go(at_);
+    return any;
+  }
+
   // Follows the motion in the present modes to their end; returns false if it ends there.
   bool segment(const Rational& to, Outcome& outcome) {
-    const ModeModel mode = mode_model(*s_.model, contacts_, modes_, at_);
+    ModeModel mode;
     Scenario scenario;
-    outcome = make_scenario(mode.model, *s_.system.form, {}, scenario);
-    if (!outcome.ok()) return false;
+    do {
+      mode = mode_model(*s_.model, contacts_, modes_, at_);
+      scenario = {};
+      outcome = make_scenario(mode.model, *s_.system.form, {}, scenario);
+      if (!outcome.ok()) return false;
+    } while (deeper(scenario.state.q));
     Workspace own(scenario);
     SimulationOptions o = o_;
     o.state = {};
@@ -466,9 +482,15 @@ class HybridMotion {
 
 SimulationReport simulate_with_contacts(Workspace& s, const std::vector<Contact>& contacts,
                                         const SimulationOptions& options, RowSink& sink) {
-  refuse(options, s);
+  const auto held = static_cast<std::size_t>(
+      std::count_if(contacts.begin(), contacts.end(), [](const Contact& c) { return c.held.has_value(); }));
+  if (held > 0 && held < contacts.size())
+    throw Failure({}, "a motion knows contacts or constraints with 'active', and the model has both",
+                  "a contact that an event switches: let its gap hold the mode");
+  refuse(options, s, held > 0);
   const auto start = std::chrono::steady_clock::now();
-  SimulationReport r = HybridMotion(s, contacts, options, sink).go();
+  SimulationReport r =
+      held > 0 ? simulate_with_switches(s, contacts, options, sink) : HybridMotion(s, contacts, options, sink).go();
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return r;
 }

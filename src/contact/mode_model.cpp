@@ -2,9 +2,6 @@
 
 namespace anholon {
 
-namespace {
-
-// Puts the forces of a mode, N and the components of friction of each contact, into the monitors and events that hold them.
 void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
                 const std::vector<std::vector<Expr>>& components, Model& model) {
   Graph& g = *model.graph;
@@ -21,6 +18,8 @@ void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
       model.events[f.index].when = is_zero(value) ? g.one() : value;
   }
 }
+
+namespace {
 
 class ModeBuilder {
  public:
@@ -193,6 +192,11 @@ std::string word(const Contact& c, ModeChange change) {
 std::vector<std::string> contact_columns(const std::vector<Contact>& contacts) {
   std::vector<std::string> names;
   for (const Contact& c : contacts) {
+    if (c.held) {
+      names.push_back(c.name + ".active");
+      names.push_back("lambda." + c.name);
+      continue;
+    }
     names.push_back(c.name + ".mode");
     if (c.under)
       names.push_back(c.name + ".moment");
@@ -210,17 +214,15 @@ ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, c
   return builder.take();
 }
 
-std::shared_ptr<Model> ideal_model(const Model& of, const std::vector<Contact>& contacts,
-                                   const std::vector<Touch>& touches) {
+void put_ideal_mode(Model& model, const std::vector<Contact>& contacts, const std::vector<Touch>& touches) {
   static const char* const kWords[] = {"open", "slips", "sticks"};
-  const std::shared_ptr<Model> model = clone(of);
-  Graph& g = *model->graph;
+  Graph& g = *model.graph;
   std::vector<Expr> normals;
   std::vector<std::vector<Expr>> components;
   const auto keep = [&](const std::string& name, Expr phi, int order, Span span) {
-    const auto r = static_cast<std::uint32_t>(model->constraints.size());
-    model->constraints.push_back({name, g.own(phi), order, name + " = 0", span});
-    model->names.multipliers.push_back(name);
+    const auto r = static_cast<std::uint32_t>(model.constraints.size());
+    model.constraints.push_back({name, g.own(phi), order, name + " = 0", span});
+    model.names.multipliers.push_back(name);
     return g.multiplier(r, 0);
   };
   std::string mode;
@@ -243,10 +245,9 @@ std::shared_ptr<Model> ideal_model(const Model& of, const std::vector<Contact>& 
     mode += (c == 0 ? "" : ", ") + contact.name + " " + (touch == Touch::open ? "is " : "") +
             kWords[static_cast<std::size_t>(touch)];
   }
-  if (!contacts.empty() && contacts[0].forces) put_forces(*contacts[0].forces, normals, components, *model);
-  model->title += (model->title.empty() ? "" : ": ") + mode;
-  std::erase_if(model->notes, [](const std::string& n) { return n.rfind(kOpenContacts) != std::string::npos; });
-  return model;
+  if (!contacts.empty() && contacts[0].forces) put_forces(*contacts[0].forces, normals, components, model);
+  model.title += (model.title.empty() ? "" : ": ") + mode;
+  std::erase_if(model.notes, [](const std::string& n) { return n.rfind(kOpenContacts) != std::string::npos; });
 }
 
 }  // namespace anholon

@@ -16,7 +16,8 @@ void SegmentRows::only_at(const std::vector<Rational>& times) {
 bool SegmentRows::of_contact(const RunColumn& column) const {
   return column.kind != ColumnKind::monitor && std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
            const std::string prefix = c.name + ".";
-           return column.name.rfind(prefix, 0) == 0 || column.name.rfind("lambda." + prefix, 0) == 0;
+           return column.name.rfind(prefix, 0) == 0 || column.name.rfind("lambda." + prefix, 0) == 0 ||
+                  (c.held && column.name == "lambda." + c.name);
          });
 }
 

@@ -216,6 +216,8 @@ class ContactReader {
 
 }  // namespace
 
+bool is_switched(const Item& constraint) { return constraint.find("active") != nullptr; }
+
 bool is_one_sided(const Item& constraint) {
   const Item* word = constraint.find("one_sided");
   if (!word) return false;
@@ -261,6 +263,10 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
         const Item* word = c.find("one_sided");
         // A word that is neither true nor false is reported with the constraints.
         if (!word || word->kind != Item::Kind::boolean || !is_one_sided(c)) return;
+        if (const Item* active = c.find("active"))
+          throw Failure(active->key_span, "'active' does not go with one_sided = true",
+                        "an event that sets a mode opens and closes a constraint with 'active'; one of one side opens "
+                        "where it would pull");
         last = word;
         if (++count <= kMost) add(reader.read_one_sided(c, k));
       });
@@ -278,7 +284,7 @@ void declare_contacts(const Item& root, Scope& scope) {
     for (std::size_t k = 0; k < list->items.size(); ++k) {
       const Item& c = list->items[k];
       if (c.kind != Item::Kind::table) continue;
-      if (section == std::string("constraint")) {
+      if (section == std::string("constraint") && !is_switched(c)) {
         const Item* word = c.find("one_sided");
         if (!word || word->kind != Item::Kind::boolean || !word->truth) continue;
       }
@@ -313,9 +319,15 @@ std::string known_forces(const std::vector<Contact>& contacts) {
 
 bool is_contact_force(const Node& n) { return n.kind == Kind::multiplier && n.index >= kContactForces; }
 
-Expr with_open_contacts(const Model& model, Expr e) {
+// With the forces of the model as it is: those of the constraints that hold at the start, and zeros.
+Expr with_forces_at_start(const Model& model, const std::vector<Contact>& contacts,
+                          const std::vector<ContactForces::Force>& forces, Expr e) {
   Graph& g = *model.graph;
-  return with_contact_forces(g, e, [&](const Node&) { return g.zero(); });
+  return with_contact_forces(g, e, [&](const Node& n) {
+    const std::size_t k = n.index - kContactForces, c = forces[k].contact;
+    if (c >= contacts.size() || !contacts[c].held || !contacts[c].held->at_start) return g.zero();
+    return g.multiplier(static_cast<std::uint32_t>(*contacts[c].held->at_start), n.order);
+  });
 }
 
 }  // namespace
@@ -371,22 +383,23 @@ void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact
     }
     return any;
   };
+  const auto at_start = [&](Expr e) { return with_forces_at_start(model, contacts, found->forces, e); };
   const auto settle = [&](Expr& value, ContactForces::Formula::Of of, std::size_t index) {
     if (!holds_force(value)) return;
     found->formulas.push_back({of, index, value});
-    value = with_open_contacts(model, value);
+    value = at_start(value);
   };
   for (std::size_t k = 0; k < model.monitors.size(); ++k)
     settle(model.monitors[k].value, ContactForces::Formula::Of::monitor, k);
   for (std::size_t k = 0; k < model.events.size(); ++k)
     settle(model.events[k].when, ContactForces::Formula::Of::event, k);
   for (OutputQuantity& o : model.outputs)
-    for (Expr& e : o.values) e = with_open_contacts(model, e);
+    for (Expr& e : o.values) e = at_start(e);
   const auto refuse = [&](Expr& e, Span span, const char* what) {
     if (!holds_force(e)) return;
     diagnostics.error(span, std::string(what) + " holds the force of a contact",
                       "such a formula stands in monitors, outputs and the 'when' of events");
-    e = with_open_contacts(model, e);
+    e = at_start(e);
   };
   for (StateVariable& z : model.states) refuse(z.rate, z.span, "a rate");
   for (Condition& c : model.initial.conditions) refuse(c.residual, c.span, "a condition");
