@@ -170,6 +170,14 @@ ContactProblem ContactDynamics::stop() const {
   return p;
 }
 
+long double ContactDynamics::slip_acceleration(std::size_t c, const std::vector<long double>& accelerations) const {
+  const ContactRows& rows = problem_.contacts[c];
+  std::array<long double, 2> a = rows.tangential_rate;
+  for (std::size_t k = 0; k < rows.tangential.size(); ++k)
+    for (std::size_t i = 0; i < accelerations.size(); ++i) a[k] += rows.tangential[k][i] * accelerations[i];
+  return std::hypot(a[0], a[1]);
+}
+
 bool walls_move(const std::vector<Contact>& contacts) {
   return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) {
     const std::vector<NodeId> all = symbols({&c.gap, 1});

@@ -29,6 +29,8 @@ class ContactDynamics {
   long double most(std::size_t coordinate) const { return most_[coordinate]; }  // its largest velocity up to now
   // The accelerations; `moves` and `direction` of the contacts are those of their slip velocities.
   const ContactProblem& accelerations() const { return problem_; }
+  // The size of the rate of a slip velocity with these accelerations.
+  long double slip_acceleration(std::size_t contact, const std::vector<long double>& accelerations) const;
   // The jumps of the velocities at an impact by Newton's law in Moreau's form, with the restitutions of the contacts or
   // with this one.
   ContactProblem impact(const std::vector<bool>& touches, std::optional<long double> restitution = std::nullopt) const;

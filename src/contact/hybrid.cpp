@@ -177,13 +177,7 @@ class HybridMotion {
     std::string names;
     for (std::size_t c = 0; c < contacts_.size(); ++c)
       if (near_.closed(c) && !contacts_[c].under) names += (names.empty() ? "'" : ", '") + contacts_[c].name + "'";
-    if (modes == 0)
-      return {OutcomeKind::inconsistent,
-              "no mode of the contacts " + names + " is consistent (Painlevé's paradox)" + when(),
-              "rigid bodies with this friction have no motion here: take less friction, or end the motion before"};
-    return {OutcomeKind::inconsistent,
-            std::to_string(modes) + " modes of the contacts " + names + " are consistent (Painlevé's paradox)" + when(),
-            "rigid bodies with this friction have several motions here: take less friction, or end the motion before"};
+    return painleve(modes, names + " ", when());
   }
 
   // Whether a closed gap shrinks.
@@ -294,14 +288,7 @@ class HybridMotion {
   // which is zero where the slip begins.
   long double first_slip(std::size_t c, const std::vector<long double>& accelerations) const {
     const long double seed = kSeed * std::max(dynamics_.speed(), 1.0L);
-    return held_[c] > 0 ? std::max(seed, slip_acceleration(c, accelerations) * held_[c] / 2) : seed;
-  }
-  long double slip_acceleration(std::size_t c, const std::vector<long double>& accelerations) const {
-    const ContactRows& rows = dynamics_.accelerations().contacts[c];
-    std::array<long double, 2> a = rows.tangential_rate;
-    for (std::size_t k = 0; k < rows.tangential.size(); ++k)
-      for (std::size_t i = 0; i < accelerations.size(); ++i) a[k] += rows.tangential[k][i] * accelerations[i];
-    return std::hypot(a[0], a[1]);
+    return held_[c] > 0 ? std::max(seed, dynamics_.slip_acceleration(c, accelerations) * held_[c] / 2) : seed;
   }
 
   // Where a slip with two components begins without acceleration, its velocity grows by the square of the time, and as long
@@ -321,13 +308,26 @@ class HybridMotion {
     const std::vector<ContactSolution> list = consistent_modes(p);
     if (list.size() != 1 || list[0].modes[c].touch != Touch::slips) return true;
     held_[c] = trial;
-    const long double rate = slip_acceleration(c, list[0].x) / trial, scale = dynamics_.place(c).slip_scale;
+    const long double rate = dynamics_.slip_acceleration(c, list[0].x) / trial, scale = dynamics_.place(c).slip_scale;
     // A contact that never moved has terms of unknown size.
     const long double h = std::min(std::sqrt(2 * kHeld * (scale > 0 ? scale : 1) / rate), kMost * pace);
     if (!(h > 2 * trial)) return true;
     if (!hold_for(c, h - trial, outcome)) return outcome.ok();
     held_[c] = h;
+    if (holds_again(c)) excluded_[c].stick = false;
     return true;
+  }
+
+  // Whether the friction that is needed to hold a contact, which was too large, no longer is: a disc that rocks needs most
+  // where it turns back.
+  bool holds_again(std::size_t c) {
+    dynamics_.go(at_);
+    ContactProblem p = with_touching();
+    p.contacts[c].may_stick = true;
+    const std::vector<ContactSolution> list = consistent_modes(p);
+    if (list.size() != 1 || list[0].modes[c].touch != Touch::sticks) return false;
+    const auto& T = list[0].friction[c];
+    return std::hypot(T[0], T[1]) < p.contacts[c].static_friction * list[0].normal[c];
   }
 
   // Whether the last segment ended with a slip of this contact that has two components and one coefficient of friction.
@@ -434,7 +434,7 @@ class HybridMotion {
     o.conserved.clear();
     o.note = nullptr;
     o.state.t = at_.t;
-    rows_.begin_segment();
+    rows_.begin_segment(mode.stopped);
     const SimulationReport r = simulate_in(own, o, rows_);
     outcome = r.outcome;
     const ContactState from = at_;

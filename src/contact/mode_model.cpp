@@ -65,13 +65,14 @@ class ModeBuilder {
 
   void put(const ContactForces& forces) { put_forces(forces, normals_, components_, *model_); }
 
-  ModeModel take() { return {std::move(model_), std::move(events_)}; }
+  ModeModel take() { return {std::move(model_), std::move(events_), std::move(stopped_)}; }
 
  private:
   void begin_at(const ContactState& at) {
     InitialData& initial = model_->initial;
     initial = {};
     initial.t = g_.number(at.t);
+    stopped_.assign(at.q.size(), false);
     for (std::size_t a = 0; a < at.q.size(); ++a) {
       const auto index = static_cast<std::uint32_t>(a);
       initial.given.push_back({g_.jet(index, 0), g_.number(Rational(at.q[a])), model_->coordinates[a].span});
@@ -80,8 +81,21 @@ class ModeBuilder {
     for (std::size_t k = 0; k < at.states.size(); ++k) model_->states[k].initial = g_.number(Rational(at.states[k]));
   }
 
+  // Notes the coordinate that a constraint stops: the one whose velocity alone its rate holds, as a factor.
+  void note_stopped(Expr phi, int order) {
+    const Expr rate = order == 0 ? total_derivative(phi) : phi;
+    std::vector<std::size_t> moved;
+    for (const NodeId id : symbols({&rate, 1}))
+      if (const Node& n = g_.node(id); n.kind == Kind::jet && n.order == 1) moved.push_back(n.index);
+    if (moved.size() != 1) return;
+    const NodeId velocity = g_.jet(static_cast<std::uint32_t>(moved[0]), 1).id;
+    const Expr rest = substitute({&rate, 1}, [&](NodeId id) { return id == velocity ? g_.zero() : Expr{}; })[0];
+    if (is_zero(rest)) stopped_[moved[0]] = true;
+  }
+
   // A constraint that an input keeps; returns the input.
   Expr keep(const std::string& constraint, const std::string& input, Expr phi, int order) {
+    note_stopped(phi, order);
     const std::size_t u = model_->controls.size(), r = model_->constraints.size();
     model_->controls.push_back({input, std::nullopt, r, {}});
     model_->names.controls.push_back(input);
@@ -169,6 +183,7 @@ class ModeBuilder {
   std::vector<Expr> normals_;
   std::vector<std::vector<Expr>> components_;  // of friction, along the components of the slip
   std::size_t contact_ = 0;
+  std::vector<bool> stopped_;
 };
 
 }  // namespace

@@ -25,6 +25,8 @@ struct ModeEvent {
 struct ModeModel {
   std::shared_ptr<Model> model;
   std::map<std::string, ModeEvent> events;  // by their names
+  // The coordinates of which a contact keeps the velocity at 0, as its gap or its slip velocity moves with one alone.
+  std::vector<bool> stopped;
 };
 
 // Of the name NAME.WORD of this change: a resistance starts and stops.

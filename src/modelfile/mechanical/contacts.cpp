@@ -71,6 +71,7 @@ class ContactReader {
     const Item* named = c.find("name");
     if (named && named->kind != Item::Kind::string) throw Failure(named->span, "a name is a text");
     contact.name = named ? normal_name(named->text()) : without_name;
+    contact.element = contact.name;
     contact.span = named ? named->formula.whole() : c.span;
     if (!is_element_name(contact.name))
       throw Failure(contact.span, "'" + contact.name.substr(0, 40) + "' is not a name");
@@ -107,7 +108,7 @@ class ContactReader {
       contact.gap = put_masses(model_, t.gap);
       if (jet_order(contact.gap) != 0)
         throw Failure(c.find("body")->span,
-                      "the gap of the contact '" + contact.name + "' does not depend on coordinates",
+                      "the gap of the contact '" + contact.element + "' does not depend on coordinates",
                       "a contact is that of a body which moves");
       std::vector<Direction> across;
       if (const Item* along = c.find("along"))
@@ -145,6 +146,7 @@ class ContactReader {
                     "orientation = \"roty(phi)\" in the body");
     Contact resistance = contact;
     resistance.name += rolling ? ".rolling" : ".drilling";
+    resistance.element = resistance.name;
     resistance.span = given->span;
     resistance.given.clear();
     resistance.friction = resistance.static_friction = coefficient(*given, resistance);
@@ -247,7 +249,8 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
       for (Contact& contact : reader.read(c, k)) {
         if (!list.empty() && list[0].law != contact.law)
           throw Failure(contact.span,
-                        "the contacts '" + list[0].name + "' and '" + contact.name + "' have different laws of impacts",
+                        "the contacts '" + list[0].element + "' and '" + contact.element +
+                            "' have different laws of impacts",
                         "one value of 'impact' in all contacts: they may strike at one time");
         if (contact.under) *contact.under += before;
         add(std::move(contact));
@@ -424,7 +427,7 @@ std::vector<Diagnostic> wrong_coefficients(const std::vector<Contact>& contacts,
           }))
         continue;
       list.push_back({Severity::error, c.span,
-                      "'" + c.key + "' of the contact '" + contact.name + "' is " + number_text(value, 6) +
+                      "'" + c.key + "' of the contact '" + contact.element + "' is " + number_text(value, 6) +
                           (restitution ? ", and a restitution lies between 0 and 1" : ", and it must not be negative"),
                       c.key + (restitution ? " = 0.5" : " = 0, or a positive number")});
     }

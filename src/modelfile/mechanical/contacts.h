@@ -46,6 +46,7 @@ struct Switch {
 
 struct Contact {
   std::string name;
+  std::string element;     // its name in the file: of a corner of a box that of the box
   Expr gap;                // g(q, t) >= 0
   std::vector<Expr> slip;  // components of the relative tangential velocity, at most two, linear in q'
   Expr friction;           // of the slip, mu >= 0
