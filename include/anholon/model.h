@@ -12,6 +12,10 @@ namespace anholon::v1 {
 struct ReadOptions {
   std::map<std::string, Number> set = {};  // parameters by name, instead of the values of the file
   std::vector<std::string> cases = {};     // [case.NAME] sections that are laid over the file, one after the other
+  // The mode of the contacts, {"floor=sticks"} (open, slips or sticks; open without a word), or of constraints with
+  // 'active', {"caught=1"}: the model is then the one of this mode, in which contacts exert ideal forces and nothing
+  // changes. Derivations, proofs, comparisons and linear models of models with contacts need it.
+  std::vector<std::string> mode = {};
 };
 
 struct Coordinate {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, overload
 
 from . import _core
@@ -59,6 +60,27 @@ class Model(Analysed):
         given = {**self._given, **texts_of(parameters)}
         cases = [*self._cases, *([case] if isinstance(case, str) else case)]
         return Model(self._again(given, cases), self._again, given, cases)
+
+    def in_mode(self, word: str, *more: str) -> Model:
+        """The model of one mode, in which contacts exert ideal forces and nothing changes.
+
+        :meth:`equations`, :meth:`prove`, :meth:`compare` and :meth:`linearize` of models with contacts need it.
+
+        Args:
+            word: ``"floor=sticks"`` (``open``, ``slips`` or ``sticks``) of a contact, or ``"caught=1"``, the number of a mode,
+                where constraints have ``active``.
+            more: of other contacts, which are open without a word, and of other modes, which are those of the start.
+
+        Raises:
+            ModelError: a word names no contact or no mode, or a contact slips against friction, which is no ideal force.
+
+        Example:
+            >>> import anholon as an
+            >>> print(an.load("bead-in-hoop").in_mode("hoop=slips").constraints[0])
+            hoop, order 0
+        """
+        again = replace(self._again, mode=(word, *more))
+        return Model(again(self._given, self._cases), again, self._given, self._cases)
 
     def check(self, *, form: str = "routh", initial: Mapping[str, Number] | None = None) -> Check:
         """What kind of system this is: degrees of freedom, kinds of constraints, the consistent initial state.

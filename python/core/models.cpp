@@ -4,7 +4,11 @@ namespace anholon::python {
 
 namespace {
 
-ReadOptions read_options(const Numbers& set, const std::vector<std::string>& cases) { return {numbers(set), cases}; }
+using Words = std::vector<std::string>;
+
+ReadOptions read_options(const Numbers& set, const Words& cases, const Words& mode) {
+  return {numbers(set), cases, mode};
+}
 
 void bind_model(nb::module_& m) {
   nb::class_<Coordinate>(m, "Coordinate", "A coordinate of a model.")
@@ -52,16 +56,16 @@ void bind_model(nb::module_& m) {
       .def("forms", [](const Model& model) { return value_of(interruptible([=] { return model.forms(); })); });
   m.def(
       "read_file",
-      [](const std::string& path, const Numbers& set, const std::vector<std::string>& cases) {
-        return value_of(interruptible([=] { return read_file(path, read_options(set, cases)); }));
+      [](const std::string& path, const Numbers& set, const Words& cases, const Words& mode) {
+        return value_of(interruptible([=] { return read_file(path, read_options(set, cases, mode)); }));
       },
-      "path"_a, "set"_a, "cases"_a);
+      "path"_a, "set"_a, "cases"_a, "mode"_a);
   m.def(
       "read_text",
-      [](const std::string& text, const Numbers& set, const std::vector<std::string>& cases, const std::string& name) {
-        return value_of(interruptible([=] { return read_text(text, read_options(set, cases), name); }));
+      [](const std::string& text, const Numbers& set, const Words& cases, const Words& mode, const std::string& name) {
+        return value_of(interruptible([=] { return read_text(text, read_options(set, cases, mode), name); }));
       },
-      "text"_a, "set"_a, "cases"_a, "name"_a);
+      "text"_a, "set"_a, "cases"_a, "mode"_a, "name"_a);
   m.def("shipped_models", shipped_models);
 }
 

@@ -1,5 +1,10 @@
 """Motions and sweeps with contacts."""
 
+import json
+import pickle
+import re
+from collections.abc import Callable
+
 import anholon as an
 import numpy as np
 import pytest
@@ -25,7 +30,66 @@ def test_cases_are_the_motions() -> None:
 
 
 def test_equations_refuse_contacts() -> None:
-    with pytest.raises(an.ModelError, match="linearize knows no contacts"):
+    with pytest.raises(an.ModelError, match="'linearize' needs the mode of the contacts, and the model has 'hoop'"):
         an.load("bead-in-hoop").linearize()
-    with pytest.raises(an.ModelError, match="prove knows no contacts"):
+    with pytest.raises(an.ModelError, match="'prove' needs the mode"):
         an.load("bead-in-hoop").prove()
+
+
+STRING = """
+title = "Ball that a slack string catches"
+coordinates = ["x", "z"]
+parameters = {m = 0.5, g = 9.81, l = 1, h = 0.6}
+mode.taut = 0
+gravity.field = "-g*ez"
+particle = [{name = "ball", mass = "m", position = "x*ex + z*ez"}]
+constraint = [{name = "string", equation = "norm(ball) = l", active = "taut"}]
+event = [{name = "tightens", when = "norm(ball) - l", direction = "up", set = {taut = 1}}]
+initial = {x = "h"}
+"""
+
+
+def test_a_mode_is_that_of_the_command_line(program: Callable[..., str]) -> None:
+    hoop = an.load("bead-in-hoop").in_mode("hoop=slips")
+    assert str(hoop.equations()).strip() == program("derive", "bead-in-hoop", "--mode", "hoop=slips").strip()
+    proof = hoop.prove("routh", "chaplygin")
+    assert bool(proof)
+    told = json.loads(program("linearize", "bead-in-hoop", "--mode", "hoop=slips", "--qdot", "x=0", "--json"))
+    linear = hoop.linearize(initial={"x'": 0})
+    assert [[z.real, z.imag] for z in linear.eigenvalues] == told["eigenvalues"]
+    # A mode has words of its own, and one that does not change.
+    assert hoop.compare(["z: m*z'' = -m*g - lambda.hoop*z/norm(P)"])["z"].verdict == "true"
+    assert hoop.compare(["z: m*z'' = -m*g + lambda.hoop*z/norm(P)"])["z"].verdict == "false"
+    again = pickle.loads(pickle.dumps(hoop))
+    assert again.constraints[0].name == "hoop" and again.with_(R=2).constraints[0].name == "hoop"
+
+
+def test_mistakes_in_a_mode_are_those_of_the_command_line() -> None:
+    hoop = an.load("bead-in-hoop")
+    for word, message in (
+        ("hoop=stick", "mode: 'hoop=stick' names no mode; did you mean 'sticks'?\nhint: hoop=open, hoop=slips or hoop=sticks"),
+        ("loop=open", "mode: there is no contact 'loop'; did you mean 'hoop'?"),
+        ("hoop", "mode: 'hoop' names no mode"),
+    ):
+        with pytest.raises(an.ModelError, match=re.escape(message)):
+            hoop.in_mode(word)
+    with pytest.raises(an.ModelError, match="slips against friction, which is no ideal force"):
+        an.load("slipping-wheel").in_mode("road=slips")
+    with pytest.raises(an.ModelError, match="without its mode"):
+        hoop.in_mode("hoop=slips").sweep({"R": [1, 2]}, out="nowhere")
+
+
+def test_string_catches_the_ball() -> None:
+    model = an.loads(STRING)
+    run = model.simulate(to=1, every=0.5)
+    assert [e.name for e in run.events] == ["tightens"]
+    assert run.events[0].t == pytest.approx((2 * 0.8 / 9.81) ** 0.5, rel=1e-14)
+    assert list(run["string.active"]) == [0, 1, 1]
+    sweep = model.sweep({"h": [0.2, 0.6]}, to=1)
+    assert sweep["x"][1] == run["x"][-1] and sweep["lambda.string"][1] == run["lambda.string"][-1]
+    assert model.in_mode("taut=1").equations().text.split("\n")[1:] == model.in_mode("taut=2").equations().text.split("\n")[1:]
+    assert len(model.in_mode("taut=0").constraints) == 0
+    with pytest.raises(an.ModelError, match="'prove' needs the mode, as the constraint 'string' holds in some only"):
+        model.prove()
+    with pytest.raises(an.ModelError, match="there is no mode 'tout'; did you mean 'taut'"):
+        model.in_mode("tout=1")

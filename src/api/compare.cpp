@@ -32,7 +32,7 @@ Result<std::vector<ComparedEquation>> compared(const Model& model, const inner::
   return guarded(data.source, [&]() -> Result<std::vector<ComparedEquation>> {
     data.without_contacts("compare");
     inner::Diagnostics of_model, of_equations;
-    const auto open = inner::open_model(data.source, of_model, data.overrides, data.cases);
+    const auto open = data.open_again(of_model);
     if (!open) return error_of(of_model, data.source);
     PrepareOptions near;
     near.initial = options.initial, near.eliminate = options.eliminate;

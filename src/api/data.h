@@ -14,13 +14,15 @@ namespace inner = ::anholon;
 struct Model::Data {
   inner::SourceText source;
   inner::Overrides overrides;
-  std::vector<std::string> cases;
+  std::vector<std::string> cases, mode;
   std::shared_ptr<const inner::Model> model;
   std::vector<Diagnostic> remarks;
-  std::vector<inner::Contact> contacts;  // expressions of the graph of the model
+  std::vector<inner::Contact> contacts;  // expressions of the graph of the model; none if a mode was asked for
 
-  // Throws Failure if the model has contacts, which `what` does not know.
+  // Throws Failure if `what` needs the mode of the contacts, and none was asked for.
   void without_contacts(const std::string& what) const;
+  // Opens the text again, in the mode that was asked for. Returns nullopt if the diagnostics have errors; throws Failure.
+  std::optional<inner::OpenModel> open_again(inner::Diagnostics& diagnostics) const;
   // A copy with an expression graph of its own, in which its holder may build.
   std::shared_ptr<const inner::Model> own_copy() const { return inner::clone(*model); }
 };

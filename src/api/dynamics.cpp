@@ -101,7 +101,7 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
     const std::string form = of.scenario.system.form->name;
     if (options.outputs) {
       inner::Diagnostics diagnostics;
-      const auto open = inner::open_model(of.model->source, diagnostics, of.model->overrides, of.model->cases);
+      const auto open = of.model->open_again(diagnostics);
       if (!open) return error_of(diagnostics, of.model->source);
       std::vector<inner::ChosenOutput> outputs;
       for (const DynamicsOptions::Output& o : *options.outputs) outputs.push_back({o.name, o.formula});

@@ -5,6 +5,7 @@
 
 #include "anholon/version.h"
 #include "api/data.h"
+#include "contact/chosen_mode.h"
 #include "modelfile/shipped.h"
 
 namespace anholon::v1 {
@@ -16,11 +17,12 @@ Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
   data->source = std::move(source);
   data->cases = options.cases;
   for (const auto& [name, value] : options.set) data->overrides[inner::normal_name(name)] = value.text();
+  data->mode = options.mode;
   inner::Diagnostics diagnostics;
-  const auto model = inner::open_model(data->source, diagnostics, data->overrides, data->cases);
+  const auto model = data->open_again(diagnostics);
   if (diagnostics.has_errors() || !model) return error_of(diagnostics, data->source);
   data->model = model->model;
-  data->contacts = inner::contacts(*model->names);
+  if (data->mode.empty()) data->contacts = inner::contacts(*model->names);
   for (const inner::Diagnostic& d : diagnostics.list()) data->remarks.push_back(to_public(d, data->model->source_text));
   return Model(std::move(data));
 }
@@ -28,9 +30,18 @@ Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
 }  // namespace
 
 void Model::Data::without_contacts(const std::string& what) const {
-  if (!contacts.empty())
-    throw inner::Failure({}, what + " knows no contacts, and the model has '" + contacts.front().name + "'",
-                         "simulate and sweep do; write what touches as a [[constraint]] for the others");
+  if (!contacts.empty()) throw inner::needs_mode(what, *model, contacts, "the mode ");
+}
+
+std::optional<inner::OpenModel> Model::Data::open_again(inner::Diagnostics& diagnostics) const {
+  std::optional<inner::OpenModel> open = inner::open_model(source, diagnostics, overrides, cases);
+  if (!open || mode.empty()) return open;
+  try {
+    inner::put_chosen_mode(inner::model_of(*open->names), inner::contacts(*open->names), mode);
+  } catch (const inner::Failure& f) {
+    throw inner::Failure({}, "mode: " + f.diagnostic.message, f.diagnostic.hint);
+  }
+  return open;
 }
 
 const char* version() { return ANHOLON_VERSION; }

@@ -47,7 +47,7 @@ inner::Variation variation_of(const SweepOptions& asked, const inner::Model& mod
 inner::Outcome scenario_with(const System::Data& of, const std::vector<std::string>& words,
                              inner::Reductions& reductions, inner::Scenario& scenario) {
   inner::Diagnostics diagnostics;
-  const auto open = inner::open_model(of.model->source, diagnostics, of.model->overrides, of.model->cases);
+  const auto open = of.model->open_again(diagnostics);
   if (!open) throw inner::Failure(diagnostics.list().front());
   try {
     for (const std::string& word : words) reductions.add(word, *open);

@@ -153,7 +153,8 @@ void form_option(CLI::App* c, SystemCommand& o) {
 
 void mode_of_contacts(CLI::App* c, SystemCommand& o) {
   c->add_option("--mode", o.mode,
-                "the mode of the contacts: floor=sticks,wall=slips (open, slips or sticks; open without its name)")
+                "the mode of the contacts: floor=sticks,wall=slips (open, slips or sticks; open without its name); of "
+                "constraints with 'active': the number of a mode, caught=1")
       ->type_name("NAME=MODE")
       ->allow_extra_args(false);
 }

@@ -170,6 +170,34 @@ ContactProblem ContactDynamics::stop() const {
   return p;
 }
 
+long double ContactDynamics::slip_acceleration(std::size_t c, const std::vector<long double>& accelerations) const {
+  const ContactRows& rows = problem_.contacts[c];
+  std::array<long double, 2> a = rows.tangential_rate;
+  for (std::size_t k = 0; k < rows.tangential.size(); ++k)
+    for (std::size_t i = 0; i < accelerations.size(); ++i) a[k] += rows.tangential[k][i] * accelerations[i];
+  return std::hypot(a[0], a[1]);
+}
+
+bool walls_move(const std::vector<Contact>& contacts) {
+  return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) {
+    const std::vector<NodeId> all = symbols({&c.gap, 1});
+    return std::any_of(all.begin(), all.end(), [&](NodeId id) { return c.gap.graph->node(id).kind == Kind::time; });
+  });
+}
+
+std::optional<std::vector<double>> ContactDynamics::nearest(const std::vector<double>& qd,
+                                                            const ContactState& at) const {
+  ContactProblem p = stop();
+  p.contacts.clear();
+  for (std::size_t r = 0; r < p.Phi.size(); ++r)
+    for (std::size_t a = 0; a < n_; ++a) p.beta[r] += p.Phi[r][a] * (static_cast<long double>(qd[a]) - at.qd[a]);
+  const auto jump = of_modes(p, {});
+  if (!jump) return std::nullopt;
+  std::vector<double> list;
+  for (std::size_t a = 0; a < n_; ++a) list.push_back(static_cast<double>(qd[a] + jump->x[a]));
+  return list;
+}
+
 long double ContactDynamics::energy(const std::vector<long double>& qd) const {
   long double twice = 0;
   for (std::size_t i = 0; i < n_; ++i)

@@ -6,6 +6,9 @@
 
 namespace anholon {
 
+// Whether the gap of a contact holds t.
+bool walls_move(const std::vector<Contact>& contacts);
+
 class ContactDynamics {
  public:
   // `s`: the model with all contacts open. Constraints of order above 1, and those kept by inputs, are refused (Failure).
@@ -26,12 +29,17 @@ class ContactDynamics {
   long double most(std::size_t coordinate) const { return most_[coordinate]; }  // its largest velocity up to now
   // The accelerations; `moves` and `direction` of the contacts are those of their slip velocities.
   const ContactProblem& accelerations() const { return problem_; }
+  // The size of the rate of a slip velocity with these accelerations.
+  long double slip_acceleration(std::size_t contact, const std::vector<long double>& accelerations) const;
   // The jumps of the velocities at an impact by Newton's law in Moreau's form, with the restitutions of the contacts or
   // with this one.
   ContactProblem impact(const std::vector<bool>& touches, std::optional<long double> restitution = std::nullopt) const;
   // The jump of least change that stops what touches or sticks, without friction. The constraints hold after it: round-off
   // of the velocities before may be larger than the velocities that are left.
   ContactProblem stop() const;
+  // The velocities nearest to `qd` in the mass norm with which the constraints hold at the state; those of the state are where
+  // constraints that are not linear in them are looked at. Returns nullopt if the constraints depend on each other.
+  std::optional<std::vector<double>> nearest(const std::vector<double>& qd, const ContactState& at) const;
   // The kinetic energy of velocities, in which the mass matrix is that of the state.
   long double energy(const std::vector<long double>& qd) const;
 

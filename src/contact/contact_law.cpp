@@ -144,37 +144,98 @@ bool has_direction_to_find(const ContactRows& rows, const ContactMode& mode) {
   return mode.touch == Touch::slips && !rows.moves && rows.tangential.size() == 2 && rows.rough;
 }
 
-// The direction of the one slip that begins with two components, as the angle at which its rate has no part across, by the
-// secant method: where the slip hardly accelerates, the rate turns much faster than the direction, and the fixed point
-// repels. Returns nullopt if several slips begin, or no angle is found.
-std::optional<ContactSolution> with_one_direction(const ContactProblem& p, ContactModes modes) {
-  std::optional<std::size_t> one;
-  for (std::size_t c = 0; c < modes.size(); ++c) {
-    if (!has_direction_to_find(p.contacts[c], modes[c])) continue;
-    if (one) return std::nullopt;
-    one = c;
+// The direction of one slip that begins with two components, with those of the others as they are: the angle at which its
+// rate has no part across. Where the slip hardly accelerates, the rate turns much faster than the direction, and the fixed
+// point repels; the secant method finds it, or else bisection between angles all around.
+class DirectionSearch {
+ public:
+  DirectionSearch(const ContactProblem& p, ContactModes& modes, std::size_t contact)
+      : p_(p), modes_(modes), contact_(contact), first_(modes[contact].direction) {}
+
+  // Leaves the direction in the modes; nullopt if no angle is found.
+  std::optional<ContactSolution> find() {
+    if (secant() || around()) return f_;
+    modes_[contact_].direction = first_;
+    return std::nullopt;
   }
-  if (!one) return std::nullopt;
-  const std::array<Real, 2> first = modes[*one].direction;
+
+ private:
+  static constexpr Real kFound = 1e-9L;
+
+  Real across(Real angle) {
+    auto& d = modes_[contact_].direction;
+    d = {first_[0] * std::cos(angle) - first_[1] * std::sin(angle),
+         first_[1] * std::cos(angle) + first_[0] * std::sin(angle)};
+    f_ = of_modes(p_, modes_);
+    if (!f_) return std::numeric_limits<Real>::quiet_NaN();
+    v_ = slip_rate(p_.contacts[contact_], f_->x);
+    return v_[1] * d[0] - v_[0] * d[1];
+  }
+
+  // Whether the contact is pressed and slips along its direction, at the angle that was tried last.
+  bool slips() const {
+    const auto& d = modes_[contact_].direction;
+    return f_ && f_->normal[contact_] >= 0 && v_[0] * d[0] + v_[1] * d[1] > 0;
+  }
+
+  bool secant() {
+    constexpr int kMost = 40;
+    constexpr Real kStep = 1e-4L, kTurn = 0.5L;
+    Real a = kStep, fa = across(a), b = 0, fb = across(b);
+    for (int k = 0; k < kMost && fa != fb && std::isfinite(fa) && std::isfinite(fb); ++k) {
+      const Real step = std::clamp(fb * (b - a) / (fb - fa), -kTurn, kTurn);
+      a = b, fa = fb, b -= step, fb = across(b);
+      if (std::abs(fb) <= kFound * std::hypot(v_[0], v_[1]) && slips()) return true;
+    }
+    return false;
+  }
+
+  bool around() {
+    constexpr int kParts = 48, kHalves = 70;
+    const Real part = 2 * std::acos(-1.0L) / kParts;
+    Real a = 0, fa = across(a);
+    bool slips_at_a = slips();
+    for (int k = 1; k <= kParts; ++k) {
+      Real b = k * part, fb = across(b);
+      const bool slips_at_b = slips();
+      if ((slips_at_a || slips_at_b) && (fa < 0) != (fb < 0)) {
+        Real low = a, high = b;
+        for (int h = 0; h < kHalves; ++h) {
+          const Real middle = low + (high - low) / 2, fm = across(middle);
+          ((fm < 0) == (fa < 0) ? low : high) = middle;
+        }
+        if (std::abs(across(low)) <= kFound * std::hypot(v_[0], v_[1]) && slips()) return true;
+      }
+      a = b, fa = fb, slips_at_a = slips_at_b;
+    }
+    return false;
+  }
+
+  const ContactProblem& p_;
+  ContactModes& modes_;
+  std::size_t contact_;
+  std::array<Real, 2> first_;
+  std::optional<ContactSolution> f_;
+  std::array<Real, 2> v_{};
+};
+
+// The directions of slips that begin, each by a search with the others as they are, one after the other until none turns.
+std::optional<ContactSolution> with_searched_directions(const ContactProblem& p, ContactModes modes) {
+  constexpr int kMost = 60;
+  constexpr Real kSettled = 1e-12L;
+  std::vector<std::size_t> list;
+  for (std::size_t c = 0; c < modes.size(); ++c)
+    if (has_direction_to_find(p.contacts[c], modes[c])) list.push_back(c);
   std::optional<ContactSolution> f;
-  std::array<Real, 2> v{};
-  const auto across = [&](Real angle) -> Real {
-    auto& d = modes[*one].direction;
-    d = {first[0] * std::cos(angle) - first[1] * std::sin(angle),
-         first[1] * std::cos(angle) + first[0] * std::sin(angle)};
-    f = of_modes(p, modes);
-    if (!f) return std::numeric_limits<Real>::quiet_NaN();
-    v = slip_rate(p.contacts[*one], f->x);
-    return v[1] * d[0] - v[0] * d[1];
-  };
-  constexpr int kMost = 40;
-  constexpr Real kFound = 1e-9L, kStep = 1e-4L, kTurn = 0.5L;
-  Real a = kStep, fa = across(a), b = 0, fb = across(b);
-  for (int k = 0; k < kMost && fa != fb && std::isfinite(fa) && std::isfinite(fb); ++k) {
-    const Real step = std::clamp(fb * (b - a) / (fb - fa), -kTurn, kTurn);
-    a = b, fa = fb, b -= step, fb = across(b);
-    const auto& d = modes[*one].direction;
-    if (std::abs(fb) <= kFound * std::hypot(v[0], v[1]) && v[0] * d[0] + v[1] * d[1] > 0) return f;
+  for (int k = 0; k < kMost; ++k) {
+    Real change = 0;
+    for (const std::size_t c : list) {
+      const std::array<Real, 2> before = modes[c].direction;
+      f = DirectionSearch(p, modes, c).find();
+      if (!f) return f;
+      change = std::max(change, std::hypot(modes[c].direction[0] - before[0], modes[c].direction[1] - before[1]));
+    }
+    if (list.size() < 2 || change <= kSettled) return f;
   }
   return std::nullopt;
 }
@@ -186,6 +247,12 @@ std::optional<ContactSolution> with_directions(const ContactProblem& p, ContactM
   constexpr int kMost = 400, kPlain = 30, kSlow = 100;
   constexpr Real kFound = 1e-17L, kNear = 1e-9L;
   const ContactModes first = modes;
+  // A fixed point may be one of a force that pulls, beside one of a force that pushes.
+  const auto pressed = [&](const ContactSolution& f) {
+    for (std::size_t c = 0; c < modes.size(); ++c)
+      if (has_direction_to_find(p.contacts[c], first[c]) && f.normal[c] < 0) return false;
+    return true;
+  };
   Real change = 0;
   for (int k = 0; k < kMost; ++k) {
     auto f = of_modes(p, modes);
@@ -206,9 +273,10 @@ std::optional<ContactSolution> with_directions(const ContactProblem& p, ContactM
       const Real length = std::hypot(next[0], next[1]);
       if (length > 0) d = {next[0] / length, next[1] / length};
     }
-    if (change <= kFound) return f;
+    if (change <= kFound) return pressed(*f) ? f : with_searched_directions(p, first);
   }
-  return change <= kNear ? of_modes(p, modes) : with_one_direction(p, first);
+  if (change > kNear) return with_searched_directions(p, first);
+  return of_modes(p, modes);
 }
 
 // free: the size of the accelerations without contacts. Where the contacts leave no acceleration, those of the modes

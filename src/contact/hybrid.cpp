@@ -10,6 +10,7 @@
 #include "contact/joined_report.h"
 #include "contact/round_off.h"
 #include "contact/segment_rows.h"
+#include "contact/switched_motion.h"
 #include "numeric/number.h"
 #include "simulation/request.h"
 
@@ -17,9 +18,10 @@ namespace anholon {
 
 namespace {
 
-void refuse(const SimulationOptions& o, const Scenario& s) {
-  const auto no = [](const std::string& what, const std::string& hint) {
-    throw Failure({}, "a motion with contacts " + what, hint);
+void refuse(const SimulationOptions& o, const Scenario& s, bool switches) {
+  const auto no = [switches](const std::string& what, const std::string& hint) {
+    throw Failure(
+        {}, std::string("a motion with ") + (switches ? "constraints that are switched " : "contacts ") + what, hint);
   };
   if (o.precision != Precision::real || o.digits > 16) no("is computed in doubles", "leave out --digits and --numbers");
   if (o.save || o.resume) no("is not saved", "leave out --save and --continue");
@@ -27,7 +29,7 @@ void refuse(const SimulationOptions& o, const Scenario& s) {
   if (o.integrator != Method::taylor) no("is computed by Taylor's method", "leave out --integrator");
   if (!o.followed.empty() || o.dense) no("has no polynomials", "leave out the dense output");
   if (s.system.form->eliminates()) no("needs a form with multipliers", "--form routh");
-  if (sets_values(*s.model)) no("does not go with events that set values", "leave out 'set'");
+  if (!switches && sets_values(*s.model)) no("does not go with events that set values", "leave out 'set'");
 }
 
 class HybridMotion {
@@ -175,13 +177,7 @@ class HybridMotion {
     std::string names;
     for (std::size_t c = 0; c < contacts_.size(); ++c)
       if (near_.closed(c) && !contacts_[c].under) names += (names.empty() ? "'" : ", '") + contacts_[c].name + "'";
-    if (modes == 0)
-      return {OutcomeKind::inconsistent,
-              "no mode of the contacts " + names + " is consistent (Painlevé's paradox)" + when(),
-              "rigid bodies with this friction have no motion here: take less friction, or end the motion before"};
-    return {OutcomeKind::inconsistent,
-            std::to_string(modes) + " modes of the contacts " + names + " are consistent (Painlevé's paradox)" + when(),
-            "rigid bodies with this friction have several motions here: take less friction, or end the motion before"};
+    return painleve(modes, names + " ", when());
   }
 
   // Whether a closed gap shrinks.
@@ -216,7 +212,7 @@ class HybridMotion {
     for (std::size_t a = 0; a < n; ++a) after[a] += list[0][a];
     constexpr long double kGrows = 1e-12L;
     // Formulas that hold t move a wall, which may give energy.
-    if (!moving_walls() && dynamics_.energy(after) > dynamics_.energy(before) * (1 + kGrows))
+    if (!walls_move(contacts_) && dynamics_.energy(after) > dynamics_.energy(before) * (1 + kGrows))
       return {OutcomeKind::inconsistent, "the impact would raise the energy" + when(),
               contacts_[0].law == ImpactLaw::newton
                   ? "Newton's law with friction does so in this direction: impact = \"poisson\" in the contacts"
@@ -235,13 +231,6 @@ class HybridMotion {
     dynamics_.go(at_);
     land();
     return {};
-  }
-
-  bool moving_walls() const {
-    return std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) {
-      const std::vector<NodeId> all = symbols({&c.gap, 1});
-      return std::any_of(all.begin(), all.end(), [&](NodeId id) { return c.gap.graph->node(id).kind == Kind::time; });
-    });
   }
 
   // A gap comes to rest if its impacts add up to a limit less than kLeft away, or if it is pressed together and would
@@ -299,14 +288,7 @@ class HybridMotion {
   // which is zero where the slip begins.
   long double first_slip(std::size_t c, const std::vector<long double>& accelerations) const {
     const long double seed = kSeed * std::max(dynamics_.speed(), 1.0L);
-    return held_[c] > 0 ? std::max(seed, slip_acceleration(c, accelerations) * held_[c] / 2) : seed;
-  }
-  long double slip_acceleration(std::size_t c, const std::vector<long double>& accelerations) const {
-    const ContactRows& rows = dynamics_.accelerations().contacts[c];
-    std::array<long double, 2> a = rows.tangential_rate;
-    for (std::size_t k = 0; k < rows.tangential.size(); ++k)
-      for (std::size_t i = 0; i < accelerations.size(); ++i) a[k] += rows.tangential[k][i] * accelerations[i];
-    return std::hypot(a[0], a[1]);
+    return held_[c] > 0 ? std::max(seed, dynamics_.slip_acceleration(c, accelerations) * held_[c] / 2) : seed;
   }
 
   // Where a slip with two components begins without acceleration, its velocity grows by the square of the time, and as long
@@ -326,13 +308,26 @@ class HybridMotion {
     const std::vector<ContactSolution> list = consistent_modes(p);
     if (list.size() != 1 || list[0].modes[c].touch != Touch::slips) return true;
     held_[c] = trial;
-    const long double rate = slip_acceleration(c, list[0].x) / trial, scale = dynamics_.place(c).slip_scale;
+    const long double rate = dynamics_.slip_acceleration(c, list[0].x) / trial, scale = dynamics_.place(c).slip_scale;
     // A contact that never moved has terms of unknown size.
     const long double h = std::min(std::sqrt(2 * kHeld * (scale > 0 ? scale : 1) / rate), kMost * pace);
     if (!(h > 2 * trial)) return true;
     if (!hold_for(c, h - trial, outcome)) return outcome.ok();
     held_[c] = h;
+    if (holds_again(c)) excluded_[c].stick = false;
     return true;
+  }
+
+  // Whether the friction that is needed to hold a contact, which was too large, no longer is: a disc that rocks needs most
+  // where it turns back.
+  bool holds_again(std::size_t c) {
+    dynamics_.go(at_);
+    ContactProblem p = with_touching();
+    p.contacts[c].may_stick = true;
+    const std::vector<ContactSolution> list = consistent_modes(p);
+    if (list.size() != 1 || list[0].modes[c].touch != Touch::sticks) return false;
+    const auto& T = list[0].friction[c];
+    return std::hypot(T[0], T[1]) < p.contacts[c].static_friction * list[0].normal[c];
   }
 
   // Whether the last segment ended with a slip of this contact that has two components and one coefficient of friction.
@@ -398,12 +393,33 @@ class HybridMotion {
     return any;
   }
 
+  // The places at which a segment begins close the gaps of what touches, which may push an open gap below the depth at which
+  // it hits. Returns whether that is so; the depth is then that of the gap.
+  bool deeper(const std::vector<double>& q) {
+    ContactState begin = at_;
+    begin.q = q;
+    dynamics_.go(begin);
+    bool any = false;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      const long double gap = dynamics_.place(c).gap;
+      if (modes_[c].touch != Touch::open || gap > -modes_[c].depth || !near_.closed(c)) continue;
+      modes_[c].depth = RoundOff::kPlace / 2 * near_.place_size(c) - gap;
+      any = true;
+    }
+    dynamics_.go(at_);
+    return any;
+  }
+
   // Follows the motion in the present modes to their end; returns false if it ends there.
   bool segment(const Rational& to, Outcome& outcome) {
-    const ModeModel mode = mode_model(*s_.model, contacts_, modes_, at_);
+    ModeModel mode;
     Scenario scenario;
-    outcome = make_scenario(mode.model, *s_.system.form, {}, scenario);
-    if (!outcome.ok()) return false;
+    do {
+      mode = mode_model(*s_.model, contacts_, modes_, at_);
+      scenario = {};
+      outcome = make_scenario(mode.model, *s_.system.form, {}, scenario);
+      if (!outcome.ok()) return false;
+    } while (deeper(scenario.state.q));
     Workspace own(scenario);
     SimulationOptions o = o_;
     o.state = {};
@@ -418,7 +434,7 @@ class HybridMotion {
     o.conserved.clear();
     o.note = nullptr;
     o.state.t = at_.t;
-    rows_.begin_segment();
+    rows_.begin_segment(mode.stopped);
     const SimulationReport r = simulate_in(own, o, rows_);
     outcome = r.outcome;
     const ContactState from = at_;
@@ -466,9 +482,15 @@ class HybridMotion {
 
 SimulationReport simulate_with_contacts(Workspace& s, const std::vector<Contact>& contacts,
                                         const SimulationOptions& options, RowSink& sink) {
-  refuse(options, s);
+  const auto held = static_cast<std::size_t>(
+      std::count_if(contacts.begin(), contacts.end(), [](const Contact& c) { return c.held.has_value(); }));
+  if (held > 0 && held < contacts.size())
+    throw Failure({}, "a motion knows contacts or constraints with 'active', and the model has both",
+                  "a contact that an event switches: let its gap hold the mode");
+  refuse(options, s, held > 0);
   const auto start = std::chrono::steady_clock::now();
-  SimulationReport r = HybridMotion(s, contacts, options, sink).go();
+  SimulationReport r =
+      held > 0 ? simulate_with_switches(s, contacts, options, sink) : HybridMotion(s, contacts, options, sink).go();
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return r;
 }

@@ -48,6 +48,16 @@ ContactProblem expansion(const ContactDynamics& dynamics, ContactProblem p, cons
 
 }  // namespace
 
+Outcome painleve(std::size_t modes, const std::string& contacts, const std::string& when) {
+  if (modes == 0)
+    return {OutcomeKind::inconsistent,
+            "no mode of the contacts " + contacts + "is consistent (Painlevé's paradox)" + when,
+            "rigid bodies with this friction have no motion here: take less friction, or end the motion before"};
+  return {OutcomeKind::inconsistent,
+          std::to_string(modes) + " modes of the contacts " + contacts + "are consistent (Painlevé's paradox)" + when,
+          "rigid bodies with this friction have several motions here: take less friction, or end the motion before"};
+}
+
 std::vector<Jump> impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
                                const std::vector<bool>& touches) {
   const bool poisson =

@@ -8,7 +8,7 @@ namespace anholon {
 class JoinedReport {
  public:
   explicit JoinedReport(const Model& model);
-  // The report of a segment. Returns false if an event of the model ends the motion.
+  // The report of a segment; contacts: its events that change a mode. Returns false if an event of the model ends the motion.
   bool add(const SimulationReport& segment, const std::map<std::string, ModeEvent>& contacts);
   // Velocities that an impact has set, told with the event that led to it.
   void set(double t, const std::vector<EventReport::Change>& changes);

@@ -2,9 +2,6 @@
 
 namespace anholon {
 
-namespace {
-
-// Puts the forces of a mode, N and the components of friction of each contact, into the monitors and events that hold them.
 void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
                 const std::vector<std::vector<Expr>>& components, Model& model) {
   Graph& g = *model.graph;
@@ -21,6 +18,8 @@ void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
       model.events[f.index].when = is_zero(value) ? g.one() : value;
   }
 }
+
+namespace {
 
 class ModeBuilder {
  public:
@@ -66,13 +65,14 @@ class ModeBuilder {
 
   void put(const ContactForces& forces) { put_forces(forces, normals_, components_, *model_); }
 
-  ModeModel take() { return {std::move(model_), std::move(events_)}; }
+  ModeModel take() { return {std::move(model_), std::move(events_), std::move(stopped_)}; }
 
  private:
   void begin_at(const ContactState& at) {
     InitialData& initial = model_->initial;
     initial = {};
     initial.t = g_.number(at.t);
+    stopped_.assign(at.q.size(), false);
     for (std::size_t a = 0; a < at.q.size(); ++a) {
       const auto index = static_cast<std::uint32_t>(a);
       initial.given.push_back({g_.jet(index, 0), g_.number(Rational(at.q[a])), model_->coordinates[a].span});
@@ -81,8 +81,21 @@ class ModeBuilder {
     for (std::size_t k = 0; k < at.states.size(); ++k) model_->states[k].initial = g_.number(Rational(at.states[k]));
   }
 
+  // Notes the coordinate that a constraint stops: the one whose velocity alone its rate holds, as a factor.
+  void note_stopped(Expr phi, int order) {
+    const Expr rate = order == 0 ? total_derivative(phi) : phi;
+    std::vector<std::size_t> moved;
+    for (const NodeId id : symbols({&rate, 1}))
+      if (const Node& n = g_.node(id); n.kind == Kind::jet && n.order == 1) moved.push_back(n.index);
+    if (moved.size() != 1) return;
+    const NodeId velocity = g_.jet(static_cast<std::uint32_t>(moved[0]), 1).id;
+    const Expr rest = substitute({&rate, 1}, [&](NodeId id) { return id == velocity ? g_.zero() : Expr{}; })[0];
+    if (is_zero(rest)) stopped_[moved[0]] = true;
+  }
+
   // A constraint that an input keeps; returns the input.
   Expr keep(const std::string& constraint, const std::string& input, Expr phi, int order) {
+    note_stopped(phi, order);
     const std::size_t u = model_->controls.size(), r = model_->constraints.size();
     model_->controls.push_back({input, std::nullopt, r, {}});
     model_->names.controls.push_back(input);
@@ -170,6 +183,7 @@ class ModeBuilder {
   std::vector<Expr> normals_;
   std::vector<std::vector<Expr>> components_;  // of friction, along the components of the slip
   std::size_t contact_ = 0;
+  std::vector<bool> stopped_;
 };
 
 }  // namespace
@@ -193,6 +207,11 @@ std::string word(const Contact& c, ModeChange change) {
 std::vector<std::string> contact_columns(const std::vector<Contact>& contacts) {
   std::vector<std::string> names;
   for (const Contact& c : contacts) {
+    if (c.held) {
+      names.push_back(c.name + ".active");
+      names.push_back("lambda." + c.name);
+      continue;
+    }
     names.push_back(c.name + ".mode");
     if (c.under)
       names.push_back(c.name + ".moment");
@@ -210,17 +229,15 @@ ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, c
   return builder.take();
 }
 
-std::shared_ptr<Model> ideal_model(const Model& of, const std::vector<Contact>& contacts,
-                                   const std::vector<Touch>& touches) {
+void put_ideal_mode(Model& model, const std::vector<Contact>& contacts, const std::vector<Touch>& touches) {
   static const char* const kWords[] = {"open", "slips", "sticks"};
-  const std::shared_ptr<Model> model = clone(of);
-  Graph& g = *model->graph;
+  Graph& g = *model.graph;
   std::vector<Expr> normals;
   std::vector<std::vector<Expr>> components;
   const auto keep = [&](const std::string& name, Expr phi, int order, Span span) {
-    const auto r = static_cast<std::uint32_t>(model->constraints.size());
-    model->constraints.push_back({name, g.own(phi), order, name + " = 0", span});
-    model->names.multipliers.push_back(name);
+    const auto r = static_cast<std::uint32_t>(model.constraints.size());
+    model.constraints.push_back({name, g.own(phi), order, name + " = 0", span});
+    model.names.multipliers.push_back(name);
     return g.multiplier(r, 0);
   };
   std::string mode;
@@ -243,10 +260,9 @@ std::shared_ptr<Model> ideal_model(const Model& of, const std::vector<Contact>& 
     mode += (c == 0 ? "" : ", ") + contact.name + " " + (touch == Touch::open ? "is " : "") +
             kWords[static_cast<std::size_t>(touch)];
   }
-  if (!contacts.empty() && contacts[0].forces) put_forces(*contacts[0].forces, normals, components, *model);
-  model->title += (model->title.empty() ? "" : ": ") + mode;
-  std::erase_if(model->notes, [](const std::string& n) { return n.rfind(kOpenContacts) != std::string::npos; });
-  return model;
+  if (!contacts.empty() && contacts[0].forces) put_forces(*contacts[0].forces, normals, components, model);
+  model.title += (model.title.empty() ? "" : ": ") + mode;
+  std::erase_if(model.notes, [](const std::string& n) { return n.rfind(kOpenContacts) != std::string::npos; });
 }
 
 }  // namespace anholon

@@ -25,6 +25,8 @@ struct ModeEvent {
 struct ModeModel {
   std::shared_ptr<Model> model;
   std::map<std::string, ModeEvent> events;  // by their names
+  // The coordinates of which a contact keeps the velocity at 0, as its gap or its slip velocity moves with one alone.
+  std::vector<bool> stopped;
 };
 
 // Of the name NAME.WORD of this change: a resistance starts and stops.
@@ -33,14 +35,17 @@ std::string word(const Contact& contact, ModeChange change);
 // The columns of rows that contacts add after those of the model.
 std::vector<std::string> contact_columns(const std::vector<Contact>& contacts);
 
+// Puts the forces of a mode, N and the components of friction of each contact, into the monitors and events that hold them.
+void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
+                const std::vector<std::vector<Expr>>& components, Model& model);
+
 // direction: of the slip, to which the formula of friction refers.
 ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes,
                      const ContactState& at);
 
-// The model of a mode in which the contacts exert ideal forces alone: one that touches is a constraint NAME, gap = 0, one that
+// Makes the model that of a mode in which the contacts exert ideal forces alone: one that touches is a constraint NAME, gap = 0, one that
 // sticks has constraints NAME.t1, … as well, that its slip velocity is zero. Their multipliers are the forces of the
 // contact. touches: of each contact, a resistance among them. Throws Failure if one slips against friction.
-std::shared_ptr<Model> ideal_model(const Model& model, const std::vector<Contact>& contacts,
-                                   const std::vector<Touch>& touches);
+void put_ideal_mode(Model& model, const std::vector<Contact>& contacts, const std::vector<Touch>& touches);
 
 }  // namespace anholon

@@ -46,7 +46,30 @@ bool RoundOff::hardly_moves(std::size_t c, long double v, long double a) const {
   return a > 0 && v * v <= 2 * a * kPlace * place_size(c);
 }
 
-bool RoundOff::hardly_rises(std::size_t c) const { return hardly_moves(c, gap_rate(c), pressed(c)); }
+bool RoundOff::hardly_rises(std::size_t c) const {
+  return hardly_moves(c, gap_rate(c), pressed(c)) || hardly_moves(c, gap_rate(c), pressed_by_others(c));
+}
+
+// The acceleration with which a gap would close while the others touch that rest, or hardly rise: a disc that spins on a
+// floor is driven against a wall by friction alone.
+long double RoundOff::pressed_by_others(std::size_t c) const {
+  ContactProblem p = dynamics_.accelerations();
+  const ContactRows own = p.contacts[c];
+  bool any = false;
+  for (std::size_t o = 0; o < p.contacts.size(); ++o) {
+    ContactRows& rows = p.contacts[o];
+    if (rows.under) continue;
+    rows.may_touch = o != c && closed(o) && (gap_rate(o) == 0 || hardly_moves(o, gap_rate(o), pressed(o)));
+    any = any || rows.may_touch;
+    if (!rows.may_touch) rows.normal.assign(p.b.size(), 0), rows.normal_rate = 0;
+  }
+  if (!any) return 0;
+  const std::vector<ContactSolution> list = consistent_modes(p);
+  if (list.size() != 1) return 0;
+  long double a = own.normal_rate;
+  for (std::size_t i = 0; i < list[0].x.size(); ++i) a += own.normal[i] * list[0].x[i];
+  return std::max(-a, 0.0L);
+}
 
 bool RoundOff::hardly_slips(std::size_t c) const {
   const auto& slip = dynamics_.place(c).slip;

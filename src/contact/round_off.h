@@ -29,6 +29,7 @@ class RoundOff {
 
  private:
   long double pressed(std::size_t contact) const;
+  long double pressed_by_others(std::size_t contact) const;
   bool hardly_moves(std::size_t contact, long double v, long double a) const;
 
   const std::vector<Contact>& contacts_;

@@ -16,7 +16,8 @@ void SegmentRows::only_at(const std::vector<Rational>& times) {
 bool SegmentRows::of_contact(const RunColumn& column) const {
   return column.kind != ColumnKind::monitor && std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
            const std::string prefix = c.name + ".";
-           return column.name.rfind(prefix, 0) == 0 || column.name.rfind("lambda." + prefix, 0) == 0;
+           return column.name.rfind(prefix, 0) == 0 || column.name.rfind("lambda." + prefix, 0) == 0 ||
+                  (c.held && column.name == "lambda." + c.name);
          });
 }
 
@@ -37,6 +38,10 @@ void SegmentRows::columns(const std::vector<RunColumn>& columns) {
 
 void SegmentRows::row(const Row& row) {
   last_.assign(row.values.begin(), row.values.end());
+  // The round-off of the projection is no motion.
+  for (std::size_t k = 0; k < own_.size() && !stopped_.empty(); ++k)
+    if ((own_[k].kind == ColumnKind::velocity || own_[k].kind == ColumnKind::acceleration) && stopped_[own_[k].index])
+      last_[k] = 0;
   if (!times_.empty()) {
     while (due_ < times_.size() && times_[due_] < row.values[0]) ++due_;
     // The end of a segment may be the row that was asked for, and is not written again.
@@ -44,8 +49,7 @@ void SegmentRows::row(const Row& row) {
     ++due_;
   }
   std::vector<double> values;
-  for (const auto& place : places_)
-    values.push_back(place ? row.values[*place] : std::numeric_limits<double>::quiet_NaN());
+  for (const auto& place : places_) values.push_back(place ? last_[*place] : std::numeric_limits<double>::quiet_NaN());
   to_.row({values, {}});
   ++count_;
 }

@@ -10,7 +10,8 @@ class SegmentRows final : public RowSink {
   SegmentRows(RowSink& to, const std::vector<Contact>& contacts) : to_(to), contacts_(contacts) {}
   // Rows at these times alone, if there are any; the ends of segments are no rows.
   void only_at(const std::vector<Rational>& times);
-  void begin_segment() { places_.clear(); }
+  // stopped: coordinates whose velocities and accelerations are 0 in the segment, and are written so; none if it is empty.
+  void begin_segment(std::vector<bool> stopped = {}) { places_.clear(), stopped_ = std::move(stopped); }
 
   void columns(const std::vector<RunColumn>& columns) override;
   void row(const Row& row) override;
@@ -32,6 +33,7 @@ class SegmentRows final : public RowSink {
   std::vector<RunColumn> joint_;                    // the columns that are written
   std::vector<RunColumn> own_;                      // those of the segment
   std::vector<std::optional<std::size_t>> places_;  // of each joint column among those of the segment
+  std::vector<bool> stopped_;
   std::vector<double> last_;
   std::size_t count_ = 0;
 };

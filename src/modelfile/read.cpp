@@ -98,15 +98,17 @@ class Reader {  // its references are used only while it runs
     read_states(root, scope_, model_, diagnostics_);
     scope_.resolve_all();
     const std::vector<UnitNorm> norms = constraints.norms_of_quaternions();
+    const std::vector<Contact> switched = constraints.switched();
     read_initial(root, scope_, model_, diagnostics_);
     start_at_identity(norms, model_);
     if (const Item* m = table(root, "monitor")) read_monitors(*m, scope_, model_, diagnostics_);
     read_events(root, scope_, model_, diagnostics_);
     read_outputs(root, scope_, model_, diagnostics_);
     contacts_ = read_contacts(root, scope_, model_, diagnostics_);
+    note_contacts();
+    contacts_.insert(contacts_.end(), switched.begin(), switched.end());
     settle_contact_forces(scope_, model_, contacts_, diagnostics_);
     scope_.contact_forces.close();
-    note_contacts();
     if (const Item* n = table(root, "notation")) {
       std::vector<std::string> declared;
       for (const auto& [name, d] : scope_.declarations()) declared.push_back(name);
@@ -415,6 +417,7 @@ class DerivedNames final : public Names {
   std::optional<Rotation> frame(const BodyName& body, Span use) override { return scope_.frame(body, use); }
   std::string body_name(const BodyName& body) const override { return scope_.body_name(body); }
   const std::vector<Contact>& contacts() const { return reader_->contacts(); }
+  Model& model() { return reader_->model(); }
   bool declares(const std::string& name) const override {
     return scope_.declarations().count(name) > 0 || scope_.find_body(name) != nullptr;
   }
@@ -466,6 +469,7 @@ std::map<std::string, std::string> implied_units(const Model& model) {
   return reader.implied_units();
 }
 
+Model& model_of(Names& names) { return dynamic_cast<DerivedNames&>(names).model(); }
 const std::vector<Contact>& contacts(const Names& names) { return dynamic_cast<const DerivedNames&>(names).contacts(); }
 
 }  // namespace anholon

@@ -89,8 +89,7 @@ int compare(const CompareCommand& o) {
   if (o.equations.empty())
     throw UsageError{
         "error: no equations are named\nhint: anholon compare MODEL EQUATIONS, a file with one equation per line\n"};
-  const Reader in = read(o);
-  without_contacts(in, "compare");
+  const Reader in = in_mode(read(o), o, "compare");
   const Model& model = *in.model;
   const SourceText source = equation_text(o.equations, ANHOLON_MODELS_DIR);
   Subject subject({in.model, in.names}, state_choice(o, model));

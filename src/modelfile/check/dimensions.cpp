@@ -55,6 +55,7 @@ class Elements {
     each("output", [&](const Item& i) { output(i); });
     list("constraint", [&](const Item& c) {
       if (const Item* e = c.find("equation")) equation(*e);
+      if (const Item* a = c.find("active"); a && a->is_formula()) formulas_.of(*a);
     });
     contacts();
     initial();

@@ -206,6 +206,7 @@ damper = "0.2*x'^2/2"              # the force -0.2 x'
         {"equation", equation, "of numbers or vectors, of any order"},
         {"along", any, "a vector equation: a frame or a list of vectors, along which components are taken"},
         {"by", names, "the inputs that keep it (servo constraint), one name or as many as equations"},
+        {"active", formula, "a formula of modes: the constraint holds while it is positive"},
         {"one_sided", truth, "`true`: it pushes and does not pull, so that left − right is not negative: a contact"}},
        R"md(```toml
 [[constraint]]
@@ -223,6 +224,17 @@ on = "plate"
 torque = "u*ez"
 ```
 
+```toml
+mode.caught = 0
+[[constraint]]
+name = "latch"
+equation = "theta = 1"
+active = "caught"
+[[event]]
+when = "theta - 1"
+set = {caught = 1}
+```
+
 - Its order is that of the highest derivative on which it truly depends. Its reaction is λ ∂φ/∂q⁽ᵐ⁾ with φ = left − right: λ > 0 pushes towards a
   growing left side. `check` states the hypothesis, ideal reactions.
 - A vector equation gives `name.x`, `name.y`, `name.z` along ex, ey, ez. With `along = "B"` the components are those along the axes
@@ -231,6 +243,11 @@ torque = "u*ez"
 - With `one_sided = true` the left side may become larger than the right one: the constraint opens where its force would pull, and closes again
   without rebound. It is a [contact](#contact) without friction, with its events and columns (`NAME.leaves`, `NAME.normal`), and
   `lambda.NAME` is its force, as that of a contact.
+- With `active` the constraint holds while the formula, of [modes](#mode) and parameters, is positive: events that set the modes switch it. Where it
+  sets in, positions must satisfy it, and the velocities jump by the least change in the mass norm, which takes energy and gives none unless the constraint
+  moves. An event that sets modes to the numbers that they are does not happen. Rows have `NAME.active` and `lambda.NAME`, which is 0 while it does not hold; such
+  a force stands in monitors, outputs and the `when` of events. Constraints of positions and velocities have it, without `by` and
+  `one_sided`, and not beside contacts. [A recipe](contact.md#a-string-that-catches).
 - With `by` no ideal reaction acts: the input, which has no formula (`u = {}`), becomes the unknown instead of λ. An input keeps one
   equation only. Forms that eliminate do not apply.
 - An input with a formula may occur in a constraint: its formula is put in.

@@ -9,6 +9,7 @@
 #include "modelfile/names/along.h"
 #include "modelfile/text/collect.h"
 #include "modelfile/text/keys.h"
+#include "tape/tape.h"
 
 namespace anholon {
 
@@ -78,8 +79,13 @@ void ConstraintReader::read(const Item& root) {
     check_keys(c, "a constraint", "constraint", diagnostics_);
     if (is_one_sided(c)) return;  // it is a contact
     const std::size_t first = model_.constraints.size();
-    const auto servo = [&] {
-      if (const Item* by = c.find("by")) keep_by(*by, first, scope_, model_);
+    const auto settle = [&] {
+      const Item *by = c.find("by"), *active = c.find("active");
+      if (by && active)
+        throw Failure(active->key_span, "'active' does not go with 'by'",
+                      "an input with a formula that holds the mode: u = \"choose(stage, 0, -k*x)\"");
+      if (by) keep_by(*by, first, scope_, model_);
+      if (active) switch_by(*active, first);
     };
     const Item* equation = c.find("equation");
     if (!equation) throw Failure(c.span, "a constraint has no equation", "equation = \"x' = 0\"");
@@ -95,7 +101,7 @@ void ConstraintReader::read(const Item& root) {
     if (std::holds_alternative<Expr>(left) && std::holds_alternative<Expr>(right)) {
       if (along) throw Failure(along->key_span, "'along' goes with an equation of vectors, this is one of numbers");
       add_constraint(name, std::get<Expr>(left) - std::get<Expr>(right), text, place);
-      servo();
+      settle();
       return;
     }
     const Vector difference = evaluate_vector_side(left, sides[0]) - evaluate_vector_side(right, sides[1]);
@@ -113,8 +119,62 @@ void ConstraintReader::read(const Item& root) {
     if (!dropped.empty())
       model_.notes.push_back("constraint '" + name + "': " + dropped + " vanishes identically and is dropped");
     for (const auto& [full, phi] : kept) add_constraint(full, phi, text, place);
-    servo();
+    settle();
   });
+}
+
+void ConstraintReader::switch_by(const Item& active, std::size_t first) {
+  if (!active.is_formula())
+    throw Failure(active.span, "'active' is a formula of modes: the constraint holds while it is positive",
+                  "mode.caught = 0 and active = \"caught\"");
+  const Expr formula = put_masses(model_, evaluate_number(parse_formula(active.formula), scope_));
+  bool any = false;
+  for (const NodeId id : symbols({&formula, 1})) {
+    const Node& n = model_.graph->node(id);
+    if (n.kind != Kind::parameter)
+      throw Failure(active.span, "'active' holds modes and parameters alone",
+                    "an event sets a mode where the motion asks for it: set = {caught = 1}");
+    any = any || model_.parameters[n.index].mode;
+  }
+  if (!any)
+    throw Failure(active.span, "no mode occurs in 'active', so that the constraint holds always or never",
+                  "mode.caught = 0, active = \"caught\" and an event with set = {caught = 1}");
+  for (std::size_t r = first; r < model_.constraints.size(); ++r) {
+    const Constraint& c = model_.constraints[r];
+    if (c.order > 1)
+      throw Failure(c.span,
+                    "a constraint with 'active' is one of positions or velocities, and this one holds "
+                    "accelerations",
+                    "leave out 'active'");
+    Contact held;
+    held.name = c.name;
+    held.gap = c.phi;
+    held.friction = held.static_friction = held.restitution = model_.graph->zero();
+    held.span = c.span;
+    held.held = Switch{formula, c.order, c.equation, std::nullopt};
+    switched_.push_back(std::move(held));
+  }
+  model_.constraints.resize(first);
+  model_.names.multipliers.resize(first);
+}
+
+std::vector<Contact> ConstraintReader::switched() {
+  Column values;
+  for (const Parameter& p : model_.parameters) values.push_back(p.value);
+  for (Contact& c : switched_)
+    collect(diagnostics_, [&] {
+      values.push_back(c.held->active);
+      const double value = evaluate_parameters<double>(*model_.graph, values).back();
+      values.pop_back();
+      const bool holds = value > 0;
+      model_.notes.push_back("constraint '" + c.name + "' is " + (holds ? "" : "no ") + kOpenContacts +
+                             "the modes are those of the start");
+      if (!holds) return;
+      c.held->at_start = model_.constraints.size();
+      model_.constraints.push_back({c.name, c.gap, c.held->order, c.held->equation, c.span});
+      model_.names.multipliers.push_back(c.name);
+    });
+  return switched_;
 }
 
 Vector ConstraintReader::evaluate_vector_side(const Value& side, const Syntax& s) const {

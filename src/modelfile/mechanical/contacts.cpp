@@ -71,6 +71,7 @@ class ContactReader {
     const Item* named = c.find("name");
     if (named && named->kind != Item::Kind::string) throw Failure(named->span, "a name is a text");
     contact.name = named ? normal_name(named->text()) : without_name;
+    contact.element = contact.name;
     contact.span = named ? named->formula.whole() : c.span;
     if (!is_element_name(contact.name))
       throw Failure(contact.span, "'" + contact.name.substr(0, 40) + "' is not a name");
@@ -107,7 +108,7 @@ class ContactReader {
       contact.gap = put_masses(model_, t.gap);
       if (jet_order(contact.gap) != 0)
         throw Failure(c.find("body")->span,
-                      "the gap of the contact '" + contact.name + "' does not depend on coordinates",
+                      "the gap of the contact '" + contact.element + "' does not depend on coordinates",
                       "a contact is that of a body which moves");
       std::vector<Direction> across;
       if (const Item* along = c.find("along"))
@@ -145,6 +146,7 @@ class ContactReader {
                     "orientation = \"roty(phi)\" in the body");
     Contact resistance = contact;
     resistance.name += rolling ? ".rolling" : ".drilling";
+    resistance.element = resistance.name;
     resistance.span = given->span;
     resistance.given.clear();
     resistance.friction = resistance.static_friction = coefficient(*given, resistance);
@@ -216,6 +218,8 @@ class ContactReader {
 
 }  // namespace
 
+bool is_switched(const Item& constraint) { return constraint.find("active") != nullptr; }
+
 bool is_one_sided(const Item& constraint) {
   const Item* word = constraint.find("one_sided");
   if (!word) return false;
@@ -245,7 +249,8 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
       for (Contact& contact : reader.read(c, k)) {
         if (!list.empty() && list[0].law != contact.law)
           throw Failure(contact.span,
-                        "the contacts '" + list[0].name + "' and '" + contact.name + "' have different laws of impacts",
+                        "the contacts '" + list[0].element + "' and '" + contact.element +
+                            "' have different laws of impacts",
                         "one value of 'impact' in all contacts: they may strike at one time");
         if (contact.under) *contact.under += before;
         add(std::move(contact));
@@ -261,6 +266,10 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
         const Item* word = c.find("one_sided");
         // A word that is neither true nor false is reported with the constraints.
         if (!word || word->kind != Item::Kind::boolean || !is_one_sided(c)) return;
+        if (const Item* active = c.find("active"))
+          throw Failure(active->key_span, "'active' does not go with one_sided = true",
+                        "an event that sets a mode opens and closes a constraint with 'active'; one of one side opens "
+                        "where it would pull");
         last = word;
         if (++count <= kMost) add(reader.read_one_sided(c, k));
       });
@@ -278,7 +287,7 @@ void declare_contacts(const Item& root, Scope& scope) {
     for (std::size_t k = 0; k < list->items.size(); ++k) {
       const Item& c = list->items[k];
       if (c.kind != Item::Kind::table) continue;
-      if (section == std::string("constraint")) {
+      if (section == std::string("constraint") && !is_switched(c)) {
         const Item* word = c.find("one_sided");
         if (!word || word->kind != Item::Kind::boolean || !word->truth) continue;
       }
@@ -313,9 +322,15 @@ std::string known_forces(const std::vector<Contact>& contacts) {
 
 bool is_contact_force(const Node& n) { return n.kind == Kind::multiplier && n.index >= kContactForces; }
 
-Expr with_open_contacts(const Model& model, Expr e) {
+// With the forces of the model as it is: those of the constraints that hold at the start, and zeros.
+Expr with_forces_at_start(const Model& model, const std::vector<Contact>& contacts,
+                          const std::vector<ContactForces::Force>& forces, Expr e) {
   Graph& g = *model.graph;
-  return with_contact_forces(g, e, [&](const Node&) { return g.zero(); });
+  return with_contact_forces(g, e, [&](const Node& n) {
+    const std::size_t k = n.index - kContactForces, c = forces[k].contact;
+    if (c >= contacts.size() || !contacts[c].held || !contacts[c].held->at_start) return g.zero();
+    return g.multiplier(static_cast<std::uint32_t>(*contacts[c].held->at_start), n.order);
+  });
 }
 
 }  // namespace
@@ -371,22 +386,23 @@ void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact
     }
     return any;
   };
+  const auto at_start = [&](Expr e) { return with_forces_at_start(model, contacts, found->forces, e); };
   const auto settle = [&](Expr& value, ContactForces::Formula::Of of, std::size_t index) {
     if (!holds_force(value)) return;
     found->formulas.push_back({of, index, value});
-    value = with_open_contacts(model, value);
+    value = at_start(value);
   };
   for (std::size_t k = 0; k < model.monitors.size(); ++k)
     settle(model.monitors[k].value, ContactForces::Formula::Of::monitor, k);
   for (std::size_t k = 0; k < model.events.size(); ++k)
     settle(model.events[k].when, ContactForces::Formula::Of::event, k);
   for (OutputQuantity& o : model.outputs)
-    for (Expr& e : o.values) e = with_open_contacts(model, e);
+    for (Expr& e : o.values) e = at_start(e);
   const auto refuse = [&](Expr& e, Span span, const char* what) {
     if (!holds_force(e)) return;
     diagnostics.error(span, std::string(what) + " holds the force of a contact",
                       "such a formula stands in monitors, outputs and the 'when' of events");
-    e = with_open_contacts(model, e);
+    e = at_start(e);
   };
   for (StateVariable& z : model.states) refuse(z.rate, z.span, "a rate");
   for (Condition& c : model.initial.conditions) refuse(c.residual, c.span, "a condition");
@@ -411,7 +427,7 @@ std::vector<Diagnostic> wrong_coefficients(const std::vector<Contact>& contacts,
           }))
         continue;
       list.push_back({Severity::error, c.span,
-                      "'" + c.key + "' of the contact '" + contact.name + "' is " + number_text(value, 6) +
+                      "'" + c.key + "' of the contact '" + contact.element + "' is " + number_text(value, 6) +
                           (restitution ? ", and a restitution lies between 0 and 1" : ", and it must not be negative"),
                       c.key + (restitution ? " = 0.5" : " = 0, or a positive number")});
     }

@@ -34,8 +34,19 @@ struct ContactForces {
 // formula has none either: it is not a number.
 Expr with_contact_forces(Graph& g, Expr formula, const std::function<Expr(const Node&)>& force);
 
+// What a [[constraint]] with active = "…" has instead of the laws of a contact: it holds, and pulls as well as it pushes,
+// while a formula of modes is positive.
+struct Switch {
+  Expr active;
+  int order = 0;         // of the constraint, 0 or 1
+  std::string equation;  // as written
+  // Its place among the constraints of the model if it holds at the start; the model then has it.
+  std::optional<std::size_t> at_start;
+};
+
 struct Contact {
   std::string name;
+  std::string element;     // its name in the file: of a corner of a box that of the box
   Expr gap;                // g(q, t) >= 0
   std::vector<Expr> slip;  // components of the relative tangential velocity, at most two, linear in q'
   Expr friction;           // of the slip, mu >= 0
@@ -53,15 +64,19 @@ struct Contact {
     Span span;
   };
   std::vector<Coefficient> given;
+  std::optional<Switch> held;  // a constraint that holds in some modes: its left side minus its right one is `gap`
   std::shared_ptr<const ContactForces> forces;  // those of all contacts of the model; null if no formula holds any
   bool rough() const;                           // whether there is friction
 };
 
-// In the note of a model whose contacts are open.
+// In the notes of a model whose contacts are open, or whose modes are those of the start.
 inline constexpr const char* kOpenContacts = "part of these equations, which hold while ";
 
 // Whether a [[constraint]] has one_sided = true. Throws Failure if that is neither true nor false.
 bool is_one_sided(const Item& constraint);
+
+// Whether a [[constraint]] holds in some modes only: it has the key 'active'.
+bool is_switched(const Item& constraint);
 
 // Reads the contacts of a file whose names are declared: its [[contact]]s, each followed by its resistance to rolling
 // (NAME.rolling) and drilling (NAME.drilling), then its constraints of one side, whose gaps are left - right. Contacts that

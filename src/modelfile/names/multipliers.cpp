@@ -16,6 +16,10 @@ std::string multiplier_path(const Syntax& s) {
 
 Value Scope::multiplier(const std::string& path, Span use) {
   const std::vector<std::string>& names = model_.names.multipliers;
+  // A constraint that holds in some modes may be among the names, too, and its force has no fixed place there.
+  if (contact_forces.declares(path))
+    if (const auto force = contact_forces.find(path, use))
+      return graph().multiplier(kContactForces + static_cast<std::uint32_t>(*force), 0);
   if (const auto it = std::find(names.begin(), names.end(), path); it != names.end())
     return graph().multiplier(static_cast<std::uint32_t>(it - names.begin()), 0);
   for (const std::string& n : names)

@@ -94,6 +94,8 @@ class Scope final : public Names {
    public:
     using Asked = std::vector<std::pair<std::string, Span>>;  // "floor.t1", and where it is asked for first
     void declare(const std::string& contact) { contacts_.insert(contact); }
+    // Whether "floor" of the path "floor.t1" is a contact.
+    bool declares(const std::string& path) const { return contacts_.count(path.substr(0, path.find('.'))) > 0; }
     // The force `path`; nullopt if there is no such contact. Corners of a box have the numbered names of their contact.
     std::optional<std::size_t> find(const std::string& path, Span use);
     const Asked& asked() const { return asked_; }

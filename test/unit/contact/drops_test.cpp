@@ -126,6 +126,24 @@ TEST(Drops, PoissonsLawFinishes) {
   }
 }
 
+// Drops in which a corner is pushed below the depth of its hit where another one comes to rest, and discs that spin in the
+// corner of a floor and a wall: friction of the floor drives them against the wall, and the impacts there come to rest.
+TEST(Drops, HardOnesFinish) {
+  for (const std::uint64_t k : {1001025, 1001268, 1002563, 1002635}) {
+    const Found f = look_at(drop(k));
+    EXPECT_TRUE(f.outcome.ok()) << k << f.outcome.message;
+    EXPECT_LE(f.gains, 1e-11) << k;
+    EXPECT_LE(f.depth, 1e-12) << k;
+  }
+  // Both contacts slip: the floor carries m g/(1 + mu^2), the wall mu times as much.
+  const auto m = test::contact_motion(drop(1002563), Rational(191, 100));
+  const double mu = 0.257532, N = 9.81 / (1 + mu * mu);
+  EXPECT_EQ(m.last("floor.mode"), 1);
+  EXPECT_EQ(m.last("wall.mode"), 1);
+  EXPECT_NEAR(m.last("floor.normal"), N, 1e-12);
+  EXPECT_NEAR(m.last("wall.normal"), mu * N, 1e-12);
+}
+
 // The mutants: a floor that is pushed up lifts the body, whose energy grows.
 TEST(Drops, MutantsAreFound) {
   for (std::uint64_t k = 1; k <= 6; ++k) {

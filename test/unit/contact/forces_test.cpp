@@ -151,7 +151,8 @@ TEST(Forces, OfTheModelOfAMode) {
     const auto open = open_model(source, diagnostics, {{"R", inertia}});
     if (!open) throw std::runtime_error(diagnostics.print(source));
     Scenario s;
-    const auto model = ideal_model(*open->model, contacts(*open->names), touches);
+    const auto model = clone(*open->model);
+    put_ideal_mode(*model, contacts(*open->names), touches);
     const Outcome made = make_scenario(model, *find_formulation("routh"), {}, s);
     if (!made.ok()) throw std::runtime_error(made.message);
     SimulationOptions o;

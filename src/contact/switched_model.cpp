@@ -1,0 +1,45 @@
+#include "contact/switched_model.h"
+
+#include <algorithm>
+
+#include "tape/tape.h"
+
+namespace anholon {
+
+std::vector<bool> constraints_that_hold(const Model& model, const std::vector<Contact>& contacts) {
+  Column values;
+  for (const Parameter& p : model.parameters) values.push_back(p.value);
+  for (const Contact& c : contacts)
+    if (c.held) values.push_back(model.graph->own(c.held->active));
+  const std::vector<double> numbers = evaluate_parameters<double>(*model.graph, values);
+  std::vector<bool> holds;
+  std::size_t k = model.parameters.size();
+  for (const Contact& c : contacts) holds.push_back(c.held && numbers[k++] > 0);
+  return holds;
+}
+
+void put_modes(Model& model, const std::vector<Contact>& contacts, const std::vector<Rational>& modes) {
+  Graph& g = *model.graph;
+  for (std::size_t i = 0; i < model.parameters.size(); ++i)
+    if (model.parameters[i].mode) model.parameters[i].value = g.number(modes[i]);
+  std::size_t always = model.constraints.size();
+  for (const Contact& c : contacts)
+    if (c.held && c.held->at_start) always = std::min(always, *c.held->at_start);
+  model.constraints.resize(always);
+  model.names.multipliers.resize(always);
+  const std::vector<bool> holds = constraints_that_hold(model, contacts);
+  std::vector<Expr> forces;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    forces.push_back(g.zero());
+    if (!holds[c]) continue;
+    const Contact& held = contacts[c];
+    forces.back() = g.multiplier(static_cast<std::uint32_t>(model.constraints.size()), 0);
+    model.constraints.push_back({held.name, g.own(held.gap), held.held->order, held.held->equation, held.span});
+    model.names.multipliers.push_back(held.name);
+  }
+  if (!contacts.empty() && contacts[0].forces)
+    put_forces(*contacts[0].forces, forces, std::vector<std::vector<Expr>>(contacts.size()), model);
+  std::erase_if(model.notes, [](const std::string& n) { return n.rfind(kOpenContacts) != std::string::npos; });
+}
+
+}  // namespace anholon
