@@ -43,7 +43,7 @@ Result<std::string> picture_data(const Run& run) {
     if (run.rows() == 0) return without_rows();
     inner::Workspace s(of.scenario);
     inner::Page content;
-    content.cases.push_back({"", &s, nullptr, conserved_of(of, s), run.data().run});
+    content.cases.push_back({"", &s, {}, conserved_of(of, s), run.data().run});
     content.source = s.model->source_text;
     return inner::page_data(content);
   });

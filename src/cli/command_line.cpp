@@ -38,6 +38,13 @@ class HelpLines : public CLI::Formatter {
     if (name.size() < get_column_width()) line.insert(name.size(), name.size() - utf8_length(name), ' ');
     return line;
   }
+
+  // The library ends the options with two empty lines if the last group of them is hidden.
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
+    if (const std::size_t at = text.find("\n\n\n"); at != std::string::npos) text.erase(at, 1);
+    return text;
+  }
 };
 
 CommandLine::CommandLine() {

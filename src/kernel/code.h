@@ -23,7 +23,6 @@ struct Code {
   void (*go_on)(double*, const double* base, double* to) = nullptr;  // and executes `advance` first
   // [l - 1]: solves for the residuals at derivative order c_i - l; returns whether a state is displaced
   std::vector<int (*)(double*)> level;
-  // whether a state is displaced by it
   // Calls `find(name, part)` for each part of the code of a plan that is not long; there are `levels` hidden levels.
   template <class Find>
   void for_each_part(int levels, const Find& find) {

@@ -47,8 +47,8 @@ std::vector<StateEntry> higher_state(const Scenario& s) {
   return list;
 }
 
-std::string power_text(const Scenario& s, const Explanation& x, std::size_t r) {
-  const Expr factor = x.constraints[r].power_factor;
+std::string power_text(const Scenario& s, const ConstraintFacts& facts, std::size_t r) {
+  const Expr factor = facts.power_factor;
   const Expr lambda = factor.graph->multiplier(static_cast<std::uint32_t>(r), 0);
   return print(lambda * factor, s.model->names, Format::text);
 }
@@ -62,10 +62,10 @@ std::string description(const ConstraintClass& c, int order) {
   return s;
 }
 
-std::string work(const Scenario& s, const Explanation& x, std::size_t r, std::size_t longest) {
+std::string work(const Scenario& s, const ConstraintFacts& facts, std::size_t r, std::size_t longest) {
   if (s.model->constraints[r].by) return "servo";
-  if (is_zero(x.constraints[r].power_factor)) return "does no work";
-  const std::string power = power_text(s, x, r);
+  if (is_zero(facts.power_factor)) return "does no work";
+  const std::string power = power_text(s, facts, r);
   return power.size() > longest ? "may do work" : "may do work, of power " + power;
 }
 

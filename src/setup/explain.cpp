@@ -47,17 +47,24 @@ const char* name(Hypothesis h) {
   return "";
 }
 
+std::vector<ConstraintFacts> constraint_facts(Workspace& s) {
+  PointValues at = values_near(*s.model, parameter_values<double>(*s.model), s.state);
+  std::vector<ConstraintFacts> list;
+  for (std::size_t r = 0; r < s.classes.size(); ++r) {
+    ConstraintFacts c{hypothesis(s.classes[r], s.mechanics->order[r]), power_factor(*s.mechanics, r), {}};
+    if (s.classes[r].redundant) c.follows_from = made_of(s, r, at);
+    list.push_back(std::move(c));
+  }
+  return list;
+}
+
 Explanation explain(Workspace& s) {
   Explanation x;
+  x.constraints = constraint_facts(s);
   PointValues at = values_near(*s.model, parameter_values<double>(*s.model), s.state);
   std::vector<std::size_t> linear;
-  for (std::size_t r = 0; r < s.classes.size(); ++r) {
-    const int order = s.mechanics->order[r];
-    ConstraintFacts c{hypothesis(s.classes[r], order), power_factor(*s.mechanics, r), {}};
-    if (s.classes[r].redundant) c.follows_from = made_of(s, r, at);
-    if (order == 1 && c.hypothesis == Hypothesis::dalembert) linear.push_back(r);
-    x.constraints.push_back(c);
-  }
+  for (std::size_t r = 0; r < s.classes.size(); ++r)
+    if (s.mechanics->order[r] == 1 && x.constraints[r].hypothesis == Hypothesis::dalembert) linear.push_back(r);
   x.integrability = integrability(*s.mechanics, linear, at);
   if (!s.structure.c.empty()) {
     x.blocks = blocks(s.structure);

@@ -31,6 +31,9 @@ struct Explanation {
   std::vector<HiddenConstraint> hidden;
 };
 
+// One entry for each constraint of the model, in its order; the expressions are those of the workspace.
+std::vector<ConstraintFacts> constraint_facts(Workspace& scenario);
+
 // Its expressions are those of the workspace.
 Explanation explain(Workspace& scenario);
 

@@ -160,6 +160,23 @@ const tests = {
     assert.deepEqual(faults, []);
     await page.close();
   },
+  async 'a new motion is drawn once'(s) {
+    const { page, faults, draws } = await open(s);
+    await page.evaluate(() => {
+      const { prototype } = CanvasRenderingContext2D, draw = prototype.drawImage;
+      window.drawn = 0;
+      prototype.drawImage = function (...words) { if (this.canvas.classList.contains('view')) ++window.drawn; return draw.apply(this, words); };
+    });
+    const edits = 3;
+    for (let k = 0; k < edits; ++k) {
+      await edit(page, k === 0 ? 'm = 1' : `m = 1.${k}`, `m = 1.${k + 1}`);
+      await page.waitForFunction(() => document.documentElement.dataset.done === document.documentElement.dataset.shown, null, { timeout: 90000 });
+      await page.evaluate(() => new Promise((next) => requestAnimationFrame(() => requestAnimationFrame(next))));
+    }
+    assert.equal(await page.evaluate(() => window.drawn), draws ? edits : 0);
+    assert.deepEqual(faults, []);
+    await page.close();
+  },
   async 'it can be used with a reader of screens, and on a phone'(s) {
     for (const width of [1280, 390]) {
       const { page } = await open(s, width);

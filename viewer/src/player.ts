@@ -19,6 +19,7 @@ export class Player {
   private active: View[] = [];
   private follow = '';
   private visible = false;
+  private missed = true;         // something changed that is not drawn yet
   private readonly ends: (() => void)[] = [];     // what close() undoes
 
   constructor(readonly place: HTMLElement, private readonly data: Case, readonly model: SceneModel, private readonly clock: Clock) {
@@ -70,20 +71,21 @@ export class Player {
   get look(): Look | null { return this.made.get('observer')?.look ?? null; }
   set look(look: Look | null) { if (look) this.view('observer').look = look; }
 
-  // Built when first seen: a page may have many cases.
+  // Built when first seen: a page may have many cases. What is drawn and has not changed since is not drawn again.
   wake(): void {
     for (const v of this.active) {
+      const due = this.missed || !v.ready;
       if (!v.ready) v.build();
-      v.resize();
-      v.draw();
+      if (!v.resize() && due) v.draw();
     }
+    this.missed = false;
   }
 
   // At once, for whoever takes a picture of the page right after.
   draw_now(): void { for (const v of this.active) v.draw(); }
 
   private redraw(): void {
-    if (!this.visible) return;
+    if (!this.visible) { this.missed = true; return; }
     for (const v of this.active) v.request();
   }
 
@@ -105,6 +107,7 @@ export class Player {
     this.views.dataset.count = String(frames.length);
     this.views.replaceChildren(...this.active.map((v) => h('div', { class: 'view-box' }, v.canvas, v.note,
       this.model.motion ? h('span', { class: 'note frame-note' }, v.frame === 'observer' ? 'moving observer' : 'inertial frame') : null)));
+    this.missed = true;          // while a view is not shown, it misses changes
     if (this.visible) this.wake();
   }
 

@@ -24,13 +24,11 @@ export class Plots implements Owner {
     for (const s of place.querySelectorAll<HTMLElement>('.static')) s.hidden = true;
     place.classList.add('live');
     place.append(this.head(), this.stack);
-    const width = place.clientWidth || 600;
-    for (const group of this.groups()) {
-      const plot = new Plot(data, group, data.columns.filter((c) => c.group === group.id), this);
-      this.plots.push(plot);
-      this.stack.append(plot.element);
-      plot.resize(plot.chart_width || width);
-    }
+    for (const group of this.groups()) this.plots.push(new Plot(data, group, data.columns.filter((c) => c.group === group.id), this));
+    this.stack.append(...this.plots.map((p) => p.element));
+    // All widths before the first plot changes: the browser lays the page out once, and not once for each plot.
+    const width = place.clientWidth || 600, widths = this.plots.map((p) => p.chart_width || width);
+    this.plots.forEach((p, k) => p.resize(widths[k]));
     this.chips();
     clock.listen(() => this.request());
     this.ends.push(on_theme(() => { for (const p of this.plots) p.recolor(); }));
@@ -143,7 +141,8 @@ export class Plots implements Owner {
   }
 
   private resize(width?: number): void {
-    for (const p of this.plots) if (!p.element.hidden) p.resize(width ?? p.chart_width);
+    const shown = this.plots.filter((p) => !p.element.hidden), widths = shown.map((p) => width ?? p.chart_width);
+    shown.forEach((p, k) => p.resize(widths[k]));
     this.request();
   }
 }

@@ -38,7 +38,7 @@ export class View {
   private follow = '';
   private anchor: { eye: Vector; target: Vector } = { eye: [0, 0, 0], target: [0, 0, 0] };
   private half = 1;                              // half the height of an orthographic picture at zoom 1
-  private requested = false;
+  private requested = 0;                         // the frame that will draw; 0: none
   private built = false;
   private untouched = true;                      // the reader has not turned the camera yet
 
@@ -121,23 +121,26 @@ export class View {
 
   private ratio(): number { return Math.min(2, devicePixelRatio || 1); }
 
-  // To the size that the page gives the canvas.
-  resize(): void {
+  // To the size that the page gives the canvas. Returns whether that drew the picture.
+  resize(): boolean {
     const width = Math.round(this.canvas.clientWidth * this.ratio()), height = Math.round(this.canvas.clientHeight * this.ratio());
-    if (width === 0 || height === 0 || (width === this.canvas.width && height === this.canvas.height)) return;
+    if (width === 0 || height === 0 || (width === this.canvas.width && height === this.canvas.height)) return false;
     this.canvas.width = width;
     this.canvas.height = height;
     if (this.untouched) this.reset();
     this.draw();
+    return this.built;
   }
 
   request(): void {
     if (this.requested || !this.built) return;
-    this.requested = true;
-    requestAnimationFrame(() => { this.requested = false; this.draw(); });
+    this.requested = requestAnimationFrame(() => this.draw());
   }
 
+  // At once, in place of a drawing that was requested.
   draw(): void {
+    cancelAnimationFrame(this.requested);
+    this.requested = 0;
     if (!this.built || this.canvas.width === 0) return;
     const time = this.now();
     const poses = this.model.pose(time);

@@ -21,7 +21,7 @@ void constraint(JsonWriter& j, const Scenario& s, const Explanation& x, std::siz
       .key("none")
       .boolean(is_zero(facts.power_factor))
       .key("power")
-      .string(power_text(s, x, r))
+      .string(power_text(s, x.constraints[r], r))
       .close();
   if (!s.classes[r].redundant) return;
   j.key("follows_from").open_array();

@@ -221,7 +221,7 @@ void check_text(Workspace& s, const Explanation& x, const Outcome& outcome) {
     if (!redundant.empty() && c.name.find('.') != std::string::npos && c.name.back() >= 'x')
       redundant += "; 'along' names the directions that count";
     say(stdout, "  %-14s %s; %s%s\n", "", description(s.classes[r], c.order).c_str(),
-        work(s, x, r, kLongestPower).c_str(), redundant.c_str());
+        work(s, x.constraints[r], r, kLongestPower).c_str(), redundant.c_str());
   }
   reactions(s, x);
   integrability(s, x);

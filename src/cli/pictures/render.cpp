@@ -284,7 +284,7 @@ int render(const RenderCommand& o) {
   const Moments m = moments(r, table.values[time].front(), table.values[time].back());
 
   Page page;
-  page.cases.push_back({x.name, x.scenario.get(), nullptr, {}, std::move(x.run)});
+  page.cases.push_back({x.name, x.scenario.get(), {}, {}, std::move(x.run)});
   page.version = "anholon " ANHOLON_VERSION;
   page.source = x.in.source;
   try {

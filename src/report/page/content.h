@@ -10,9 +10,9 @@ namespace anholon {
 
 // One case of the model with its motion.
 struct PageCase {
-  std::string name;               // of the scenario; empty without one
-  Workspace* scenario = nullptr;  // of all expressions of the case
-  const Explanation* explanation = nullptr;
+  std::string name;                    // of the scenario; empty without one
+  Workspace* scenario = nullptr;       // of all expressions of the case
+  std::vector<ConstraintFacts> facts;  // of the model's constraints; empty if the page has no section on the system
   std::vector<Conserved> conserved;
   RunFile run;
 };

@@ -12,7 +12,7 @@ namespace anholon {
 std::string html(const Page& page);
 
 // The picture of the first case alone, for a recording: `script` runs after the viewer's script. It needs no
-// explanation and no equations.
+// facts of constraints and no equations.
 std::string stage_html(const Page& page, bool dark, const std::string& script);
 
 }  // namespace anholon

@@ -126,10 +126,9 @@ Proof add_proof(Page& page, const PageRequest& request, const Model& fresh) {
 
 PageInParts::PageInParts(std::vector<PagedRun> runs, std::shared_ptr<const Model> model, PageRequest request)
     : model_(std::move(model)), request_(std::move(request)) {
-  for (PagedRun& r : runs) {
-    explanations_.push_back(explain(*r.scenario));
-    page_.cases.push_back({r.name, r.scenario, &explanations_.back(), std::move(r.conserved), std::move(r.run)});
-  }
+  for (PagedRun& r : runs)
+    page_.cases.push_back(
+        {r.name, r.scenario, constraint_facts(*r.scenario), std::move(r.conserved), std::move(r.run)});
   page_.version = request_.version;
   page_.model_hash = model_hash(request_.source);
   page_.source = request_.source;

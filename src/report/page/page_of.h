@@ -1,6 +1,5 @@
 // The page of a motion, or of several of one model, from the motion alone: which equations are shown, and their proof.
 #pragma once
-#include <deque>
 #include <functional>
 
 #include "report/page/content.h"
@@ -42,7 +41,6 @@ class PageInParts {
   std::shared_ptr<const Model> model_;
   PageRequest request_;
   Page page_;
-  std::deque<Explanation> explanations_;
   std::shared_ptr<const Model> fresh_;  // the graph of the proof's expressions
   std::optional<Proof> proof_;
   std::size_t size_ = 0;  // of the first equations

@@ -53,7 +53,6 @@ class SystemSection {
 
   std::string constraints() const {
     const Scenario& s = *p_.cases[0].scenario;
-    const Explanation& x = *p_.cases[0].explanation;
     constexpr std::size_t kLongestPower = 80, kMost = 60;
     std::vector<std::vector<std::string>> rows;
     for (std::size_t r = 0; r < std::min(model_.constraints.size(), kMost); ++r) {
@@ -61,9 +60,9 @@ class SystemSection {
       std::string kind = description(s.classes[r], c.order);
       if (s.classes[r].redundant) kind += "; redundant here";
       const std::string reaction = c.by ? "kept by the input " + model_.controls[*c.by].name
-                                        : std::string(in_words(x.constraints[r].hypothesis));
+                                        : std::string(in_words(p_.cases[0].facts[r].hypothesis));
       rows.push_back({user(c.name), "<code>" + user(c.equation) + "</code>", markup_escape(kind),
-                      markup_escape(work(s, x, r, kLongestPower)), markup_escape(reaction)});
+                      markup_escape(work(s, p_.cases[0].facts[r], r, kLongestPower)), markup_escape(reaction)});
     }
     return table("Constraints", {"", "as written", "kind", "its reaction", "hypothesis"}, rows);
   }

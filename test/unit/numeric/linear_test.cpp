@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "numeric/linear.h"
+#include "support/gap.h"
 
 namespace anholon::linear_test {
 namespace {
+
+using test::largest_gap;
 
 template <class N>
 Matrix<N> random_matrix(std::size_t rows, std::size_t cols, unsigned seed) {
@@ -38,13 +41,6 @@ std::vector<N> times(const Matrix<N>& a, const std::vector<N>& x) {
   for (std::size_t i = 0; i < a.rows; ++i)
     for (std::size_t j = 0; j < a.cols; ++j) b[i] += a(i, j) * x[j];
   return b;
-}
-
-template <class N>
-double largest_gap(const std::vector<N>& a, const std::vector<N>& b) {
-  double gap = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) gap = std::max(gap, std::abs(to_double(N(a[i] - b[i]))));
-  return gap;
 }
 
 template <class N>

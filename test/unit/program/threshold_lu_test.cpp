@@ -7,9 +7,12 @@
 
 #include "numeric/linear.h"
 #include "program/threshold_lu.h"
+#include "support/gap.h"
 
 namespace anholon::threshold_lu_test {
 namespace {
+
+using test::largest_gap;
 
 template <class N>
 struct Sparse {
@@ -37,13 +40,6 @@ EliminationOrder natural(std::uint32_t n) {
   EliminationOrder order{std::vector<std::uint32_t>(n), std::vector<std::uint32_t>(n)};
   std::iota(order.column.begin(), order.column.end(), 0U), std::iota(order.row.begin(), order.row.end(), 0U);
   return order;
-}
-
-template <class N>
-double largest_gap(const std::vector<N>& a, const std::vector<N>& b) {
-  double gap = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) gap = std::max(gap, std::abs(to_double(N(a[i] - b[i]))));
-  return gap;
 }
 
 template <class N>
