@@ -229,7 +229,7 @@ TEST(VerifyZero, WhatHasNoRuleIsLeftOpen) {
 // A multiple of the primes at hand vanishes modulo each of them; real points are not deceived.
 TEST(VerifyZero, NumbersMadeForThePrimesAreContradicted) {
   Rational product = 1;
-  for (const auto p : verification::kPrimes) product *= Rational(std::to_string(p));
+  for (const auto p : verification::kPrimes) product *= Rational(p);
   const ClaimFinding f = check([&](Expr x, Expr, Expr) { return product * x; });
   EXPECT_EQ(f.finding, Finding::contradicted);
 }
