@@ -19,7 +19,7 @@ Rows motion(const std::string& text) {
   if (!o.ok()) throw std::runtime_error(o.message);
   SimulationOptions options;
   for (int k = 0; k <= 8; ++k) options.at.push_back(Rational(k, 4));
-  options.tolerance = 1e-17;
+  options.tolerance = Rational(1e-17);
   options.precision = Precision::long_real;
   test::TextRows sink;
   EXPECT_TRUE(simulate(s, options, sink).outcome.ok());

@@ -174,7 +174,7 @@ class Oracle : public testing::TestWithParam<Pair> {
     if (!o.ok()) throw std::runtime_error(o.message);
     SimulationOptions options;
     for (const json& t : path["times"]) options.at.push_back(exact(text(t))), options.at_text.push_back(text(t));
-    options.tolerance = tolerance;
+    options.tolerance = Rational(tolerance);
     options.precision = numbers;
     options.digits = digits;
     options.method = method;

@@ -20,7 +20,7 @@ Result run(const std::string& text, const Rational& to, const std::string& toler
   if (!r.report.outcome.ok()) return r;
   SimulationOptions o;
   o.to = to;
-  o.tolerance = Rational(tolerance);
+  o.tolerance = Rational(tolerance.c_str());
   if (more) more(o);
   r.report = simulate(s, o, r.rows);
   return r;
