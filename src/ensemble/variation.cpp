@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "modelfile/names/constant.h"
-#include "numeric/philox.h"
-#include "numeric/sobol.h"
+#include "numeric/random/philox.h"
+#include "numeric/random/sobol.h"
 
 namespace anholon {
 

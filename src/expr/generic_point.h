@@ -1,7 +1,7 @@
 // Values at which nothing is special: a point for ranks and zeros that must not depend on where they are looked at.
 #pragma once
 #include "expr/expr.h"
-#include "numeric/philox.h"
+#include "numeric/random/philox.h"
 
 namespace anholon {
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <unordered_map>
 
-#include "numeric/philox.h"
 #include "numeric/prime_field.h"
+#include "numeric/random/philox.h"
 
 namespace anholon {
 

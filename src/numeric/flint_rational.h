@@ -13,10 +13,6 @@ namespace anholon {
 struct FlintRational {
   static fmpq* of(Rational& r) { return reinterpret_cast<fmpq*>(&r); }
   static const fmpq* of(const Rational& r) { return reinterpret_cast<const fmpq*>(&r); }
-  static fmpz* num(Rational& r) { return fmpq_numref(of(r)); }
-  static fmpz* den(Rational& r) { return fmpq_denref(of(r)); }
-  static const fmpz* num(const Rational& r) { return fmpq_numref(of(r)); }
-  static const fmpz* den(const Rational& r) { return fmpq_denref(of(r)); }
 
  private:
   static_assert(std::is_same_v<fmpz, long> && sizeof(fmpq) == sizeof(Rational));

@@ -6,16 +6,15 @@
 #include <limits>
 #include <ostream>
 
-#include "numeric/flint_rational.h"
+#include <flint/fmpq.h>
 
 namespace anholon {
 
 namespace {
 
-fmpq* flint(Rational& r) { return FlintRational::of(r); }
-const fmpq* flint(const Rational& r) { return FlintRational::of(r); }
-const fmpz* num(const Rational& r) { return FlintRational::num(r); }
-const fmpz* den(const Rational& r) { return FlintRational::den(r); }
+// The layout is FLINT's (numeric/flint_rational.h).
+fmpq* flint(Rational& r) { return reinterpret_cast<fmpq*>(&r); }
+const fmpq* flint(const Rational& r) { return reinterpret_cast<const fmpq*>(&r); }
 
 mpz_class integer(const fmpz* n) {
   mpz_class out;
@@ -126,7 +125,7 @@ Rational gcd(const Rational& a, const Rational& b) {
 
 Rational floor(const Rational& a) {
   Rational out;
-  fmpz_fdiv_q(FlintRational::num(out), num(a), den(a));
+  fmpz_fdiv_q(&out.num_, &a.num_, &a.den_);
   return out;
 }
 

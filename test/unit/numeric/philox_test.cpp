@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "numeric/philox.h"
+#include "numeric/random/philox.h"
 
 namespace anholon::philox_test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "numeric/sobol.h"
+#include "numeric/random/sobol.h"
 
 namespace anholon::sobol_test {
 namespace {

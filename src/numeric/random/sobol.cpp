@@ -1,4 +1,4 @@
-#include "numeric/sobol.h"
+#include "numeric/random/sobol.h"
 
 #include <algorithm>
 #include <array>
