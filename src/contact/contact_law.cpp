@@ -26,51 +26,104 @@ Real largest(const Numbers& a) {
   return most;
 }
 
-// By Gauss with complete pivoting, rows scaled to 1 and columns to about 1, as friction may be large; nullopt if the
-// matrix is singular.
-std::optional<Numbers> solve(std::vector<Numbers> m, Numbers right) {
-  const std::size_t n = right.size();
-  std::vector<int> scales(n, 0);
-  for (std::size_t j = 0; j < n; ++j) {
-    Real most = 0;
-    for (const Numbers& row : m) most = std::max(most, std::abs(row[j]));
-    if (!(most > 0) || !std::isfinite(most)) return std::nullopt;
-    scales[j] = -std::ilogb(most);
-    for (Numbers& row : m) row[j] = std::scalbn(row[j], scales[j]);
-  }
-  std::vector<std::size_t> column(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    column[i] = i;
-    const Real scale = largest(m[i]);
-    if (!(scale > 0)) return std::nullopt;
-    for (Real& x : m[i]) x /= scale;
-    right[i] /= scale;
-  }
-  for (std::size_t k = 0; k < n; ++k) {
-    std::size_t row = k, best = k;
-    for (std::size_t i = k; i < n; ++i)
-      for (std::size_t j = k; j < n; ++j)
-        if (std::abs(m[i][j]) > std::abs(m[row][best])) row = i, best = j;
-    if (!(std::abs(m[row][best]) > kSame)) return std::nullopt;
-    std::swap(m[k], m[row]), std::swap(right[k], right[row]);
-    for (Numbers& r : m) std::swap(r[k], r[best]);
-    std::swap(column[k], column[best]);
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const Real factor = m[i][k] / m[k][k];
-      if (factor == 0) continue;
-      for (std::size_t j = k; j < n; ++j) m[i][j] -= factor * m[k][j];
-      right[i] -= factor * right[k];
+// Square linear equations, solved by Gauss with complete pivoting, rows scaled to 1 and columns to about 1, as friction
+// may be large.
+class PivotedEquations {
+ public:
+  explicit PivotedEquations(std::size_t n) : n_(n), m_(n * n, 0), right_(n, 0) {}
+
+  Real* operator[](std::size_t row) { return m_.data() + row * n_; }
+  Numbers& right() { return right_; }
+
+  // nullopt if the matrix is singular. The equations are lost.
+  std::optional<Numbers> solve() {
+    std::vector<int> scales(n_, 0);
+    if (!scale(scales)) return std::nullopt;
+    std::vector<std::size_t> column(n_);
+    for (std::size_t j = 0; j < n_; ++j) column[j] = j;
+    Pivot pivot = largest_of(0);
+    for (std::size_t k = 0; k < n_; ++k) {
+      if (!(pivot.size > kSame)) return std::nullopt;
+      exchange(k, pivot);
+      std::swap(column[k], column[pivot.column]);
+      pivot = eliminate(k);
     }
+    Numbers x(n_);
+    for (std::size_t k = n_; k-- > 0;) {
+      const Real* row = (*this)[k];
+      Real sum = right_[k];
+      for (std::size_t j = k + 1; j < n_; ++j) sum -= row[j] * x[column[j]];
+      x[column[k]] = sum / row[k];
+    }
+    for (std::size_t j = 0; j < n_; ++j) x[j] = std::scalbn(x[j], scales[j]);
+    return x;
   }
-  Numbers x(n);
-  for (std::size_t k = n; k-- > 0;) {
-    Real sum = right[k];
-    for (std::size_t j = k + 1; j < n; ++j) sum -= m[k][j] * x[column[j]];
-    x[column[k]] = sum / m[k][k];
+
+ private:
+  // The first of the largest elements, row by row.
+  struct Pivot {
+    std::size_t row = 0, column = 0;
+    Real size = -1;
+    void consider(Real x, std::size_t i, std::size_t j) {
+      if (x = std::abs(x); x > size) *this = {i, j, x};
+    }
+  };
+
+  // Returns false if a column or a row is zero, or a column is not finite.
+  bool scale(std::vector<int>& scales) {
+    Numbers most(n_, 0);
+    for (std::size_t i = 0; i < n_; ++i)
+      for (std::size_t j = 0; j < n_; ++j) most[j] = std::max(most[j], std::abs((*this)[i][j]));
+    for (std::size_t j = 0; j < n_; ++j) {
+      if (!(most[j] > 0) || !std::isfinite(most[j])) return false;
+      scales[j] = -std::ilogb(most[j]);
+      most[j] = std::scalbn(Real(1), scales[j]);
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+      Real* row = (*this)[i];
+      Real size = 0;
+      for (std::size_t j = 0; j < n_; ++j) size = std::max(size, std::abs(row[j] *= most[j]));
+      if (!(size > 0)) return false;
+      for (std::size_t j = 0; j < n_; ++j) row[j] /= size;
+      right_[i] /= size;
+    }
+    return true;
   }
-  for (std::size_t j = 0; j < n; ++j) x[j] = std::scalbn(x[j], scales[j]);
-  return x;
-}
+
+  Pivot largest_of(std::size_t k) {
+    Pivot pivot{k, k, -1};
+    for (std::size_t i = k; i < n_; ++i)
+      for (std::size_t j = k; j < n_; ++j) pivot.consider((*this)[i][j], i, j);
+    return pivot;
+  }
+
+  void exchange(std::size_t k, const Pivot& pivot) {
+    if (pivot.row != k) {
+      std::swap_ranges((*this)[k], (*this)[k] + n_, (*this)[pivot.row]);
+      std::swap(right_[k], right_[pivot.row]);
+    }
+    if (pivot.column != k)
+      for (std::size_t i = 0; i < n_; ++i) std::swap((*this)[i][k], (*this)[i][pivot.column]);
+  }
+
+  // Returns the next pivot.
+  Pivot eliminate(std::size_t k) {
+    const Real* by = (*this)[k];
+    Pivot next{k + 1, k + 1, -1};
+    for (std::size_t i = k + 1; i < n_; ++i) {
+      Real* row = (*this)[i];
+      if (const Real factor = row[k] / by[k]; factor != 0) {
+        for (std::size_t j = k + 1; j < n_; ++j) row[j] -= factor * by[j];
+        right_[i] -= factor * right_[k];
+      }
+      for (std::size_t j = k + 1; j < n_; ++j) next.consider(row[j], i, j);
+    }
+    return next;
+  }
+
+  std::size_t n_;
+  Numbers m_, right_;
+};
 
 }  // namespace
 
@@ -87,8 +140,8 @@ std::optional<ContactSolution> of_modes(const ContactProblem& p, const ContactMo
   }
   const auto normal = [&](std::size_t c) { return first[p.contacts[c].under.value_or(c)]; };
   const auto tangential = [&](std::size_t c) { return first[c] + (p.contacts[c].under ? 0 : 1); };
-  std::vector<Numbers> m(size, Numbers(size, 0));
-  Numbers right(size, 0);
+  PivotedEquations m(size);
+  Numbers& right = m.right();
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) m[i][j] = p.A[i][j];
     for (std::size_t r = 0; r < s; ++r) m[i][n + r] = -p.Phi[r][i], m[n + r][i] = p.Phi[r][i];
@@ -116,7 +169,7 @@ std::optional<ContactSolution> of_modes(const ContactProblem& p, const ContactMo
     if (modes[c].touch == Touch::sticks && !modes[c].free)
       for (std::size_t a = 0; a < rows.tangential.size(); ++a) right[kt + a] = -rows.tangential_rate[a];
   }
-  const auto found = solve(std::move(m), std::move(right));
+  const auto found = m.solve();
   if (!found) return std::nullopt;
   ContactSolution f;
   f.modes = modes;
