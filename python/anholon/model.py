@@ -302,6 +302,8 @@ class Model(Analysed):
             MotionError: the initial values of the model are inconsistent.
             Interrupted: Ctrl-C; ``.result`` is the sweep as far as it came.
         """
+        if "case" in vary and "case" not in self.parameters:
+            raise ModelError('a sweep varies numbers, and "case" names sections of the file\nhint: one sweep for each: model.with_(case="NAME").sweep(...)')
         values = [(str(name), [] if isinstance(of, Law) else list_of(of)) for name, of in vary.items()]
         if isinstance(columns, str) or isinstance(reduce, str):
             raise TypeError('columns and reduce are lists of names: ["theta"]')

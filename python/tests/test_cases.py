@@ -52,3 +52,11 @@ def test_borders_of_a_case_are_refined(tmp_path: pathlib.Path, program: Callable
     assert np.array_equal(swept["theta"], theirs["theta"])
     plain = an.load(path).sweep({"theta'": an.grid(0, 8, 5)}, to=5, out=tmp_path / "plain", refine=2, refine_by=("theta", 1.0))
     assert not np.array_equal(plain["theta"][:5], swept["theta"][:5])
+
+
+def test_a_sweep_over_cases_says_how_to_write_it() -> None:
+    model = an.loads(CASES)
+    with pytest.raises(an.ModelError, match=r'with_\(case="NAME"\)'):
+        model.sweep({"case": ["moon", "long"], "theta": [0.1]})
+    ends = [model.with_(case=name).sweep({"theta": [0.1]})["theta"][0] for name in model.cases]
+    assert ends[0] > ends[1] > 0  # 0.0294 and 0.0006 rad
