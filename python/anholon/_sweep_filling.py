@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import json
 import math
 import os
@@ -89,8 +90,9 @@ class SweepRequest:
         )
 
 
-# The equations of a sweep are derived once in a process.
+# The equations of a sweep are derived once in a process. What this holds is let go of before the core is taken down.
 _opened: dict[tuple[str, bytes], _core.SweepFolder] = {}
+atexit.register(_opened.clear)
 
 
 def _key(folder: str) -> tuple[str, bytes]:

@@ -4,6 +4,8 @@ import hashlib
 import pathlib
 import pickle
 import signal
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -215,7 +217,6 @@ def test_chosen_cases_and_their_motions(tmp_path: pathlib.Path, disc: an.Model) 
 
 def test_motions_of_a_folder_of_the_command_line(tmp_path: pathlib.Path) -> None:
     import os
-    import subprocess
 
     words = ["--vary", "phi'=1:7:7", "--set", "m=2", "--qdot", "psi=0.1", "--to", "3", "--quiet", "-o", str(tmp_path / "f") + "/"]
     subprocess.run([os.environ["ANHOLON_PROGRAM"], "sweep", "disc", *words], check=True)
@@ -263,3 +264,9 @@ def test_a_part_that_cannot_be_written_ends_the_sweep(client: Any, tmp_path: pat
     with pytest.raises(an.ModelError, match="part-000005"):
         swept.progress()
     assert hashes(folder / "part-000005.parquet") == before
+
+
+def test_a_process_that_fills_a_folder_ends_without_a_word(tmp_path: pathlib.Path) -> None:
+    script = "import numpy, anholon as an\nan.load('disc').sweep({\"phi'\": [5, 6]}, to=1, out='falls')"
+    done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
