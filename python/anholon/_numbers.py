@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import numbers
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
@@ -63,9 +64,12 @@ def float_of(text: str | None) -> float | None:
         return None
 
 
-def list_of(values: Iterable[Number]) -> list[str]:
-    """The same for a list or an array."""
-    return [text_of(value) for value in values]
+def list_of(values: Number | Iterable[Number]) -> list[str]:
+    """The texts of a list or an array, of one number, or of a text with commas: ``"0.4, 0.5"`` as on the command line."""
+    if isinstance(values, str):
+        # A comma within parentheses belongs to a function.
+        return [text.strip() for text in re.split(r",(?![^(]*\))", values)]
+    return [text_of(value) for value in values] if isinstance(values, Iterable) else [text_of(values)]
 
 
 def exact_numbers(texts: Sequence[str]) -> list[Any]:

@@ -18,7 +18,7 @@ from .check import Check
 from .dynamics import Dynamics
 from .expressions import Expr
 from .run import Run
-from .sweep import Law, Sweep
+from .sweep import Law, Sweep, is_law
 from .sweep_folder import SweepFolder
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ class Model(Analysed):
         to: Number | None = None,
         *,
         every: Number | None = None,
-        at: Iterable[Number] = (),
+        at: Number | Iterable[Number] = (),
         initial: Mapping[str, Number] | None = None,
         tolerance: Number | None = None,
         form: str = "routh",
@@ -191,10 +191,10 @@ class Model(Analysed):
     @overload
     def sweep(
         self,
-        vary: Mapping[str, Iterable[Number] | Law],
+        vary: Mapping[str, Number | Iterable[Number] | Law],
         *,
         to: Number | None = None,
-        at: Iterable[Number] = (),
+        at: Number | Iterable[Number] = (),
         columns: Iterable[str] = (),
         reduce: Iterable[str] = (),
         cases: int | None = None,
@@ -213,10 +213,10 @@ class Model(Analysed):
     @overload
     def sweep(
         self,
-        vary: Mapping[str, Iterable[Number] | Law],
+        vary: Mapping[str, Number | Iterable[Number] | Law],
         *,
         to: Number | None = None,
-        at: Iterable[Number] = (),
+        at: Number | Iterable[Number] = (),
         columns: Iterable[str] = (),
         reduce: Iterable[str] = (),
         cases: int | None = None,
@@ -239,10 +239,10 @@ class Model(Analysed):
 
     def sweep(
         self,
-        vary: Mapping[str, Iterable[Number] | Law],
+        vary: Mapping[str, Number | Iterable[Number] | Law],
         *,
         to: Number | None = None,
-        at: Iterable[Number] = (),
+        at: Number | Iterable[Number] = (),
         columns: Iterable[str] = (),
         reduce: Iterable[str] = (),
         cases: int | None = None,
@@ -266,7 +266,8 @@ class Model(Analysed):
 
         Args:
             vary: by the name of a parameter, a coordinate or a velocity: a list or an array of values, a grid
-                (:func:`grid`), or a law (:func:`normal`, :func:`uniform`) by which each case draws its own.
+                (:func:`grid`), or a law (:func:`normal`, :func:`uniform`) by which each case draws its own. A text is read as
+                that of ``--vary`` is: ``"5,6,7"``, ``"1:7:100"``, ``"normal(1,0.1)"``.
             to: the end, s; that of the file if it is None, or the last of ``at``.
             at: times, s, at which the state of each case is kept, too: ``sweep.rows("theta")`` has shape (cases, times).
             columns: names or patterns such as ``"theta*"``; all columns without it.
@@ -304,10 +305,10 @@ class Model(Analysed):
         """
         if "case" in vary and "case" not in self.parameters:
             raise ModelError('a sweep varies numbers, and "case" names sections of the file\nhint: one sweep for each: model.with_(case="NAME").sweep(...)')
-        values = [(str(name), [] if isinstance(of, Law) else list_of(of)) for name, of in vary.items()]
+        laws = {name: str(of) for name, of in vary.items() if is_law(of)}
+        values = [(str(name), [] if name in laws else list_of(of)) for name, of in vary.items()]
         if isinstance(columns, str) or isinstance(reduce, str):
             raise TypeError('columns and reduce are lists of names: ["theta"]')
-        laws = {name: str(of) for name, of in vary.items() if isinstance(of, Law)}
         end, relative = (None if number is None else text_of(number) for number in (to, tolerance))
         words: Words = (values, laws, cases, seed, draw, together, end, relative, list_of(at), list(columns), list(reduce))
         if out is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,11 @@ if TYPE_CHECKING:
 
 class Law(str):
     """A law that gives a value to each case; see :func:`normal`, :func:`uniform` and :func:`grid`."""
+
+
+def is_law(of: object) -> bool:
+    """Whether values of a sweep are a law, or a text that is one."""
+    return isinstance(of, Law) or (isinstance(of, str) and (":" in of or re.match(r"\s*(normal|uniform)\s*\(", of) is not None))
 
 
 def normal(mean: Number, deviation: Number) -> Law:

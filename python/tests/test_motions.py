@@ -241,3 +241,13 @@ def test_other_libraries(disc: an.Model) -> None:
     del run
     gc.collect()
     assert column.to_pylist()[0] == frame["theta"][0]
+
+
+def test_texts_of_values_and_times_are_those_of_the_command_line(disc: an.Model) -> None:
+    """A text is not taken for the list of its characters."""
+    for of, values in (("10", [10]), (10, [10]), ("5, 6,7", [5, 6, 7]), ("1:7:3", [1, 4, 7]), ("max(2,3),4", [3, 4])):
+        assert disc.sweep({"phi'": of}, to="0.01").varied["phi'"].tolist() == values
+    written, made = (disc.sweep({"phi'": of}, cases=3, to="0.01").varied["phi'"] for of in ("normal(5,0.1)", an.normal(5, 0.1)))
+    assert np.array_equal(written, made) and len(made) == 3
+    assert disc.simulate(at="0.5, 1").t.tolist() == [0.5, 1] and disc.simulate(at=0.25).t.tolist() == [0.25]
+    assert disc.sweep({"phi'": 5}, at="0.01,0.02").times.tolist() == [0.01, 0.02]
