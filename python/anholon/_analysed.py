@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from . import _core
 from ._described import Described
 from ._errors import ModelError
+from ._names import names_of
 from ._numbers import Number, list_of, spaced, text_of, texts_of
 from .analysis import Comparison, LinearModel, PublishedEquations, Stability, State, equation_text
 from .equations import Equations, Proof
@@ -45,17 +46,17 @@ class Analysed(Described):
         """The equations together with the ideal reactions of the constraints."""
         return self.equations(form, reactions=True)
 
-    def prove(self, *forms: str) -> Proof:
+    def prove(self, *forms: str | Iterable[str]) -> Proof:
         """Proves that forms (all that apply if none is named) agree with Routh's equations.
 
         Raises:
             ModelError: a form is not known.
         """
-        return Proof(_core.prove(self._core, list(forms)))
+        return Proof(_core.prove(self._core, [name for form in forms for name in names_of(form)]))
 
     # ---- at a state ----
 
-    def compare(self, equations: PublishedEquations, *, eliminate: Iterable[str] = (), initial: Mapping[str, Number] | None = None) -> Comparison:
+    def compare(self, equations: PublishedEquations, *, eliminate: str | Iterable[str] = (), initial: Mapping[str, Number] | None = None) -> Comparison:
         """Compares published equations with the derived ones: which are true, and where the others are wrong.
 
         Args:
@@ -79,7 +80,7 @@ class Analysed(Described):
         Source: the criterion of ``anholon compare`` (theory: proof).
         """
         text, is_file = equation_text(equations)
-        return Comparison(self.title, _core.compare(self._core, text, is_file, "equations", list(eliminate), texts_of(initial)))
+        return Comparison(self.title, _core.compare(self._core, text, is_file, "equations", names_of(eliminate), texts_of(initial)))
 
     def evaluate(
         self,
@@ -87,7 +88,7 @@ class Analysed(Described):
         initial: Mapping[str, Number] | None = None,
         t: Number | None = None,
         form: str = "routh",
-        eliminate: Iterable[str] = (),
+        eliminate: str | Iterable[str] = (),
         digits: int = 16,
     ) -> State:
         """Everything about one state: forces, accelerations, multipliers, reactions, energies, residuals.
@@ -121,7 +122,7 @@ class Analysed(Described):
         initial: Mapping[str, Number] | None = None,
         t: Number | None = None,
         form: str = "routh",
-        eliminate: Iterable[str] = (),
+        eliminate: str | Iterable[str] = (),
         digits: int = 16,
     ) -> LinearModel:
         """The linear model z' = A z + B u, y = C z + D u, with [input] as u and [output] as y.
@@ -146,7 +147,7 @@ class Analysed(Described):
 
         Source: dE/dx of the equations and of their derivatives (theory: linear-models).
         """
-        return LinearModel(_core.linearize(self._core, form, self._linear(about, initial, t), list(eliminate), about == "equilibrium", digits))
+        return LinearModel(_core.linearize(self._core, form, self._linear(about, initial, t), names_of(eliminate), about == "equilibrium", digits))
 
     @staticmethod
     def _linear(about: str, initial: Mapping[str, Number] | None, t: Number | None) -> dict[str, str]:
@@ -168,7 +169,7 @@ class Analysed(Described):
         initial: Mapping[str, Number] | None = None,
         t: Number | None = None,
         form: str = "routh",
-        eliminate: Iterable[str] = (),
+        eliminate: str | Iterable[str] = (),
         digits: int = 16,
     ) -> Stability:
         """Eigenvalues over a parameter, as curves, and the values at which they cross the imaginary axis.
@@ -201,4 +202,4 @@ class Analysed(Described):
         else:
             values = spaced(low, high, n)
         given = self._linear(about, initial, t)
-        return Stability(_core.stability(self._core, parameter, values, form, given, list(eliminate), about == "equilibrium", digits))
+        return Stability(_core.stability(self._core, parameter, values, form, given, names_of(eliminate), about == "equilibrium", digits))

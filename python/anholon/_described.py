@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from . import _core
+from ._names import names_of
 from ._source import Source
 
 _KEPT = 16  # prepared systems of a model
@@ -70,8 +71,8 @@ class Described:
         """Warnings and notes of the reader."""
         return self._core.remarks
 
-    def _system(self, form: str, initial: Mapping[str, str], eliminate: Iterable[str]) -> _core.System:
-        key = (form, tuple(sorted(initial.items())), tuple(eliminate))
+    def _system(self, form: str, initial: Mapping[str, str], eliminate: str | Iterable[str]) -> _core.System:
+        key = (form, tuple(sorted(initial.items())), tuple(names_of(eliminate)))
         if key not in self._prepared:
             while len(self._prepared) >= _KEPT:
                 self._prepared.pop(next(iter(self._prepared)), None)

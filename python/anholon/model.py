@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 from . import _core
 from ._analysed import Analysed
 from ._errors import Interrupted, ModelError, MotionError
+from ._names import names_of
 from ._numbers import Number, float_of, list_of, text_of, texts_of
 from ._progress import Progress, Shown
 from ._source import Source
@@ -98,7 +99,7 @@ class Model(Analysed):
 
     # ---- its motion ----
 
-    def initial(self, *, form: str = "routh", eliminate: Iterable[str] = (), **values: Number) -> list[_core.InitialValue]:
+    def initial(self, *, form: str = "routh", eliminate: str | Iterable[str] = (), **values: Number) -> list[_core.InitialValue]:
         """The consistent initial state, each value with where it comes from.
 
         Raises:
@@ -115,7 +116,7 @@ class Model(Analysed):
         initial: Mapping[str, Number] | None = None,
         tolerance: Number | None = None,
         form: str = "routh",
-        eliminate: Iterable[str] = (),
+        eliminate: str | Iterable[str] = (),
         method: str | None = None,
         digits: int | None = None,
         order: int | None = None,
@@ -331,8 +332,8 @@ class Model(Analysed):
         self,
         *,
         minimal: bool = True,
-        inputs: bool | Sequence[str] = False,
-        outputs: Sequence[str] | Mapping[str, str | Expr] | None = None,
+        inputs: bool | str | Sequence[str] = False,
+        outputs: str | Sequence[str] | Mapping[str, str | Expr] | None = None,
         initial: Mapping[str, Number] | None = None,
     ) -> Dynamics:
         """The equations as a compiled function f(t, x, u, p) -> x', for integrators and optimizers of others.
@@ -360,12 +361,12 @@ class Model(Analysed):
             >>> f(0, f.start).shape, f(0, np.tile(f.start[:, None], 1000)).shape
             ((8,), (8, 1000))
         """
-        names = [] if isinstance(inputs, bool) else list(inputs)
+        names = [] if isinstance(inputs, bool) else names_of(inputs)
         chosen: list[tuple[str, str]] | None = None
         if isinstance(outputs, Mapping):
             chosen = [(name, str(formula)) for name, formula in outputs.items()]
         elif outputs is not None:
-            chosen = [(str(name), "") for name in outputs]
+            chosen = [(name, "") for name in names_of(outputs)]
         return Dynamics(self, _core.dynamics(self._system("routh", texts_of(initial), ()), minimal, inputs is True, names, chosen))
 
     def c_code(self, *, initial: Mapping[str, Number] | None = None, form: str = "routh") -> str:

@@ -402,3 +402,13 @@ def test_reactions_and_multipliers_as_outputs() -> None:
             model.dynamics(outputs=mistake)
     with pytest.raises(an.ModelError, match="minimal=False"):
         model.dynamics(outputs=["lambda.rolling.y"])
+
+
+def test_a_text_is_one_name() -> None:
+    disc = an.load("disc")
+    assert list(disc.dynamics(outputs="theta").outputs) == ["theta"]
+    with pytest.raises(an.ModelError, match="there is no input 'torque'"):
+        disc.dynamics(inputs="torque")
+    assert str(disc.prove(["maggi", "kane"])) == str(disc.prove("maggi", "kane"))
+    with pytest.raises(an.ModelError, match=r"1 coordinates \(psi\)"):
+        disc.evaluate(form="chaplygin", eliminate="psi")
