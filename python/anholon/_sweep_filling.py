@@ -77,7 +77,7 @@ class SweepRequest:
     def open(self, folder: str, chunk: int) -> _core.SweepFolder:
         """Opens the folder or makes it."""
         if self._model._again.mode:
-            raise ModelError("a sweep in a folder reads the text of the model, without its mode\nhint: leave out 'folder', or write what touches as a [[constraint]]")
+            raise ModelError("a sweep in a folder reads the text of the model, without its mode\nhint: without 'out' it is kept in memory; or write what touches as a [[constraint]]")
         system = self._model._system(self._form, self._initial, ())
         return _core.sweep_into(system, self._words, folder, chunk, self._recipe())
 

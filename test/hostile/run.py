@@ -5,8 +5,8 @@
     run.py --self-test                                   each fault is found in a program that has it
 
 Every model of this folder goes through `check`, `simulate`, `evaluate` and `derive`, those that are too large to be stored (made
-below) through the first two, each with limits of processor time and memory. The limit of time tells a hang from work: it is
-five times what the slowest command takes on a slow core, so that no neighbour's load fails the test; `--seconds 2` asks whether
+below) through the first two, each with limits of processor time and memory. The limit of time tells a hang from work: the
+slowest command takes 1.6 s, and no neighbour's load may fail the test; `--seconds 2` asks whether
 each command ends within two seconds on a quiet one. The first line of a model says what must come of it:
 
     # expects: ok
