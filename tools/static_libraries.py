@@ -99,8 +99,16 @@ def build(name, source, prefix, log):
         do("cmake", "--build", "made", "-j", jobs)
         do("cmake", "--install", "made")
         return
-    do("make", "-j", jobs, "library" if name in ("flint", "arb") else "all")
-    do("make", "install")
+    if name not in ("flint", "arb"):
+        do("make", "-j", jobs, "all")
+        do("make", "install")
+        return
+    # Their makefiles add folder after folder to the archive and write all of it each time, which takes longer than to compile.
+    do("make", "-j", jobs, "library", "AR=true")
+    objects = source / "objects.txt"
+    objects.write_text("\n".join(sorted(str(o.relative_to(source)) for o in (source / "build").rglob("*.o"))), encoding="utf-8")
+    do("ar", "rcs", f"lib{name}.a", f"@{objects.name}")
+    do("make", "install", "AR=true")
 
 
 def copyright_of(name, source):

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
 """Sweeps in folders under engines of others, which fail: what is collected has the bytes of one quiet process.
 
-    workers.py --program PROGRAM [--kills 40] [PART...]     parts: workers refined stopped scheduler client disk clients parallel slurm
+    workers.py --program PROGRAM [--kills 40] [--rounds 40] [PART...]
     workers.py --self-test                                  other bytes are found
+
+PART is one of workers refined stopped scheduler client_killed disk clients parallel slurm. The first two kill as many workers as --kills
+says; each other one is repeated --rounds times, with its failure at another random moment.
 
 Workers are processes `dask worker`; parts that need Dask are left out where it is missing, and so are GNU parallel (xargs takes its
 place) and Slurm (only with ANHOLON_LONG, or if it is named).
@@ -130,10 +133,13 @@ class Workers:
         return error
 
     def wait_for(self, parts, client):
+        """Waits for the folder and some more, and for so many parts in it; returns how many there are."""
         end = time.monotonic() + PATIENCE
-        while self.present() < parts and client.poll() is None:
+        while (not self.folder.exists() or self.present() < parts) and client.poll() is None:
             must(time.monotonic() < end, "nothing happens")
             time.sleep(0.01)
+        time.sleep(random.uniform(0, 0.05))
+        return self.present()
 
     def clear(self):
         """A killed process leaves an unfinished file, which the next one that opens the folder removes."""
@@ -181,8 +187,8 @@ class Workers:
         """A worker that is stopped until others have computed its part: its late commit does no harm."""
         with Cluster(self.place) as cluster:
             client = self.client(cluster.address)
-            self.wait_for(2, client)
-            late = cluster.workers[0]
+            self.wait_for(random.randint(0, PARTS - 6), client)
+            late = random.choice(cluster.workers)
             late.send_signal(signal.SIGSTOP)
             # The scheduler waits for a stopped worker as long as its connection lives; another process takes its part.
             sweep(self.folder)
@@ -195,12 +201,12 @@ class Workers:
         """The scheduler dies: the client says so, and the same call goes on with another one."""
         with Cluster(self.place) as cluster:
             client = self.client(cluster.address)
-            self.wait_for(3, client)
+            parts = self.wait_for(random.randint(0, PARTS - 6), client)
             cluster.scheduler.kill()
             error = self.finish(client, status=1)
             must("the same call goes on" in error, error)
         before = self.present()
-        must(3 <= before < PARTS, f"{before} parts")
+        must(parts <= before < PARTS, f"{before} parts")
         with Cluster(self.place) as cluster:
             self.finish(self.client(cluster.address))
         self.clear()
@@ -210,10 +216,10 @@ class Workers:
         """The client dies: its parts are kept, and another client goes on."""
         with Cluster(self.place) as cluster:
             client = self.client(cluster.address)
-            self.wait_for(3, client)
+            parts = self.wait_for(random.randint(0, PARTS - 1), client)
             client.kill()
             client.communicate()
-            must(self.present() >= 3, "parts are lost")
+            must(self.present() >= parts, "parts are lost")
             self.finish(self.client(cluster.address))
             self.clear()
             self.check()
@@ -269,16 +275,19 @@ class Workers:
             begun = subprocess.Popen(["xargs", "-P2", "-n1", "bash", str(script)], stdin=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
             begun.stdin.write("\n".join(numbers))
             begun.stdin.close()
-        victim = self.place / "share-2"
+        number = random.choice(numbers)
+        victim = self.place / f"share-{number}"
         while not victim.exists() or not victim.read_text():
             time.sleep(0.01)
-        time.sleep(random.uniform(0.1, 0.3))
+        time.sleep(random.uniform(0, 0.6))
         try:
             os.kill(int(victim.read_text()), signal.SIGKILL)
         except ProcessLookupError:
             pass  # it was faster
         begun.wait(PATIENCE)
-        self.run(*self.shares("--shard", "2/4"), status=1)
+        self.run(*self.shares("--shard", f"{number}/4"), status=1)
+        for name in numbers:
+            (self.place / f"share-{name}").unlink()
         self.expected, kept = expected, self.expected
         self.check()
         self.expected = kept
@@ -418,6 +427,7 @@ def slurm_lacks():
 
 DASK = ["workers", "refined", "stopped", "scheduler", "client_killed", "disk", "clients"]
 ALL = [*DASK, "parallel", "slurm"]
+KILLS = ["workers", "refined"]  # count their kills themselves
 
 
 def run_parts(arguments):
@@ -432,12 +442,15 @@ def run_parts(arguments):
                 print("slurm: left out, " + (slurm_lacks() or "it needs ANHOLON_LONG"))
                 continue
             begun = time.monotonic()
+            rounds = 1 if name in KILLS else arguments.rounds
             try:
-                getattr(test, name)()
+                for _ in range(rounds):
+                    getattr(test, name)()
             except Wrong as wrong:
                 print(f"{name}: {wrong}")
                 return 1
-            print(f"{name}: as expected, {time.monotonic() - begun:.1f} s", flush=True)
+            times = f"{arguments.kills} kills" if name in KILLS else f"{rounds} times"
+            print(f"{name}: as expected, {times}, {time.monotonic() - begun:.1f} s", flush=True)
     return 0
 
 
@@ -459,10 +472,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program")
     parser.add_argument("--kills", type=int, default=40 if LONG else 3)
+    parser.add_argument("--rounds", type=int, default=40 if LONG else 1)
     parser.add_argument("--self-test", action="store_true")
     parser.add_argument("--client", nargs=3, metavar=("SWEEP", "FOLDER", "ADDRESS"))
-    parser.add_argument("parts", nargs="*")
+    parser.add_argument("parts", nargs="*", metavar="PART", help=", ".join(ALL))
     arguments = parser.parse_args()
+    if unknown := set(arguments.parts) - set(ALL):
+        parser.error(f"there is no part {', '.join(sorted(unknown))}; parts: {' '.join(ALL)}")
     if arguments.client:
         name, folder, address = arguments.client
         SWEEPS[name](folder, address)
