@@ -366,6 +366,11 @@ PlotData plot_data(Workspace& scenario, const std::vector<Conserved>& conserved,
   return Plots(scenario, conserved, run, scene).make();
 }
 
+int rows_to_look_at(std::size_t coordinates, std::size_t constraints) {
+  constexpr std::size_t kNumbers = 22000;
+  return static_cast<int>(std::clamp<std::size_t>(kNumbers / (4 * coordinates + 3 * constraints + 6), 250, 1000));
+}
+
 std::vector<std::size_t> keep_extremes(const std::vector<double>& values, std::size_t most) {
   std::vector<std::size_t> rows;
   const std::size_t n = values.size();

@@ -49,6 +49,9 @@ bool at_rows(const Model& model, const RunFile& run, Expr e, std::vector<double>
 PlotData plot_data(Workspace& scenario, const std::vector<Conserved>& conserved, const RunFile& run,
                    const Scene& scene);
 
+// The number of rows of a motion that is drawn: as many as a page holds without reduction.
+int rows_to_look_at(std::size_t coordinates, std::size_t constraints);
+
 // At most about `most` of the rows: the least and the greatest of each interval, the first and the last of all, and
 // every gap.
 std::vector<std::size_t> keep_extremes(const std::vector<double>& values, std::size_t most);

@@ -9,11 +9,23 @@
 #include "base/escape.h"
 #include "base/json.h"
 #include "cli/pictures/sweep_cases.h"
-#include "cli/pictures/sweep_page_script.h"
+#include "report/assets.h"
 
 namespace anholon::cli {
 
 namespace {
+
+const std::string kHead =
+    "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+    "<meta name=\"color-scheme\" content=\"light dark\">\n"
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; style-src "
+    "'unsafe-inline'; font-src data:; img-src data: blob:\">\n<title>";
+// Begins the page when its data are there.
+constexpr const char* kStart = R"js(
+anholon_map(document.querySelector("main"), JSON.parse(document.getElementById("data").textContent),
+  {invitation: "A click on a cell tells its case.", picked: () => {}});
+)js";
 
 constexpr std::size_t kMostNumbers = 4'000'000;  // of a page: some 40 MB
 
@@ -64,51 +76,76 @@ std::string label(const plot::NamedColumn& c) {
   return plot::plain_text(plot::axis_label(c, "", plot::LabelStyle::unicode));
 }
 
+// An element that holds data for the scripts. The text of a model may hold the end of a script.
+std::string script_data(const std::string& id, std::string data) {
+  for (std::size_t at = 0; (at = data.find('<', at)) != std::string::npos; at += 6) data.replace(at, 1, "\\u003c");
+  return "<script type=\"application/json\" id=\"" + id + "\">" + data + "</script>\n";
+}
+
+// The axes of the map: those that are asked for, then what varies.
+std::vector<std::string> axes_of(const SweepCases& cases, const PlotCommand& o) {
+  std::vector<std::string> names;
+  for (const std::string& given : {o.abscissa, o.ordinate})
+    if (!given.empty()) names.push_back(given);
+  for (const std::string& name : cases.varied())
+    if (names.size() < 2 && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  if (names.empty())
+    throw Failure({}, "the columns of the sweep do not tell what varies", "--x and --y name columns of the sweep");
+  return names;
+}
+
+// What is there of a folder, and who made it.
+void write_progress(JsonWriter& j, const SweepStore& store) {
+  const std::size_t there = store.present().size();
+  j.key("parts").integer(static_cast<long long>(there)).key("all_parts").integer(static_cast<long long>(store.parts()));
+  j.key("cases").integer(static_cast<long long>(store.cases()));
+  const std::string& made_by = store.request().program;
+  constexpr const char* kThis = "anholon " ANHOLON_VERSION;
+  j.key("program").string(made_by).key("other_program").string(made_by == kThis ? "" : kThis);
+}
+
+void write_column(JsonWriter& j, const SweepCases& cases, const std::string& name,
+                  const std::vector<std::size_t>& rows) {
+  std::vector<std::string> words;
+  const plot::NamedColumn c = cases.read({name}, words)[0];
+  j.open_object().key("name").string(name).key("label").string(label(c));
+  j.key("data").string(base64(chosen(c.values, rows))).key("words").open_array();
+  for (const std::string& word : words) j.string(word);
+  j.close().close();
+}
+
 }  // namespace
 
-std::string page_of_sweep(const PlotCommand& o) {
+SweepMap map_of_sweep(const PlotCommand& o) {
   const SweepCases cases(o.run);
-  std::vector<std::string> names = cases.names(), words, axis_names;
-  for (const std::string& given : {o.abscissa, o.ordinate})
-    if (!given.empty()) axis_names.push_back(given);
-  for (const std::string& name : cases.varied())
-    if (axis_names.size() < 2 && std::find(axis_names.begin(), axis_names.end(), name) == axis_names.end())
-      axis_names.push_back(name);
-  if (axis_names.empty())
-    throw Failure({}, "the columns of the sweep do not tell what varies", "--x and --y name columns of the sweep");
-  const std::vector<std::string> asked = split(o.columns);
+  const std::vector<std::string> axis_names = axes_of(cases, o), asked = split(o.columns);
   if (asked.size() > 1) throw Failure({}, "a page of a sweep begins with one column", "its menu has all columns");
   const std::string shown = asked.empty() ? "outcome" : asked[0];
+  std::vector<std::string> words, none;
   std::vector<plot::NamedColumn> axes = cases.read(axis_names, words);
   if (!words.empty()) throw Failure({}, "an axis shows numbers, and a column of words was named", "--x theta --y phi");
-  cases.read({shown}, words), words.clear();
-  std::vector<std::string> none;
+  cases.read({shown}, words);
   const std::vector<double> numbers = cases.read({"case"}, none)[0].values;
   if (numbers.empty()) throw Failure({}, "no part is in " + o.run, "the command of the sweep computes them");
-  const std::vector<std::size_t> rows = rows_to_show(numbers, axes, names.size());
+  const std::vector<std::size_t> rows = rows_to_show(numbers, axes, cases.names().size());
 
   std::vector<unsigned> generations = cases.generations();
   if (!generations.empty()) generations = chosen(generations, rows);
   for (plot::NamedColumn& a : axes) a.values = chosen(a.values, rows);
+  SweepMap map;
+  map.title = o.title.empty() ? cases.store() ? cases.store()->asked("title") : o.run : o.title;
   JsonWriter j;
-  const std::string title = o.title.empty() ? cases.store() ? cases.store()->asked("title") : o.run : o.title;
-  j.open_object().key("title").string(title).key("shown").string(shown).key("command").string(cases.command());
+  j.open_object().key("title").string(map.title).key("shown").string(shown).key("command").string(cases.command());
   j.key("model").string(cases.store() ? cases.store()->asked("model") : "");
   j.key("varied").open_array();
   for (const std::string& name : cases.varied()) j.string(name);
+  // A scenario that varies is no axis.
+  if (std::find(cases.names().begin(), cases.names().end(), "case_name") != cases.names().end()) j.string("case_name");
   j.close().key("axes").open_array();
   for (const plot::NamedColumn& a : axes)
     j.open_object().key("name").string(a.name).key("label").string(label(a)).close();
   j.close().key("columns").open_array();
-  for (const std::string& name : names) {
-    std::vector<std::string> of_column;
-    const plot::NamedColumn c = cases.read({name}, of_column)[0];
-    j.open_object().key("name").string(name).key("label").string(label(c)).key("data").string(
-        base64(chosen(c.values, rows)));
-    j.key("words").open_array();
-    for (const std::string& word : of_column) j.string(word);
-    j.close().close();
-  }
+  for (const std::string& name : cases.names()) write_column(j, cases, name, rows);
   j.close();
   if (axes.size() == 2) {
     std::vector<double> corners;
@@ -116,11 +153,19 @@ std::string page_of_sweep(const PlotCommand& o) {
       for (const double v : {cell.from.x, cell.to.x, cell.from.y, cell.to.y}) corners.push_back(v);
     j.key("cells").string(base64(corners));
   }
-  std::string data = j.key("all").integer(static_cast<long long>(numbers.size())).close().text();
-  // The text of a model may hold the end of a script.
-  for (std::size_t at = 0; (at = data.find('<', at)) != std::string::npos; at += 6) data.replace(at, 1, "\\u003c");
-  std::string page = std::string(kSweepPageHead) + markup_escape(title) + kSweepPageBody + data + kSweepPageScript;
-  return page;
+  if (cases.store()) write_progress(j, *cases.store());
+  map.data = j.key("all").integer(static_cast<long long>(numbers.size())).close().text();
+  for (const std::size_t row : rows) map.cases.push_back(static_cast<std::size_t>(numbers[row]));
+  for (plot::NamedColumn& a : axes) map.axes.push_back(std::move(a.values));
+  return map;
+}
+
+std::string page_of_sweep(const PlotCommand& o) {
+  const SweepMap map = map_of_sweep(o);
+  std::string page = kHead + markup_escape(map.title) + "</title>\n<style>\n" + std::string(page_style()) +
+                     std::string(map_style()) + "</style>\n</head>\n<body>\n<header class=\"page\"><h1 dir=\"auto\">" +
+                     markup_escape(map.title) + "</h1></header>\n<main></main>\n" + script_data("data", map.data);
+  return page + "<script>\n" + std::string(map_script()) + kStart + "</script>\n</body></html>\n";
 }
 
 }  // namespace anholon::cli

@@ -44,13 +44,17 @@ void add_render(CommandLine& line) {
 
 void add_studio(CommandLine& line) {
   const auto [c, o] = line.command(
-      "studio", "edit a model in the browser: equations, proof, plots and animation as you type", cli::studio,
+      "studio",
+      "edit a model in the browser: equations, proof, plots and animation as you type; or see a sweep and its motions",
+      cli::studio,
       "Serves a page on the loopback address alone, whose address has a secret; Ctrl-C ends it. "
       "'Save' writes the file that was opened.\n"
       "A shipped model is shown and not written to: anholon new rolling -o mine.toml makes a file.\n"
+      "Of a folder of a sweep the page shows the map of its cases; a click on one computes its motion and shows it.\n"
       "Examples: anholon studio mine.toml\n"
-      "          anholon studio disc --port 8080 --no-browser");
-  c->add_option("MODEL", o.model, "a model file, or the name of a shipped model (default: disc)");
+      "          anholon studio disc --port 8080 --no-browser\n"
+      "          anholon studio falls/");
+  c->add_option("MODEL", o.model, "a model file, the name of a shipped model (default: disc), or a folder of a sweep");
   c->add_option("--port", o.port, "the port of the page (default: a free one)")
       ->type_name("N")
       ->check(CLI::Range(0, 65535));
