@@ -58,5 +58,7 @@ std::vector<std::size_t> keep_extremes(const std::vector<double>& values, std::s
 
 // The numbers as little-endian doubles, in base64.
 std::string packed(const std::vector<double>& values);
+// The same in single precision, marked by "f:" before them: for pictures alone.
+std::string packed_for_pictures(const std::vector<double>& values);
 
 }  // namespace anholon

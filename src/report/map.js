@@ -2,8 +2,8 @@
 // `anholon plot` writes and of the studio.
 //
 // anholon_map(root, data, host) builds it in `root` and returns {pick(row), row_of(number), motion}: `motion` is an element
-// below the map that is the host's. host.picked(number, row) is told of each case that is picked. host.has(row) says whether
-// there is a motion of a row; without it there is one of each.
+// below the map that is the host's. host.picked(number, row) is told of each case that is picked. host.has(number) says
+// whether there is a motion of a case; without it there is one of each.
 "use strict";
 function anholon_map(root, data, host) {
   const numbers = text => new Float64Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
@@ -13,7 +13,7 @@ function anholon_map(root, data, host) {
   const words = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#999999", "#f0e442"];
   const scale = ["#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"];
   const x = column(data.axes[0].name), y = data.axes[1] && column(data.axes[1].name), count = x.values.length;
-  const cases = column("case").values, has = host.has || (() => true);
+  const cases = column("case").values, has = host.has ? k => host.has(cases[k]) : () => true;
   let shown = column(data.shown), picked = -1;
 
   const element = (tag, attributes, ...children) => {

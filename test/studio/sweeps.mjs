@@ -18,11 +18,8 @@ const anholon = (...words) => execFileSync(program, words, { cwd: folder, stdio:
 anholon('sweep', 'disc', '--vary', "phi'=5:7:8", '--vary', 'theta=0.6:1.2:6', '--to', '2', '--chunk', '12', '--quiet', '-o', 'falls/');
 anholon('sweep', 'disc', '--vary', 'm=1:3:9', '--to', '1', '--quiet', '-o', 'line/');
 anholon('plot', 'falls/', '-o', 'plain.html');
-const pages = JSON.parse(process.env.ANHOLON_NO_MOTIONS ?? 'false') ? [] : ['motions.html', 'line.html'];
-if (pages.length > 0) {
-  anholon('plot', 'falls/', 'theta', '--motions', '6', '-o', 'motions.html');
-  anholon('plot', 'line/', 'theta', '--motions', '3', '-o', 'line.html');
-}
+anholon('plot', 'falls/', 'theta', '--motions', '6', '-o', 'motions.html');
+anholon('plot', 'line/', 'theta', '--motions', '3', '-o', 'line.html');
 
 async function studio(name) {
   const child = spawn(program, ['studio', name, '--no-browser', '--quiet'], { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, ANHOLON_CACHE: '' } });
@@ -63,7 +60,7 @@ const colour_count = (page) => page.evaluate(() => {
 });
 async function seen(page, draws) {
   await page.locator('.player .play-bar, .player input.scrub').first().waitFor({ timeout: 30000 });
-  assert.ok(await page.locator('.plots canvas').count() > 0, 'there are no plots');
+  await page.locator('.plots canvas').first().waitFor({ state: 'attached', timeout: 10000 });     // made when there is nothing else to do
   if (draws) {
     await page.locator('.player').scrollIntoViewIfNeeded();
     await page.waitForFunction(() => (document.querySelector('.player canvas.view')?.width ?? 0) > 0);
@@ -157,7 +154,7 @@ const in_page = {
   },
   async 'line.html: one variation, and the outcome is told'(page, faults, draws) {
     const held = await page.evaluate(() => JSON.parse(document.getElementById('motions').textContent).map((m) => m.number));
-    assert.deepEqual(held, [0, 4, 8]);
+    assert.deepEqual(held, [1, 4, 7]);
     await page.getByLabel('Case:').fill('4');
     await page.keyboard.press('Enter');
     await seen(page, draws);
@@ -206,7 +203,6 @@ async function run_tests({ name: of, browser }) {
   assert.equal(await s.end(), 0);
   for (const [name, test] of Object.entries(in_page)) {
     const [html] = name.split(':');
-    if (html !== 'plain.html' && !pages.includes(html)) continue;
     await attempt(`${of}, ${name}`, async () => {
       const { page, faults, draws } = await open(browser, file(html));
       await test(page, faults, draws);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The studio of a sweep: the motion of a case has the numbers of the printed command; what is wrong with a folder is told.
+"""The studio and the page of a sweep: the motion of a case has the numbers of the printed command; what is wrong is told.
 
 usage: sweeps.py --program PROGRAM | --self-test
 """
@@ -8,9 +8,12 @@ import argparse
 import base64
 import csv
 import json
+import math
 import pathlib
+import re
 import shlex
 import shutil
+import signal
 import struct
 import subprocess
 import sys
@@ -176,6 +179,53 @@ def mistakes(program, folder):
     return found
 
 
+def held(program, folder):
+    """A page with motions has those of its cases, in single precision; Ctrl-C leaves the file that was there."""
+    found = []
+    (folder / "m.toml").write_text(MODEL)
+    sweep(program, folder, "m.toml", "--vary", "x=1:2:9", "--vary", "x'=0:1:5", "--vary", "k=4,5", "-o", "falls/")
+    done = run(program, folder, "plot", "falls/", "-o", "falls.html", "--motions", "8")
+    page = (folder / "falls.html").read_text()
+    motions = json.loads(re.search(r'<script type="application/json" id="motions">(.*?)</script>', page, re.S)[1])
+    if done.returncode != 0 or len(motions) != 8 or len({m["number"] for m in motions}) != 8:
+        found.append(f"a page with 8 motions: {done.returncode}, {done.stderr}, {[m['number'] for m in motions]}")
+    with Studio(program, "falls", cwd=folder) as s:
+        for edition, motion in enumerate(motions, 2):
+            _, reply = s.ask("case", str(motion["number"]), edition=edition)
+            expected = simulated(program, folder, reply["command"], 300)
+            case = motion["data"]["cases"][0]
+            times = numbers(case["t"])
+            for c in case["columns"]:
+                values = singles(c["data"])
+                if len(values) not in (0, 300) or (c["name"] in ("x", "x'") and len(values) != 300):
+                    found.append(f"case {motion['number']}: {c['name']} has {len(values)} rows")
+                for t, value in zip(times, values):
+                    if struct.pack("<f", expected[c["name"]].get(t, math.nan)) != struct.pack("<f", value):
+                        found.append(f"case {motion['number']}: {c['name']} at t = {t} is {value}, and {expected[c['name']].get(t)} by the command")
+                        break
+    return found + stopped(program, folder)
+
+
+def singles(text):
+    data = base64.b64decode(text.removeprefix("f:"))
+    return struct.unpack(f"<{len(data) // 4}f", data)
+
+
+def stopped(program, folder):
+    (folder / "long.toml").write_text(MODEL.replace("to = 2", "to = 2e5"))
+    sweep(program, folder, "long.toml", "--vary", "x=1:2:40", "--tolerance", "1e-3", "-o", "long/")
+    page = folder / "long.html"
+    page.write_text("before\n")
+    process = subprocess.Popen([program, "plot", "long/", "-o", "long.html", "--motions", "40"], cwd=folder, stderr=subprocess.PIPE, text=True)
+    time.sleep(1)
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=60)
+    left = sorted(p.name for p in folder.iterdir() if p.name.startswith("long.html"))
+    if process.returncode != 1 or "no page was written" not in told or page.read_text() != "before\n" or left != ["long.html"]:
+        return [f"Ctrl-C: status {process.returncode}, {told}, {left}"]
+    return []
+
+
 def strangers(s):
     """Who has no token, or is another page, gets no motion."""
     own = {"Origin": f"http://127.0.0.1:{s.port}", "X-Anholon-Page": "a", "X-Anholon-Edition": "1"}
@@ -243,7 +293,7 @@ def main():
     if not pathlib.Path("viewer/dist/studio.js").exists():
         print("skipped: the viewer is not built, and so no studio")
         return 77
-    for test in [motions, mistakes, newer]:
+    for test in [motions, mistakes, held, newer]:
         with tempfile.TemporaryDirectory() as folder:
             began = time.monotonic()
             found += test(args.program, pathlib.Path(folder))

@@ -1,15 +1,16 @@
 #include "cli/pictures/sweep_page.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <set>
 
 #include "base/escape.h"
 #include "base/json.h"
 #include "cli/pictures/sweep_cases.h"
+#include "cli/say.h"
 #include "report/assets.h"
+#include "report/columns.h"
+#include "result/file.h"
 
 namespace anholon::cli {
 
@@ -26,22 +27,33 @@ constexpr const char* kStart = R"js(
 anholon_map(document.querySelector("main"), JSON.parse(document.getElementById("data").textContent),
   {invitation: "A click on a cell tells its case.", picked: () => {}});
 )js";
+// The same with the motions that the page holds, when the viewer is there.
+constexpr const char* kStartWithMotions = R"js(
+addEventListener("DOMContentLoaded", () => {
+  const held = new Map(JSON.parse(document.getElementById("motions").textContent).map(m => [m.number, m]));
+  const element = (tag, name, ...children) => {
+    const e = document.createElement(tag);
+    if (name) e.className = name;
+    e.append(...children);
+    return e;
+  };
+  const map = anholon_map(document.querySelector("main"), JSON.parse(document.getElementById("data").textContent), {
+    invitation: "A click on a cell shows the motion of its case. A dot marks the cases whose motion is in the page.",
+    has: number => held.has(number),
+    picked(number) {
+      const motion = held.get(number), player = element("div", "player"), plots = element("div", "plots");
+      window.anholon.show(motion.data, () => {
+        map.motion.replaceChildren(element("h2", "", `The motion of case ${number}`),
+          ...(motion.outcome ? [element("p", "warning", motion.outcome)] : []), player, plots);
+        return {player, plots};
+      });
+      document.documentElement.dataset.shown = String(number);
+    },
+  });
+});
+)js";
 
 constexpr std::size_t kMostNumbers = 4'000'000;  // of a page: some 40 MB
-
-// Doubles as base64 of their bytes, the least significant first.
-std::string base64(const std::vector<double>& values) {
-  static_assert(std::endian::native == std::endian::little);
-  constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes(values.size() * sizeof(double), '\0'), text;
-  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
-  const auto byte = [&](std::size_t k) { return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0U; };
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    const unsigned three = byte(k) << 16 | byte(k + 1) << 8 | byte(k + 2);
-    for (unsigned n = 0; n < 4; ++n) text += k + n <= bytes.size() ? kLetters[three >> (18 - 6 * n) & 63U] : '=';
-  }
-  return text;
-}
 
 // The last row of each case; of many cases one in each of 256 x 256 cells.
 std::vector<std::size_t> rows_to_show(const std::vector<double>& numbers, const std::vector<plot::NamedColumn>& axes,
@@ -104,12 +116,20 @@ void write_progress(JsonWriter& j, const SweepStore& store) {
   j.key("program").string(made_by).key("other_program").string(made_by == kThis ? "" : kThis);
 }
 
+// How the cases ended, as numbers that differ where the outcomes do; empty if the sweep does not tell.
+std::vector<double> outcomes(const SweepCases& cases, const std::vector<std::size_t>& rows) {
+  std::vector<std::string> words;
+  const std::vector<std::string>& names = cases.names();
+  if (std::find(names.begin(), names.end(), "outcome") == names.end()) return {};
+  return chosen(cases.read({"outcome"}, words)[0].values, rows);
+}
+
 void write_column(JsonWriter& j, const SweepCases& cases, const std::string& name,
                   const std::vector<std::size_t>& rows) {
   std::vector<std::string> words;
   const plot::NamedColumn c = cases.read({name}, words)[0];
   j.open_object().key("name").string(name).key("label").string(label(c));
-  j.key("data").string(base64(chosen(c.values, rows))).key("words").open_array();
+  j.key("data").string(packed(chosen(c.values, rows))).key("words").open_array();
   for (const std::string& word : words) j.string(word);
   j.close().close();
 }
@@ -151,21 +171,51 @@ SweepMap map_of_sweep(const PlotCommand& o) {
     std::vector<double> corners;
     for (const plot::HeatMap::Finer& cell : plot::cells_of_cases(axes[0], axes[1], generations))
       for (const double v : {cell.from.x, cell.to.x, cell.from.y, cell.to.y}) corners.push_back(v);
-    j.key("cells").string(base64(corners));
+    j.key("cells").string(packed(corners));
   }
   if (cases.store()) write_progress(j, *cases.store());
   map.data = j.key("all").integer(static_cast<long long>(numbers.size())).close().text();
-  for (const std::size_t row : rows) map.cases.push_back(static_cast<std::size_t>(numbers[row]));
-  for (plot::NamedColumn& a : axes) map.axes.push_back(std::move(a.values));
+  const std::vector<double> ends = outcomes(cases, rows);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    map.cases.push_back({static_cast<std::size_t>(numbers[rows[k]]),
+                         {{axes[0].values[k], axes.size() > 1 ? axes[1].values[k] : 0},
+                          generations.empty() ? 0 : generations[k],
+                          ends.empty() ? 0 : ends[k]}});
   return map;
 }
 
-std::string page_of_sweep(const PlotCommand& o) {
+int write_page_of_sweep(const PlotCommand& o) {
+  if (const std::string why = obstacle_to_writing(o.output); !why.empty()) throw UsageError{"error: " + why + "\n"};
+  if (o.motions > 0 && viewer_script().empty())
+    throw UsageError{
+        "error: this program was built without the viewer, which shows motions\nhint: without --motions the page tells "
+        "the commands of the motions\n"};
   const SweepMap map = map_of_sweep(o);
-  std::string page = kHead + markup_escape(map.title) + "</title>\n<style>\n" + std::string(page_style()) +
-                     std::string(map_style()) + "</style>\n</head>\n<body>\n<header class=\"page\"><h1 dir=\"auto\">" +
-                     markup_escape(map.title) + "</h1></header>\n<main></main>\n" + script_data("data", map.data);
-  return page + "<script>\n" + std::string(map_script()) + kStart + "</script>\n</body></html>\n";
+  std::string style = std::string(page_style()) + std::string(map_style()), data = script_data("data", map.data);
+  std::string scripts, start = kStart;
+  HeldMotions held;
+  if (o.motions > 0) {
+    held = held_motions(o, map.cases);
+    if (held.stopped) {
+      say(stderr, "stopped (interrupted): no page was written\n");
+      return kStopped;
+    }
+    style += viewer_style();
+    data += script_data("motions", held.data);
+    scripts = "<script>" + std::string(viewer_script()) + "</script>\n";
+    start = kStartWithMotions;
+  }
+  scripts += "<script>\n" + std::string(map_script()) + start + "</script>\n";
+  const std::string page =
+      kHead + markup_escape(map.title) + "</title>\n<style>\n" + style +
+      "</style>\n</head>\n<body>\n<header class=\"page\"><div class=\"tools\"></div><h1 dir=\"auto\">" +
+      markup_escape(map.title) + "</h1></header>\n<main></main>\n" + data + scripts + "</body></html>\n";
+  if (const std::string why = write_whole(o.output, page); !why.empty()) throw UsageError{"error: " + why + "\n"};
+  if (o.motions > 0)
+    say(stderr, "page: %s, %.0f kB; %zu motions of %.0f kB each\n", o.output.c_str(),
+        static_cast<double>(page.size()) / 1000, held.count,
+        static_cast<double>(held.data.size()) / 1000 / static_cast<double>(held.count));
+  return kOk;
 }
 
 }  // namespace anholon::cli

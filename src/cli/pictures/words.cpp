@@ -73,6 +73,7 @@ void add_plot(CommandLine& line) {
                    "          anholon plot run.h5 y --x x --title \"path of the contact\"\n"
                    "          anholon plot run.h5 'lambda.*' -o forces.pdf --size 8cmx5cm\n"
                    "          anholon plot falls/ outcome -o falls.svg       cells over the two that vary\n"
+                   "          anholon plot falls/ -o falls.html --motions 24  a page with the motions of 24 cases\n"
                    "          anholon plot cases.csv --histogram theta -o theta.svg");
   c->add_option("RUN", o.run,
                 "a run: " + known_files("FILE") +
@@ -84,6 +85,12 @@ void add_plot(CommandLine& line) {
       ->type_name("COLUMN");
   c->add_option("--histogram", o.histogram, "of a sweep: how often the numbers or words of this column occur")
       ->type_name("COLUMN");
+  c->add_option(
+       "--motions", o.motions,
+       "of a sweep in a folder, with -o FILE.html: the page holds the motions of so many cases, spread over the "
+       "map")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000));
   c->add_option("--from", o.from, "no rows before this time")->type_name("T");
   c->add_option("--to", o.to, "no rows after this time")->type_name("T");
   c->add_flag("--log", o.log, "logarithmic vertical axis; what is not positive is left out");
