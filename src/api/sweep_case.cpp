@@ -250,6 +250,12 @@ std::vector<AskedWord> words_of_case(const SweepStore& store, std::size_t number
   return list;
 }
 
+std::vector<AskedWord> all_words_of_case(const SweepStore& store, std::size_t number) {
+  std::vector<AskedWord> words = words_of_sweep(store);
+  for (AskedWord& w : words_of_case(store, number)) words.push_back(std::move(w));
+  return words;
+}
+
 std::string command_of_sweep(const SweepStore& store) {
   const std::string& name = store.request().model_name;
   std::string text = "anholon report " + quoted(name.empty() ? "model.toml" : name);
@@ -266,8 +272,7 @@ std::string command_of_case(const SweepStore& store, std::size_t number) {
 Result<System> system_of_case(const SweepStore& store, std::size_t number) {
   const inner::SourceText source = source_of(store);
   return guarded(source, [&]() -> Result<System> {
-    std::vector<AskedWord> words = words_of_sweep(store);
-    for (AskedWord& w : words_of_case(store, number)) words.push_back(std::move(w));
+    const std::vector<AskedWord> words = all_words_of_case(store, number);
     ReadOptions reading;
     PrepareOptions options;
     for (const AskedWord& w : words) {

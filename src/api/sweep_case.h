@@ -20,6 +20,9 @@ std::vector<AskedWord> words_of_sweep(const inner::SweepStore& store);
 // case, its part is missing or damaged, or the folder does not keep all that varies.
 std::vector<AskedWord> words_of_case(const inner::SweepStore& store, std::size_t number);
 
+// Both, one after the other. Throws Failure as the function above.
+std::vector<AskedWord> all_words_of_case(const inner::SweepStore& store, std::size_t number);
+
 // The command that computes the motion of a case: without the numbers of a case, to which they are added, and with them.
 // A model that is known by its text alone is model.toml.
 std::string command_of_sweep(const inner::SweepStore& store);

@@ -235,6 +235,16 @@ Result<std::vector<std::pair<std::string, std::string>>> SweepFolder::numbers(st
   });
 }
 
+Result<std::vector<std::pair<std::string, std::string>>> SweepFolder::words(std::size_t number) const {
+  using Words = std::vector<std::pair<std::string, std::string>>;
+  return told([&]() -> Result<Words> {
+    const inner::SweepStore store = data_->now();
+    Words list;
+    for (AskedWord& w : all_words_of_case(store, number)) list.emplace_back(std::move(w.option), std::move(w.word));
+    return list;
+  });
+}
+
 Result<Run> SweepFolder::run(std::size_t number, const MotionOptions& options) const {
   return told([&]() -> Result<Run> {
     const inner::SweepStore store = data_->now();
