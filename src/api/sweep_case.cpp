@@ -6,6 +6,7 @@
 #include "ensemble/case_table.h"
 #include "formula/formula.h"
 #include "numeric/number.h"
+#include "report/columns.h"
 #include "setup/choice.h"
 
 namespace anholon::v1 {
@@ -303,13 +304,21 @@ MotionOptions options_of_case(const SweepStore& store, const MotionOptions& give
   return options;
 }
 
-MotionOptions drawn_case(const SweepStore& store, const System& system, int rows) {
-  MotionOptions options = options_of_case(store, {});
+MotionOptions with_intervals(const System& system, MotionOptions options, int count) {
+  options.others.erase("every");
   const auto end = options.others.find("to");
-  if (end == options.others.end() || options.others.count("every") != 0) return options;
+  if (end == options.others.end()) return options;
   const inner::Rational to = constant(Number(end->second), "to").value, start(system.data().scenario.state.t);
-  if (to != start) options.every = Number(inner::Rational(abs(inner::Rational(to - start)) / rows).get_str());
+  if (to != start) options.every = Number(inner::Rational(abs(inner::Rational(to - start)) / count).get_str());
   return options;
+}
+
+MotionOptions drawn_case(const SweepStore& store, const System& system) {
+  MotionOptions options = options_of_case(store, {});
+  if (options.others.count("every") != 0) return options;
+  const inner::Model& model = *system.data().model->model;
+  return with_intervals(system, std::move(options),
+                        inner::rows_to_look_at(model.coordinates.size(), model.constraints.size()));
 }
 
 }  // namespace anholon::v1

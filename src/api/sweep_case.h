@@ -34,7 +34,11 @@ Result<System> system_of_case(const inner::SweepStore& store, std::size_t number
 // The options of the motion of any case: those of the sweep where `given` does not say otherwise.
 MotionOptions options_of_case(const inner::SweepStore& store, const MotionOptions& given);
 
-// The same for a motion that is drawn: rows at so many equal intervals, unless the sweep names others. Throws Failure.
-MotionOptions drawn_case(const inner::SweepStore& store, const System& system, int rows);
+// The options with so many equal intervals between the rows, whatever they say of rows. Throws Failure.
+MotionOptions with_intervals(const System& system, MotionOptions options, int count);
+
+// The options of the motion of a case as `anholon report` draws it: rows as the sweep asks, or as many as a page holds.
+// Throws Failure.
+MotionOptions drawn_case(const inner::SweepStore& store, const System& system);
 
 }  // namespace anholon::v1

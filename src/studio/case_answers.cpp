@@ -4,7 +4,6 @@
 
 #include "api/data.h"
 #include "api/sweep_case.h"
-#include "report/columns.h"
 #include "studio/answer_json.h"
 #include "studio/motion_on_page.h"
 
@@ -26,9 +25,7 @@ std::string motion_of_case(const std::string& folder, std::size_t number) {
   const SweepStore store = SweepStore::open(folder);
   const v1::Result<v1::System> system = v1::system_of_case(store, number);
   if (!system) return error_answer(system.error(), "");
-  const v1::System::Data& of = system->data();
-  v1::MotionOptions options = v1::drawn_case(
-      store, *system, rows_to_look_at(of.model->model->coordinates.size(), of.model->model->constraints.size()));
+  v1::MotionOptions options = v1::drawn_case(store, *system);
   options.cancelled = end_of_motion();
   const v1::Result<v1::Run> run = v1::simulate(*system, options);
   if (!run) return error_answer(run.error(), "");

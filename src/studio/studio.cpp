@@ -17,15 +17,14 @@ constexpr std::array<Task, 4> kTasks = {{{"check", 5, true}, {"simulate", 30}, {
 // Of a sweep in a folder.
 constexpr Task kMap = {"sweep", 60, true}, kCase = {"case", 30};
 
-// `opens`: "model" or "sweep", for the script.
-std::string page(const std::string& opens) {
-  return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-         "<meta name=\"color-scheme\" content=\"light dark\">\n<title>Anholon studio</title>\n"
-         "<link rel=\"icon\" href=\"data:,\">\n<link rel=\"stylesheet\" href=\"studio.css\">\n"
-         "<script defer src=\"map.js\"></script>\n<script defer src=\"studio.js\"></script>\n</head>\n"
-         "<body data-opens=\"" +
-         opens +
+// A page that loads these scripts; `opens`, "model" or "sweep", tells the last one what to show.
+std::string page(const std::string& opens, const std::vector<std::string>& scripts) {
+  std::string text = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+                     "<meta name=\"color-scheme\" content=\"light dark\">\n<title>Anholon studio</title>\n"
+                     "<link rel=\"icon\" href=\"data:,\">\n<link rel=\"stylesheet\" href=\"studio.css\">\n";
+  for (const std::string& name : scripts) text += "<script defer src=\"" + name + "\"></script>\n";
+  return text + "</head>\n<body data-opens=\"" + opens +
          "\"><noscript>The studio needs a browser that runs the scripts of this page.</noscript></body>\n</html>\n";
 }
 
@@ -58,7 +57,7 @@ class ModelPages final : public Pages {
 
   HttpReply handle(const std::string& what, const HttpRequest& request) override {
     if (request.head.method == "GET") {
-      if (what.empty()) return {200, "text/html; charset=utf-8", page("model")};
+      if (what.empty()) return {200, "text/html; charset=utf-8", page("model", {"studio.js"})};
       if (what == "language") return json_reply(language_json());
       if (what == "model") return json_reply(model());
       return file(what);
@@ -98,7 +97,7 @@ class SweepPages final : public Pages {
 
   HttpReply handle(const std::string& what, const HttpRequest& request) override {
     if (request.head.method == "GET") {
-      if (what.empty()) return {200, "text/html; charset=utf-8", page("sweep")};
+      if (what.empty()) return {200, "text/html; charset=utf-8", page("sweep", {"map.js", "studio.js"})};
       if (what == kMap.name) return computing_.answer(kMap, {kMap.name, folder_, folder_, {}, {}, {}});
       return file(what);
     }

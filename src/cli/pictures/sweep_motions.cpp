@@ -44,7 +44,7 @@ std::string in_words(const v1::Error& error) {
 v1::Result<v1::Run> motion(const SweepStore& store, std::size_t number) {
   const v1::Result<v1::System> system = v1::system_of_case(store, number);
   if (!system) return system.error();
-  v1::MotionOptions options = v1::drawn_case(store, *system, kRows - 1);
+  v1::MotionOptions options = v1::with_intervals(*system, v1::options_of_case(store, {}), kRows - 1);
   options.cancelled = stop_requested;
   options.error_estimate = false;
   return v1::simulate(*system, options);
