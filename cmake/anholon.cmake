@@ -199,7 +199,8 @@ endfunction()
 # The source folder is baked in here and nowhere else, so that ccache can serve the other layers
 # to a second checkout.
 function(anholon_cli_definitions target)
-  target_compile_definitions(${target} PRIVATE
+  # The types of the public headers stay in their namespace, as the layers have types of these names.
+  target_compile_definitions(${target} PRIVATE ANHOLON_LIBRARY
     ANHOLON_MODELS_DIR="${PROJECT_SOURCE_DIR}/models" ANHOLON_PAPERS_DIR="${PROJECT_SOURCE_DIR}/papers"
     ANHOLON_VERSION="${PROJECT_VERSION}")
 endfunction()
@@ -346,7 +347,8 @@ function(anholon_page_assets result)
   set(functions "")
   set(files "")
   foreach(asset page_style=src/report/page.css viewer_script=viewer/dist/viewer.js viewer_style=viewer/dist/viewer.css
-          studio_script=viewer/dist/studio.js studio_style=viewer/dist/studio.css literature=refs.bib)
+          studio_script=viewer/dist/studio.js studio_style=viewer/dist/studio.css
+          map_script=src/report/map.js map_style=src/report/map.css literature=refs.bib)
     string(REGEX MATCH "^([a-z_]+)=(.*)$" asset "${asset}")
     set(name "${CMAKE_MATCH_1}")
     set(file "${folder}/${CMAKE_MATCH_2}")

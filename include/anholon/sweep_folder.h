@@ -2,6 +2,7 @@
 #pragma once
 #include <variant>
 
+#include "anholon/motion.h"
 #include "anholon/sweep.h"
 
 namespace anholon::v1 {
@@ -74,6 +75,14 @@ class ANHOLON_API SweepFolder {
   Result<std::size_t> refine(const std::string& rule = {}, std::optional<std::size_t> number = {}) const;
   // The numbers of a case by the names that vary, as exact text. Errors: there is no such case, or as `fill`.
   Result<std::vector<std::pair<std::string, std::string>>> numbers(std::size_t number) const;
+  // The options of `anholon simulate` for the motion of a case, with their words: {"qdot", "phi=5"} for --qdot phi=5,
+  // {"case", "wet"}, {"to", "3"}. Errors: there is no such case, its part is missing or damaged, or the folder does not
+  // keep all that varies.
+  Result<std::vector<std::pair<std::string, std::string>>> words(std::size_t number) const;
+  // The whole motion of a case, computed anew with its parameters, initial values and scenario, and with the form, the
+  // method, the tolerance and the end of the sweep where the options do not say otherwise. Values of the case are those
+  // that the folder keeps, in double. Errors: as `words`, `prepare` and `simulate`.
+  Result<Run> run(std::size_t number, const MotionOptions& options = {}) const;
   // How far the cases can be trusted, as JSON: digits to trust and residuals of some of them, and sentences that tell
   // these. The folder keeps it; the first call computes the cases once more. Errors: parts are missing, the folder cannot
   // be written, it was stopped, or, where the folder does not keep it yet, it was opened by its name alone.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 from typing import TYPE_CHECKING, Any
 
 from . import _core
@@ -14,17 +13,16 @@ if TYPE_CHECKING:
     from .run import Run
 
 
-def run_of(core: _core.SweepFolder, computing: Any, number: int, row: dict[str, float], options: dict[str, Any]) -> Run:
-    """Computes the motion. `computing` opens the folder for a computation; `row` holds what varies, as the folder keeps it."""
-    if core.recipe:
-        recipe = json.loads(core.recipe)
-        words, initial, form = recipe["words"], dict(recipe["initial"]), recipe["form"]
-        numbers = dict(computing().numbers(number))
-        model = model_of(core, recipe)
-        given = {"to": words[6] or (words[8] or [None])[-1], "tolerance": words[7]}
-    else:
-        model, initial, numbers, given = _of_command_line(core, row)
-        form = core.asked("form") or "routh"
+def run_of(core: _core.SweepFolder, computing: Any, number: int, options: dict[str, Any]) -> Run:
+    """Computes the motion. `computing` opens the folder for a computation."""
+    if not core.recipe:
+        model, given = _of_command_line(core, number)
+        return model.simulate(**{**given, **options})
+    recipe = json.loads(core.recipe)
+    words, initial, form = recipe["words"], dict(recipe["initial"]), recipe["form"]
+    numbers = dict(computing().numbers(number))
+    model = model_of(core, recipe)
+    given = {"to": words[6] or (words[8] or [None])[-1], "tolerance": words[7]}
     parameters = {name: value for name, value in numbers.items() if name in model.parameters}
     initial.update({name: value for name, value in numbers.items() if name not in model.parameters})
     chosen = {"form": form, "initial": initial, **{name: value for name, value in given.items() if value}, **options}
@@ -39,20 +37,36 @@ def model_of(core: _core.SweepFolder, recipe: dict[str, Any]) -> Model:
     return load(recipe["path"], **given) if recipe["path"] else loads(core.asked("model"), **given)
 
 
-def _of_command_line(core: _core.SweepFolder, row: dict[str, float]) -> tuple[Model, dict[str, str], dict[str, str], dict[str, str]]:
+_ORDERS = {"q": "", "qdot": "'", "qddot": "''", "qdddot": "'''"}
+_MULTIPLIERS = {"lambda": "", "lambdadot": "'"}
+
+
+def _of_command_line(core: _core.SweepFolder, number: int) -> tuple[Model, dict[str, Any]]:
+    """The model of a case, and the options of its motion."""
     from .reading import loads
 
     if core.asked("base file 1"):
         raise ModelError(f"the model of {core.path} refers to other files\nhint: anholon simulate with the numbers of the case")
-    model = loads(core.asked("model"), set=_pairs(core.asked("set")), case=core.asked("case").split())
+    parameters: dict[str, str] = {}
+    scenarios: list[str] = []
     initial: dict[str, str] = {}
-    for order, option in enumerate(("q", "qdot", "qddot", "qdddot")):
-        initial.update({name + "'" * order: value for name, value in _pairs(core.asked(option)).items()})
-    numbers = {name.removesuffix("(0)"): repr(float(value)) for name, value in row.items()}
-    times = core.asked("at").split()
-    return model, initial, numbers, {"to": core.asked("to") or (times[-1] if times else ""), "tolerance": core.asked("tolerance")}
-
-
-def _pairs(text: str) -> dict[str, str]:
-    """"a=1 b=8 cm" by names."""
-    return dict(word.split("=", 1) for word in re.split(r" (?=[^ =]+=)", text) if word) if text else {}
+    eliminate: list[str] = []
+    given: dict[str, Any] = {}
+    for option, word in core.words(number):
+        name, _, value = word.partition("=")
+        if option == "set":
+            parameters[name] = value
+        elif option == "case":
+            scenarios.append(word)
+        elif option in _ORDERS:
+            # --qdot "x'=2" means x', too.
+            initial[name.replace("'", "") + _ORDERS[option] if _ORDERS[option] else name] = value
+        elif option in _MULTIPLIERS:
+            initial[f"lambda.{name}{_MULTIPLIERS[option]}"] = value
+        elif option == "t":
+            initial["t"] = word
+        elif option == "eliminate":
+            eliminate.append(word)
+        else:
+            given[option.replace("-", "_")] = int(word) if option in ("order", "most-steps", "digits") else word
+    return loads(core.asked("model"), set=parameters, case=scenarios), {**given, "initial": initial, "eliminate": eliminate}

@@ -187,22 +187,12 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
             IndexError: there is no such case.
             ModelError: the folder was made by the command line, and does not keep what varies or the files of the model.
         """
-        import numpy as np
-
         from ._sweep_case import run_of
         from ._sweep_filling import computing
 
         if not 0 <= case < self.cases:
             raise IndexError(f"there are {self.cases} cases")
-        row: dict[str, float] = {}
-        if not self._core.recipe:
-            if not self.varied:
-                raise ModelError(f"{self.path} does not keep what varies\nhint: a sweep without --columns keeps it")
-            at = np.flatnonzero(self["case"] == case)
-            if at.size == 0:
-                raise IndexError(f"the part of case {case} is missing")
-            row = {name: float(self[name][at[0]]) for name in self.varied}
-        return run_of(self._core, lambda: computing(self.path), case, row, options)
+        return run_of(self._core, lambda: computing(self.path), case, options)
 
     def scan(self) -> polars.LazyFrame:
         """A lazy frame of polars over the parts that are there: it reads the columns and rows that are asked for. Needs polars."""

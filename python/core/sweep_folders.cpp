@@ -72,6 +72,10 @@ void bind_sweep_folders(nb::module_& m) {
           },
           "number"_a)
       .def(
+          "words",
+          [](const SweepFolder& f, std::size_t number) { return value_of(unlocked([&] { return f.words(number); })); },
+          "number"_a)
+      .def(
           "judge",
           [](const SweepFolder& f, nb::object stop) {
             Attendant attendant(std::move(stop), nb::none());

@@ -226,6 +226,37 @@ def test_motions_of_a_folder_of_the_command_line(tmp_path: pathlib.Path) -> None
     assert folder.run(0).model.parameters["m"] == 2
 
 
+def test_motions_of_scenarios_of_the_command_line(tmp_path: pathlib.Path) -> None:
+    import os
+
+    model = tmp_path / "spring.toml"
+    model.write_text(
+        """coordinates = ["x"]
+parameters = {m = 1, k = 4}
+particle = [{name = "P", mass = "m", position = "x*ex"}]
+potential.spring = "k*x^2/2"
+initial = {x = 1, "x'" = 0}
+simulate = {to = 2}
+[case.stiff]
+parameters = {k = 400}
+[case."a b"]
+initial = {x = 3}
+"""
+    )
+    out = str(tmp_path / "f") + "/"
+    words = ["--vary", "case=stiff,a b", "--vary", "m=1,2", "--t", "0.5", "--method", "rk", "--tolerance", "1e-9", "--quiet", "-o", out]
+    subprocess.run([os.environ["ANHOLON_PROGRAM"], "sweep", str(model), *words], check=True)
+    folder = an.open_sweep(out)
+    for case in range(4):
+        run = folder.run(case)
+        assert run["t"][0] == 0.5
+        assert run.report.method == "rk"
+        assert np.isclose(run["x"][-1], folder["x"][case], rtol=1e-8)
+        assert not np.isclose(run["x"][-1], folder["x"][(case + 1) % 4], rtol=1e-4)
+    with pytest.raises(IndexError, match="there are 4 cases"):
+        folder.run(4)
+
+
 def test_a_lazy_frame_reads_what_is_asked(quiet: pathlib.Path) -> None:
     polars = pytest.importorskip("polars")
     folder = an.open_sweep(quiet)

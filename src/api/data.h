@@ -59,6 +59,9 @@ auto guarded(const inner::SourceText& source, F f) -> decltype(f()) {
   }
 }
 
+// The model of a text, whose base files are in memory if the text brings them.
+Result<Model> opened(inner::SourceText source, const ReadOptions& options);
+
 // The number of an option of motions, exact and in SI units. Throws Failure that names the option, also if the number has
 // the unit of another quantity than a time, or than a pure number.
 inner::Rational option_value(const Number& number, const inner::MotionOption& option);

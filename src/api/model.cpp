@@ -10,8 +10,6 @@
 
 namespace anholon::v1 {
 
-namespace {
-
 Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
   auto data = std::make_shared<Model::Data>();
   data->source = std::move(source);
@@ -26,8 +24,6 @@ Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
   for (const inner::Diagnostic& d : diagnostics.list()) data->remarks.push_back(to_public(d, data->model->source_text));
   return Model(std::move(data));
 }
-
-}  // namespace
 
 void Model::Data::without_contacts(const std::string& what) const {
   if (!contacts.empty()) throw inner::needs_mode(what, *model, contacts, "the mode ");

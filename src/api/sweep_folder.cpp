@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "api/sweep_case.h"
 #include "api/sweep_request.h"
 #include "base/join.h"
 #include "base/json.h"
@@ -231,6 +232,25 @@ Result<std::vector<std::pair<std::string, std::string>>> SweepFolder::numbers(st
     for (std::size_t k = 0; k < of.values.size(); ++k)
       list.emplace_back(p.options.varied[k].name, of.values[k].get_str());
     return list;
+  });
+}
+
+Result<std::vector<std::pair<std::string, std::string>>> SweepFolder::words(std::size_t number) const {
+  using Words = std::vector<std::pair<std::string, std::string>>;
+  return told([&]() -> Result<Words> {
+    const inner::SweepStore store = data_->now();
+    Words list;
+    for (AskedWord& w : all_words_of_case(store, number)) list.emplace_back(std::move(w.option), std::move(w.word));
+    return list;
+  });
+}
+
+Result<Run> SweepFolder::run(std::size_t number, const MotionOptions& options) const {
+  return told([&]() -> Result<Run> {
+    const inner::SweepStore store = data_->now();
+    const Result<System> system = system_of_case(store, number);
+    if (!system) return system.error();
+    return simulate(*system, options_of_case(store, options));
   });
 }
 

@@ -108,6 +108,7 @@ struct PlotCommand {
   std::string run;  // or a sweep
   std::vector<std::string> columns;
   std::string abscissa, ordinate, histogram, from, to, labels = "unicode", title, size, output;
+  int motions = 0;  // that a page of a sweep holds
   bool log = false, equal = false, each = false, together = false, json = false;
 };
 

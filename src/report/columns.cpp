@@ -366,6 +366,11 @@ PlotData plot_data(Workspace& scenario, const std::vector<Conserved>& conserved,
   return Plots(scenario, conserved, run, scene).make();
 }
 
+int rows_to_look_at(std::size_t coordinates, std::size_t constraints) {
+  constexpr std::size_t kNumbers = 22000;
+  return static_cast<int>(std::clamp<std::size_t>(kNumbers / (4 * coordinates + 3 * constraints + 6), 250, 1000));
+}
+
 std::vector<std::size_t> keep_extremes(const std::vector<double>& values, std::size_t most) {
   std::vector<std::size_t> rows;
   const std::size_t n = values.size();
@@ -400,14 +405,28 @@ std::vector<std::size_t> keep_extremes(const std::vector<double>& values, std::s
   return rows;
 }
 
+namespace {
+
+// The bytes of a number, the least significant first.
+template <class Bits>
+void add_bytes(std::string& bytes, Bits bits) {
+  for (std::size_t k = 0; k < sizeof bits; ++k) bytes += static_cast<char>(bits >> (8 * k) & 0xFF);
+}
+
+}  // namespace
+
 std::string packed(const std::vector<double>& values) {
   std::string bytes;
-  bytes.reserve(values.size() * 8);
-  for (double x : values) {
-    const auto bits = std::bit_cast<std::uint64_t>(x);
-    for (int k = 0; k < 8; ++k) bytes += static_cast<char>(bits >> (8 * k) & 0xFF);
-  }
+  bytes.reserve(values.size() * sizeof(double));
+  for (const double x : values) add_bytes(bytes, std::bit_cast<std::uint64_t>(x));
   return to_base64(bytes);
+}
+
+std::string packed_for_pictures(const std::vector<double>& values) {
+  std::string bytes;
+  bytes.reserve(values.size() * sizeof(float));
+  for (const double x : values) add_bytes(bytes, std::bit_cast<std::uint32_t>(static_cast<float>(x)));
+  return "f:" + to_base64(bytes);
 }
 
 }  // namespace anholon

@@ -49,11 +49,16 @@ bool at_rows(const Model& model, const RunFile& run, Expr e, std::vector<double>
 PlotData plot_data(Workspace& scenario, const std::vector<Conserved>& conserved, const RunFile& run,
                    const Scene& scene);
 
+// The number of rows of a motion that is drawn: as many as a page holds without reduction.
+int rows_to_look_at(std::size_t coordinates, std::size_t constraints);
+
 // At most about `most` of the rows: the least and the greatest of each interval, the first and the last of all, and
 // every gap.
 std::vector<std::size_t> keep_extremes(const std::vector<double>& values, std::size_t most);
 
 // The numbers as little-endian doubles, in base64.
 std::string packed(const std::vector<double>& values);
+// The same in single precision, marked by "f:" before them: for pictures alone.
+std::string packed_for_pictures(const std::vector<double>& values);
 
 }  // namespace anholon

@@ -1,72 +1,18 @@
 #include "studio/answers.h"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 
 #include "anholon/equations.h"
 #include "anholon/system.h"
 #include "api/run_data.h"
-#include "base/json.h"
-#include "mechanics/conserved.h"
 #include "modelfile/contacts.h"
-#include "report/markup.h"
-#include "report/page/data.h"
-#include "report/page/page_of.h"
 #include "report/page/sections.h"
-#include "simulation/report_json.h"
-#include "simulation/request.h"
+#include "studio/answer_json.h"
+#include "studio/motion_on_page.h"
 #include "studio/opened_file.h"
 
 namespace anholon {
-
-namespace {
-
-// A motion that takes longer is shown as far as it has come.
-constexpr std::chrono::seconds kLongestMotion{4};
-
-const char* word(Severity severity) {
-  return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "note";
-}
-
-void write(JsonWriter& json, const Diagnostic& d, const SourceText& source) {
-  const SourceText& file = source.of(d.span);
-  json.open_object().key("severity").string(word(d.severity)).key("message").string(d.message);
-  json.key("hint").string(d.hint).key("file").string(&file == &source ? "" : file.name);
-  json.key("line")
-      .integer(d.span.line)
-      .key("column")
-      .integer(d.span.column)
-      .key("length")
-      .integer(d.span.length)
-      .close();
-}
-
-void write(JsonWriter& json, const v1::Error& error, const std::string& name) {
-  json.key("error").open_object();
-  json.key("text").string(!error.diagnostics.empty() ? error.diagnostics.front().message
-                          : error.outcome            ? error.outcome->message
-                                                     : error.text);
-  json.key("hint").string(!error.diagnostics.empty() ? error.diagnostics.front().hint
-                          : error.outcome            ? error.outcome->hint
-                                                     : "");
-  json.key("outcome").string(error.outcome ? v1::name(error.outcome->kind) : "");
-  json.key("diagnostics").open_array();
-  for (const v1::Diagnostic& d : error.diagnostics) {
-    json.open_object().key("severity").string(word(static_cast<Severity>(d.severity)));
-    json.key("message").string(d.message).key("hint").string(d.hint);
-    json.key("file").string(d.file == name ? "" : d.file);
-    json.key("line").integer(d.line).key("column").integer(d.column).key("length").integer(d.length).close();
-  }
-  json.close().close();
-}
-
-void section(JsonWriter& json, const char* id, const char* title, const std::string& body) {
-  if (body.empty()) return;
-  json.open_object().key("id").string(id).key("title").string(title).key("html").string(body).close();
-}
-
-}  // namespace
 
 class Answers::Desk {
  public:
@@ -93,15 +39,10 @@ class Answers::Desk {
   }
 
  private:
-  std::string troubled(const v1::Error& error) const {
-    JsonWriter json;
-    json.open_object();
-    anholon::write(json, error, source_.name);
-    return json.close().text();
-  }
+  std::string troubled(const v1::Error& error) const { return error_answer(error, source_.name); }
 
   void forget() {
-    parts_.reset(), workspace_.reset(), model_ = {}, names_ = {}, cases_.clear();
+    motion_.reset(), model_ = {}, names_ = {}, cases_.clear();
     diagnostics_ = {}, known_ = false;
   }
 
@@ -166,11 +107,7 @@ class Answers::Desk {
       return anholon::write(json, v1::mistake("the studio computes no motions with contacts", command("simulate")),
                             source_.name);
     if (!move(json)) return;
-    const std::optional<SimulationReport> report = read_report(parts_->page().cases.front().run.report);
-    json.key("title").string(page_title(parts_->page())).key("sections").open_array();
-    section(json, "motion", "Motion", motion_section(parts_->page(), {report}));
-    section(json, "report", "How far the motion can be trusted", trust_section(parts_->page(), {report}));
-    json.close().key("data").string(page_data(parts_->page()));
+    motion_->write(json);
   }
 
   // The command line that does the same of the saved file.
@@ -180,7 +117,7 @@ class Answers::Desk {
 
   // Computes the motion unless it is there. False if there is none; the answer then says why.
   bool move(JsonWriter& json) {
-    if (parts_) return true;
+    if (motion_) return true;
     auto data = std::make_shared<v1::Model::Data>();
     data->source = source_, data->cases = cases_, data->model = model_;
     v1::PrepareOptions prepare;
@@ -188,27 +125,11 @@ class Answers::Desk {
     const auto system = v1::prepare(v1::Model(data), prepare);
     if (!system) return anholon::write(json, system.error(), source_.name), false;
     v1::MotionOptions options;
-    const auto deadline = std::chrono::steady_clock::now() + kLongestMotion;
-    options.cancelled = [deadline] { return std::chrono::steady_clock::now() > deadline; };
+    options.cancelled = end_of_motion();
     const auto run = v1::simulate(*system, options);
     if (!run) return anholon::write(json, run.error(), source_.name), false;
-    if (run->rows() == 0) {
-      v1::Error none = v1::mistake("the motion has no rows");
-      none.outcome = run->outcome();
-      none.diagnostics.clear();
-      return anholon::write(json, none, source_.name), false;
-    }
-    workspace_.emplace(system->data().scenario);
-    PageRequest request;
-    request.choice = system->data().choice;
-    request.version = "anholon " ANHOLON_VERSION;
-    request.command = command("report");
-    request.source = workspace_->model->source_text;
-    std::vector<Conserved> integrals;
-    if (!sets_values(*workspace_->model)) integrals = conserved(*workspace_->mechanics);
-    std::vector<PagedRun> runs;
-    runs.push_back({"", &*workspace_, integrals, run->data().run});
-    parts_.emplace(std::move(runs), model_, request);
+    if (run->rows() == 0) return anholon::write(json, without_rows(*run), source_.name), false;
+    motion_ = std::make_unique<MotionOnPage>(*run, command("report"));
     return true;
   }
 
@@ -220,9 +141,9 @@ class Answers::Desk {
     if (!move(no_motion)) return derive_alone(json);
     add_equations();
     json.key("sections").open_array();
-    section(json, "system", "System", system_section(parts_->page()));
-    section(json, "equations", "Equations of motion", equations_section(parts_->page()));
-    section(json, "structure", "Structure", structure_section(parts_->page()));
+    section(json, "system", "System", system_section(parts().page()));
+    section(json, "equations", "Equations of motion", equations_section(parts().page()));
+    section(json, "structure", "Structure", structure_section(parts().page()));
     json.close();
   }
 
@@ -249,17 +170,19 @@ class Answers::Desk {
     json.close();
   }
 
+  PageInParts& parts() { return motion_->parts(); }
+
   void add_equations() {
-    if (parts_->page().equations.empty()) parts_->add_equations();
+    if (parts().page().equations.empty()) parts().add_equations();
   }
 
   void prove(JsonWriter& json) {
     if (!has_model(json)) return;
     if (!contacts(*names_).empty() || !move(json)) return;
     add_equations();
-    if (!parts_->page().proof && parts_->page().no_proof.empty()) parts_->add_proof();
+    if (!parts().page().proof && parts().page().no_proof.empty()) parts().add_proof();
     json.key("sections").open_array();
-    section(json, "proof", "Proof that the forms agree", proof_section(parts_->page()));
+    section(json, "proof", "Proof that the forms agree", proof_section(parts().page()));
     json.close();
   }
 
@@ -270,8 +193,7 @@ class Answers::Desk {
   Diagnostics diagnostics_;
   std::shared_ptr<const Model> model_;
   std::shared_ptr<Names> names_;
-  std::optional<Workspace> workspace_;
-  std::optional<PageInParts> parts_;
+  std::unique_ptr<MotionOnPage> motion_;
 };
 
 Answers::Answers() : desk_(std::make_unique<Desk>()) {}

@@ -1,16 +1,19 @@
-// The studio: a page on the loopback address in which a model is edited, and its equations, proof and motion are seen.
+// The studio: a page on the loopback address in which a model is edited, and its equations, proof and motion are seen; or
+// the map of a sweep in a folder, and the motions of its cases.
 #pragma once
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "studio/case_answers.h"
 
 namespace anholon {
 
 struct StudioOptions {
   SourceText source;                                       // of the model that is opened
   bool shipped = false;                                    // it comes with the program and is not written to
+  std::string sweep;                                       // a folder of a sweep that is opened in place of a model
   int port = 0;                                            // 0: a free one
   std::vector<std::string> worker;                         // the command line that runs studio_work()
   std::function<void(const std::string& address)> opened;  // is told when the page can be opened
@@ -19,8 +22,8 @@ struct StudioOptions {
 // Serves until Ctrl-C. Throws std::runtime_error if the port cannot be opened.
 void serve_studio(const StudioOptions& options);
 
-// The process in which a studio computes.
-void studio_work();
+// The process in which a studio computes. `map` makes the data of the map of a sweep.
+void studio_work(MapOfSweep map);
 
 // False if the program was built without the viewer.
 bool has_studio();

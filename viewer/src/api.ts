@@ -1,6 +1,8 @@
 // What the page offers to programs: `anholon render` and the tests drive it through window.anholon.
 
 import type { Clock } from './clock.ts';
+import type { RawReport } from './data.ts';
+import type { Places } from './motion_view.ts';
 import type { Plots } from './plots.ts';
 import type { Player } from './player.ts';
 import type { Frame, Pose, SceneModel } from './scene.ts';
@@ -20,6 +22,7 @@ export interface Handle {
   plots: (Plots | null)[];
   errors: string[];
   ready: Promise<void>;
+  show(data: RawReport, places: () => Places): void;      // in place of what the call before has shown
   stage(width?: number, height?: number, frame?: Frame): void;
 }
 

@@ -35,12 +35,15 @@ export interface Report { title: string; cases: Case[] }
 const little = new Uint8Array(new Uint32Array([1]).buffer)[0] === 1;
 
 export function decode(base64: string): Float64Array {
-  const text = atob(base64);
-  if (text.length % 8 !== 0) throw new Error(`a column has ${text.length} bytes, which is no whole number of doubles`);
+  const single = base64.startsWith('f:'), size = single ? 4 : 8;
+  const text = atob(single ? base64.slice(2) : base64);
+  if (text.length % size !== 0) throw new Error(`a column has ${text.length} bytes, which is no whole number of ${single ? 'floats' : 'doubles'}`);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
-  if (little) return new Float64Array(bytes.buffer);
   const view = new DataView(bytes.buffer);
+  // As decimals of the digits that a float has: 1.2 and not 1.2000000476837158.
+  if (single) return Float64Array.from({ length: bytes.length / 4 }, (_, k) => Number(view.getFloat32(4 * k, true).toPrecision(7)));
+  if (little) return new Float64Array(bytes.buffer);
   return Float64Array.from({ length: bytes.length / 8 }, (_, k) => view.getFloat64(8 * k, true));
 }
 

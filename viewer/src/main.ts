@@ -6,6 +6,7 @@ import { Clock } from './clock.ts';
 import { add_copy_buttons } from './copy.ts';
 import { read_case, type Case, type RawReport } from './data.ts';
 import { h } from './dom.ts';
+import { MotionView } from './motion_view.ts';
 import { Player } from './player.ts';
 import { Plots } from './plots.ts';
 import { SceneModel } from './scene.ts';
@@ -40,7 +41,10 @@ function mount(): Handle {
   const tools = document.querySelector('header.page .tools') ?? document.querySelector('.tools');
   if (tools) theme_switch(tools);
   add_copy_buttons();
-  const handle: Handle = { cases: [], plots: [], errors, ready: Promise.resolve(), stage: () => undefined };
+  const view = new MotionView();
+  const handle: Handle = {
+    cases: [], plots: [], errors, ready: Promise.resolve(), show: (data, at) => view.show(data, at), stage: () => undefined,
+  };
   const players: (Player | null)[] = [];
   const places = (kind: string, k: number): HTMLElement[] => [...document.querySelectorAll<HTMLElement>(`.${kind}[data-case="${k}"]`)];
   (raw_report(errors)?.cases ?? []).forEach((raw, k) => {

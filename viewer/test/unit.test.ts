@@ -26,6 +26,9 @@ test('base64 holds little-endian doubles, to the bit', () => {
   const back = decode(encode(values));
   values.forEach((x, k) => assert.ok(Object.is(back[k], x)));
   assert.throws(() => decode('AAAA'), /no whole number of doubles/);
+  const floats = Buffer.from(new Float32Array([1.2, -3e-20, NaN, 0]).buffer).toString('base64');
+  assert.deepEqual([...decode(`f:${floats}`)], [1.2, -3e-20, NaN, 0]);
+  assert.throws(() => decode('f:AAA='), /no whole number of floats/);
 });
 
 test('a case whose column and times differ in length is refused', () => {

@@ -19,6 +19,7 @@
 #include "cli/stop.h"
 #include "contact/hybrid.h"
 #include "modelfile/hash.h"
+#include "report/columns.h"
 #include "result/file.h"
 #include "result/format.h"
 #include "simulation/report_json.h"
@@ -86,12 +87,6 @@ void go_on(RunWriter& rows, const SimulateCommand& o, const SavedRun& resume, co
   }
 }
 
-// The default number of rows for a drawn motion: as many as a page holds without reduction.
-int rows_to_look_at(const Mechanics& m) {
-  constexpr std::size_t kNumbers = 22000;
-  return static_cast<int>(std::clamp<std::size_t>(kNumbers / (4 * m.q.size() + 3 * m.phi.size() + 6), 250, 1000));
-}
-
 // Drawn motions have an end and rows where nobody names them.
 void settle_drawing(MotionSettings& settings, const SimulateCommand& o, const Workspace& s) {
   const Rational start(s.state.t);
@@ -105,7 +100,8 @@ void settle_drawing(MotionSettings& settings, const SimulateCommand& o, const Wo
           number_text(settings.to->get_d()).c_str());
   }
   if (!settings.every && settings.at.empty() && *settings.to != start)
-    settings.every = abs(Rational(*settings.to - start)) / rows_to_look_at(*s.mechanics);
+    settings.every =
+        abs(Rational(*settings.to - start)) / rows_to_look_at(s.mechanics->q.size(), s.mechanics->phi.size());
 }
 
 // A format that is held in memory has a limit of its own.

@@ -170,10 +170,6 @@ std::optional<RunFile> drawn_sweep(const PlotCommand& o, Target t, FigureOptions
   const auto must_be_written = [](const std::string& why) {
     if (!why.empty()) throw UsageError{"error: " + why + "\n"};
   };
-  if (t == Target::html) {
-    must_be_written(write_whole(o.output, page_of_sweep(o)));
-    return std::nullopt;
-  }
   SweepPicture picture = picture_of_sweep(o);
   const auto draw = [&](auto& drawn) {
     drawn.labels = options.labels;
@@ -225,6 +221,10 @@ int plot(const PlotCommand& o) {
   if (!of_sweep && t == Target::html)
     throw UsageError{
         "error: a page shows a sweep, or the motion of a model\nhint: anholon report MODEL -o page.html\n"};
+  if (o.motions > 0 && t != Target::html)
+    throw UsageError{
+        "error: --motions belongs to a page of a sweep\nhint: anholon plot falls/ -o falls.html --motions 24\n"};
+  if (t == Target::html) return write_page_of_sweep(o);
   RunFile run;
   if (of_sweep) {
     auto drawn = drawn_sweep(o, t, options);

@@ -9,7 +9,10 @@
 
 #include "cli/input.h"
 #include "cli/pictures/child.h"
+#include "cli/pictures/sweep_cases.h"
+#include "cli/pictures/sweep_page.h"
 #include "cli/say.h"
+#include "result/format.h"
 
 extern char** environ;
 
@@ -32,22 +35,49 @@ void open_browser(const std::string& address) {
   posix_spawn_file_actions_destroy(&files);
 }
 
+// What a name opens: a folder of a sweep, or a model. Throws UsageError.
+void open(const std::string& name, StudioOptions& options) {
+  std::error_code none;
+  if (SweepStore::is_there(name)) {
+    SweepStore::open(name);  // throws Failure if it is damaged
+    options.sweep = name;
+    return;
+  }
+  if (std::filesystem::is_directory(name, none))
+    throw UsageError{"error: the folder " + name + " holds no sweep\nhint: anholon sweep MODEL --vary … -o " + name +
+                     "/ makes one; anholon studio mine.toml opens a model\n"};
+  if (std::filesystem::is_regular_file(name, none) && SweepCases::are_in(name))
+    throw UsageError{
+        "error: " + name +
+        " holds the cases of a sweep and not their model, so the studio cannot compute their motions\nhint: "
+        "a sweep in a folder keeps the model: anholon sweep MODEL --vary … -o falls/; the numbers alone: "
+        "anholon plot " +
+        name + " -o cases.html\n"};
+  if (const ResultFormat* format = format_of(name); format && std::filesystem::is_regular_file(name, none))
+    throw UsageError{"error: " + name + " is a file of results in " + format->name +
+                     "\nhint: the studio opens a model, or a sweep in a folder\n"};
+  options.source = model_text(name, ANHOLON_MODELS_DIR);
+  options.shipped = options.source.path != "" || !std::filesystem::is_regular_file(name, none);
+}
+
 }  // namespace
 
 int studio(const StudioCommand& o) {
   if (o.worker) {
-    studio_work();
+    studio_work([](const std::string& folder) {
+      PlotCommand map;
+      map.run = folder;
+      return map_of_sweep(map).data;
+    });
     return kOk;
   }
   StudioOptions options;
-  const std::string name = o.model.empty() ? "disc" : o.model;
-  options.source = model_text(name, ANHOLON_MODELS_DIR);
+  open(o.model.empty() ? "disc" : o.model, options);
   if (!has_studio())
     throw UsageError{"error: this program was built without the viewer, and so without the studio\nhint: ./dev build "
                      "builds it where there is npm\n"};
-  std::error_code none;
-  options.shipped = options.source.path != "" || !std::filesystem::is_regular_file(name, none);
   options.port = o.port;
+  std::error_code none;
   const std::string self = std::filesystem::read_symlink("/proc/self/exe", none).string();
   options.worker = {self, "studio", "--worker"};
   options.opened = [&](const std::string& address) {

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <fstream>
 
+#include "api/sweep_case.h"
 #include "base/read_file.h"
-#include "cli/model_options.h"
-#include "model/motion_settings.h"
 #include "modelfile/read.h"
 #include "observe/rows/row_values.h"
 #include "result/format.h"
@@ -172,59 +171,7 @@ std::vector<unsigned> SweepCases::generations() const {
   return list;
 }
 
-namespace {
-
-// "a=1 b=8 cm" as words of one name each.
-std::vector<std::string> words_of(const std::string& text) {
-  std::vector<std::string> words;
-  std::size_t from = 0;
-  for (std::size_t space = text.find(' '); space != std::string::npos; space = text.find(' ', space + 1)) {
-    const std::size_t sign = text.find('=', space), next = text.find(' ', space + 1);
-    if (sign == std::string::npos || sign > next) continue;
-    words.push_back(text.substr(from, space - from));
-    from = space + 1;
-  }
-  if (from < text.size()) words.push_back(text.substr(from));
-  return words;
-}
-
-std::string quoted(const std::string& word) {
-  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_=.,+-/:") ==
-      std::string::npos)
-    return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
-}  // namespace
-
-std::string SweepCases::command() const {
-  if (!store_) return {};
-  const std::string& name = store_->request().model_name;
-  std::string text = "anholon report " + quoted(name.empty() ? "model.toml" : name);
-  const auto add = [&](const std::string& option, const std::string& word) {
-    text += " --" + option + " " + quoted(word);
-  };
-  for (const ModelOption& m : model_options())
-    for (const std::string& word : words_of(store_->asked(m.name))) add(m.name, word);
-  // Python names initial values as a model file does.
-  constexpr const char* kOrders[] = {"q", "qdot", "qddot", "qdddot"};
-  for (const std::string& word : words_of(store_->asked("initial"))) {
-    const auto primes = static_cast<std::size_t>(std::count(word.begin(), word.end(), '\''));
-    std::string plain = word;
-    std::erase(plain, '\'');
-    if (primes < std::size(kOrders)) add(kOrders[primes], plain);
-  }
-  for (const MotionOption& m : motion_options())
-    if (const std::string& word = store_->asked(m.name); !word.empty() && std::string_view(m.name) != "at")
-      add(m.name, word);
-  if (store_->asked("to").empty() && !store_->asked("at").empty()) {
-    const std::string& times = store_->asked("at");
-    add("to", times.substr(times.rfind(' ') + 1));
-  }
-  return text;
-}
+std::string SweepCases::command() const { return store_ ? v1::command_of_sweep(*store_) : std::string(); }
 
 // Units and meanings come from the model in the folder; a model that refers to files that are not there has none.
 void SweepCases::read_model() {

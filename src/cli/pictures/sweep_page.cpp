@@ -1,35 +1,59 @@
 #include "cli/pictures/sweep_page.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <set>
 
 #include "base/escape.h"
 #include "base/json.h"
 #include "cli/pictures/sweep_cases.h"
-#include "cli/pictures/sweep_page_script.h"
+#include "cli/say.h"
+#include "report/assets.h"
+#include "report/columns.h"
+#include "result/file.h"
 
 namespace anholon::cli {
 
 namespace {
 
-constexpr std::size_t kMostNumbers = 4'000'000;  // of a page: some 40 MB
+const std::string kHead =
+    "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+    "<meta name=\"color-scheme\" content=\"light dark\">\n"
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; style-src "
+    "'unsafe-inline'; font-src data:; img-src data: blob:\">\n<title>";
+// Begins the page when its data are there.
+constexpr const char* kStart = R"js(
+anholon_map(document.querySelector("main"), JSON.parse(document.getElementById("data").textContent),
+  {invitation: "A click on a cell tells its case.", picked: () => {}});
+)js";
+// The same with the motions that the page holds, when the viewer is there.
+constexpr const char* kStartWithMotions = R"js(
+addEventListener("DOMContentLoaded", () => {
+  const held = new Map(JSON.parse(document.getElementById("motions").textContent).map(m => [m.number, m]));
+  const element = (tag, name, ...children) => {
+    const e = document.createElement(tag);
+    if (name) e.className = name;
+    e.append(...children);
+    return e;
+  };
+  const map = anholon_map(document.querySelector("main"), JSON.parse(document.getElementById("data").textContent), {
+    invitation: "A click on a cell shows the motion of its case. A dot marks the cases whose motion is in the page.",
+    has: number => held.has(number),
+    picked(number) {
+      const motion = held.get(number), player = element("div", "player"), plots = element("div", "plots");
+      window.anholon.show(motion.data, () => {
+        map.motion.replaceChildren(element("h2", "", `The motion of case ${number}`),
+          ...(motion.outcome ? [element("p", "warning", motion.outcome)] : []), player, plots);
+        return {player, plots};
+      });
+      document.documentElement.dataset.shown = String(number);
+    },
+  });
+});
+)js";
 
-// Doubles as base64 of their bytes, the least significant first.
-std::string base64(const std::vector<double>& values) {
-  static_assert(std::endian::native == std::endian::little);
-  constexpr const char* kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes(values.size() * sizeof(double), '\0'), text;
-  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
-  const auto byte = [&](std::size_t k) { return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0U; };
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    const unsigned three = byte(k) << 16 | byte(k + 1) << 8 | byte(k + 2);
-    for (unsigned n = 0; n < 4; ++n) text += k + n <= bytes.size() ? kLetters[three >> (18 - 6 * n) & 63U] : '=';
-  }
-  return text;
-}
+constexpr std::size_t kMostNumbers = 4'000'000;  // of a page: some 40 MB
 
 // The last row of each case; of many cases one in each of 256 x 256 cells.
 std::vector<std::size_t> rows_to_show(const std::vector<double>& numbers, const std::vector<plot::NamedColumn>& axes,
@@ -64,63 +88,134 @@ std::string label(const plot::NamedColumn& c) {
   return plot::plain_text(plot::axis_label(c, "", plot::LabelStyle::unicode));
 }
 
+// An element that holds data for the scripts. The text of a model may hold the end of a script.
+std::string script_data(const std::string& id, std::string data) {
+  for (std::size_t at = 0; (at = data.find('<', at)) != std::string::npos; at += 6) data.replace(at, 1, "\\u003c");
+  return "<script type=\"application/json\" id=\"" + id + "\">" + data + "</script>\n";
+}
+
+// The axes of the map: those that are asked for, then what varies.
+std::vector<std::string> axes_of(const SweepCases& cases, const PlotCommand& o) {
+  std::vector<std::string> names;
+  for (const std::string& given : {o.abscissa, o.ordinate})
+    if (!given.empty()) names.push_back(given);
+  for (const std::string& name : cases.varied())
+    if (names.size() < 2 && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  if (names.empty())
+    throw Failure({}, "the columns of the sweep do not tell what varies", "--x and --y name columns of the sweep");
+  return names;
+}
+
+// What is there of a folder, and who made it.
+void write_progress(JsonWriter& j, const SweepStore& store) {
+  const std::size_t there = store.present().size();
+  j.key("parts").integer(static_cast<long long>(there)).key("all_parts").integer(static_cast<long long>(store.parts()));
+  j.key("cases").integer(static_cast<long long>(store.cases()));
+  const std::string& made_by = store.request().program;
+  constexpr const char* kThis = "anholon " ANHOLON_VERSION;
+  j.key("program").string(made_by).key("other_program").string(made_by == kThis ? "" : kThis);
+}
+
+// How the cases ended, as numbers that differ where the outcomes do; empty if the sweep does not tell.
+std::vector<double> outcomes(const SweepCases& cases, const std::vector<std::size_t>& rows) {
+  std::vector<std::string> words;
+  const std::vector<std::string>& names = cases.names();
+  if (std::find(names.begin(), names.end(), "outcome") == names.end()) return {};
+  return chosen(cases.read({"outcome"}, words)[0].values, rows);
+}
+
+void write_column(JsonWriter& j, const SweepCases& cases, const std::string& name,
+                  const std::vector<std::size_t>& rows) {
+  std::vector<std::string> words;
+  const plot::NamedColumn c = cases.read({name}, words)[0];
+  j.open_object().key("name").string(name).key("label").string(label(c));
+  j.key("data").string(packed(chosen(c.values, rows))).key("words").open_array();
+  for (const std::string& word : words) j.string(word);
+  j.close().close();
+}
+
 }  // namespace
 
-std::string page_of_sweep(const PlotCommand& o) {
+SweepMap map_of_sweep(const PlotCommand& o) {
   const SweepCases cases(o.run);
-  std::vector<std::string> names = cases.names(), words, axis_names;
-  for (const std::string& given : {o.abscissa, o.ordinate})
-    if (!given.empty()) axis_names.push_back(given);
-  for (const std::string& name : cases.varied())
-    if (axis_names.size() < 2 && std::find(axis_names.begin(), axis_names.end(), name) == axis_names.end())
-      axis_names.push_back(name);
-  if (axis_names.empty())
-    throw Failure({}, "the columns of the sweep do not tell what varies", "--x and --y name columns of the sweep");
-  const std::vector<std::string> asked = split(o.columns);
+  const std::vector<std::string> axis_names = axes_of(cases, o), asked = split(o.columns);
   if (asked.size() > 1) throw Failure({}, "a page of a sweep begins with one column", "its menu has all columns");
   const std::string shown = asked.empty() ? "outcome" : asked[0];
+  std::vector<std::string> words, none;
   std::vector<plot::NamedColumn> axes = cases.read(axis_names, words);
   if (!words.empty()) throw Failure({}, "an axis shows numbers, and a column of words was named", "--x theta --y phi");
-  cases.read({shown}, words), words.clear();
-  std::vector<std::string> none;
+  cases.read({shown}, words);
   const std::vector<double> numbers = cases.read({"case"}, none)[0].values;
   if (numbers.empty()) throw Failure({}, "no part is in " + o.run, "the command of the sweep computes them");
-  const std::vector<std::size_t> rows = rows_to_show(numbers, axes, names.size());
+  const std::vector<std::size_t> rows = rows_to_show(numbers, axes, cases.names().size());
 
   std::vector<unsigned> generations = cases.generations();
   if (!generations.empty()) generations = chosen(generations, rows);
   for (plot::NamedColumn& a : axes) a.values = chosen(a.values, rows);
+  SweepMap map;
+  map.title = o.title.empty() ? cases.store() ? cases.store()->asked("title") : o.run : o.title;
   JsonWriter j;
-  const std::string title = o.title.empty() ? cases.store() ? cases.store()->asked("title") : o.run : o.title;
-  j.open_object().key("title").string(title).key("shown").string(shown).key("command").string(cases.command());
+  j.open_object().key("title").string(map.title).key("shown").string(shown).key("command").string(cases.command());
   j.key("model").string(cases.store() ? cases.store()->asked("model") : "");
   j.key("varied").open_array();
   for (const std::string& name : cases.varied()) j.string(name);
+  // A scenario that varies is no axis.
+  if (std::find(cases.names().begin(), cases.names().end(), "case_name") != cases.names().end()) j.string("case_name");
   j.close().key("axes").open_array();
   for (const plot::NamedColumn& a : axes)
     j.open_object().key("name").string(a.name).key("label").string(label(a)).close();
   j.close().key("columns").open_array();
-  for (const std::string& name : names) {
-    std::vector<std::string> of_column;
-    const plot::NamedColumn c = cases.read({name}, of_column)[0];
-    j.open_object().key("name").string(name).key("label").string(label(c)).key("data").string(
-        base64(chosen(c.values, rows)));
-    j.key("words").open_array();
-    for (const std::string& word : of_column) j.string(word);
-    j.close().close();
-  }
+  for (const std::string& name : cases.names()) write_column(j, cases, name, rows);
   j.close();
   if (axes.size() == 2) {
     std::vector<double> corners;
     for (const plot::HeatMap::Finer& cell : plot::cells_of_cases(axes[0], axes[1], generations))
       for (const double v : {cell.from.x, cell.to.x, cell.from.y, cell.to.y}) corners.push_back(v);
-    j.key("cells").string(base64(corners));
+    j.key("cells").string(packed(corners));
   }
-  std::string data = j.key("all").integer(static_cast<long long>(numbers.size())).close().text();
-  // The text of a model may hold the end of a script.
-  for (std::size_t at = 0; (at = data.find('<', at)) != std::string::npos; at += 6) data.replace(at, 1, "\\u003c");
-  std::string page = std::string(kSweepPageHead) + markup_escape(title) + kSweepPageBody + data + kSweepPageScript;
-  return page;
+  if (cases.store()) write_progress(j, *cases.store());
+  map.data = j.key("all").integer(static_cast<long long>(numbers.size())).close().text();
+  const std::vector<double> ends = outcomes(cases, rows);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    map.cases.push_back({static_cast<std::size_t>(numbers[rows[k]]),
+                         {{axes[0].values[k], axes.size() > 1 ? axes[1].values[k] : 0},
+                          generations.empty() ? 0 : generations[k],
+                          ends.empty() ? 0 : ends[k]}});
+  return map;
+}
+
+int write_page_of_sweep(const PlotCommand& o) {
+  if (const std::string why = obstacle_to_writing(o.output); !why.empty()) throw UsageError{"error: " + why + "\n"};
+  if (o.motions > 0 && viewer_script().empty())
+    throw UsageError{
+        "error: this program was built without the viewer, which shows motions\nhint: without --motions the page tells "
+        "the commands of the motions\n"};
+  const SweepMap map = map_of_sweep(o);
+  std::string style = std::string(page_style()) + std::string(map_style()), data = script_data("data", map.data);
+  std::string scripts, start = kStart;
+  HeldMotions held;
+  if (o.motions > 0) {
+    held = held_motions(o, map.cases);
+    if (held.stopped) {
+      say(stderr, "stopped (interrupted): no page was written\n");
+      return kStopped;
+    }
+    style += viewer_style();
+    data += script_data("motions", held.data);
+    scripts = "<script>" + std::string(viewer_script()) + "</script>\n";
+    start = kStartWithMotions;
+  }
+  scripts += "<script>\n" + std::string(map_script()) + start + "</script>\n";
+  const std::string page =
+      kHead + markup_escape(map.title) + "</title>\n<style>\n" + style +
+      "</style>\n</head>\n<body>\n<header class=\"page\"><div class=\"tools\"></div><h1 dir=\"auto\">" +
+      markup_escape(map.title) + "</h1></header>\n<main></main>\n" + data + scripts + "</body></html>\n";
+  if (const std::string why = write_whole(o.output, page); !why.empty()) throw UsageError{"error: " + why + "\n"};
+  if (o.motions > 0)
+    say(stderr, "page: %s, %.0f kB; %zu motions of %.0f kB each\n", o.output.c_str(),
+        static_cast<double>(page.size()) / 1000, held.count,
+        static_cast<double>(held.data.size()) / 1000 / static_cast<double>(held.count));
+  return kOk;
 }
 
 }  // namespace anholon::cli

@@ -44,13 +44,17 @@ void add_render(CommandLine& line) {
 
 void add_studio(CommandLine& line) {
   const auto [c, o] = line.command(
-      "studio", "edit a model in the browser: equations, proof, plots and animation as you type", cli::studio,
+      "studio",
+      "edit a model in the browser: equations, proof, plots and animation as you type; or see a sweep and its motions",
+      cli::studio,
       "Serves a page on the loopback address alone, whose address has a secret; Ctrl-C ends it. "
       "'Save' writes the file that was opened.\n"
       "A shipped model is shown and not written to: anholon new rolling -o mine.toml makes a file.\n"
+      "Of a folder of a sweep the page shows the map of its cases; a click on one computes its motion and shows it.\n"
       "Examples: anholon studio mine.toml\n"
-      "          anholon studio disc --port 8080 --no-browser");
-  c->add_option("MODEL", o.model, "a model file, or the name of a shipped model (default: disc)");
+      "          anholon studio disc --port 8080 --no-browser\n"
+      "          anholon studio falls/");
+  c->add_option("MODEL", o.model, "a model file, the name of a shipped model (default: disc), or a folder of a sweep");
   c->add_option("--port", o.port, "the port of the page (default: a free one)")
       ->type_name("N")
       ->check(CLI::Range(0, 65535));
@@ -69,6 +73,7 @@ void add_plot(CommandLine& line) {
                    "          anholon plot run.h5 y --x x --title \"path of the contact\"\n"
                    "          anholon plot run.h5 'lambda.*' -o forces.pdf --size 8cmx5cm\n"
                    "          anholon plot falls/ outcome -o falls.svg       cells over the two that vary\n"
+                   "          anholon plot falls/ -o falls.html --motions 24  a page with the motions of 24 cases\n"
                    "          anholon plot cases.csv --histogram theta -o theta.svg");
   c->add_option("RUN", o.run,
                 "a run: " + known_files("FILE") +
@@ -80,6 +85,12 @@ void add_plot(CommandLine& line) {
       ->type_name("COLUMN");
   c->add_option("--histogram", o.histogram, "of a sweep: how often the numbers or words of this column occur")
       ->type_name("COLUMN");
+  c->add_option(
+       "--motions", o.motions,
+       "of a sweep in a folder, with -o FILE.html: the page holds the motions of so many cases, spread over the "
+       "map")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000));
   c->add_option("--from", o.from, "no rows before this time")->type_name("T");
   c->add_option("--to", o.to, "no rows after this time")->type_name("T");
   c->add_flag("--log", o.log, "logarithmic vertical axis; what is not positive is left out");

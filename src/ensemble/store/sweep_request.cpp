@@ -59,6 +59,7 @@ SweepRequest request_of(const std::string& text, const std::string& path) {
     r.recipe = recipe->get<std::string>();
   if (const auto named = j.find("model_name"); named != j.end() && named->is_string())
     r.model_name = named->get<std::string>();
+  if (const auto made = j.find("program"); made != j.end() && made->is_string()) r.program = made->get<std::string>();
   return r;
 }
 

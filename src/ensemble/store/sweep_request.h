@@ -18,6 +18,8 @@ struct SweepRequest {
   std::string recipe = {};
   // The name by which a command found the model; it does not distinguish sweeps either.
   std::string model_name = {};
+  // The version of the program that made the folder, where the request is read from one.
+  std::string program = {};
 };
 
 // The version of the program is told and does not distinguish sweeps.

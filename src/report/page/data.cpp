@@ -1,5 +1,7 @@
 #include "report/page/data.h"
 
+#include <algorithm>
+
 #include "numeric/number.h"
 #include "report/columns.h"
 #include "report/contact_bands.h"
@@ -13,20 +15,42 @@ namespace {
 
 void numbers(JsonWriter& j, const char* key, const std::vector<double>& list) { j.key(key).string(packed(list)); }
 
-void columns(JsonWriter& j, const PlotData& d) {
+// How much of a motion a page holds.
+struct Extent {
+  std::string (*pack)(const std::vector<double>&) = packed;  // values, not times
+  std::vector<std::string> groups = {};                      // that are plotted; empty: all
+};
+
+// Takes away what is neither plotted nor in the picture; the other columns keep their places.
+void reduce(PlotData& d, const std::vector<std::string>& groups, const std::vector<int>& in_picture) {
+  const auto plotted = [&](const std::string& group) {
+    return std::find(groups.begin(), groups.end(), group) != groups.end();
+  };
+  for (std::size_t k = 0; k < d.columns.size(); ++k) {
+    PlotColumn& c = d.columns[k];
+    if (plotted(c.group)) continue;
+    c.group.clear(), c.math.clear();
+    if (std::find(in_picture.begin(), in_picture.end(), static_cast<int>(k)) != in_picture.end()) continue;
+    // A column without rows has times of its own, which are none.
+    c = {c.name, "", "", "", {}, {}};
+  }
+  std::erase_if(d.groups, [&](const PlotGroup& g) { return !plotted(g.id); });
+}
+
+void columns(JsonWriter& j, const PlotData& d, const Extent& extent) {
   j.key("columns").open_array();
   for (const PlotColumn& k : d.columns) {
     j.open_object()
         .key("name")
         .string(k.name)
         .key("html")
-        .string(math(k.math))
+        .string(k.math.empty() ? "" : math(k.math))
         .key("unit")
         .string(k.unit)
         .key("group")
         .string(k.group);
-    numbers(j, "data", k.values);
-    if (!k.t.empty()) numbers(j, "t", k.t);
+    j.key("data").string(k.values.empty() ? "" : extent.pack(k.values));
+    if (!k.t.empty() || k.values.empty()) numbers(j, "t", k.t);
     j.close();
   }
   j.close().key("groups").open_array();
@@ -35,7 +59,7 @@ void columns(JsonWriter& j, const PlotData& d) {
   j.close().key("left_out").integer(static_cast<long long>(d.left_out));
 }
 
-void frames(JsonWriter& j, const PlotData& d) {
+void frames(JsonWriter& j, const PlotData& d, const Extent& extent) {
   j.key("frames");
   if (d.frame_t.empty()) {
     j.null();
@@ -44,7 +68,7 @@ void frames(JsonWriter& j, const PlotData& d) {
   j.open_object();
   numbers(j, "t", d.frame_t);
   j.key("data").open_object();
-  for (const auto& [column, values] : d.frames) numbers(j, std::to_string(column).c_str(), values);
+  for (const auto& [column, values] : d.frames) j.key(std::to_string(column).c_str()).string(extent.pack(values));
   j.close().close();
 }
 
@@ -83,10 +107,17 @@ void observer(JsonWriter& j, const Model& model, const PlotData& d) {
   j.close();
 }
 
-void one_case(JsonWriter& j, const PageCase& c) {
+void one_case(JsonWriter& j, const PageCase& c, const Extent& extent) {
   const Model& model = *c.scenario->model;
   const Scene picture = scene(*c.scenario->mechanics, has_contacts(c.run.table));
-  const PlotData d = plot_data(*c.scenario, c.conserved, c.run, picture);
+  const ColumnOf in_table = column_of(model, c.run.table);
+  // In the page the time is not a column.
+  const ColumnOf column = [&](const Node& n) -> std::optional<int> {
+    const auto k = in_table(n);
+    return k && *k >= 0 ? std::optional<int>(*k - 1) : k;
+  };
+  PlotData d = plot_data(*c.scenario, c.conserved, c.run, picture);
+  if (!extent.groups.empty()) reduce(d, extent.groups, columns_of(picture, *model.graph, column));
   j.open_object()
       .key("name")
       .string(c.name)
@@ -96,34 +127,34 @@ void one_case(JsonWriter& j, const PageCase& c) {
       .integer(static_cast<long long>(d.shown));
   numbers(j, "t", d.t);
   j.key("unit").string(model.coordinate_units.empty() ? "" : "s");
-  columns(j, d);
-  frames(j, d);
+  columns(j, d, extent);
+  frames(j, d, extent);
   events(j, read_report(c.run.report));
   bands(j, c.run.table, read_report(c.run.report));
   j.key("scene");
-  // In the page the time is not a column.
-  const ColumnOf in_table = column_of(model, c.run.table);
-  const ColumnOf column = [&](const Node& n) -> std::optional<int> {
-    const auto k = in_table(n);
-    return k && *k >= 0 ? std::optional<int>(*k - 1) : k;
-  };
   write_scene(
       j, picture, *model.graph, column,
       model.observer.inertial ? std::function<void(JsonWriter&)>() : [&](JsonWriter& w) { observer(w, model, d); });
   j.close();
 }
 
-}  // namespace
-
-std::string page_data(const Page& page) {
+std::string data(const Page& page, const Extent& extent) {
   JsonWriter j;
   j.open_object().key("format").integer(1).key("title").string(page_title(page)).key("cases").open_array();
-  for (const PageCase& c : page.cases) one_case(j, c);
+  for (const PageCase& c : page.cases) one_case(j, c, extent);
   j.close().close();
   // "</script>" in a name must not end the element.
   std::string out;
   for (char ch : j.text()) out += ch == '<' ? "\\u003c" : std::string(1, ch);
   return out;
+}
+
+}  // namespace
+
+std::string page_data(const Page& page) { return data(page, {}); }
+
+std::string brief_page_data(const Page& page) {
+  return data(page, {packed_for_pictures, {"coordinates", "velocities", "states", "monitors"}});
 }
 
 }  // namespace anholon

@@ -7,4 +7,8 @@ namespace anholon {
 // JSON that is safe within a <script>.
 std::string page_data(const Page& page);
 
+// The same for a page that holds many motions: in single precision but for the times, with the columns that the picture
+// needs, and plots of what a motion is, without accelerations, forces and residuals.
+std::string brief_page_data(const Page& page);
+
 }  // namespace anholon

@@ -1,6 +1,6 @@
 // The program behind HTTP on the loopback address; the token is in the path of the page, so addresses are relative.
 
-import type { Answer, Checked, Chosen, Engine, Failed, Language, Motion, Opened, Sections, Store } from './engine.ts';
+import type { Answer, CaseMotion, Checked, Chosen, Engine, Failed, Language, Motion, Opened, Sections, Store, SweepMap } from './engine.ts';
 
 const page = Array.from(crypto.getRandomValues(new Uint8Array(8)), (b) => b.toString(16).padStart(2, '0')).join('');
 
@@ -27,6 +27,8 @@ export const http_engine: Engine & Store = {
   simulate: (of, edition) => ask<Motion>('simulate', of, edition),
   derive: (of, edition) => ask<Sections>('derive', of, edition),
   prove: (of, edition) => ask<Sections>('prove', of, edition),
+  motion_of_case: (number, edition) => ask<CaseMotion>('case', { text: String(number), case_name: '' }, edition),
+  sweep: () => get<SweepMap | Failed>('sweep'),
   open: () => get<Opened>('model'),
   language: () => get<Language>('language'),
   async save(text, anyway) {

@@ -6,14 +6,12 @@ import { h } from '../dom.ts';
 import { theme_switch, watch_theme } from '../theme.ts';
 import { Editor } from './editor.ts';
 import { CaseChoice } from './case_choice.ts';
-import type { Answer, Engine, Failed, Problem, Replaced, Store } from './engine.ts';
+import { failed, replaced, type Answer, type Engine, type Problem, type Store } from './engine.ts';
 import { http_engine } from './http_engine.ts';
 import { Preview } from './preview.ts';
+import { SweepStudio } from './sweep.ts';
 
 const pause = 40;      // ms without a key before the text is computed
-
-const failed = <T>(a: Answer<T>): a is Failed => typeof a === 'object' && a !== null && 'error' in a;
-const replaced = <T>(a: Answer<T>): a is Replaced => typeof a === 'object' && a !== null && 'replaced' in a;
 
 class Studio {
   private edition = 1;
@@ -127,4 +125,5 @@ class Studio {
   }
 }
 
-new Studio(http_engine, http_engine);
+if (document.body.dataset.opens === 'sweep') new SweepStudio(http_engine, http_engine);
+else new Studio(http_engine, http_engine);

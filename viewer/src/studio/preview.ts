@@ -1,28 +1,24 @@
 // What the studio shows of a text: sections of a report, the player and the plots. A new motion takes the place of the one before
 // at the same time of the motion, with the camera where the reader has put it.
 
-import { Clock } from '../clock.ts';
 import { add_copy_buttons } from '../copy.ts';
-import { read_report, type RawReport } from '../data.ts';
+import type { RawReport } from '../data.ts';
 import { h } from '../dom.ts';
-import { Player } from '../player.ts';
-import { Plots } from '../plots.ts';
-import { SceneModel } from '../scene.ts';
+import { MotionView } from '../motion_view.ts';
 import type { Motion, Section } from './engine.ts';
 
 const order = ['motion', 'system', 'equations', 'structure', 'proof', 'report'];
 
 export class Preview {
-  private clock = new Clock(0, 0);
-  private player: Player | null = null;
-  private plots: Plots | null = null;
+  private readonly view = new MotionView();
   private picture = '';
   readonly note = h('div', { class: 'stale', role: 'status', hidden: true });
-  private readonly main = h('main', { 'aria-label': 'The motion and its equations', tabindex: '0' });
+  private readonly main: HTMLElement;
 
-  constructor(place: HTMLElement) { place.append(this.note, this.main); }
-
-  get time(): number { return this.clock.time; }
+  constructor(place: HTMLElement, label = 'The motion and its equations') {
+    this.main = h('main', { 'aria-label': label, tabindex: '0' });
+    place.append(this.note, this.main);
+  }
 
   // Puts each section in its place; one that is equal stays as it is, so that the reader's place and selection stay.
   sections(list: Section[]): void {
@@ -48,41 +44,20 @@ export class Preview {
     this.stale('');
     const picture = motion.data;
     const old = this.main.querySelector('#motion');
-    if (picture !== this.picture || !old) {
-      const look = this.player?.look ?? null, { time, playing } = this.clock;
-      const before = this.player;
-      this.plots?.close();
-      this.clock.pause();
-      this.player = this.plots = null;
+    if (picture === this.picture && old) return this.sections(motion.sections.filter((s) => s.id !== 'motion'));
+    this.picture = picture;
+    this.view.show(JSON.parse(picture) as RawReport, () => {
       old?.remove();
       this.sections(motion.sections);
-      this.picture = picture;
-      this.mount(JSON.parse(picture) as RawReport, time, playing, look);
-      before?.close();          // after the new one is drawn, which can use its shaders
-    } else this.sections(motion.sections.filter((s) => s.id !== 'motion'));
+      const place = (kind: string): HTMLElement => this.main.querySelector<HTMLElement>(`.${kind}`)!;
+      return { player: place('player'), plots: place('plots') };
+    });
   }
 
-  private mount(raw: RawReport, time: number, playing: boolean, look: Player['look']): void {
-    const place = (kind: string): HTMLElement => this.main.querySelector<HTMLElement>(`.${kind}`)!;
-    const said = (where: HTMLElement, e: unknown): void => { where.replaceChildren(h('p', { class: 'sorry' }, `It cannot be shown: ${(e as Error).message}`)); };
-    try {
-      const [data] = read_report(raw).cases;
-      this.clock = new Clock(data.start, data.end);
-      if (data.scene) {
-        this.player = new Player(place('player'), data, new SceneModel(data, data.scene), this.clock);
-        if (look) this.player.look = look;
-      } else place('player').remove();
-      this.plots = new Plots(place('plots'), data, this.clock);
-      this.clock.seek(time);
-      if (playing) this.clock.play();
-      this.player?.wake();
-    } catch (e) { said(place('plots'), e); }
-  }
-
-  // Says why what is shown is that of an earlier text; an empty text takes it away.
-  stale(why: string, hint = ''): void {
+  // Says why what is shown is not what was asked for; an empty text takes it away.
+  stale(why: string, hint = '', shown = 'Shown is an earlier text.'): void {
     this.note.hidden = why === '';
-    this.note.replaceChildren(...(why === '' ? [] : [h('strong', {}, 'Shown is an earlier text. '), why, hint ? h('span', { class: 'hint' }, ` ${hint}`) : '']));
+    this.note.replaceChildren(...(why === '' ? [] : [h('strong', {}, `${shown} `), why, hint ? h('span', { class: 'hint' }, ` ${hint}`) : '']));
     this.main.classList.toggle('old', why !== '');
   }
 }

@@ -1,0 +1,324 @@
+#include "api/sweep_case.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ensemble/case_table.h"
+#include "formula/formula.h"
+#include "numeric/number.h"
+#include "report/columns.h"
+#include "setup/choice.h"
+
+namespace anholon::v1 {
+
+namespace {
+
+using inner::Failure;
+using inner::SweepStore;
+
+// The options that give initial values, by their order.
+constexpr const char* kOrders[] = {"q", "qdot", "qddot", "qdddot"};
+constexpr const char* kMultipliers[] = {"lambda", "lambdadot"};
+constexpr std::string_view kInitial = "(0)";
+
+// "a=1 b=8 cm,c=2" as words of one name each; a name ends at = or, of what is drawn, at ~.
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words;
+  std::size_t from = 0;
+  for (std::size_t at = text.find_first_of(" ,"); at != std::string::npos; at = text.find_first_of(" ,", at + 1)) {
+    const std::size_t sign = text.find_first_of("=~", at), next = text.find_first_of(" ,", at + 1);
+    if (sign == std::string::npos || sign > next) continue;
+    words.push_back(text.substr(from, at - from));
+    from = at + 1;
+  }
+  if (from < text.size()) words.push_back(text.substr(from));
+  return words;
+}
+
+std::string name_in(const std::string& word) { return word.substr(0, word.find_first_of("=~")); }
+std::string value_in(const std::string& word) { return word.substr(std::min(word.find('='), word.size() - 1) + 1); }
+
+// An initial value of a name with primes, as an option: {"qdot", "phi=5"} of phi'.
+AskedWord initial_word(std::string name, const std::string& value) {
+  const auto primes = static_cast<std::size_t>(std::count(name.begin(), name.end(), '\''));
+  std::erase(name, '\'');
+  return {kOrders[std::min(primes, std::size(kOrders) - 1)], name + "=" + value};
+}
+
+// The scenarios that --vary case=a,b runs through.
+std::vector<std::string> varied_scenarios(const SweepStore& store) {
+  std::vector<std::string> names;
+  for (const std::string& word : words_of(store.asked("vary")))
+    if (name_in(word) == "case")
+      for (std::string rest = value_in(word); !rest.empty();) {
+        const std::size_t comma = std::min(rest.find(','), rest.size());
+        names.push_back(rest.substr(0, comma));
+        rest.erase(0, comma + 1);
+      }
+  return names;
+}
+
+// What varies beside the scenarios.
+std::vector<std::string> varied(const SweepStore& store) {
+  std::vector<std::string> names;
+  for (const std::string& word : words_of(store.asked("vary")))
+    if (name_in(word) != "case") names.push_back(inner::normal_name(name_in(word)));
+  constexpr std::string_view kVary = "vary ";
+  for (const auto& [what, text] : store.request().asked)
+    if (what.starts_with(kVary)) names.push_back(inner::normal_name(what.substr(kVary.size())));
+  if (const std::string& table = store.asked("table of cases"); !table.empty()) {
+    const inner::CaseTable cases(table, "of the sweep");
+    for (const std::string& name : cases.names()) names.push_back(inner::normal_name(name));
+  }
+  return names;
+}
+
+inner::SourceText source_of(const SweepStore& store) {
+  const std::string& name = store.request().model_name;
+  inner::SourceText source{name.empty() ? "model.toml" : name, store.asked("model")};
+  for (std::size_t k = 1;; ++k) {
+    const std::string& base = store.asked("base file " + std::to_string(k));
+    if (base.empty()) return source;
+    source.others.push_back({"base file " + std::to_string(k), base});
+  }
+}
+
+// The scenarios that the sweep names for all cases. Their names stand side by side and may hold spaces, so the model
+// tells where each one ends.
+std::vector<std::string> scenarios(const SweepStore& store) {
+  std::string text = store.asked("case");
+  // The first scenario that varies is among them.
+  if (const std::vector<std::string> names = varied_scenarios(store); !names.empty() && text.ends_with(names[0])) {
+    text.erase(text.size() - names[0].size());
+    while (text.ends_with(' ')) text.pop_back();
+  }
+  if (text.empty()) return {};
+  if (text.find(' ') == std::string::npos) return {text};
+  std::vector<std::string> known, list;
+  if (const auto model = opened(source_of(store), {})) known = model->cases();
+  std::sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  while (!text.empty()) {
+    const auto at = std::find_if(known.begin(), known.end(), [&](const std::string& name) {
+      return text.starts_with(name) && (text.size() == name.size() || text[name.size()] == ' ');
+    });
+    list.push_back(at == known.end() ? text.substr(0, text.find(' ')) : *at);
+    text.erase(0, std::min(text.size(), list.back().size() + 1));
+  }
+  return list;
+}
+
+// The end of the motions of a sweep that names the times of its rows alone.
+std::string last_time(const SweepStore& store) {
+  std::vector<std::string> times;
+  const std::string& text = store.asked("at");
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t space = std::min(text.find(' ', from), text.size());
+    times.push_back(text.substr(from, space - from));
+    from = space + 1;
+  }
+  if (times.empty()) return {};
+  const auto number = [](const std::string& word) { return Number(word); };
+  const std::string& start = store.asked("start");
+  const bool forwards =
+      start.empty() || constant(number(times.back()), "at").value > constant(number(start), "start").value;
+  return forwards ? times.back() : times.front();
+}
+
+std::size_t part_with(const SweepStore& store, std::size_t number) {
+  if (number >= store.cases())
+    throw Failure({}, "there is no case " + std::to_string(number),
+                  "the cases are numbered from 0 to " + std::to_string(store.cases() - 1));
+  const inner::Generation& g = store.generations()[generation_of(store.generations(), number)];
+  const std::size_t part = g.first_part + (number - g.first_case) / store.request().chunk;
+  const std::vector<std::size_t> there = store.present();
+  if (!std::binary_search(there.begin(), there.end(), part))
+    throw Failure({}, "the part of case " + std::to_string(number) + " is missing: " + store.path_of(part),
+                  "the command of the sweep computes it");
+  return part;
+}
+
+const inner::ParquetColumn* column(const inner::ParquetTable& rows, const std::string& name) {
+  const auto at = std::find_if(rows.columns.begin(), rows.columns.end(), [&](const auto& c) { return c.name == name; });
+  return at == rows.columns.end() ? nullptr : &*at;
+}
+
+std::size_t row_of(const inner::ParquetTable& rows, std::size_t number) {
+  if (const inner::ParquetColumn* c = column(rows, "case"))
+    if (const auto* numbers = std::get_if<std::vector<std::int64_t>>(&c->values)) {
+      const auto at = std::find(numbers->begin(), numbers->end(), static_cast<std::int64_t>(number));
+      if (at != numbers->end()) return static_cast<std::size_t>(at - numbers->begin());
+    }
+  throw Failure({}, "the part of case " + std::to_string(number) + " does not hold the case",
+                "a sweep without --columns keeps the numbers of the cases");
+}
+
+// The word of an option among those of a case; the last one counts.
+std::string word(const std::vector<AskedWord>& words, std::string_view option) {
+  std::string text;
+  for (const AskedWord& w : words)
+    if (w.option == option) text = w.word;
+  return text;
+}
+
+// Sets what an option gives to the initial state.
+void give(PrepareOptions& options, const AskedWord& w) {
+  const std::string name = name_in(w.word), value = value_in(w.word);
+  for (std::size_t order = 0; order < std::size(kOrders); ++order)
+    if (w.option == kOrders[order]) {
+      // --qdot "x'=2" means x', too.
+      std::string plain = name;
+      if (order > 0) std::erase(plain, '\'');
+      options.initial.insert_or_assign(plain + std::string(order, '\''), Number(value));
+    }
+  for (std::size_t order = 0; order < std::size(kMultipliers); ++order)
+    if (w.option == kMultipliers[order])
+      options.initial.insert_or_assign("lambda." + name + std::string(order, '\''), Number(value));
+}
+
+// A word as a shell takes it.
+std::string quoted(const std::string& word) {
+  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_=.,+-/:") ==
+      std::string::npos)
+    return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+bool is_motion_option(const std::string& name) {
+  const auto& rows = inner::motion_options();
+  return std::any_of(rows.begin(), rows.end(), [&](const inner::MotionOption& o) { return o.name == name; });
+}
+
+}  // namespace
+
+std::vector<AskedWord> words_of_sweep(const SweepStore& store) {
+  std::vector<AskedWord> list;
+  const auto each = [&](const char* option) {
+    for (const std::string& w : words_of(store.asked(option))) list.push_back({option, w});
+  };
+  const auto one = [&](const char* option, const std::string& text) {
+    if (!text.empty()) list.push_back({option, text});
+  };
+  each("set");
+  for (const std::string& name : scenarios(store)) one("case", name);
+  one("t", store.asked("t"));
+  for (const char* option : kOrders) each(option);
+  for (const char* option : kMultipliers) each(option);
+  // Python names initial values as a model file does.
+  std::string initial = store.asked("initial");
+  constexpr std::string_view kMultiplier = " as multiplier";
+  for (std::size_t at; (at = initial.find(kMultiplier)) != std::string::npos;) {
+    const std::size_t from = initial.rfind(' ', at - 1);
+    initial.erase(at, kMultiplier.size());
+    initial.insert(from == std::string::npos ? 0 : from + 1, "lambda.");
+  }
+  for (const std::string& w : words_of(initial)) list.push_back(initial_word(name_in(w), value_in(w)));
+  for (std::string rest = store.asked("eliminate"); !rest.empty();) {
+    const std::size_t end = std::min(rest.find_first_of(" ,"), rest.size());
+    one("eliminate", rest.substr(0, end));
+    rest.erase(0, end + 1);
+  }
+  for (const inner::MotionOption& o : inner::motion_options())
+    if (std::string_view(o.name) != "at") one(o.name, store.asked(o.name));
+  if (store.asked("to").empty()) one("to", last_time(store));
+  return list;
+}
+
+std::vector<AskedWord> words_of_case(const SweepStore& store, std::size_t number) {
+  const inner::ParquetTable rows = store.read(part_with(store, number));
+  const std::size_t row = row_of(rows, number);
+  std::vector<AskedWord> list;
+  const auto keeps = [&](const inner::ParquetColumn* c, const std::string& name) {
+    if (!c)
+      throw Failure({}, "the folder does not keep '" + name + "', which varies",
+                    "a sweep without --columns keeps all that varies");
+    return c;
+  };
+  if (!varied_scenarios(store).empty()) {
+    const auto& names = std::get<inner::Words>(keeps(column(rows, "case_name"), "case")->values);
+    list.push_back({"case", names.different[names.rows[row]]});
+  }
+  for (const std::string& name : varied(store)) {
+    const inner::ParquetColumn* at_start = column(rows, name + std::string(kInitial));
+    const inner::ParquetColumn* c = keeps(at_start ? at_start : column(rows, name), name);
+    const auto* numbers = std::get_if<std::vector<double>>(&c->values);
+    if (!numbers || !std::isfinite((*numbers)[row]))
+      throw Failure({}, "the folder holds no number of '" + name + "' in case " + std::to_string(number));
+    const std::string value = inner::number_text((*numbers)[row]);
+    list.push_back(at_start ? initial_word(name, value) : AskedWord{"set", name + "=" + value});
+  }
+  return list;
+}
+
+std::vector<AskedWord> all_words_of_case(const SweepStore& store, std::size_t number) {
+  std::vector<AskedWord> words = words_of_sweep(store);
+  for (AskedWord& w : words_of_case(store, number)) words.push_back(std::move(w));
+  return words;
+}
+
+std::string command_of_sweep(const SweepStore& store) {
+  const std::string& name = store.request().model_name;
+  std::string text = "anholon report " + quoted(name.empty() ? "model.toml" : name);
+  for (const AskedWord& w : words_of_sweep(store)) text += " --" + w.option + " " + quoted(w.word);
+  return text;
+}
+
+std::string command_of_case(const SweepStore& store, std::size_t number) {
+  std::string text = command_of_sweep(store);
+  for (const AskedWord& w : words_of_case(store, number)) text += " --" + w.option + " " + quoted(w.word);
+  return text + " -o case-" + std::to_string(number) + ".html";
+}
+
+Result<System> system_of_case(const SweepStore& store, std::size_t number) {
+  const inner::SourceText source = source_of(store);
+  return guarded(source, [&]() -> Result<System> {
+    const std::vector<AskedWord> words = all_words_of_case(store, number);
+    ReadOptions reading;
+    PrepareOptions options;
+    for (const AskedWord& w : words) {
+      if (w.option == "set") reading.set.insert_or_assign(name_in(w.word), Number(value_in(w.word)));
+      if (w.option == "case") reading.cases.push_back(w.word);
+      if (w.option == "eliminate") options.eliminate.push_back(w.word);
+      if (w.option == "t") options.initial.insert_or_assign("t", Number(w.word));
+      give(options, w);
+    }
+    const Result<Model> model = opened(source, reading);
+    if (!model) return model.error();
+    options.form = model->data().model->simulate.form.value_or("routh");
+    if (const std::string form = word(words, "form"); !form.empty()) options.form = form;
+    return prepare(*model, options);
+  });
+}
+
+MotionOptions options_of_case(const SweepStore& store, const MotionOptions& given) {
+  MotionOptions options = given;
+  const auto is_given = [&](const std::string& name) {
+    return (name == "to" && given.to) || (name == "every" && given.every) || (name == "tolerance" && given.tolerance) ||
+           (name == "order" && given.order != 0) || (name == "method" && !given.method.empty()) ||
+           (name == "most-steps" && given.most_steps);
+  };
+  for (const AskedWord& w : words_of_sweep(store))
+    if (w.option != "form" && is_motion_option(w.option) && !is_given(w.option))
+      options.others.emplace(w.option, w.word);
+  return options;
+}
+
+MotionOptions with_intervals(const System& system, MotionOptions options, int count) {
+  options.others.erase("every");
+  const auto end = options.others.find("to");
+  if (end == options.others.end()) return options;
+  const inner::Rational to = constant(Number(end->second), "to").value, start(system.data().scenario.state.t);
+  if (to != start) options.every = Number(inner::Rational(abs(inner::Rational(to - start)) / count).get_str());
+  return options;
+}
+
+MotionOptions drawn_case(const SweepStore& store, const System& system) {
+  MotionOptions options = options_of_case(store, {});
+  if (options.others.count("every") != 0) return options;
+  const inner::Model& model = *system.data().model->model;
+  return with_intervals(system, std::move(options),
+                        inner::rows_to_look_at(model.coordinates.size(), model.constraints.size()));
+}
+
+}  // namespace anholon::v1

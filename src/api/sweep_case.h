@@ -1,0 +1,44 @@
+// The motion of a case of a sweep in a folder, from what the folder keeps: the text of the model, what was asked, and the
+// numbers of the case.
+//
+// One list of words, those of a command, tells the motion: `anholon plot` prints it, and the functions below compute it.
+#pragma once
+#include "api/data.h"
+#include "ensemble/store/sweep_store.h"
+
+namespace anholon::v1 {
+
+// An option of `anholon simulate` without its dashes, and its word: {"qdot", "phi=5"}, {"case", "wet"}, {"to", "3"}.
+struct AskedWord {
+  std::string option, word;
+};
+
+// What the sweep asks of the motions of all cases.
+std::vector<AskedWord> words_of_sweep(const inner::SweepStore& store);
+
+// What a case has of its own: its parameters, initial values and scenario. Throws Failure without a place: there is no such
+// case, its part is missing or damaged, or the folder does not keep all that varies.
+std::vector<AskedWord> words_of_case(const inner::SweepStore& store, std::size_t number);
+
+// Both, one after the other. Throws Failure as the function above.
+std::vector<AskedWord> all_words_of_case(const inner::SweepStore& store, std::size_t number);
+
+// The command that computes the motion of a case: without the numbers of a case, to which they are added, and with them.
+// A model that is known by its text alone is model.toml.
+std::string command_of_sweep(const inner::SweepStore& store);
+std::string command_of_case(const inner::SweepStore& store, std::size_t number);
+
+// The system of a case, in its initial state. Errors: as `prepare`, and as the function above.
+Result<System> system_of_case(const inner::SweepStore& store, std::size_t number);
+
+// The options of the motion of any case: those of the sweep where `given` does not say otherwise.
+MotionOptions options_of_case(const inner::SweepStore& store, const MotionOptions& given);
+
+// The options with so many equal intervals between the rows, whatever they say of rows. Throws Failure.
+MotionOptions with_intervals(const System& system, MotionOptions options, int count);
+
+// The options of the motion of a case as `anholon report` draws it: rows as the sweep asks, or as many as a page holds.
+// Throws Failure.
+MotionOptions drawn_case(const inner::SweepStore& store, const System& system);
+
+}  // namespace anholon::v1

@@ -1,0 +1,218 @@
+// The map of a sweep in Chromium and Firefox, in the studio and in the page of `anholon plot`: node sweeps.mjs PROGRAM. Exit 77: there is no browser, or no viewer.
+import assert from 'node:assert/strict';
+import { execFileSync, spawn } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, renameSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { browsers } from '../support/browsers.mjs';
+
+const program = resolve(process.argv[2]);
+const skip = (why) => { console.log(`skipped: ${why}`); process.exit(77); };
+if (!existsSync('viewer/dist/studio.js')) skip('the viewer is not built');
+const started = await browsers();
+const axe = readFileSync('viewer/node_modules/axe-core/axe.min.js', 'utf8');
+const folder = mkdtempSync(join(tmpdir(), 'anholon-sweeps-'));
+const anholon = (...words) => execFileSync(program, words, { cwd: folder, stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, ANHOLON_CACHE: '' } }).toString();
+
+anholon('sweep', 'disc', '--vary', "phi'=5:7:8", '--vary', 'theta=0.6:1.2:6', '--to', '2', '--chunk', '12', '--quiet', '-o', 'falls/');
+anholon('sweep', 'disc', '--vary', 'm=1:3:9', '--to', '1', '--quiet', '-o', 'line/');
+anholon('plot', 'falls/', '-o', 'plain.html');
+anholon('plot', 'falls/', 'theta', '--motions', '6', '-o', 'motions.html');
+anholon('plot', 'line/', 'theta', '--motions', '3', '-o', 'line.html');
+
+async function studio(name) {
+  const child = spawn(program, ['studio', name, '--no-browser', '--quiet'], { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, ANHOLON_CACHE: '' } });
+  const address = await new Promise((done, fail) => {
+    let text = '';
+    child.stdout.on('data', (d) => { text += d; if (text.includes('\n')) done(text.trim()); });
+    child.on('exit', (code) => fail(new Error(`the studio ended with status ${code}`)));
+  });
+  return { address, end: () => new Promise((done) => { child.removeAllListeners('exit'); child.on('exit', done); child.kill('SIGINT'); }) };
+}
+
+// A page that must not complain and asks nobody but its own address.
+async function open(browser, address, width = 1280) {
+  const page = await browser.newPage({ viewport: { width, height: 800 } });
+  const faults = [], draws = await page.evaluate(() => document.createElement('canvas').getContext('webgl2') !== null);
+  page.on('console', (m) => { if ((m.type() === 'error' || m.type() === 'warning') && (draws || !m.text().includes('WebGL'))) faults.push(m.text()); });
+  page.on('pageerror', (e) => faults.push(e.stack ?? e.message));
+  page.on('request', (r) => { if (!r.url().startsWith(address) && !/^(data|blob):/.test(r.url())) faults.push(`asked for ${r.url()}`); });
+  await page.goto(address);
+  await page.locator('.map canvas').waitFor({ timeout: 30000 });
+  return { page, faults, draws };
+}
+const file = (name) => pathToFileURL(join(folder, name)).href;
+
+// Clicks into the map, at parts of its frame.
+async function click(page, x, y) {
+  const canvas = page.locator('.map canvas'), box = await canvas.boundingBox();
+  await canvas.click({ position: { x: 64 + (box.width - 76) * x, y: 8 + (box.height - 52) * y } });
+}
+const heading = (page) => page.locator('.about h2').innerText();
+const colour_count = (page) => page.evaluate(() => {
+  const canvas = document.querySelector('.player canvas.view');
+  if (!canvas || canvas.width === 0) return 0;
+  const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  const seen = new Set();
+  for (let k = 0; k < data.length; k += 4) seen.add((data[k] << 16) | (data[k + 1] << 8) | data[k + 2]);
+  return seen.size;
+});
+async function seen(page, draws) {
+  await page.locator('.player .play-bar, .player input.scrub').first().waitFor({ timeout: 30000 });
+  await page.locator('.plots canvas').first().waitFor({ state: 'attached', timeout: 10000 });     // made when there is nothing else to do
+  if (draws) {
+    await page.locator('.player').scrollIntoViewIfNeeded();
+    await page.waitForFunction(() => (document.querySelector('.player canvas.view')?.width ?? 0) > 0);
+    assert.ok(await colour_count(page) > 20, 'the picture is empty');
+  }
+}
+const shows = (page, number) => page.waitForFunction((n) => document.documentElement.dataset.shown === n, String(number), { timeout: 60000 });
+
+const in_studio = {
+  async 'a click on a cell shows its motion, and its command is that of the answer'(page, faults, draws) {
+    let told = null;
+    page.on('response', async (r) => { if (r.url().endsWith('/case')) told = await r.json(); });
+    await click(page, .5 / 8, 1 - .5 / 6);
+    await shows(page, 0);
+    assert.equal(await heading(page), 'Case 0');
+    await seen(page, draws);
+    await click(page, 7.5 / 8, .5 / 6);
+    await shows(page, 47);
+    assert.equal(await heading(page), 'Case 47');
+    assert.equal(await page.locator('.about pre.command').innerText(), told.command);
+    assert.equal(await page.locator('.player').count(), 1);
+    assert.match(await page.locator('.status').innerText(), /^motion of case 47 in /);
+  },
+  async 'a case is chosen by its number, or by arrow keys'(page) {
+    await page.getByLabel('Case:').fill('17');
+    await page.keyboard.press('Enter');
+    await shows(page, 17);
+    await page.locator('.map canvas').focus();
+    await page.keyboard.press('ArrowRight');
+    await shows(page, 18);
+    assert.equal(await heading(page), 'Case 18');
+    assert.equal(await page.getByLabel('Case:').inputValue(), '18');
+    await page.getByLabel('Case:').fill('480');
+    await page.keyboard.press('Enter');
+    await page.locator('.stale').waitFor();
+    assert.match(await page.locator('.stale').innerText(), /Shown is case 18\. Case 480: there is no case 480/);
+  },
+  async 'many clicks leave the motion of the last one'(page) {
+    for (let k = 0; k < 8; ++k) await click(page, (k + .5) / 8, 1 - .5 / 6);
+    await shows(page, 42);
+    await page.waitForTimeout(300);
+    assert.equal(await page.evaluate(() => document.documentElement.dataset.shown), '42');
+    assert.equal(await page.locator('.player').count(), 1);
+  },
+  async 'a reload shows the parts that have come'(page, faults) {
+    const part = join(folder, 'falls/part-000002.parquet'), away = join(folder, 'away');
+    renameSync(part, away);
+    try {
+      await page.reload();
+      await page.locator('.growing').waitFor();
+      assert.match(await page.locator('.growing').innerText(), /^3 of 4 parts are there/);
+      await page.getByLabel('Case:').fill('30');
+      await page.keyboard.press('Enter');
+      await page.locator('.stale').waitFor();
+      assert.match(await page.locator('.stale').innerText(), /There is no motion\. Case 30: the part of case 30 is missing/);
+    } finally { renameSync(away, part); }
+    await page.reload();
+    await page.locator('.map canvas').waitFor();
+    assert.equal(await page.locator('.growing').count(), 0);
+    faults.splice(0, faults.length, ...faults.filter((f) => !/aborted|cancel/i.test(f)));
+  },
+};
+
+const in_page = {
+  async 'plain.html: a click tells the case'(page) {
+    await click(page, .5 / 8, 1 - .5 / 6);
+    assert.equal(await heading(page), 'Case 0');
+    assert.match(await page.locator('.about pre.command').innerText(), /^anholon report disc --to 2 --qdot phi=5 --q theta=0\.6 -o case-0\.html$/);
+    assert.equal(await page.locator('.player').count(), 0);
+  },
+  async 'motions.html: a cell with a motion shows it, another one that next to it'(page, faults, draws) {
+    const held = await page.evaluate(() => JSON.parse(document.getElementById('motions').textContent).map((m) => m.number));
+    assert.equal(held.length, 6);
+    assert.equal(new Set(held).size, 6);
+    for (const number of [held[0], held[5]]) {
+      await page.getByLabel('Case:').fill(String(number));
+      await page.keyboard.press('Enter');
+      assert.equal(await heading(page), `Case ${number}`);
+      await seen(page, draws);
+      assert.equal(await page.locator('.about .note').count(), 0);
+    }
+    const without = Array.from({ length: 48 }, (_, k) => k).find((k) => !held.includes(k));
+    await click(page, (Math.floor(without / 6) + .5) / 8, 1 - (without % 6 + .5) / 6);
+    assert.match(await page.locator('.about .note').innerText(), new RegExp(`no motion of case ${without}; that of case \\d+ is next to it`));
+    const next = Number((await heading(page)).replace('Case ', ''));
+    assert.ok(held.includes(next));
+    assert.equal(await page.locator('.player').count(), 1);
+    await page.locator('.map canvas').focus();
+    await page.keyboard.press('ArrowRight');
+    assert.ok(held.includes(Number((await heading(page)).replace('Case ', ''))));
+  },
+  async 'line.html: one variation, and the outcome is told'(page, faults, draws) {
+    const held = await page.evaluate(() => JSON.parse(document.getElementById('motions').textContent).map((m) => m.number));
+    assert.deepEqual(held, [1, 4, 7]);
+    await page.getByLabel('Case:').fill('4');
+    await page.keyboard.press('Enter');
+    await seen(page, draws);
+  },
+};
+
+// The faults that axe-core finds. The content policy of a page lets no foreign script in, so it goes through the debugger, which Firefox does not have.
+async function accessibility(page) {
+  if (page.context().browser().browserType().name() !== 'chromium') return [];
+  const session = await page.context().newCDPSession(page);
+  await session.send('Runtime.evaluate', { expression: axe });
+  const { result } = await session.send('Runtime.evaluate', {
+    awaitPromise: true, returnByValue: true,
+    expression: 'axe.run(document).then((r) => r.violations.map((v) => ({ id: v.id, nodes: v.nodes.filter((n) => v.id !== "empty-table-header" || !n.html.includes("<math")) })).filter((v) => v.nodes.length > 0).map((v) => v.id + ": " + v.nodes.slice(0, 3).map((n) => n.html.slice(0, 160)).join(" | ")))',
+  });
+  return result.value;
+}
+async function usable(browser, address, motion) {
+  for (const width of [1280, 390]) {
+    const { page, faults } = await open(browser, address, width);
+    await page.getByLabel('Case:').fill('0');
+    await page.keyboard.press('Enter');
+    if (motion) await page.locator('.player input.scrub').waitFor({ timeout: 60000 });
+    assert.deepEqual(await accessibility(page), [], `${address} at a width of ${width}`);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${address} scrolls sideways at a width of ${width}`);
+    assert.deepEqual(faults, []);
+    await page.close();
+  }
+}
+
+let failed = 0;
+async function attempt(name, test) {
+  try { await test(); console.log(`ok: ${name}`); } catch (e) { ++failed; console.log(`FAULT ${name}: ${e.stack ?? e}`); }
+}
+async function run_tests({ name: of, browser }) {
+  const s = await studio('falls');
+  for (const [name, test] of Object.entries(in_studio)) {
+    await attempt(`${of}, studio: ${name}`, async () => {
+      const { page, faults, draws } = await open(browser, s.address);
+      await test(page, faults, draws);
+      assert.deepEqual(faults, []);
+      await page.close();
+    });
+  }
+  await attempt(`${of}: the studio with a reader of screens, and on a phone`, () => usable(browser, s.address, true));
+  assert.equal(await s.end(), 0);
+  for (const [name, test] of Object.entries(in_page)) {
+    const [html] = name.split(':');
+    await attempt(`${of}, ${name}`, async () => {
+      const { page, faults, draws } = await open(browser, file(html));
+      await test(page, faults, draws);
+      assert.deepEqual(faults, []);
+      await page.close();
+    });
+    await attempt(`${of}: ${html} with a reader of screens, and on a phone`, () => usable(browser, file(html), html !== 'plain.html'));
+  }
+  await browser.close();
+}
+for (const one of started) await run_tests(one);
+rmSync(folder, { recursive: true, force: true });
+process.exit(failed > 0 ? 1 : 0);
