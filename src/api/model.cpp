@@ -12,12 +12,8 @@ namespace anholon::v1 {
 
 namespace {
 
-Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
-  auto data = std::make_shared<Model::Data>();
-  data->source = std::move(source);
-  data->cases = options.cases;
-  for (const auto& [name, value] : options.set) data->overrides[inner::normal_name(name)] = value.text();
-  data->mode = options.mode;
+// Reads the text of the data, which tell how.
+Result<Model> opened(std::shared_ptr<Model::Data> data) {
   inner::Diagnostics diagnostics;
   const auto model = data->open_again(diagnostics);
   if (diagnostics.has_errors() || !model) return error_of(diagnostics, data->source);
@@ -25,6 +21,15 @@ Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
   if (data->mode.empty()) data->contacts = inner::contacts(*model->names);
   for (const inner::Diagnostic& d : diagnostics.list()) data->remarks.push_back(to_public(d, data->model->source_text));
   return Model(std::move(data));
+}
+
+Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
+  auto data = std::make_shared<Model::Data>();
+  data->source = std::move(source);
+  data->cases = options.cases;
+  for (const auto& [name, value] : options.set) data->overrides[inner::normal_name(name)] = value.text();
+  data->mode = options.mode;
+  return opened(std::move(data));
 }
 
 }  // namespace
@@ -44,12 +49,21 @@ std::optional<inner::OpenModel> Model::Data::open_again(inner::Diagnostics& diag
   return open;
 }
 
+Result<Model> with_scenario(const Model& model, const std::string& scenario) {
+  auto data = std::make_shared<Model::Data>();
+  data->source = model.data().source;
+  data->overrides = model.data().overrides, data->mode = model.data().mode;
+  data->cases = model.data().cases;
+  data->cases.push_back(scenario);
+  return opened(std::move(data));
+}
+
 const char* version() { return ANHOLON_VERSION; }
 
 const std::string& Model::title() const { return data_->model->title; }
 const std::vector<Diagnostic>& Model::remarks() const { return data_->remarks; }
 const std::string& Model::text() const { return data_->source.text; }
-std::size_t Model::base_files() const { return data_->source.others.size(); }
+std::size_t Model::base_files() const { return data_->model->source_text.others.size(); }
 
 std::vector<Coordinate> Model::coordinates() const {
   const inner::Model& m = *data_->model;

@@ -12,6 +12,8 @@
 #include "cli/motions/sweep_output.h"
 #include "cli/say.h"
 #include "cli/stop.h"
+#include "ensemble/parts/judgement.h"
+#include "ensemble/parts/scenarios.h"
 #include "ensemble/request.h"
 #include "ensemble/variation.h"
 #include "ensemble/with_contacts.h"
@@ -48,19 +50,14 @@ std::string text_of_table(const std::string& path) {
 std::vector<std::string> cases_of_file(std::vector<std::string>& words) {
   constexpr std::string_view kName = "case=";
   std::vector<std::string> names;
+  bool named = false;
   std::erase_if(words, [&](const std::string& word) {
     if (!word.starts_with(kName)) return false;
+    named = true;
     for (const std::string& name : split({word.substr(kName.size())})) names.push_back(name);
-    if (names.empty())
-      throw UsageError{
-          "error: --vary case= names no case\nhint: --vary case=a,b with sections [case.a] and [case.b] in "
-          "the model file\n"};
     return true;
   });
-  for (std::size_t k = 0; k < names.size(); ++k)
-    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) !=
-        names.begin() + static_cast<std::ptrdiff_t>(k))
-      throw UsageError{"error: --vary names the case '" + names[k] + "' twice\nhint: each case once\n"};
+  if (named) must_name_each_once(names, "--vary");
   return names;
 }
 
@@ -136,12 +133,6 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   return true;
 }
 
-std::vector<std::string> names_of(const SweepTable& table) {
-  std::vector<std::string> names;
-  for (const SweepColumn& c : table.columns()) names.push_back(c.name);
-  return names;
-}
-
 std::vector<SweepPiece> pieces_of(std::deque<Part>& parts) {
   std::vector<SweepPiece> list;
   for (Part& p : parts) list.push_back({&p.scenario, &p.options, &*p.table, p.word});
@@ -214,17 +205,19 @@ int sweep(const SweepCommand& asked) {
       print_outcome(p.start);
       return kStopped;
     }
-    if (names_of(*p.table) != names_of(*parts.front().table))
-      throw UsageError{"error: the case '" + p.word + "' has other columns than the case '" + parts.front().word +
-                       "'\nhint: --columns chooses those that both have\n"};
+    must_have_columns_of(*parts.front().table, parts.front().word, *p.table, p.word,
+                         "--columns chooses those that both have");
     cases += p.options.cases;
   }
   catch_stop(o.output);
   const Part& first = parts.front();
-  const RunInfo info = run_info(first.asked, first.in, first.scenario, merged(o.motion, first.in.model->simulate));
+  const auto info_with = [&](const MotionSettings& s) { return run_info(first.asked, first.in, first.scenario, s); };
+  const RunInfo info = info_with(merged(o.motion, first.in.model->simulate));
   if (names_folder(o.output))
-    return sweep_into_folder(o, {pieces_of(parts), asked_of(info, asked, table_text), cases,
-                                 parts.size() == 1 ? &*first.variation : nullptr});
+    // Each scenario has settings of its own, which follow from its name.
+    return sweep_into_folder(o, {pieces_of(parts),
+                                 asked_of(names.empty() ? info : info_with(first.asked.motion), asked, table_text),
+                                 cases, parts.size() == 1 ? &*first.variation : nullptr});
   for (const auto& [option, word] :
        {std::pair{"--shard", &o.shard}, {"--chunk", &o.chunk}, {"--refine", &o.refine}, {"--refine-by", &o.refine_by}})
     if (!word->empty())
