@@ -220,3 +220,48 @@ def test_a_parameter_may_be_called_case() -> None:
     model = an.loads(CASES.replace("l = 1", "l = 1, case = 2").replace('"-g*ey"', '"-case*g*ey"'))
     swept = model.sweep({"case": [1, 2]})
     assert swept.varied["case"].tolist() == [1, 2] and swept["theta"][0] != swept["theta"][1]
+
+
+BEAD = """title = "bead"
+coordinates = ["x", "y"]
+particle = [{name = "bead", mass = 1, position = ["x", "y", 0]}]
+constraint = [{name = "wire", equation = "y = a*x^2"}]
+parameters.a = 1
+gravity.field = [0, "-9.81", 0]
+initial = {x = 1, y = 2, "x'" = 1}
+simulate.to = 1
+[case.wide]
+parameters.a = 0.5
+[case.free]
+constraint.wire.equation = "y = 2"
+"""
+BALL = """title = "ball"
+coordinates = ["x", "y"]
+particle = [{name = "ball", mass = 1, position = ["x", "y", 0]}]
+contact = [{name = "floor", gap = "y", slip = "x'", friction = 0.2, restitution = 0.5}]
+gravity.field = [0, "-9.81", 0]
+initial = {x = 0, y = 1, "x'" = 1}
+simulate.to = 1
+[case.rough]
+contact.floor.friction = 0.8
+[case.soft]
+contact.floor.restitution = 0
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "vary", "words"),
+    [
+        # The start of the model contradicts its constraint, those of some cases do not.
+        (BEAD, {"case": "wide,free", "y": [3, 2, "1/2"]}, ["case=wide,free", "y=3,2,1/2"]),
+        (BALL, {"case": "rough,soft", "x'": [1, 2]}, ["case=rough,soft", "x'=1,2"]),
+    ],
+)
+def test_starts_and_contacts_of_scenarios(text: str, vary: dict[str, Any], words: list[str], tmp_path: pathlib.Path, program: Callable[..., str]) -> None:
+    path = tmp_path / "model.toml"
+    path.write_text(text)
+    expected = program("sweep", str(path), "--vary", words[0], "--vary", words[1], "--quiet")
+    folder, memory = an.load(path).sweep(vary, out=tmp_path / "f"), an.load(path).sweep(vary)
+    assert collected(program, tmp_path / "f") == expected and memory.finished >= 2
+    for name in memory:
+        assert np.array_equal(memory[name], folder[name], equal_nan=True), name
