@@ -58,6 +58,8 @@ def _of_command_line(core: _core.SweepFolder, row: dict[str, Any]) -> tuple[Mode
         # The command line keeps the options of its first scenario, which is the last of these.
         cases[-1] = row["case_name"]
     model = loads(core.asked("model"), set=_pairs(core.asked("set")), case=cases)
+    if core.asked("mode"):
+        model = model.in_mode(*core.asked("mode").split())
     initial: dict[str, str] = {}
     for order, option in enumerate(("q", "qdot", "qddot", "qdddot")):
         initial.update({name + "'" * order: value for name, value in _pairs(core.asked(option)).items()})

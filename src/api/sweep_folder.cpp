@@ -43,13 +43,14 @@ std::vector<std::pair<std::string, std::string>> asked_of(const PreparedSweep& p
   const PreparedPiece& first = p.pieces.front();
   const System::Data& system = first.system.data();
   const SweepOptions& o = p.asked;
-  add("title", system.model->model->title), add("model", model.source.text);
+  // The mode comes first: messages name it before the title that tells it, too.
+  add("mode", inner::joined(model.mode, " ")), add("title", system.model->model->title),
+      add("model", model.source.text);
   const std::vector<inner::SourceText>& others = model.model->source_text.others;
   for (std::size_t k = 0; k < others.size(); ++k) add("base file " + std::to_string(k + 1), others[k].text);
   std::string set;
   for (const auto& [name, value] : model.overrides) set += (set.empty() ? "" : " ") + name + "=" + value;
-  add("set", set), add("case", inner::joined(model.cases, " ")), add("mode", inner::joined(model.mode, " "));
-  add("form", forms_of(p));
+  add("set", set), add("case", inner::joined(model.cases, " ")), add("form", forms_of(p));
   std::string initial, eliminate;
   for (const inner::StateOverride& s : system.choice.overrides)
     initial += (initial.empty() ? "" : " ") +

@@ -4,6 +4,7 @@
 
 #include "base/join.h"
 #include "base/read_file.h"
+#include "cli/contacts.h"
 #include "cli/input.h"
 #include "cli/models/show.h"
 #include "cli/motions/progress.h"
@@ -103,6 +104,8 @@ Reductions reductions_of(const SweepCommand& o, const Reader& in) {
 // Returns false if --show has printed what was asked for.
 bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   p.in = read(p.asked);
+  // Without a mode the contacts move, too.
+  if (!p.asked.mode.empty()) p.in = in_mode(std::move(p.in), p.asked, "sweep");
   const SweepCommand o = p.asked = with_form(p.asked, p.in);
   p.variation = variation_of(o, *p.in.model, table, !p.word.empty());
   EnsembleOptions& e = p.options;
@@ -119,7 +122,7 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   if (!o.show.empty()) return false;
   ask(o.motion, p.scenario, asker(), e);
   try {
-    move_with(contacts(*p.in.names), e);
+    if (o.mode.empty()) move_with(contacts(*p.in.names), e);
   } catch (const Failure& f) {
     throw UsageError{"error: " + f.diagnostic.message + "\nhint: " + f.diagnostic.hint + "\n"};
   }
@@ -146,11 +149,13 @@ std::vector<std::pair<std::string, std::string>> asked_of(const RunInfo& info, c
   const auto add = [&](const std::string& name, const std::string& text) {
     if (!text.empty()) all.emplace_back(name, text);
   };
+  // The mode comes first: messages name it before the title that tells it, too.
+  if (const auto mode = info.settings.find("mode"); mode != info.settings.end()) add("mode", joined(mode->second, " "));
   add("title", info.title);
   for (std::size_t k = 0; k < info.model.size(); ++k)
     add(k == 0 ? "model" : "base file " + std::to_string(k), info.model[k].text);
   for (const auto& [name, words] : info.settings)
-    if (name != "model_sha256" && name != "error-estimate") add(name, joined(words, " "));
+    if (name != "model_sha256" && name != "error-estimate" && name != "mode") add(name, joined(words, " "));
   add("vary", joined(o.varied, " ")), add("table of cases", table_text), add("n", o.case_count), add("draw", o.draw);
   add("seed", std::to_string(o.seed)), add("reduce", joined(o.reduce, " "));
   return all;

@@ -200,7 +200,8 @@ std::string quoted(const std::string& word) {
 }  // namespace
 
 std::string SweepCases::command() const {
-  if (!store_) return {};
+  // `report` shows the motion with its changes of mode, and not that of one mode.
+  if (!store_ || !store_->asked("mode").empty()) return {};
   const std::string& name = store_->request().model_name;
   std::string text = "anholon report " + quoted(name.empty() ? "model.toml" : name);
   const auto add = [&](const std::string& option, const std::string& word) {
