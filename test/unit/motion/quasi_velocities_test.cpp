@@ -27,11 +27,12 @@ struct Found {
     if (s.constraints.empty()) return;
     parameters = parameter_values<long double>(*scenario->model);
     // A fixed point is as good as any: the choice of pivots alone depends on it.
-    q = quasi_velocities(s, *scenario->mechanics, {}, [&](const Node& n) {
+    const auto symbol = [&](const Node& n) {
       if (n.kind == Kind::time) return static_cast<double>(start.t);
       if (n.kind == Kind::parameter) return static_cast<double>(parameters[n.index]);
       return n.kind == Kind::jet && n.order < 2 ? static_cast<double>(start.state[2 * n.index + n.order]) : 0.0;
-    });
+    };
+    q = quasi_velocities(s, *scenario->mechanics, {}, symbol, why);
   }
   std::vector<std::string> of_state() const { return print(q->of_state, q->system.model->names, Format::text); }
 
@@ -40,6 +41,7 @@ struct Found {
   Start<long double> start;
   std::vector<long double> parameters;
   std::optional<QuasiVelocities> q;
+  std::string why;  // there are none
 };
 
 using Texts = std::vector<std::string>;
