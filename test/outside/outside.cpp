@@ -249,6 +249,10 @@ int main() {
   expect(source && source->find("#include <math.h>") != std::string::npos, "the motion is written as a program");
   const auto disc = anholon::read_file("disc");
   expect(bool(disc), "a shipped model is found");
+  const auto f = anholon::dynamics(*system), rolling = anholon::dynamics(*anholon::prepare(*disc));
+  expect(f && !f->minimal() && f->obstacle().find("no constraints") != std::string::npos && rolling &&
+             rolling->minimal() && rolling->obstacle().empty(),
+         "a function tells why its velocities are not independent ones");
   const auto rest = anholon::prepare(*anholon::read_text(kPendulum), {.initial = {{"theta", 0}}});
   const auto linear = anholon::linearize(*rest);
   expect(linear && linear->eigenvalues.size() == 2 && std::abs(std::abs(linear->eigenvalues[0].imag()) - 2) < 1e-12,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 
 #include "base/read_file.h"
 #include "cli/model_options.h"
@@ -208,7 +210,9 @@ std::string SweepCases::command() const {
     text += " --" + option + " " + quoted(word);
   };
   for (const ModelOption& m : model_options())
-    for (const std::string& word : words_of(store_->asked(m.name))) add(m.name, word);
+    if (std::string_view(m.name) != "case")
+      for (const std::string& word : words_of(store_->asked(m.name))) add(m.name, word);
+  for (const std::string& scenario : common_scenarios()) add("case", scenario);
   // Python names initial values as a model file does.
   constexpr const char* kOrders[] = {"q", "qdot", "qddot", "qdddot"};
   for (const std::string& word : words_of(store_->asked("initial"))) {
@@ -225,6 +229,15 @@ std::string SweepCases::command() const {
     add("to", times.substr(times.rfind(' ') + 1));
   }
   return text;
+}
+
+// A command keeps the options of its first scenario, whose name is its last case; each case has a scenario of its own.
+std::vector<std::string> SweepCases::common_scenarios() const {
+  std::istringstream all(store_->asked("case"));
+  std::vector<std::string> list{std::istream_iterator<std::string>(all), {}};
+  const bool vary = std::find(names_.begin(), names_.end(), "case_name") != names_.end();
+  if (vary && store_->asked("vary case").empty() && !list.empty()) list.pop_back();
+  return list;
 }
 
 // Units and meanings come from the model in the folder; a model that refers to files that are not there has none.

@@ -31,6 +31,8 @@ class SweepCases {
 
  private:
   void read_model();
+  // The scenarios that all cases have.
+  std::vector<std::string> common_scenarios() const;
   void each_table(const std::function<void(const ParquetTable&)>& take) const;
 
   std::optional<SweepStore> store_;

@@ -119,9 +119,10 @@ function entry(paint, word) {
 const quoted = word => /^[\w=.,+\-/:]*$/.test(word) ? word : "'" + word.replaceAll("'", "'\\''") + "'";
 function command(k) {
   let line = data.command;
+  const scenario = data.columns.find(c => c.name === "case_name");
+  if (scenario) line += " --case " + quoted(text(scenario, k));
   for (const name of data.varied) {
     const plain = name.replace("(0)", ""), primes = plain.split("'").length - 1, c = column(name);
-    if (c.words.length) { line += " --case " + quoted(text(c, k)); continue; }
     const option = plain === name ? "set" : ["q", "qdot", "qddot", "qdddot"][primes];
     line += ` --${option} ` + quoted(plain.replaceAll("'", "") + "=" + text(c, k));
   }

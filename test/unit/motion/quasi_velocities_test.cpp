@@ -60,6 +60,17 @@ TEST(QuasiVelocities, AreThoseOfTheBooks) {
   EXPECT_TRUE(is_number(sleigh.q->determinant)) << "never singular";
 }
 
+TEST(QuasiVelocities, TellWhyThereAreNone) {
+  EXPECT_EQ(Found(test::shipped("zoo/disc")).why, "");
+  for (const auto& [name, why] :
+       {std::pair{"zoo/double-pendulum-cartesian", "the constraint 'rod2' is of order 0"},
+        {"asked/perpendicular-velocities", "the constraint 'square' is not linear in the velocities"}}) {
+    const Found none(test::shipped(name));
+    EXPECT_FALSE(none.q) << name;
+    EXPECT_EQ(none.why, why);
+  }
+}
+
 ExpansionWork work_in_quasi_velocities(const std::string& model, const Overrides& overrides = {}) {
   Scenario prepared;
   if (!make_scenario(test::model_of(test::shipped_text(model), overrides), *find_formulation("routh"), {}, prepared)
