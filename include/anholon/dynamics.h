@@ -38,6 +38,9 @@ class ANHOLON_API Dynamics {
   std::vector<std::string> parameters() const;  // what p holds
   std::vector<std::string> outputs() const;     // what y holds: monitors and outputs of the model
   bool minimal() const;
+  // The reason why the velocities are not independent ones, a clause such as "the constraint 'rod' is of order 0"; empty if
+  // minimal.
+  const std::string& obstacle() const;
   // Whether the equations are linear in what they are solved for. Where they are not, they may have several solutions: the
   // rates are those of the solution that joins the one at the start, followed along the straight line from there, and NaN
   // where it ends.

@@ -14,7 +14,7 @@ struct ReadOptions {
   std::vector<std::string> cases = {};     // [case.NAME] sections that are laid over the file, one after the other
   // The mode of the contacts, {"floor=sticks"} (open, slips or sticks; open without a word), or of constraints with
   // 'active', {"caught=1"}: the model is then the one of this mode, in which contacts exert ideal forces and nothing
-  // changes. Derivations, proofs, comparisons and linear models of models with contacts need it.
+  // changes. Derivations, proofs, comparisons and linear models of contacts need it; motions, also in folders, may have it.
   std::vector<std::string> mode = {};
 };
 

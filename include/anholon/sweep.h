@@ -9,7 +9,8 @@
 
 namespace anholon::v1 {
 
-// What differs from motion to motion: a parameter, or the initial value of a coordinate or velocity ("theta'").
+// What differs from motion to motion: a parameter, or the initial value of a coordinate or velocity ("theta'"); in a sweep
+// of a model also its scenarios, {"case", {"moon", "long"}}.
 struct Vary {
   std::string name;
   std::vector<Number> values = {};
@@ -55,8 +56,13 @@ class ANHOLON_API Sweep {
   // A column at these times, case by case: the number of a case at times()[k] is element case * times().size() + k; NaN
   // at times that the case did not reach. Empty if there are no times, no such column, or if it is a reduction.
   std::span<const double> rows(const std::string& name) const;
-  // The values that a name in SweepOptions::vary takes, one for each case. Empty if the name is not varied.
+  // The values that a name in SweepOptions::vary takes, one for each case. Empty if the name is not varied, or if it
+  // stands for scenarios.
   std::span<const double> varied(const std::string& name) const;
+  // The scenarios that vary, in their order; empty if none do.
+  const std::vector<std::string>& scenarios() const;
+  // The scenario of a case; empty if none vary.
+  const std::string& scenario(std::size_t number) const;
   std::span<const double> t() const;  // reached
   const Outcome& outcome(std::size_t number) const;
   // The event that ended the motion of a case; empty if none did.
@@ -74,5 +80,13 @@ class ANHOLON_API Sweep {
 
 // Errors: unknown names and columns, formulas that make no sense, times outside of the motions, no end (diagnostics).
 ANHOLON_API Result<Sweep> sweep(const System& system, const SweepOptions& options);
+// The same of a model, as `anholon sweep` does it, which needs no consistent start beside those of the cases. A Vary named
+// "case" runs through sections [case.NAME] of the file, each laid over the model after ReadOptions::cases, the values being
+// their names; whatever its place, it varies slowest, and each scenario has all cases of the others:
+//   sweep(*read_file("pendulum.toml"), {.vary = {{"case", {"moon", "long"}}, {"theta", {0.1, 0.2}}}, .to = 1})
+// has four cases, moon 0.1, moon 0.2, long 0.1, long 0.2. Values of ReadOptions::set win over those of a scenario. Errors:
+// as above, and those of read_file and prepare for a scenario; a name that is there twice; scenarios with different
+// columns; `together`, which is for values.
+ANHOLON_API Result<Sweep> sweep(const Model& model, const SweepOptions& options, const PrepareOptions& prepare = {});
 
 }  // namespace anholon::v1

@@ -71,9 +71,10 @@ class ANHOLON_API SweepFolder {
   // given, where their numbers in a column differ by more than a bound. Returns how many cases it adds, 0 if there is no
   // border. With a number, 1 for the first one that refines, it plans this generation, and returns its cases, too, if
   // another process has planned it before. Errors: parts are missing, what varies is no grid, an earlier generation
-  // followed another rule, the generation before that number is not there, or the folder was opened by its name alone.
+  // followed another rule, the generation before that number is not there, several scenarios vary, or the folder was opened by its name alone.
   Result<std::size_t> refine(const std::string& rule = {}, std::optional<std::size_t> number = {}) const;
-  // The numbers of a case by the names that vary, as exact text. Errors: there is no such case, or as `fill`.
+  // The numbers of a case by the names that vary, as exact text; before them "case" and the name of its scenario, if
+  // scenarios vary. Errors: there is no such case, or as `fill`.
   Result<std::vector<std::pair<std::string, std::string>>> numbers(std::size_t number) const;
   // The options of `anholon simulate` for the motion of a case, with their words: {"qdot", "phi=5"} for --qdot phi=5,
   // {"case", "wet"}, {"to", "3"}. Errors: there is no such case, its part is missing or damaged, or the folder does not
@@ -96,9 +97,14 @@ class ANHOLON_API SweepFolder {
 };
 
 // Opens the folder for this sweep, or makes it; nothing is computed. `chunk` holds for a new folder; 0: as many cases as
-// take some seconds, by a trial. `recipe` is kept in a new folder as it is. Errors: as `sweep`; another sweep or other files are in the folder; it cannot be written.
+// take some seconds, by a trial. `recipe` is kept in a new folder as it is. Errors: as `sweep`; another sweep or other files
+// are in the folder; it cannot be written.
 ANHOLON_API Result<SweepFolder> sweep_into(const System& system, const SweepOptions& options, const std::string& folder,
                                            std::size_t chunk = 0, const std::string& recipe = {});
+// The same of a model, whose scenarios may vary, as in `sweep`. The name of the scenario is the column "case_name".
+ANHOLON_API Result<SweepFolder> sweep_into(const Model& model, const SweepOptions& options, const std::string& folder,
+                                           std::size_t chunk = 0, const std::string& recipe = {},
+                                           const PrepareOptions& prepare = {});
 // Opens a folder to look at it. Errors: it holds no sweep.
 ANHOLON_API Result<SweepFolder> open_sweep(const std::string& folder);
 

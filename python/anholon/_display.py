@@ -176,6 +176,10 @@ def sweep(of: Sweep, title: str, outcomes: Sequence[str]) -> str:
     lines = [("cases", str(of.cases))] + [(html.escape(kind), str(count)) for kind, count in kinds.items()]
     varied = []
     for name, values in of.varied.items():
+        if values.dtype == object:
+            words = list(dict.fromkeys(values))
+            varied.append((html.escape(name), html.escape(words[0]), html.escape(words[-1]), str(len(words))))
+            continue
         known = values[np.isfinite(values)]
         varied.append((symbol(name), number(known.min()) if known.size else "", number(known.max()) if known.size else "", str(np.unique(known).size)))
     return rows(title, lines) + table("varied", ["", "least", "greatest", "values"], varied)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from . import _core
@@ -22,6 +23,8 @@ def run_of(core: _core.SweepFolder, computing: Any, number: int, options: dict[s
     words, initial, form = recipe["words"], dict(recipe["initial"]), recipe["form"]
     numbers = dict(computing().numbers(number))
     model = model_of(core, recipe)
+    if runs_through_scenarios(model, [name for name, _ in words[0]]):
+        model = model.with_(case=numbers.pop("case"))
     given = {"to": words[6] or (words[8] or [None])[-1], "tolerance": words[7]}
     parameters = {name: value for name, value in numbers.items() if name in model.parameters}
     initial.update({name: value for name, value in numbers.items() if name not in model.parameters})
@@ -29,12 +32,18 @@ def run_of(core: _core.SweepFolder, computing: Any, number: int, options: dict[s
     return (model.with_(**parameters) if parameters else model).simulate(**chosen)
 
 
+def runs_through_scenarios(model: Model, vary: Iterable[str]) -> bool:
+    """Whether the name "case" stands for scenarios of the file; a parameter or a coordinate may have that name."""
+    return "case" in vary and "case" not in model.parameters and all(coordinate.name != "case" for coordinate in model.coordinates)
+
+
 def model_of(core: _core.SweepFolder, recipe: dict[str, Any]) -> Model:
     """The model of a folder that Python made."""
     from .reading import load, loads
 
     given = {"set": recipe["set"], "case": recipe["case"]}
-    return load(recipe["path"], **given) if recipe["path"] else loads(core.asked("model"), **given)
+    model = load(recipe["path"], **given) if recipe["path"] else loads(core.asked("model"), **given)
+    return model.in_mode(*recipe["mode"]) if recipe.get("mode") else model
 
 
 _ORDERS = {"q": "", "qdot": "'", "qddot": "''", "qdddot": "'''"}
@@ -69,4 +78,7 @@ def _of_command_line(core: _core.SweepFolder, number: int) -> tuple[Model, dict[
             eliminate.append(word)
         else:
             given[option.replace("-", "_")] = int(word) if option in ("order", "most-steps", "digits") else word
-    return loads(core.asked("model"), set=parameters, case=scenarios), {**given, "initial": initial, "eliminate": eliminate}
+    model = loads(core.asked("model"), set=parameters, case=scenarios)
+    if core.asked("mode"):
+        model = model.in_mode(*core.asked("mode").split())
+    return model, {**given, "initial": initial, "eliminate": eliminate}

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from . import _core
 from ._errors import Interrupted, ModelError
 from ._progress import Progress, Shown
+from ._sweep_case import model_of, runs_through_scenarios
 from .sweep_folder import SweepFolder
 
 if TYPE_CHECKING:
@@ -35,8 +36,14 @@ Words = tuple[
 """What is asked of a sweep: values, laws, cases, seed, draw, together, to, tolerance, at, columns, reduce."""
 
 
-def number_of_cases(values: list[tuple[str, list[str]]], laws: dict[str, str], cases: int | None, together: bool) -> float | None:
-    """How many cases a sweep has; None if that is not known before it begins."""
+def number_of_cases(
+    values: list[tuple[str, list[str]]], laws: dict[str, str], cases: int | None, together: bool, scenarios: str | None = None
+) -> float | None:
+    """How many cases a sweep has; None if that is not known before it begins. `scenarios` is the name that stands for scenarios, if one does."""
+    named = [of for name, of in values if name == scenarios]
+    if named:
+        rest = number_of_cases([(name, of) for name, of in values if name != scenarios], laws, cases, together)
+        return None if rest is None else rest * len(named[0])
     if cases is not None:
         return float(cases)
     if together:
@@ -55,6 +62,7 @@ class SweepRequest:
 
     def __init__(self, model: Model, form: str, initial: dict[str, str], words: Words) -> None:
         self._model, self._form, self._initial, self._words = model, form, initial, words
+        self._scenarios = runs_through_scenarios(model, [name for name, _ in words[0]])
 
     def fill(
         self,
@@ -70,14 +78,16 @@ class SweepRequest:
         refine_by: tuple[str, float] | None,
     ) -> SweepFolder:
         """Opens the folder or makes it, and computes what is missing there."""
+        if refine > 0 and self._scenarios and len(dict(self._words[0])["case"]) > 1:
+            raise no_grid()
         core = self.open(folder, chunk)
         _opened[_key(core.path)] = core
         return fill(core, on=on, share=share, threads=threads, stop=stop, progress=progress, refine=refine, refine_by=refine_by)
 
     def open(self, folder: str, chunk: int) -> _core.SweepFolder:
         """Opens the folder or makes it."""
-        if self._model._again.mode:
-            raise ModelError("a sweep in a folder reads the text of the model, without its mode\nhint: without 'out' it is kept in memory; or write what touches as a [[constraint]]")
+        if self._scenarios:
+            return _core.sweep_scenarios_into(self._model._core, self._form, self._initial, self._words, folder, chunk, self._recipe())
         system = self._model._system(self._form, self._initial, ())
         return _core.sweep_into(system, self._words, folder, chunk, self._recipe())
 
@@ -85,9 +95,15 @@ class SweepRequest:
         model = self._model
         # The text of the model is in the folder; a text that refers to further files is read where it lies.
         path = "" if model._core.stands_alone or model._again.text is not None else model._again.name
+        mode = {"mode": list(model._again.mode)} if model._again.mode else {}
         return json.dumps(
-            {"path": path, "set": model._given, "case": model._cases, "form": self._form, "initial": self._initial, "words": self._words}
+            {"path": path, "set": model._given, "case": model._cases, **mode, "form": self._form, "initial": self._initial, "words": self._words}
         )
+
+
+def no_grid() -> ModelError:
+    """The error of a sweep over several scenarios whose borders are to be refined."""
+    return ModelError('the cases of a file are no grid, and refine has nothing to halve\nhint: a sweep of each case: model.with_(case="NAME").sweep(...)')
 
 
 # The equations of a sweep are derived once in a process. What this holds is let go of before the core is taken down.
@@ -110,8 +126,6 @@ def computing(folder: str) -> _core.SweepFolder:
     if key not in _opened:
         if not looked_at.recipe:
             raise ModelError(f"{looked_at.path} was made by the command line\nhint: its command goes on, or anholon sweep … -o {looked_at.path}/")
-        from ._sweep_case import model_of
-
         recipe = json.loads(looked_at.recipe)
         model = model_of(looked_at, recipe)
         words = recipe["words"]
@@ -137,6 +151,8 @@ def fill(
     rule = "" if refine_by is None else f"{refine_by[0]}:{float(refine_by[1])!r}"
     if refine_by is not None and refine < 1:
         raise ModelError("refine_by tells what a border is, and refine how often it is refined\nhint: refine=4")
+    if refine > 0 and "case_name" in core.columns and "," in core.asked("vary case"):
+        raise no_grid()
     while True:
         folder = _fill_generation(core, on=on, share=share, threads=threads, stop=stop, progress=progress)
         # Other shares may have parts to compute before the borders are known; other processes may plan the same generation.

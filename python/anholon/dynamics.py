@@ -75,8 +75,21 @@ class Dynamics:
 
     @property
     def minimal(self) -> bool:
-        """Whether the velocities are independent ones."""
+        """Whether the velocities are independent ones; ``obstacle`` tells why they are not."""
         return self._core.minimal
+
+    @property
+    def obstacle(self) -> str:
+        """Why the velocities are not independent ones; empty if they are. Constraints then hold along exact solutions alone, and
+        an integrator leaves them slowly.
+
+        Example:
+            >>> import anholon as an
+            >>> f = an.load("double-pendulum-cartesian").dynamics()
+            >>> f.minimal, f.obstacle
+            (False, "the constraint 'rod2' is of order 0")
+        """
+        return self._core.obstacle
 
     @property
     def linear(self) -> bool:

@@ -14,6 +14,7 @@ from ._names import names_of
 from ._numbers import Number, float_of, list_of, text_of, texts_of
 from ._progress import Progress, Shown
 from ._source import Source
+from ._sweep_case import runs_through_scenarios
 from ._sweep_filling import number_of_cases, SweepRequest, Words
 from .check import Check
 from .dynamics import Dynamics
@@ -268,7 +269,8 @@ class Model(Analysed):
         Args:
             vary: by the name of a parameter, a coordinate or a velocity: a list or an array of values, a grid
                 (:func:`grid`), or a law (:func:`normal`, :func:`uniform`) by which each case draws its own. A text is read as
-                that of ``--vary`` is: ``"5,6,7"``, ``"1:7:100"``, ``"normal(1,0.1)"``.
+                that of ``--vary`` is: ``"5,6,7"``, ``"1:7:100"``, ``"normal(1,0.1)"``. ``{"case": ["moon", "long"]}`` runs
+                through scenarios [case.NAME] of the file, laid over this model; they vary slowest.
             to: the end, s; that of the file if it is None, or the last of ``at``.
             at: times, s, at which the state of each case is kept, too: ``sweep.rows("theta")`` has shape (cases, times).
             columns: names or patterns such as ``"theta*"``; all columns without it.
@@ -304,8 +306,6 @@ class Model(Analysed):
             MotionError: the initial values of the model are inconsistent.
             Interrupted: Ctrl-C; ``.result`` is the sweep as far as it came.
         """
-        if "case" in vary and "case" not in self.parameters:
-            raise ModelError('a sweep varies numbers, and "case" names sections of the file\nhint: one sweep for each: model.with_(case="NAME").sweep(...)')
         laws = {name: str(of) for name, of in vary.items() if is_law(of)}
         values = [(str(name), [] if name in laws else list_of(of)) for name, of in vary.items()]
         if isinstance(columns, str) or isinstance(reduce, str):
@@ -318,9 +318,14 @@ class Model(Analysed):
             )
         if on is not None or chunk is not None or share != (1, 1) or refine or refine_by is not None:
             raise ModelError('on, chunk, share and refine belong to a sweep in a folder\nhint: out="falls/"')
-        system = self._system(form, texts_of(initial), ())
-        with Shown(progress, self.title, number_of_cases(values, laws, cases, together), unit="cases") as tell:
-            core, raised = _core.sweep(system, words, threads, stop, tell)
+        scenarios = runs_through_scenarios(self, vary)
+        count = number_of_cases(values, laws, cases, together, "case" if scenarios else None)
+        system = None if scenarios else self._system(form, texts_of(initial), ())
+        with Shown(progress, self.title, count, unit="cases") as tell:
+            if system is None:
+                core, raised = _core.sweep_scenarios(self._core, form, texts_of(initial), words, threads, stop, tell)
+            else:
+                core, raised = _core.sweep(system, words, threads, stop, tell)
         sweep = Sweep(self, core, list(vary), list(reduce))
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted(sweep) from None

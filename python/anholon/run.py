@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _arrow, _core, _display, _widget
-from ._errors import ColumnError, MotionError
+from ._errors import ColumnError, ModelError, MotionError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -207,6 +207,7 @@ class Run:
             An array of the shape of t for each coordinate and each state of the model; NaN outside of the motion.
 
         Raises:
+            ModelError: `t` holds what is no time; ``run["x"]`` is the column of a name.
             MotionError: the motion has not begun.
 
         Example:
@@ -217,11 +218,15 @@ class Run:
         """
         import numpy as np
 
+        try:
+            times = np.asarray(t, dtype=np.float64)
+        except (TypeError, ValueError):
+            hint = f"run[{t!r}] is the column of that name" if isinstance(t, str) else "run(1.5), run([1, 2.5])"
+            raise ModelError(f"run(t) takes times in seconds, one number or an array, not {t!r:.60}\nhint: {hint}") from None
         if self._dense is None:
             if self._again is None:
                 raise MotionError(repr(self.outcome), self.outcome)
             self._dense = self._again()
-        times = np.asarray(t, dtype=np.float64)
         names = [c.name for c in self.model.coordinates] + self.model.states
         flat = np.ascontiguousarray(times.ravel())
         return {name: self._dense.at(name, flat, order).reshape(times.shape) for name in names}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from . import _arrow, _core, _display
 from ._numbers import Number, text_of
@@ -65,6 +65,14 @@ def grid(low: Number, high: Number, count: int) -> Law:
     return Law(f"{text_of(low)}:{text_of(high)}:{int(count)}")
 
 
+def scenarios_of(core: _core.Sweep) -> dict[str, npt.NDArray[Any]]:
+    """The scenario of each case by the name "case"; nothing if no scenarios vary."""
+    import numpy as np
+
+    names = np.array(core.scenarios, dtype=object)
+    return {"case": np.repeat(names, core.cases // names.size)} if names.size else {}
+
+
 class Sweep(Mapping[str, "Array"]):
     """Final states of many motions; ``sweep["x"]`` has one number for each case, NaN where a case has no final state.
 
@@ -79,14 +87,22 @@ class Sweep(Mapping[str, "Array"]):
         >>> sweep = an.load("disc").sweep({"phi'": [5, 6, 7]}, at=[0.5, 1], reduce=["min(theta)"])
         >>> bool((sweep["min(theta)"] <= sweep["theta"]).all()), sweep.rows("theta").shape
         (True, (3, 2))
+
+        Scenarios [case.NAME] of the file vary, too:
+
+        >>> text = an.load("disc").text + "[case.heavy]\\nparameters.m = 9\\n[case.light]\\nparameters.m = 1\\n"
+        >>> sweep = an.loads(text).sweep({"case": ["heavy", "light"], "phi'": [5, 6]}, to=1)
+        >>> sweep.varied["case"].tolist(), list(sweep.to_dict())[:3]
+        (['heavy', 'heavy', 'light', 'light'], ['case_name', "phi'(0)", 't'])
     """
 
     def __init__(self, model: Model, core: _core.Sweep, names: list[str], reduced: list[str]) -> None:
         self.model: Model = model
         self._core = core
         self._reduced = [name for name in core.columns if name in reduced]
-        #: The values that vary, one array for each name, shape (cases,).
-        self.varied: dict[str, Array] = {name: core.varied(name) for name in names}
+        #: The values that vary, one array for each name, shape (cases,). Scenarios come first, as ``case``, an array of texts.
+        self.varied: dict[str, npt.NDArray[Any]] = scenarios_of(core)
+        self.varied.update((name, core.varied(name)) for name in names if name not in self.varied)
 
     def __getitem__(self, name: str) -> Array:
         """A column at the end of each motion, shape (cases,), in SI units.
@@ -174,13 +190,16 @@ class Sweep(Mapping[str, "Array"]):
 
         return np.array([self._core.steps(case) for case in range(self.cases)], dtype=float)
 
-    def to_dict(self) -> dict[str, Array]:
+    def to_dict(self) -> dict[str, npt.NDArray[Any]]:
         """What varies, named as in ``anholon sweep`` (an initial value is ``x(0)``), the times reached and all columns.
 
-        With times (``at``) it is a long table: a row for each case and time, and the columns ``case`` and ``t`` say which.
+        A scenario is in ``case_name``, an array of texts. With times (``at``) it is a long table: a row for each case and
+        time, and the columns ``case`` and ``t`` say which.
         """
         coordinates = {coordinate.name for coordinate in self.model.coordinates}
         table = {f"{name}(0)" if name.rstrip("'") in coordinates else name: values for name, values in self.varied.items()}
+        if self._core.scenarios:
+            table = {"case_name": table.pop("case"), **table}
         times = self.times.size
         if times == 0:
             table["t"] = self.t
@@ -188,7 +207,7 @@ class Sweep(Mapping[str, "Array"]):
             return table
         import numpy as np
 
-        long: dict[str, Array] = {"case": np.repeat(np.arange(self.cases, dtype=float), times)}
+        long: dict[str, npt.NDArray[Any]] = {"case": np.repeat(np.arange(self.cases, dtype=float), times)}
         long.update({name: np.repeat(values, times) for name, values in table.items()})
         long["t"] = np.tile(self.times, self.cases)
         for name in self:
@@ -221,7 +240,7 @@ class Sweep(Mapping[str, "Array"]):
         return polars.DataFrame(self.to_dict()).insert_column(place, polars.Series("outcome", outcomes))
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """The numbers as an Arrow stream of one batch, read where they are."""
+        """The columns as an Arrow stream of one batch; numbers are read where they are, scenarios are texts."""
         return _arrow.stream(self.to_dict(), {})
 
     def _repr_html_(self) -> str:

@@ -1,7 +1,11 @@
-// Columns of doubles as a stream of the Arrow C data interface (arrow.apache.org/docs/format/CStreamInterface.html): one
-// batch, which reads the numbers where they are and keeps their owners alive.
+// Columns of doubles and of texts as a stream of the Arrow C data interface
+// (arrow.apache.org/docs/format/CStreamInterface.html): one batch, which reads the numbers where they are and keeps their
+// owners alive.
 #include <cstring>
 #include <memory>
+#include <variant>
+
+#include <nanobind/stl/variant.h>
 
 #include "core.h"
 
@@ -37,10 +41,30 @@ namespace {
 
 using Doubles = nb::ndarray<nb::numpy, const double, nb::ndim<1>, nb::c_contig>;
 
+// Texts one behind the other, and where each begins; the last place is the end.
+struct Texts {
+  explicit Texts(const std::vector<std::string>& list) {
+    for (const std::string& text : list) all += text, places.push_back(static_cast<std::int64_t>(all.size()));
+  }
+  std::string all;
+  std::vector<std::int64_t> places = {0};
+};
+using Array = std::variant<Doubles, Texts>;
+
+std::int64_t length_of(const Array& array) {
+  const auto* texts = std::get_if<Texts>(&array);
+  return texts ? static_cast<std::int64_t>(texts->places.size()) - 1
+               : static_cast<std::int64_t>(std::get<Doubles>(array).shape(0));
+}
+std::vector<const void*> buffers_of(const Array& array) {
+  if (const auto* texts = std::get_if<Texts>(&array)) return {nullptr, texts->places.data(), texts->all.data()};
+  return {nullptr, std::get<Doubles>(array).data()};
+}
+
 // The columns of a stream, shared by what it hands out. The arrays are let go with the interpreter's lock.
 struct Columns {
   std::vector<std::string> names, units;
-  std::vector<Doubles> arrays;
+  std::vector<Array> arrays;
   ~Columns() {
     const nb::gil_scoped_acquire lock;
     arrays.clear();
@@ -91,7 +115,7 @@ int get_schema(ArrowArrayStream* stream, ArrowSchema* out) {
     auto* field = new SchemaNode;
     field->name = columns.names[k];
     if (!columns.units[k].empty()) field->metadata = metadata("unit", columns.units[k]);
-    fill(root->fields[k], "g", field);
+    fill(root->fields[k], std::holds_alternative<Texts>(columns.arrays[k]) ? "U" : "g", field);
     root->children.push_back(&root->fields[k]);
   }
   fill(*out, "+s", root);
@@ -132,10 +156,10 @@ int get_next(ArrowArrayStream* stream, ArrowArray* out) {
     std::memset(out, 0, sizeof *out);  // the end
     return 0;
   }
-  const std::int64_t length = static_cast<std::int64_t>(shared->arrays[0].shape(0));
+  const std::int64_t length = length_of(shared->arrays[0]);
   auto* root = new ArrayNode{shared, {nullptr}, std::vector<ArrowArray>(shared->arrays.size()), {}};
   for (std::size_t k = 0; k < shared->arrays.size(); ++k) {
-    fill(root->fields[k], length, new ArrayNode{shared, {nullptr, shared->arrays[k].data()}, {}, {}});
+    fill(root->fields[k], length, new ArrayNode{shared, buffers_of(shared->arrays[k]), {}, {}});
     root->children.push_back(&root->fields[k]);
   }
   fill(*out, length, root);
@@ -162,16 +186,22 @@ void release_capsule(void* stream_of_capsule) noexcept {
 void bind_arrow(nb::module_& m) {
   m.def(
       "arrow_stream",
-      [](std::vector<std::string> names, std::vector<std::string> units, std::vector<Doubles> arrays) {
+      [](std::vector<std::string> names, std::vector<std::string> units,
+         std::vector<std::variant<Doubles, std::vector<std::string>>> arrays) {
         auto columns = std::make_shared<Columns>();
-        columns->names = std::move(names), columns->units = std::move(units), columns->arrays = std::move(arrays);
+        columns->names = std::move(names), columns->units = std::move(units);
+        for (auto& array : arrays)
+          if (auto* numbers = std::get_if<Doubles>(&array))
+            columns->arrays.emplace_back(std::move(*numbers));
+          else
+            columns->arrays.emplace_back(Texts(std::get<std::vector<std::string>>(array)));
         auto* stream =
             new ArrowArrayStream{get_schema, get_next, [](ArrowArrayStream*) -> const char* { return nullptr; },
                                  release_stream, new Shared(std::move(columns))};
         return nb::capsule(stream, "arrow_array_stream", release_capsule);
       },
       "names"_a, "units"_a, "arrays"_a,
-      "A capsule with an Arrow stream of columns of the same length; units may be empty.");
+      "A capsule with an Arrow stream of columns of the same length, numbers or texts; units may be empty.");
 }
 
 }  // namespace anholon::python

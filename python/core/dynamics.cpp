@@ -45,6 +45,7 @@ void bind_dynamics(nb::module_& m) {
       .def_prop_ro("parameters", &Dynamics::parameters)
       .def_prop_ro("outputs", [](const Dynamics& f) { return f.outputs(); })
       .def_prop_ro("minimal", &Dynamics::minimal)
+      .def_prop_ro("obstacle", &Dynamics::obstacle)
       .def_prop_ro("linear", &Dynamics::linear)
       .def_prop_ro("start_time", &Dynamics::start_time)
       .def_prop_ro("start", &Dynamics::start)

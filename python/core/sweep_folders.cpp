@@ -120,6 +120,15 @@ void bind_sweep_folders(nb::module_& m) {
         return value_of(unlocked([&] { return sweep_into(system, options, folder, chunk, recipe); }));
       },
       "system"_a, "words"_a, "folder"_a, "chunk"_a, "recipe"_a);
+  m.def(
+      "sweep_scenarios_into",
+      [](const Model& model, const std::string& form, const Numbers& initial, const SweepWords& words,
+         const std::string& folder, std::size_t chunk, const std::string& recipe) {
+        const SweepOptions options = options_of(words);
+        const PrepareOptions prepare{form, numbers(initial), {}};
+        return value_of(unlocked([&] { return sweep_into(model, options, folder, chunk, recipe, prepare); }));
+      },
+      "model"_a, "form"_a, "initial"_a, "words"_a, "folder"_a, "chunk"_a, "recipe"_a);
 }
 
 }  // namespace anholon::python

@@ -19,6 +19,19 @@ SweepOptions options_of(const SweepWords& words) {
   return options;
 }
 
+// Computes f(options) while an attendant looks after it. Returns the sweep, and what was raised in the meantime.
+template <class F>
+static std::pair<Sweep, nb::object> attended(const SweepWords& words, std::size_t threads, nb::object stop,
+                                             nb::object progress, const F& f) {
+  SweepOptions options = options_of(words);
+  options.threads = threads;
+  Attendant attendant(std::move(stop), std::move(progress));
+  options.cancelled = [&] { return attendant.cancelled(); };
+  options.progress = [&](std::size_t done) { attendant.tell(static_cast<double>(done), done); };
+  Sweep done = value_of(attendant.attend([&] { return f(options); }));
+  return {std::move(done), attendant.raised()};
+}
+
 void bind_sweeps(nb::module_& m) {
   nb::class_<Sweep>(m, "Sweep")
       .def_prop_ro("cases", &Sweep::cases)
@@ -45,19 +58,25 @@ void bind_sweeps(nb::module_& m) {
       .def("steps", &Sweep::steps, "number"_a)
       .def_prop_ro("t", [](nb::handle self) { return view(nb::cast<const Sweep&>(self).t(), self); })
       .def("outcome_of", nb::overload_cast<std::size_t>(&Sweep::outcome, nb::const_), "number"_a)
-      .def_prop_ro("outcome", nb::overload_cast<>(&Sweep::outcome, nb::const_));
+      .def_prop_ro("outcome", nb::overload_cast<>(&Sweep::outcome, nb::const_))
+      .def_prop_ro("scenarios", &Sweep::scenarios)
+      .def("scenario", &Sweep::scenario, "number"_a);
   m.def(
       "sweep",
       [](const System& system, const SweepWords& words, std::size_t threads, nb::object stop, nb::object progress) {
-        SweepOptions options = options_of(words);
-        options.threads = threads;
-        Attendant attendant(std::move(stop), std::move(progress));
-        options.cancelled = [&] { return attendant.cancelled(); };
-        options.progress = [&](std::size_t done) { attendant.tell(static_cast<double>(done), done); };
-        Sweep done = value_of(attendant.attend([&] { return sweep(system, options); }));
-        return std::pair(std::move(done), attendant.raised());
+        return attended(words, threads, std::move(stop), std::move(progress),
+                        [&](const SweepOptions& options) { return sweep(system, options); });
       },
       "system"_a, "words"_a, "threads"_a, "stop"_a.none(), "progress"_a.none());
+  m.def(
+      "sweep_scenarios",
+      [](const Model& model, const std::string& form, const Numbers& initial, const SweepWords& words,
+         std::size_t threads, nb::object stop, nb::object progress) {
+        const PrepareOptions prepare{form, numbers(initial), {}};
+        return attended(words, threads, std::move(stop), std::move(progress),
+                        [&](const SweepOptions& options) { return sweep(model, options, prepare); });
+      },
+      "model"_a, "form"_a, "initial"_a, "words"_a, "threads"_a, "stop"_a.none(), "progress"_a.none());
 }
 
 }  // namespace anholon::python

@@ -1,6 +1,7 @@
 """Motions and sweeps with contacts."""
 
 import json
+import pathlib
 import pickle
 import re
 from collections.abc import Callable
@@ -75,8 +76,6 @@ def test_mistakes_in_a_mode_are_those_of_the_command_line() -> None:
             hoop.in_mode(word)
     with pytest.raises(an.ModelError, match="slips against friction, which is no ideal force"):
         an.load("slipping-wheel").in_mode("road=slips")
-    with pytest.raises(an.ModelError, match="without its mode"):
-        hoop.in_mode("hoop=slips").sweep({"R": [1, 2]}, out="nowhere")
 
 
 def test_string_catches_the_ball() -> None:
@@ -93,3 +92,45 @@ def test_string_catches_the_ball() -> None:
         model.prove()
     with pytest.raises(an.ModelError, match="there is no mode 'tout'; did you mean 'taut'"):
         model.in_mode("tout=1")
+
+
+@pytest.mark.parametrize(
+    ("name", "mode", "vary"),
+    [("bead-in-hoop", "hoop=slips", ("x'", [0.1, 0.2, 0.3])), ("string", "taut=1", ("h", [0.2, 0.6]))],
+)
+def test_a_sweep_in_a_mode(name: str, mode: str, vary: tuple[str, list[float]], tmp_path: pathlib.Path, program: Callable[..., str]) -> None:
+    path = tmp_path / "string.toml"
+    path.write_text(STRING)
+    place = str(path) if name == "string" else name
+    model, (varied, values) = an.load(place), vary
+    words = ["--vary", f"{varied}={','.join(map(str, values))}", "--to", "1", "--quiet"]
+    in_mode = model.in_mode(mode)
+    memory, folder = in_mode.sweep({varied: values}, to=1), in_mode.sweep({varied: values}, to=1, out=tmp_path / "ours", chunk=2)
+    expected = program("sweep", place, *words, "--mode", mode)
+    program("sweep", place, *words, "--mode", mode, "-o", str(tmp_path / "theirs") + "/")
+    assert expected.count("\n") == len(values) + 1
+    assert program("sweep", "collect", str(tmp_path / "ours"), "--quiet") == expected == program("sweep", "collect", str(tmp_path / "theirs"), "--quiet")
+    for column in memory:
+        assert np.array_equal(memory[column], folder[column]), column
+    # The mode belongs to the request, and each case has it when it moves again.
+    for place_of in ("ours", "theirs"):
+        assert json.loads((tmp_path / place_of / "sweep.json").read_text())["asked"]["mode"] == mode
+        again = an.open_sweep(tmp_path / place_of)
+        last = again.run(len(values) - 1)
+        assert not last.events and np.isclose(last["z"][-1], again["z"][-1], rtol=1e-9)
+    (tmp_path / "ours" / "part-000000.parquet").unlink()
+    assert an.open_sweep(tmp_path / "ours").fill().complete and program("sweep", "collect", str(tmp_path / "ours"), "--quiet") == expected
+    with pytest.raises(an.ModelError, match=f"holds another sweep: mode is '{mode}' there and not given here"):
+        model.sweep({varied: values}, to=1, out=tmp_path / "ours")
+    # The motion with its changes is another one.
+    assert program("sweep", place, *words) != expected
+
+
+def test_a_folder_in_another_mode_is_refused(tmp_path: pathlib.Path) -> None:
+    hoop = an.load("bead-in-hoop")
+    hoop.in_mode("hoop=slips").sweep({"R": [1, 2]}, to=1, out=tmp_path / "f")
+    with pytest.raises(an.ModelError, match="mode is 'hoop=slips' there and 'hoop=open' here"):
+        hoop.in_mode("hoop=open").sweep({"R": [1, 2]}, to=1, out=tmp_path / "f")
+    hoop.sweep({"R": [1, 2]}, to=1, out=tmp_path / "changing")
+    with pytest.raises(an.ModelError, match="mode is not given there and 'hoop=open' here"):
+        hoop.in_mode("hoop=open").sweep({"R": [1, 2]}, to=1, out=tmp_path / "changing")

@@ -412,3 +412,18 @@ def test_a_text_is_one_name() -> None:
     assert str(disc.prove(["maggi", "kane"])) == str(disc.prove("maggi", "kane"))
     with pytest.raises(an.ModelError, match=r"1 coordinates \(psi\)"):
         disc.evaluate(form="chaplygin", eliminate="psi")
+
+
+@pytest.mark.parametrize(
+    ("name", "obstacle"),
+    [
+        ("disc", ""),
+        ("double-pendulum-cartesian", "the constraint 'rod2' is of order 0"),
+        ("variable-mass-pendulum", "there are no constraints, so the velocities are independent as they are"),
+        ("perpendicular-velocities", "the constraint 'square' is not linear in the velocities"),
+    ],
+)
+def test_a_function_tells_why_velocities_are_not_independent(name: str, obstacle: str) -> None:
+    f = an.load(name).dynamics()
+    assert f.obstacle == obstacle and f.minimal == (obstacle == "")
+    assert an.load(name).dynamics(minimal=False).obstacle == "all velocities were asked for"

@@ -251,3 +251,11 @@ def test_texts_of_values_and_times_are_those_of_the_command_line(disc: an.Model)
     assert np.array_equal(written, made) and len(made) == 3
     assert disc.simulate(at="0.5, 1").t.tolist() == [0.5, 1] and disc.simulate(at=0.25).t.tolist() == [0.25]
     assert disc.sweep({"phi'": 5}, at="0.01,0.02").times.tolist() == [0.01, 0.02]
+
+
+def test_a_run_is_called_with_times(disc: an.Model) -> None:
+    run = disc.simulate(to=1)
+    assert np.array_equal(run("0.5")["x"], run(0.5)["x"])
+    for what, hint in (("x", r"hint: run\['x'\] is the column of that name"), (["x", "y"], r"hint: run\(1.5\)"), ({"t": 1}, r"hint: run\(1.5\)"), (1j, r"hint: run\(1.5\)")):
+        with pytest.raises(an.ModelError, match=r"run\(t\) takes times in seconds, one number or an array, not .*\n" + hint):
+            run(what)  # type: ignore[arg-type]

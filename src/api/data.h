@@ -33,6 +33,11 @@ struct System::Data {
   inner::Scenario scenario;
 };
 
+// The model with one of its scenarios laid over it. Errors: as of read_file.
+Result<Model> with_scenario(const Model& model, const std::string& scenario);
+// What `prepare` makes of a model; `start` tells whether it has a consistent start. Throws Failure.
+std::shared_ptr<const System::Data> system_of(const Model& model, const PrepareOptions& options, inner::Outcome& start);
+
 Severity to_public(inner::Severity severity);
 Diagnostic to_public(const inner::Diagnostic& d, const inner::SourceText& source);
 OutcomeKind to_public(inner::OutcomeKind kind);

@@ -20,6 +20,7 @@ struct Dynamics::Data {
   std::vector<std::string> inputs;      // names
   std::vector<inner::NodeId> formulas;  // of the inputs
   std::unique_ptr<const inner::Dynamics> function;
+  std::string obstacle;  // to independent velocities
   std::vector<StateName> states;
 
   // The formulas, made when they are asked for first.
@@ -119,10 +120,9 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
       data->scenario = &data->opened;
     }
     inner::Workspace s(*data->scenario);
-    std::string why;
-    data->function = inner::Dynamics::make(s, of.choice, {options.minimal, data->inputs.size()}, why);
+    data->function = inner::Dynamics::make(s, of.choice, {options.minimal, data->inputs.size()}, data->obstacle);
     if (!data->function)
-      return mistake("there is no function x' = f(t, x) of these equations: " + why,
+      return mistake("there is no function x' = f(t, x) of these equations: " + data->obstacle,
                      "simulate integrates them all the same");
     for (const inner::Dynamics::State& state : data->function->states())
       data->states.push_back({state.name, state.meaning});
@@ -139,6 +139,7 @@ const std::vector<StateName>& Dynamics::states() const { return data_->states; }
 std::vector<std::string> Dynamics::inputs() const { return data_->inputs; }
 std::vector<std::string> Dynamics::outputs() const { return data_->values().formulas().output_names; }
 bool Dynamics::minimal() const { return data_->function->minimal(); }
+const std::string& Dynamics::obstacle() const { return data_->obstacle; }
 double Dynamics::start_time() const { return data_->function->start_time(); }
 const std::vector<double>& Dynamics::start() const { return data_->function->start(); }
 

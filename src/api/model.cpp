@@ -10,12 +10,10 @@
 
 namespace anholon::v1 {
 
-Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
-  auto data = std::make_shared<Model::Data>();
-  data->source = std::move(source);
-  data->cases = options.cases;
-  for (const auto& [name, value] : options.set) data->overrides[inner::normal_name(name)] = value.text();
-  data->mode = options.mode;
+namespace {
+
+// Reads the text of the data, which tell how.
+Result<Model> opened(std::shared_ptr<Model::Data> data) {
   inner::Diagnostics diagnostics;
   const auto model = data->open_again(diagnostics);
   if (diagnostics.has_errors() || !model) return error_of(diagnostics, data->source);
@@ -23,6 +21,17 @@ Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
   if (data->mode.empty()) data->contacts = inner::contacts(*model->names);
   for (const inner::Diagnostic& d : diagnostics.list()) data->remarks.push_back(to_public(d, data->model->source_text));
   return Model(std::move(data));
+}
+
+}  // namespace
+
+Result<Model> opened(inner::SourceText source, const ReadOptions& options) {
+  auto data = std::make_shared<Model::Data>();
+  data->source = std::move(source);
+  data->cases = options.cases;
+  for (const auto& [name, value] : options.set) data->overrides[inner::normal_name(name)] = value.text();
+  data->mode = options.mode;
+  return opened(std::move(data));
 }
 
 void Model::Data::without_contacts(const std::string& what) const {

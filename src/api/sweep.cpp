@@ -4,11 +4,13 @@
 #include <limits>
 
 #include "api/sweep_request.h"
+#include "ensemble/parts/scenarios.h"
 
 namespace anholon::v1 {
 
 struct Sweep::Data {
   std::vector<std::string> names, columns;          // of what is varied; of the final state, then the reductions
+  std::vector<std::string> scenarios;               // that vary; each has as many cases
   std::vector<std::vector<double>> varied, values;  // by name, by column
   std::size_t of_state = 0;                         // how many columns are no reductions
   std::vector<double> times;
@@ -23,20 +25,31 @@ struct Sweep::Data {
 
 namespace {
 
+// The columns of a piece that are kept.
+struct KeptColumns {
+  KeptColumns(const PreparedPiece& piece, const std::vector<std::string>& asked) {
+    std::vector<std::string> all = inner::ensemble_columns(*piece.scenario->model);
+    all.insert(all.end(), piece.options.own_columns.begin(), piece.options.own_columns.end());
+    in_state = all.size();
+    for (const inner::Reduction& r : piece.options.reductions.list) all.push_back(r.name);
+    places = chosen_places(asked, all);
+    for (const std::size_t k : places) {
+      names.push_back(all[k]);
+      of_state += k < in_state;
+    }
+  }
+  std::vector<std::string> names;
+  std::vector<std::size_t> places;  // among those of the state, then the reductions
+  std::size_t in_state = 0;         // how many columns the state has
+  std::size_t of_state = 0;         // how many of the kept ones are of the state
+};
+
 // Puts each case into its place.
 class CaseKeeper final : public inner::CaseSink {
  public:
-  CaseKeeper(Sweep::Data& data, const std::vector<std::string>& of_state, const inner::Reductions& reductions,
-             const std::vector<std::string>& columns)
-      : data_(data), in_state_(of_state.size()) {
-    std::vector<std::string> all = of_state;
-    for (const inner::Reduction& r : reductions.list) all.push_back(r.name);
-    places_ = chosen_places(columns, all);
-    for (std::size_t k : places_) {
-      data_.columns.push_back(all[k]);
-      data_.of_state += k < in_state_;
-    }
-  }
+  explicit CaseKeeper(Sweep::Data& data) : data_(data) {}
+  // The cases that follow are those of a piece with these columns; their numbers follow on `before`.
+  void turn_to(const KeptColumns& columns, std::size_t before) { columns_ = &columns, before_ = before; }
   // Makes room for the cases.
   void hold(std::size_t cases) {
     constexpr double kMostNumbers = 2e9;
@@ -52,35 +65,69 @@ class CaseKeeper final : public inner::CaseSink {
     data_.outcomes.assign(cases, {OutcomeKind::interrupted, "the case was not computed", ""});
   }
   void result(const inner::CaseResult& r) override {
-    for (std::size_t k = 0; k < r.values.size(); ++k) data_.varied[k][r.number] = r.values[k];
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      const std::size_t place = places_[k];
-      const std::vector<double>& from = place < in_state_ ? r.last : r.reduced;
-      const std::size_t at = place < in_state_ ? place : place - in_state_;
-      if (at < from.size()) data_.values[k][r.number] = from[at];
+    const std::size_t number = before_ + r.number, in_state = columns_->in_state;
+    for (std::size_t k = 0; k < r.values.size(); ++k) data_.varied[k][number] = r.values[k];
+    for (std::size_t k = 0; k < columns_->places.size(); ++k) {
+      const std::size_t place = columns_->places[k];
+      const std::vector<double>& from = place < in_state ? r.last : r.reduced;
+      const std::size_t at = place < in_state ? place : place - in_state;
+      if (at < from.size()) data_.values[k][number] = from[at];
     }
     const std::size_t times = data_.times.size();
     for (const std::vector<double>& row : r.rows) {
       const auto at = std::find(data_.times.begin(), data_.times.end(), row[0]);
       if (at == data_.times.end()) continue;
       const auto time = static_cast<std::size_t>(at - data_.times.begin());
-      for (std::size_t k = 0; k < data_.of_state; ++k) data_.rows[k][r.number * times + time] = row[1 + places_[k]];
+      for (std::size_t k = 0; k < data_.of_state; ++k)
+        data_.rows[k][number * times + time] = row[1 + columns_->places[k]];
     }
-    data_.t[r.number] = r.t;
-    data_.steps[r.number] = r.steps;
-    data_.outcomes[r.number] = to_public(r.outcome);
+    data_.t[number] = r.t;
+    data_.steps[number] = r.steps;
+    data_.outcomes[number] = to_public(r.outcome);
     if (!r.event.empty()) {
       data_.events.resize(data_.t.size());
-      data_.events[r.number] = r.event;
+      data_.events[number] = r.event;
     }
     data_.finished += r.outcome.ok();
   }
 
  private:
   Sweep::Data& data_;
-  std::size_t in_state_;
-  std::vector<std::size_t> places_;  // of the columns
+  const KeptColumns* columns_ = nullptr;
+  std::size_t before_ = 0;
 };
+
+// Computes the cases of all pieces, one piece after the other.
+Result<Sweep> computed(const PreparedSweep& p) {
+  constexpr std::size_t kMostCases = 100'000'000;  // all of them are held in memory
+  if (p.cases > kMostCases)
+    throw inner::Failure({}, "the sweep has more than " + std::to_string(kMostCases) + " cases",
+                         "fewer values, or a sweep in a folder");
+  auto data = std::make_shared<Sweep::Data>();
+  data->scenarios = p.scenarios;
+  for (const Vary& v : p.asked.vary) data->names.push_back(v.name);
+  for (const inner::Rational& t : p.pieces.front().options.at) data->times.push_back(inner::from_rational<double>(t));
+  std::vector<KeptColumns> columns;
+  for (const PreparedPiece& piece : p.pieces) {
+    columns.emplace_back(piece, p.asked.columns);
+    if (columns.back().names != columns.front().names)
+      inner::has_other_columns(piece.word, p.pieces.front().word, "choose columns that both have");
+  }
+  data->columns = columns.front().names, data->of_state = columns.front().of_state;
+  CaseKeeper cases(*data);
+  cases.hold(p.cases);
+  std::size_t before = 0;
+  for (std::size_t k = 0; k < p.pieces.size() && data->outcome.ok(); ++k) {
+    const PreparedPiece& piece = p.pieces[k];
+    inner::EnsembleOptions o = piece.options;
+    o.cancelled = p.asked.cancelled;
+    if (p.asked.progress) o.progress = [&](std::size_t done) { p.asked.progress(before + done); };
+    cases.turn_to(columns[k], before);
+    data->outcome = to_public(inner::ensemble(*piece.scenario, o, cases).outcome);
+    before += piece.options.cases;
+  }
+  return Sweep(std::move(data));
+}
 
 }  // namespace
 
@@ -92,32 +139,25 @@ std::vector<Number> linspace(double from, double to, std::size_t count) {
 }
 
 Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
-  const System::Data& of = system.data();
-  return guarded(of.model->source, [&]() -> Result<Sweep> {
-    constexpr std::size_t kMostCases = 100'000'000;  // all of them are held in memory
-    PreparedSweep p(of, asked);
-    if (!p.start.ok()) return error_of(p.start);
-    inner::EnsembleOptions& o = p.options;
-    if (o.cases > kMostCases)
-      throw inner::Failure({}, "the sweep has more than " + std::to_string(kMostCases) + " cases",
-                           "fewer values, or a sweep in a folder");
-    auto data = std::make_shared<Sweep::Data>();
-    for (const Vary& v : asked.vary) data->names.push_back(v.name);
-    o.cancelled = asked.cancelled;
-    o.progress = asked.progress;
-    for (const inner::Rational& t : o.at) data->times.push_back(inner::from_rational<double>(t));
-    std::vector<std::string> names = inner::ensemble_columns(*p.scenario->model);
-    names.insert(names.end(), o.own_columns.begin(), o.own_columns.end());
-    CaseKeeper cases(*data, names, o.reductions, asked.columns);
-    cases.hold(o.cases);
-    data->outcome = to_public(inner::ensemble(*p.scenario, o, cases).outcome);
-    return Sweep(std::move(data));
-  });
+  const auto prepared = prepared_sweep(system, asked);
+  if (!prepared) return prepared.error();
+  return guarded(system.data().model->source, [&] { return computed(**prepared); });
+}
+
+Result<Sweep> sweep(const Model& model, const SweepOptions& asked, const PrepareOptions& prepare) {
+  const auto prepared = prepared_sweep(model, prepare, asked);
+  if (!prepared) return prepared.error();
+  return guarded(model.data().source, [&] { return computed(**prepared); });
 }
 
 std::size_t Sweep::cases() const { return data_->t.size(); }
 std::size_t Sweep::finished() const { return data_->finished; }
 const std::vector<std::string>& Sweep::columns() const { return data_->columns; }
+const std::vector<std::string>& Sweep::scenarios() const { return data_->scenarios; }
+const std::string& Sweep::scenario(std::size_t number) const {
+  static const std::string none;
+  return data_->scenarios.empty() ? none : data_->scenarios.at(number / (cases() / data_->scenarios.size()));
+}
 std::span<const double> Sweep::t() const { return data_->t; }
 const Outcome& Sweep::outcome(std::size_t number) const { return data_->outcomes.at(number); }
 const std::string& Sweep::event(std::size_t number) const {

@@ -45,17 +45,28 @@ AskedWord initial_word(std::string name, const std::string& value) {
   return {kOrders[std::min(primes, std::size(kOrders) - 1)], name + "=" + value};
 }
 
-// The scenarios that --vary case=a,b runs through.
-std::vector<std::string> varied_scenarios(const SweepStore& store) {
+// The parts of a list with commas.
+std::vector<std::string> listed(std::string rest) {
   std::vector<std::string> names;
-  for (const std::string& word : words_of(store.asked("vary")))
-    if (name_in(word) == "case")
-      for (std::string rest = value_in(word); !rest.empty();) {
-        const std::size_t comma = std::min(rest.find(','), rest.size());
-        names.push_back(rest.substr(0, comma));
-        rest.erase(0, comma + 1);
-      }
+  while (!rest.empty()) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    names.push_back(rest.substr(0, comma));
+    rest.erase(0, comma + 1);
+  }
   return names;
+}
+
+// The scenarios that --vary case=a,b runs through.
+std::vector<std::string> scenarios_of_command(const SweepStore& store) {
+  for (const std::string& word : words_of(store.asked("vary")))
+    if (name_in(word) == "case") return listed(value_in(word));
+  return {};
+}
+
+// … or a sweep that Python or C++ has made.
+std::vector<std::string> varied_scenarios(const SweepStore& store) {
+  const std::vector<std::string> of_library = listed(store.asked("vary case"));
+  return of_library.empty() ? scenarios_of_command(store) : of_library;
 }
 
 // What varies beside the scenarios.
@@ -65,7 +76,7 @@ std::vector<std::string> varied(const SweepStore& store) {
     if (name_in(word) != "case") names.push_back(inner::normal_name(name_in(word)));
   constexpr std::string_view kVary = "vary ";
   for (const auto& [what, text] : store.request().asked)
-    if (what.starts_with(kVary)) names.push_back(inner::normal_name(what.substr(kVary.size())));
+    if (what.starts_with(kVary) && what != "vary case") names.push_back(inner::normal_name(what.substr(kVary.size())));
   if (const std::string& table = store.asked("table of cases"); !table.empty()) {
     const inner::CaseTable cases(table, "of the sweep");
     for (const std::string& name : cases.names()) names.push_back(inner::normal_name(name));
@@ -88,7 +99,7 @@ inner::SourceText source_of(const SweepStore& store) {
 std::vector<std::string> scenarios(const SweepStore& store) {
   std::string text = store.asked("case");
   // The first scenario that varies is among them.
-  if (const std::vector<std::string> names = varied_scenarios(store); !names.empty() && text.ends_with(names[0])) {
+  if (const std::vector<std::string> names = scenarios_of_command(store); !names.empty() && text.ends_with(names[0])) {
     text.erase(text.size() - names[0].size());
     while (text.ends_with(' ')) text.pop_back();
   }
@@ -283,6 +294,7 @@ Result<System> system_of_case(const SweepStore& store, std::size_t number) {
       if (w.option == "t") options.initial.insert_or_assign("t", Number(w.word));
       give(options, w);
     }
+    reading.mode = words_of(store.asked("mode"));
     const Result<Model> model = opened(source, reading);
     if (!model) return model.error();
     options.form = model->data().model->simulate.form.value_or("routh");

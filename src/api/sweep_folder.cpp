@@ -15,9 +15,7 @@ namespace anholon::v1 {
 struct SweepFolder::Data {
   inner::SweepStore store;
   // Null if the folder was opened by its name alone.
-  std::optional<System> system;
   std::shared_ptr<const PreparedSweep> prepared;
-  std::vector<std::string> asked_columns;
   // The folder with the generations that it has now. Throws Failure.
   inner::SweepStore now() const {
     inner::SweepStore fresh = store;
@@ -28,29 +26,32 @@ struct SweepFolder::Data {
 
 namespace {
 
-inner::SweepTable table_of(const PreparedSweep& p, const std::vector<std::string>& columns) {
-  inner::SweepTable table(*p.scenario->model, p.options);
-  if (columns.empty()) return table;
-  std::vector<std::string> all;
-  for (const inner::SweepColumn& c : table.available()) all.push_back(c.name);
-  table.choose(chosen_places(columns, all));
-  return table;
+// The form of the equations; those of the pieces, one after the other, if they differ.
+std::string forms_of(const PreparedSweep& p) {
+  std::vector<std::string> forms;
+  for (const PreparedPiece& piece : p.pieces) forms.push_back(piece.system.form());
+  const bool same = std::all_of(forms.begin(), forms.end(), [&](const auto& form) { return form == forms.front(); });
+  return same ? forms.front() : inner::joined(forms, " ");
 }
 
 // Everything on which the rows depend.
-std::vector<std::pair<std::string, std::string>> asked_of(const System::Data& system, const PreparedSweep& p,
-                                                          const SweepOptions& o) {
+std::vector<std::pair<std::string, std::string>> asked_of(const PreparedSweep& p) {
   std::vector<std::pair<std::string, std::string>> all;
   const auto add = [&](const std::string& name, const std::string& text) {
     if (!text.empty()) all.emplace_back(name, text);
   };
-  const Model::Data& model = *system.model;
-  add("title", model.model->title), add("model", model.source.text);
-  for (std::size_t k = 0; k < model.source.others.size(); ++k)
-    add("base file " + std::to_string(k + 1), model.source.others[k].text);
+  const Model::Data& model = *p.model;
+  const PreparedPiece& first = p.pieces.front();
+  const System::Data& system = first.system.data();
+  const SweepOptions& o = p.asked;
+  // The mode comes first: messages name it before the title that tells it, too.
+  add("mode", inner::joined(model.mode, " ")), add("title", system.model->model->title),
+      add("model", model.source.text);
+  const std::vector<inner::SourceText>& others = model.model->source_text.others;
+  for (std::size_t k = 0; k < others.size(); ++k) add("base file " + std::to_string(k + 1), others[k].text);
   std::string set;
   for (const auto& [name, value] : model.overrides) set += (set.empty() ? "" : " ") + name + "=" + value;
-  add("set", set), add("case", inner::joined(model.cases, " ")), add("form", system.scenario.system.form->name);
+  add("set", set), add("case", inner::joined(model.cases, " ")), add("form", forms_of(p));
   std::string initial, eliminate;
   for (const inner::StateOverride& s : system.choice.overrides)
     initial += (initial.empty() ? "" : " ") +
@@ -59,11 +60,14 @@ std::vector<std::pair<std::string, std::string>> asked_of(const System::Data& sy
                (s.multiplier ? " as multiplier" : "") + std::string(s.order, '\'') + "=" + s.value.get_str();
   for (const std::size_t k : system.choice.eliminate)
     eliminate += (eliminate.empty() ? "" : " ") + system.scenario.model->coordinates[k].name;
-  add("initial", initial), add("eliminate", eliminate), add("start", inner::number_text(system.scenario.state.t));
-  const inner::MotionSettings settings = inner::merged(p.settings, system.scenario.model->simulate);
+  add("initial", initial), add("eliminate", eliminate), add("start", inner::number_text(first.scenario->state.t));
+  // Each scenario has settings of its own, which follow from its name.
+  const inner::MotionSettings settings =
+      p.scenarios.empty() ? inner::merged(first.settings, system.scenario.model->simulate) : first.settings;
   for (const inner::MotionOption& m : inner::motion_options())
     if (std::string_view(m.name) != "error-estimate" && std::string_view(m.name) != "form")
       add(m.name, inner::joined(inner::words(settings, m), " "));
+  add("vary case", inner::joined(p.scenarios, ","));
   for (const Vary& v : o.vary) add("vary " + v.name, text_of(v));
   add("together", o.together ? "yes" : ""), add("cases", o.cases ? std::to_string(*o.cases) : "");
   add("draw", o.draw), add("seed", std::to_string(o.seed)), add("reduce", inner::joined(o.reduce, " "));
@@ -167,6 +171,14 @@ static const PreparedSweep& prepared(const SweepFolder::Data& data) {
   return *data.prepared;
 }
 
+// Throws Failure if the sweep runs through several scenarios.
+static const inner::Variation& grid_of(const PreparedSweep& p) {
+  if (!p.variation())
+    throw inner::Failure({}, "the cases of a file are no grid, and there is nothing to halve",
+                         "a sweep of each case refines its borders");
+  return *p.variation();
+}
+
 Result<FolderDone> SweepFolder::fill(const FolderWork& work) const {
   return told([&]() -> Result<FolderDone> {
     const PreparedSweep& p = prepared(*data_);
@@ -182,15 +194,13 @@ Result<FolderDone> SweepFolder::fill(const FolderWork& work) const {
                        "there are " + std::to_string(store.parts()) + " parts");
     if (o.parts.empty()) return FolderDone{0, 0, true, {}};
     o.cancelled = work.cancelled, o.progress = work.progress;
-    inner::EnsembleOptions options = p.options;
-    options.threads = work.threads;
+    TabledPieces tabled(p);
+    for (inner::EnsembleOptions& options : tabled.options) options.threads = work.threads;
     if (store.generations().size() > 1) {
-      options.cases = store.cases();
-      options.numbers = numbers_of(store, *p.variation);
+      tabled.options.front().cases = store.cases();
+      tabled.options.front().numbers = numbers_of(store, grid_of(p));
     }
-    inner::SweepTable table = table_of(p, data_->asked_columns);
-    const inner::SweepPiece piece{p.scenario, &options, &table, {}};
-    const inner::Filled done = inner::fill(store, {&piece, 1}, o);
+    const inner::Filled done = inner::fill(store, tabled.pieces, o);
     return FolderDone{done.parts, done.report.done, done.parts == o.parts.size(), done.error};
   });
 }
@@ -205,7 +215,7 @@ Result<std::size_t> SweepFolder::refine(const std::string& word, std::optional<s
     } catch (const inner::MistakeInWord& m) {
       throw inner::Failure({}, "refine by " + m.word + ": " + m.diagnostic.message, "COLUMN:BOUND, such as theta:0.1");
     }
-    must_be_refinable(*p.variation, columns(), rule);
+    must_be_refinable(grid_of(p), columns(), rule);
     const std::size_t next = store.generations().size();
     if (number && *number < next) return store.generations()[*number].cases;
     if (number && *number > next)
@@ -215,7 +225,7 @@ Result<std::size_t> SweepFolder::refine(const std::string& word, std::optional<s
     if (const std::size_t missing = store.missing().size(); missing > 0)
       return mistake(std::to_string(missing) + " parts are missing, and borders follow from all cases",
                      "fill() computes them");
-    return add_generation(store, *p.variation, rule);
+    return add_generation(store, grid_of(p), rule);
   });
 }
 
@@ -227,10 +237,16 @@ Result<std::vector<std::pair<std::string, std::string>>> SweepFolder::numbers(st
     if (number >= store.cases())
       return mistake("there is no case " + std::to_string(number),
                      "the cases are numbered from 0 to " + std::to_string(store.cases() - 1));
-    const inner::EnsembleCase of = numbers_of(store, *p.variation)(number);
+    std::size_t place = number;  // in its piece
+    auto piece = p.pieces.begin();
+    if (!p.variation())
+      for (; place >= piece->options.cases; ++piece) place -= piece->options.cases;
+    const inner::EnsembleCase of =
+        p.variation() ? numbers_of(store, *p.variation())(number) : piece->options.numbers(place);
     Numbers list;
+    if (!piece->word.empty()) list.emplace_back("case", piece->word);
     for (std::size_t k = 0; k < of.values.size(); ++k)
-      list.emplace_back(p.options.varied[k].name, of.values[k].get_str());
+      list.emplace_back(piece->options.varied[k].name, of.values[k].get_str());
     return list;
   });
 }
@@ -262,40 +278,50 @@ Result<std::string> SweepFolder::judge(const std::function<bool()>& cancelled) c
     if (const std::size_t parts = store.missing().size(); parts > 0)
       return mistake(std::to_string(parts) + " of " + std::to_string(store.parts()) + " parts are missing",
                      "fill computes them");
-    inner::EnsembleOptions options = p.options;
-    options.estimate = inner::ErrorEstimate::always;
-    inner::SweepTable table = table_of(p, data_->asked_columns);
-    const inner::EnsembleReport report = judge_piece({p.scenario, &options, &table, {}}, cancelled);
-    if (!report.outcome.ok()) return error_of(report.outcome);
-    const std::string json = judgement_json(report);
+    TabledPieces tabled(p);
+    for (inner::EnsembleOptions& options : tabled.options) options.estimate = inner::ErrorEstimate::always;
+    inner::EnsembleReport all;
+    for (const inner::SweepPiece& piece : tabled.pieces) {
+      add_report(all, judge_piece(piece, cancelled));
+      if (!all.outcome.ok()) return error_of(all.outcome);
+    }
+    const std::string json = judgement_json(all);
     if (const std::string error = store.add_judgement(json); !error.empty()) return mistake(error);
     return json;
   });
 }
 
+// Opens the folder for a sweep that is prepared, or makes it.
+static Result<SweepFolder> opened(std::shared_ptr<const PreparedSweep> prepared, const std::string& folder,
+                                  std::size_t chunk, const std::string& recipe) {
+  if (folder.empty()) return mistake("the sweep needs the name of a folder");
+  TabledPieces tabled(*prepared);
+  inner::SweepRequest request{asked_of(*prepared), {}, prepared->cases, chunk, recipe};
+  for (const inner::SweepColumn& c : tabled.tables.front().columns()) request.columns.push_back(c.name);
+  if (chunk > inner::kMostInPart) return mistake("a part has at most " + std::to_string(inner::kMostInPart) + " cases");
+  if (chunk == 0) request.chunk = inner::SweepStore::is_there(folder) ? 1 : inner::cases_in_part(tabled.pieces);
+  return SweepFolder(std::make_shared<const SweepFolder::Data>(
+      SweepFolder::Data{inner::SweepStore::open(folder, request, "anholon " ANHOLON_VERSION), std::move(prepared)}));
+}
+
 Result<SweepFolder> sweep_into(const System& system, const SweepOptions& asked, const std::string& folder,
                                std::size_t chunk, const std::string& recipe) {
-  const System::Data& of = system.data();
-  return guarded(of.model->source, [&]() -> Result<SweepFolder> {
-    if (folder.empty()) return mistake("the sweep needs the name of a folder");
-    const auto prepared = std::make_shared<const PreparedSweep>(of, asked);
-    if (!prepared->start.ok()) return error_of(prepared->start);
-    inner::SweepTable table = table_of(*prepared, asked.columns);
-    const inner::SweepPiece piece{prepared->scenario, &prepared->options, &table, {}};
-    inner::SweepRequest request{asked_of(of, *prepared, asked), {}, prepared->options.cases, chunk, recipe};
-    for (const inner::SweepColumn& c : table.columns()) request.columns.push_back(c.name);
-    if (chunk > inner::kMostInPart)
-      return mistake("a part has at most " + std::to_string(inner::kMostInPart) + " cases");
-    if (chunk == 0) request.chunk = inner::SweepStore::is_there(folder) ? 1 : inner::cases_in_part({&piece, 1});
-    return SweepFolder(std::make_shared<const SweepFolder::Data>(SweepFolder::Data{
-        inner::SweepStore::open(folder, request, "anholon " ANHOLON_VERSION), system, prepared, asked.columns}));
-  });
+  const auto prepared = prepared_sweep(system, asked);
+  if (!prepared) return prepared.error();
+  return guarded(system.data().model->source, [&] { return opened(*prepared, folder, chunk, recipe); });
+}
+
+Result<SweepFolder> sweep_into(const Model& model, const SweepOptions& asked, const std::string& folder,
+                               std::size_t chunk, const std::string& recipe, const PrepareOptions& prepare) {
+  const auto prepared = prepared_sweep(model, prepare, asked);
+  if (!prepared) return prepared.error();
+  return guarded(model.data().source, [&] { return opened(*prepared, folder, chunk, recipe); });
 }
 
 Result<SweepFolder> open_sweep(const std::string& folder) {
   return told([&]() -> Result<SweepFolder> {
     return SweepFolder(
-        std::make_shared<const SweepFolder::Data>(SweepFolder::Data{inner::SweepStore::open(folder), {}, {}, {}}));
+        std::make_shared<const SweepFolder::Data>(SweepFolder::Data{inner::SweepStore::open(folder), {}}));
   });
 }
 

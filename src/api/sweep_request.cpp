@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ensemble/parts/scenarios.h"
 #include "ensemble/request.h"
 #include "ensemble/with_contacts.h"
 #include "result/choose_columns.h"
@@ -9,6 +10,8 @@
 namespace anholon::v1 {
 
 namespace {
+
+constexpr const char* kScenarios = "case";  // the name of a Vary that runs through scenarios
 
 [[noreturn]] void refuse(const inner::MistakeInWord& m, const char* option) {
   throw inner::Failure({}, std::string(option) + " " + m.word + ": " + m.diagnostic.message, m.diagnostic.hint);
@@ -22,8 +25,8 @@ inner::Variation::Draws draws_of(const std::string& name) {
                        "random or sobol");
 }
 
-// What varies, from the options. Throws Failure.
-inner::Variation variation_of(const SweepOptions& asked, const inner::Model& model) {
+// What varies, from the options; nothing may vary in a scenario of its own. Throws Failure.
+inner::Variation variation_of(const SweepOptions& asked, const inner::Model& model, bool of_scenario) {
   inner::Variation v(asked.seed, draws_of(asked.draw));
   if (asked.together) v.together();
   try {
@@ -39,24 +42,39 @@ inner::Variation variation_of(const SweepOptions& asked, const inner::Model& mod
   } catch (const inner::MistakeInWord& m) {
     refuse(m, "vary");
   }
-  v.finish(asked.cases, "SweepOptions::cases");
+  if (of_scenario && v.varied().empty() && !asked.cases)
+    v.finish_with_one();
+  else
+    v.finish(asked.cases, "SweepOptions::cases");
   return v;
 }
 
-// The model with the formulas of the reductions. Throws Failure.
-inner::Outcome scenario_with(const System::Data& of, const std::vector<std::string>& words,
-                             inner::Reductions& reductions, inner::Scenario& scenario) {
-  inner::Diagnostics diagnostics;
-  const auto open = of.model->open_again(diagnostics);
-  if (!open) throw inner::Failure(diagnostics.list().front());
-  try {
-    for (const std::string& word : words) reductions.add(word, *open);
-  } catch (const inner::MistakeInWord& m) {
-    refuse(m, "reduce");
-  }
-  inner::Outcome start = make_system(open->model, of.scenario.system.form->name, of.choice, scenario);
-  if (start.ok()) reductions.move_to(scenario);
-  return start;
+// Takes the scenarios that vary out of the options, and names them.
+std::vector<std::string> take_scenarios(SweepOptions& asked) {
+  std::vector<std::string> names;
+  const auto removed = std::erase_if(asked.vary, [&](const Vary& v) {
+    if (v.name != kScenarios) return false;
+    if (!v.law.empty())
+      throw inner::Failure({}, "vary case: scenarios have names, and '" + v.law + "' is a law of numbers",
+                           "a list of the names of sections [case.NAME]");
+    for (const Number& name : v.values) names.push_back(name.text());
+    return true;
+  });
+  if (removed > 0) inner::must_name_each_once(names, "vary");
+  if (removed > 0 && asked.together)
+    throw inner::Failure({}, "scenarios do not go together with values: each has all cases of a table",
+                         "leave out 'together', or make a sweep of each case");
+  return names;
+}
+
+// Throws Failure if the scenarios of a file are to vary in a system, which has been read already.
+void must_not_vary_scenarios(const SweepOptions& asked, const inner::Model& model) {
+  const auto named = [](const auto& list) {
+    return std::any_of(list.begin(), list.end(), [](const auto& each) { return each.name == kScenarios; });
+  };
+  if (named(asked.vary) && !named(model.parameters) && !named(model.coordinates))
+    throw inner::Failure({}, "vary case: a system is that of one scenario",
+                         "sweep(model, …) runs through the scenarios of a model");
 }
 
 }  // namespace
@@ -80,12 +98,12 @@ std::vector<std::size_t> chosen_places(const std::vector<std::string>& asked, co
   return places;
 }
 
-PreparedSweep::PreparedSweep(const System::Data& of, const SweepOptions& asked) {
-  if (!asked.reduce.empty()) start = scenario_with(of, asked.reduce, options.reductions, with_formulas);
-  if (!start.ok()) return;
-  scenario = asked.reduce.empty() ? &of.scenario : &with_formulas;
-  options.state = of.choice;
-  variation.emplace(variation_of(asked, *scenario->model));
+PreparedPiece::PreparedPiece(System of, const inner::Outcome& of_system, std::string scenario_name,
+                             const SweepOptions& asked)
+    : system(std::move(of)), word(std::move(scenario_name)) {
+  scenario = scenario_for(asked.reduce, of_system);
+  options.state = system.data().choice;
+  variation.emplace(variation_of(asked, *scenario->model, !word.empty()));
   must_not_be_given(variation->varied(), options.state);
   options.varied = variation->varied();
   options.cases = variation->cases();
@@ -103,7 +121,75 @@ PreparedSweep::PreparedSweep(const System::Data& of, const SweepOptions& asked) 
   settings.error_estimate = "never";
   inner::ask(settings, *scenario, {"", "", [](const std::string&) {}}, options);
   options.threads = asked.threads;
-  move_with(of.model->contacts, options);
+  move_with(system.data().model->contacts, options);
+  if (!start.ok()) start = inner::scenario_of_cases(options, own_);
+}
+
+// The scenario of the system, or one of this piece that has the formulas of the reductions or another start.
+const inner::Scenario* PreparedPiece::scenario_for(const std::vector<std::string>& reductions,
+                                                   const inner::Outcome& of_system) {
+  const System::Data& of = system.data();
+  if (reductions.empty() && of_system.ok()) return &of.scenario;
+  inner::Diagnostics diagnostics;
+  open_ = of.model->open_again(diagnostics);
+  if (!open_) throw inner::Failure(diagnostics.list().front());
+  try {
+    for (const std::string& reduction : reductions) options.reductions.add(reduction, *open_);
+  } catch (const inner::MistakeInWord& m) {
+    refuse(m, "reduce");
+  }
+  start = make_system(open_->model, of.scenario.system.form->name, of.choice, own_);
+  return &own_;
+}
+
+Result<std::shared_ptr<const PreparedSweep>> prepared_sweep(const System& system, const SweepOptions& asked) {
+  const System::Data& of = system.data();
+  using Prepared = Result<std::shared_ptr<const PreparedSweep>>;
+  return guarded(of.model->source, [&]() -> Prepared {
+    must_not_vary_scenarios(asked, *of.scenario.model);
+    auto sweep = std::make_shared<PreparedSweep>();
+    sweep->model = of.model, sweep->asked = asked;
+    const PreparedPiece& piece = sweep->pieces.emplace_back(system, inner::Outcome{}, std::string(), asked);
+    if (!piece.start.ok()) return error_of(piece.start);
+    sweep->cases = piece.options.cases;
+    return Prepared(std::move(sweep));
+  });
+}
+
+Result<std::shared_ptr<const PreparedSweep>> prepared_sweep(const Model& model, const PrepareOptions& prepare,
+                                                            const SweepOptions& asked) {
+  using Prepared = Result<std::shared_ptr<const PreparedSweep>>;
+  return guarded(model.data().source, [&]() -> Prepared {
+    auto sweep = std::make_shared<PreparedSweep>();
+    sweep->model = std::make_shared<const Model::Data>(model.data());
+    sweep->asked = asked;
+    sweep->scenarios = take_scenarios(sweep->asked);
+    for (std::size_t k = 0; k < std::max<std::size_t>(sweep->scenarios.size(), 1); ++k) {
+      const std::string scenario = sweep->scenarios.empty() ? std::string() : sweep->scenarios[k];
+      const Result<Model> read = scenario.empty() ? model : with_scenario(model, scenario);
+      if (!read) return read.error();
+      inner::Outcome start;
+      System system(system_of(*read, prepare, start));
+      const PreparedPiece& piece = sweep->pieces.emplace_back(std::move(system), start, scenario, sweep->asked);
+      if (!piece.start.ok()) return error_of(piece.start);
+      sweep->cases += piece.options.cases;
+    }
+    return Prepared(std::move(sweep));
+  });
+}
+
+TabledPieces::TabledPieces(const PreparedSweep& sweep) {
+  for (const PreparedPiece& piece : sweep.pieces) {
+    inner::SweepTable& table = tables.emplace_back(*piece.scenario->model, piece.options);
+    if (!sweep.asked.columns.empty()) {
+      std::vector<std::string> all;
+      for (const inner::SweepColumn& c : table.available()) all.push_back(c.name);
+      table.choose(chosen_places(sweep.asked.columns, all));
+    }
+    if (!piece.word.empty()) table.add_word("case_name");
+    must_have_columns_of(tables.front(), sweep.pieces.front().word, table, piece.word, "choose columns that both have");
+    pieces.push_back({piece.scenario, &options.emplace_back(piece.options), &table, piece.word});
+  }
 }
 
 }  // namespace anholon::v1

@@ -7,16 +7,23 @@ namespace anholon::v1 {
 
 static_assert(static_cast<int>(Origin::corrected) == static_cast<int>(inner::Origin::corrected));
 
+std::shared_ptr<const System::Data> system_of(const Model& model, const PrepareOptions& options,
+                                              inner::Outcome& start) {
+  auto data = std::make_shared<System::Data>();
+  data->model = std::make_shared<const Model::Data>(model.data());
+  data->choice = state_choice(options, *model.data().model);
+  std::string form = options.form;
+  if (form == "auto") form = inner::choose_form(model.data().model, data->choice).form->name;
+  start = make_system(model.data().model, form, data->choice, data->scenario);
+  return data;
+}
+
 Result<System> prepare(const Model& model, const PrepareOptions& options) {
   return guarded(model.data().source, [&]() -> Result<System> {
-    auto data = std::make_shared<System::Data>();
-    data->model = std::make_shared<const Model::Data>(model.data());
-    data->choice = state_choice(options, *model.data().model);
-    std::string form = options.form;
-    if (form == "auto") form = inner::choose_form(model.data().model, data->choice).form->name;
-    if (const inner::Outcome o = make_system(model.data().model, form, data->choice, data->scenario); !o.ok())
-      return error_of(o);
-    return System(std::move(data));
+    inner::Outcome start;
+    System system(system_of(model, options, start));
+    if (!start.ok()) return error_of(start);
+    return system;
   });
 }
 

@@ -60,9 +60,6 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
   if (!s.elimination.pivots().empty())
     return no("the form eliminates coordinates, whose choice holds in a part of the motion");
   const std::size_t n = s.system.coordinates, all = s.system.size(), mechanical = s.system.mechanical();
-  // Whether x holds coordinates, their velocities and the model's states.
-  bool ordinary = true;
-  for (std::size_t j = 0; j < all; ++j) ordinary = ordinary && s.structure.d[j] == (j < n ? 2 : j < mechanical ? 0 : 1);
   std::unique_ptr<Dynamics> made(new Dynamics);
   made->program_ = std::make_shared<const Program>(anholon::program(s.system, s.structure));
   Start<long double> here;
@@ -74,11 +71,12 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
   made->coordinates_ = n;
   made->model_states_ = all - mechanical;
   std::optional<Representation> mapped;
+  why = wanted.minimal ? no_plan(*made->program_) : "all velocities were asked for";
   if (no_plan(*made->program_).empty()) {
     const auto derived = KernelPlan::make(made->program_, 1, made->parameters_, t, state, Company::in_lanes);
     if (!derived) return no("the equations are singular at the start");
     const ToRepresent equations{derived, s.structure, {}, made->parameters_, t, state, s.mechanics.get()};
-    if (ordinary && wanted.minimal) mapped = in_independent_velocities(equations);
+    if (wanted.minimal) mapped = in_independent_velocities(equations, why);
     made->plan_ =
         mapped ? mapped->plan : cheapest_unmapped(representations(equations, WritingEffort::long_motion)).plan;
   } else {

@@ -30,7 +30,8 @@ class Dynamics {
     bool minimal = true;     // in independent velocities if the equations have them
     std::size_t inputs = 0;  // the last parameters of the model, as many, are the inputs (setup/inputs.h)
   };
-  // Null if these equations are no function of x, or have no solution at the start; `why` then says the reason.
+  // Null if these equations are no function of x, or have no solution at the start; `why` then says the reason. Else `why`
+  // says why the velocities are not independent ones, a clause in words of the model; empty if they are.
   static std::unique_ptr<Dynamics> make(Workspace& scenario, const StateChoice& choice, const Choice& wanted,
                                         std::string& why);
 

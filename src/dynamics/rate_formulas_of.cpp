@@ -93,7 +93,9 @@ class Builder {
     for (std::size_t i = 0; i < f_.outputs.size(); ++i)
       if (!holds_multipliers(f_.outputs[i])) others.push_back(f_.outputs[i]), kept.push_back(i);
     others.insert(others.end(), input_formulas_.begin(), input_formulas_.end());
-    const auto q = quasi_velocities(s, *s_.mechanics, others, [&](const Node& symbol) { return of_.at_start(symbol); });
+    std::string unused;
+    const auto q =
+        quasi_velocities(s, *s_.mechanics, others, [&](const Node& symbol) { return of_.at_start(symbol); }, unused);
     ANHOLON_ASSERT(q && q->count + z + n == of_.states().size());
     f_.model = q->system.model;
     Graph& g = *f_.model->graph;

@@ -104,10 +104,6 @@ void Reductions::add(const std::string& word, const OpenModel& model) {
   if (same == formulas.end()) formulas.push_back(e);
 }
 
-void Reductions::move_to(const Scenario& scenario) {
-  for (Expr& e : formulas) e = scenario.model->graph->own(e);
-}
-
 // ---- extremes of a polynomial -----------------------------------------------------------------------------------------
 
 namespace {

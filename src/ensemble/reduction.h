@@ -26,8 +26,6 @@ struct Reductions {
   // KIND(FORMULA), KIND one of max, min, mean, last; the formula is a monitor or any formula that a monitor may be. Builds
   // in the graph of the model. Throws MistakeInWord.
   void add(const std::string& word, const OpenModel& model);
-  // The formulas become those of a scenario of that model, which may outlive it.
-  void move_to(const Scenario& scenario);
 };
 
 // The greatest value of sum c_k x^k, k <= degree, for x from 0 to h, h of either sign; `known` if no value is greater. A

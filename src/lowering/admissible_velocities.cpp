@@ -11,22 +11,28 @@ constexpr double kPivot = 1e-2;
 }  // namespace
 
 bool AdmissibleVelocities::solve(const Column& constraints) {
-  for (const Expr c : constraints)
-    if (!solve(c)) return false;
+  for (refused = 0; refused < constraints.size(); ++refused)
+    if (!solve(constraints[refused])) return false;
   for (Expr& d : definitions) d = eliminated(d);
-  return !free.empty();
+  return true;
 }
 
 bool AdmissibleVelocities::solve(Expr constraint) {
   const Expr by_names = tidy_(solved(constraint)), phi = written_out(by_names);
   const Column by = gradient(phi, free);
-  if (std::any_of(by.begin(), by.end(), [&](Expr e) { return contains(e, free); })) return false;
+  if (std::any_of(by.begin(), by.end(), [&](Expr e) { return contains(e, free); })) {
+    why = "is not linear in the velocities";
+    return false;
+  }
   const auto [a, rest] = linear(phi, free, tidy_);
   double largest = 0;
   std::vector<std::size_t> in;
   for (std::size_t i = 0; i < free.size(); ++i)
     if (!is_zero(a[i])) in.push_back(i), largest = std::max(largest, std::abs(at_(a[i])));
-  if (!(largest > 0)) return false;
+  if (!(largest > 0)) {
+    why = "determines no further velocity at the start";
+    return false;
+  }
   std::size_t best = free.size(), cost = SIZE_MAX;
   for (const std::size_t i : in)
     if (std::abs(at_(a[i])) >= kPivot * largest)

@@ -14,8 +14,11 @@ class AdmissibleVelocities {
   AdmissibleVelocities(const Column& qd, PointValues& at, Tidy& t)
       : free(qd), qd_(qd), g_(*qd[0].graph), at_(at), tidy_(t), free_by_velocity_(qd) {}
 
-  // False where the constraints are not of the kind that this solves.
+  // Returns false if the constraints are not of the kind that this solves; `refused` is then the number of the first one
+  // that is not, and `why` what it is.
   bool solve(const Column& constraints);
+  std::size_t refused = 0;
+  std::string why;
 
   Column free;                // those left: of coordinates, or names for others
   Column named, definitions;  // names for velocities that are used as they are, each given in `free` and those before

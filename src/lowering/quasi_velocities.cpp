@@ -16,22 +16,34 @@ constexpr std::size_t kMostVelocities = 4;
 class Writer {
  public:
   Writer(const System& derived, const Mechanics& m, std::span<const Expr> others,
-         const std::function<double(const Node&)>& symbol)
-      : derived_(derived), c_(copied_mechanics(m, derived, others)), g_(*c_.model->graph),
+         const std::function<double(const Node&)>& symbol, std::string& why)
+      : derived_(derived), why_(why), c_(copied_mechanics(m, derived, others)), g_(*c_.model->graph),
         at_([this, symbol](const Node& n) { return stands_for(n) ? value_of_[n.index - n_] : symbol(n); }),
         q_(jets(*c_.model, 0)), qd_(jets(*c_.model, 1)), n_(q_.size()), zero_(g_.zero()), v_(qd_, at_, tidy_) {}
 
   std::optional<QuasiVelocities> run() {
-    if (!v_.solve(put_masses(*c_.model, c_.constraints)) || v_.free.size() > kMostVelocities || !use_names())
-      return std::nullopt;
+    if (!v_.solve(put_masses(*c_.model, c_.constraints)))
+      return none("the constraint '" + name_of(v_.refused) + "' " + v_.why);
+    if (v_.free.empty()) return none("the constraints leave no velocity free");
+    if (v_.free.size() > kMostVelocities)
+      return none("the constraints leave " + std::to_string(v_.free.size()) +
+                  " velocities free, and independent ones are found for at most " + std::to_string(kMostVelocities));
+    if (!use_names()) return none("a constraint has a part without velocities");
     for (Expr v : qd_) velocity_.push_back(tidy_(v_.solved(v)));
     read_points();
     if (!energy_.diagonalize(mass_matrix(), v_.free, at_, tidy_, [this](Expr e) { return one_series(e); }))
-      return std::nullopt;
+      return none("the formulas of independent velocities grow long");
     return equations();
   }
 
  private:
+  std::nullopt_t none(std::string why) const {
+    why_ = std::move(why);
+    return std::nullopt;
+  }
+  // Of a constraint of the derived system.
+  const std::string& name_of(std::size_t k) const { return derived_.model->constraints[derived_.constraints[k]].name; }
+
   Expr p(std::size_t i) { return g_.state(static_cast<std::uint32_t>(c_.state_rates.size() + i), 0); }
 
   // What is used more than once gets a series of its own: otherwise products would be taken apart, and made anew each
@@ -139,7 +151,7 @@ class Writer {
       for (NodeId id : symbols({&r.others.back(), 1}))
         if (const Node& n = g_.node(id);
             n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 0 && !stands_for(n)))
-          return std::nullopt;
+          return none("a formula holds multipliers or accelerations");
     }
     r.determinant = determinant();
     r.system = first_order_system(r.velocities, rates);
@@ -223,6 +235,7 @@ class Writer {
   }
 
   const System& derived_;
+  std::string& why_;
   CopiedMechanics c_;
   Graph& g_;
   PointValues at_;
@@ -245,11 +258,16 @@ class Writer {
 }  // namespace
 
 std::optional<QuasiVelocities> quasi_velocities(const System& derived, const Mechanics& m, std::span<const Expr> others,
-                                                const std::function<double(const Node&)>& symbol) {
-  const auto of_first_order = [&](std::size_t r) { return m.order[r] == 1 && !m.model->constraints[r].by; };
-  if (!m.model->masses.empty() || !std::all_of(derived.constraints.begin(), derived.constraints.end(), of_first_order))
-    return std::nullopt;
-  return Writer(derived, m, others, symbol).run();
+                                                const std::function<double(const Node&)>& symbol, std::string& why) {
+  const std::vector<Constraint>& constraints = m.model->constraints;
+  if (!m.model->masses.empty()) why = "a mass varies";
+  for (const std::size_t r : derived.constraints)
+    if (constraints[r].by)
+      why = "an input keeps the constraint '" + constraints[r].name + "'";
+    else if (m.order[r] != 1)
+      why = "the constraint '" + constraints[r].name + "' is of order " + std::to_string(m.order[r]);
+  if (!why.empty()) return std::nullopt;
+  return Writer(derived, m, others, symbol, why).run();
 }
 
 }  // namespace anholon

@@ -28,10 +28,11 @@ struct QuasiVelocities {
   Expr determinant;       // that of the system Jacobian of Routh's equations, up to a constant factor
 };
 
-// `symbol`: values near the motion, by which is chosen what to solve for. Nothing where the equations are not of the
-// kind above, there are too many velocities, formulas become long, or `others` contain multipliers.
+// `symbol`: values near the motion, by which is chosen what to solve for. Returns nullopt if the equations are not of the
+// kind above, there are too many velocities, formulas become long, or `others` contain multipliers; `why` then says which,
+// a clause in words of the model.
 std::optional<QuasiVelocities> quasi_velocities(const System& derived, const Mechanics& mechanics,
                                                 std::span<const Expr> others,
-                                                const std::function<double(const Node&)>& symbol);
+                                                const std::function<double(const Node&)>& symbol, std::string& why);
 
 }  // namespace anholon

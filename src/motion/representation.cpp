@@ -11,6 +11,7 @@
 #include "lowering/velocity_algebra.h"
 #include "print/arrange.h"
 #include "print/print.h"
+#include "print/print_names.h"
 
 namespace anholon {
 
@@ -123,17 +124,30 @@ double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>&
   return worst;
 }
 
-// Where accelerations and multipliers are all that is solved for.
-std::optional<Representation> in_quasi_velocities(const ToRepresent& e) {
+// The reason why equations are in no quasi-velocities that can be seen before these are sought; empty if there is none.
+std::string obstacle_to_quasi_velocities(const ToRepresent& e) {
   const Program& derived = e.derived->program();
   const System& s = *derived.system;
-  if (e.derived->tables().refine || !e.mechanics || s.form != find_formulation("routh") || s.constraints.empty() ||
-      derived.unknowns() > kMostInQuasi)
-    return std::nullopt;
+  if (!e.mechanics || s.form != find_formulation("routh")) return "the equations have another form than Routh's";
   for (std::size_t j = 0; j < derived.unknowns(); ++j)
-    if (derived.d[j] != (j < s.coordinates ? 2 : j < s.mechanical() ? 0 : 1)) return std::nullopt;
+    if (derived.d[j] != (j < s.coordinates ? 2 : j < s.mechanical() ? 0 : 1))
+      return "the equations are solved for " +
+             derivative_name(s.variable_names[j], static_cast<unsigned>(derived.d[j]), Format::text) +
+             ", not for accelerations and multipliers alone";
+  if (s.constraints.empty()) return "there are no constraints, so the velocities are independent as they are";
+  if (derived.unknowns() > kMostInQuasi)
+    return "there are " + std::to_string(derived.unknowns()) +
+           " unknowns, and independent velocities are sought for at most " + std::to_string(kMostInQuasi);
+  if (e.derived->tables().refine) return "the equations are nearly singular at the start";
+  return {};
+}
+
+// Where accelerations and multipliers are all that is solved for.
+std::optional<Representation> in_quasi_velocities(const ToRepresent& e, std::string& why) {
+  if (why = obstacle_to_quasi_velocities(e); !why.empty()) return std::nullopt;
+  const System& s = *e.derived->program().system;
   std::optional<QuasiVelocities> q =
-      quasi_velocities(s, *e.mechanics, e.quadratures, [&](const Node& n) { return value_at_start(e, n); });
+      quasi_velocities(s, *e.mechanics, e.quadratures, [&](const Node& n) { return value_at_start(e, n); }, why);
   if (!q) return std::nullopt;
   Representation found{Writing::quasi, nullptr, {}};
   for (Expr p : q->of_state)
@@ -149,7 +163,10 @@ std::optional<Representation> in_quasi_velocities(const ToRepresent& e) {
   r->program = program(r->system, first_order, q->others, true);
   found.plan = KernelPlan::make({r, &r->program}, std::move(map), judged, e.derived->plan().stages, e.parameters, e.t,
                                 e.state, e.derived->company());
-  if (!found.plan || !(difference(e, e.derived, found.plan) < kAgree)) return std::nullopt;
+  if (!found.plan || !(difference(e, e.derived, found.plan) < kAgree)) {
+    why = "in independent velocities the equations lose digits at the start";
+    return std::nullopt;
+  }
   return found;
 }
 
@@ -196,7 +213,8 @@ std::vector<Representation> representations(const ToRepresent& e, WritingEffort 
   if (followed_by_slots(first)) return list;
   if (!first.tables().refine || (large(first) && derived.unknowns() <= kMostRefined))
     add(e, Writing::rates, left_to_series(e), list);
-  if (auto quasi = in_quasi_velocities(e)) list.push_back(std::move(*quasi));
+  std::string unused;
+  if (auto quasi = in_quasi_velocities(e, unused)) list.push_back(std::move(*quasi));
   if (large(first)) return list;
   add(e, Writing::paired, std::make_shared<const Program>(program(*derived.system, e.structure, e.quadratures, true)),
       list);
@@ -204,7 +222,9 @@ std::vector<Representation> representations(const ToRepresent& e, WritingEffort 
   return list;
 }
 
-std::optional<Representation> in_independent_velocities(const ToRepresent& e) { return in_quasi_velocities(e); }
+std::optional<Representation> in_independent_velocities(const ToRepresent& e, std::string& why) {
+  return in_quasi_velocities(e, why);
+}
 
 void add_representations(const ToRepresent& e, WritingEffort effort, std::vector<Representation>& list) {
   const KernelPlan& first = *e.derived;

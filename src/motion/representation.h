@@ -55,8 +55,9 @@ std::size_t steps_with_effort(std::size_t steps);
 // derived tape, others are left out.
 std::vector<Representation> representations(const ToRepresent& equations, WritingEffort effort);
 // The writing in quasi-velocities, for one who evaluates rates and makes no steps: unlike in the list, a kernel does not have
-// to know the slots of the derived tape. Returns nullopt if the equations have none.
-std::optional<Representation> in_independent_velocities(const ToRepresent& equations);
+// to know the slots of the derived tape. Returns nullopt if the equations have none; `why` then says the reason, a clause in
+// words of the model.
+std::optional<Representation> in_independent_velocities(const ToRepresent& equations, std::string& why);
 // Adds to those that can be had at once what more effort finds.
 void add_representations(const ToRepresent& equations, WritingEffort effort, std::vector<Representation>& list);
 // The first of the cheapest.

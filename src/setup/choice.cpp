@@ -18,6 +18,37 @@ static std::string listed(const std::vector<std::string>& names) {
   return list + (names.size() > kMost ? ", …" : "");
 }
 
+// The sound of a name, as people spell names that they have heard: its first letter and the consonants after it, doubled
+// ones once.
+static std::string sound(const std::string& name) {
+  constexpr std::string_view kVowels = "aeiouy";
+  std::string of;
+  for (const char c : name)
+    if (of.empty() || (kVowels.find(c) == std::string_view::npos && c != of.back())) of += c;
+  return of;
+}
+
+// The form that is meant by a name: by a slip in it, by one of the people it is called after, or by their sound; empty if
+// there is none.
+static std::string near_form(const std::string& name, const std::vector<std::string>& forms) {
+  constexpr std::size_t kLeast = 4;  // letters of a name
+  if (std::string near = did_you_mean(name, forms); !near.empty() || name.size() < kLeast) return near;
+  const auto among_words = [&](const auto& meant) -> std::string {
+    for (const std::string& form : forms)
+      for (std::size_t from = 0, end = 0; end != std::string::npos; from = end + 1) {
+        end = form.find('-', from);
+        const std::string word = form.substr(from, end == std::string::npos ? end : end - from);
+        const bool of_people =
+            word.size() >= kLeast && word != "type" && word != "order" && word != "quasi" && word != "reduced";
+        if (of_people && meant(word)) return form;
+      }
+    return {};
+  };
+  std::string near =
+      among_words([&](const std::string& word) { return word == name || !did_you_mean(name, {word}).empty(); });
+  return near.empty() ? among_words([&](const std::string& word) { return sound(word) == sound(name); }) : near;
+}
+
 const Formulation& named_form(const std::string& name) {
   if (const Formulation* f = find_formulation(name)) return *f;
   std::vector<std::string> names;
@@ -26,9 +57,11 @@ const Formulation& named_form(const std::string& name) {
     names.emplace_back(f->name);
     list += (list.empty() ? "" : ", ") + std::string(f->name);
   }
+  const std::string near = near_form(name, names);
   throw Failure({},
-                name == "auto" ? std::string("'auto' is a form for motions, to simulate, sweep and check")
-                               : "there is no form '" + name + "'" + suggestion(name, names),
+                name == "auto"
+                    ? std::string("'auto' is a form for motions, to simulate, sweep and check")
+                    : "there is no form '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
                 "the forms are " + list);
 }
 

@@ -1,6 +1,9 @@
 // Uses every part of the installed library, and prints what comes out of it.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <thread>
 
 #include <anholon/anholon.h>
@@ -131,6 +134,60 @@ void sweep(const anholon::System& system) {
   expect(other && other->varied("m")[0] != drawn->varied("m")[0], "another seed draws other values");
 }
 
+// Scenarios of a model that vary: the same numbers as those of each scenario alone, in memory and in a folder.
+void sweep_over_scenarios() {
+  const std::string text = std::string(kPendulum) + "[case.long]\nparameters.l = 4\n[case.late]\nsimulate.to = 3\n";
+  const auto model = anholon::read_text(text);
+  if (!model) return expect(false, "a model with scenarios is read");
+  anholon::SweepOptions options;
+  options.vary = {{"theta", {0.1, 0.2}}, {"case", {"long", "late"}}};
+  const auto all = anholon::sweep(*model, options);
+  expect(all && all->cases() == 4 && all->finished() == 4, "each scenario has all cases of the others");
+  if (!all) return (void)std::printf("%s", all.text().c_str());
+  expect(all->scenarios() == std::vector<std::string>{"long", "late"} && all->scenario(1) == "long" &&
+             all->scenario(2) == "late" && all->varied("case").empty(),
+         "scenarios vary slowest, and have names");
+  expect(all->varied("theta")[3] == 0.2 && all->t()[1] == 2 && all->t()[2] == 3, "a scenario has an end of its own");
+  const auto late = anholon::prepare(*anholon::read_text(text, {.cases = {"late"}}));
+  const auto alone = anholon::sweep(*late, {.vary = {{"theta", {0.1, 0.2}}}});
+  expect(alone && alone->column("theta")[0] == all->column("theta")[2] &&
+             alone->column("theta")[1] == all->column("theta")[3],
+         "the numbers are those of the scenario alone");
+
+  char name[] = "/tmp/anholon-outside-XXXXXX";
+  if (!mkdtemp(name)) return expect(false, "a folder is made");
+  const std::string path = std::string(name) + "/falls";
+  const auto folder = anholon::sweep_into(*model, options, path, 3);
+  expect(folder && folder->cases() == 4 && folder->parts() == 2 && folder->columns()[1] == "case_name",
+         "a folder holds the scenarios");
+  if (!folder) return (void)std::printf("%s", folder.text().c_str());
+  const auto done = folder->fill({.threads = 1});
+  expect(done && done->complete && done->cases == 4, "a part may hold cases of two scenarios");
+  const auto read = folder->read({"case_name", "theta"});
+  const auto* words = read ? std::get_if<anholon::FolderColumn::Words>(&(*read)[0].values) : nullptr;
+  const auto* theta = read ? std::get_if<std::vector<double>>(&(*read)[1].values) : nullptr;
+  expect(words && words->different == all->scenarios() && words->rows == std::vector<std::uint32_t>{0, 0, 1, 1},
+         "the folder names the scenarios");
+  expect(theta && std::equal(theta->begin(), theta->end(), all->column("theta").begin(), all->column("theta").end()),
+         "the folder has the numbers of the sweep in memory");
+  const auto numbers = folder->numbers(2);
+  expect(numbers && numbers->size() == 2 && (*numbers)[0].second == "late" && (*numbers)[1].second == "1/10",
+         "a case tells its scenario");
+  const auto refined = folder->refine();
+  expect(!refined && refined.text().find("no grid") != std::string::npos, "several scenarios are no grid");
+  std::filesystem::remove_all(name);
+
+  const auto error_of = [&](std::vector<anholon::Vary> vary) {
+    options.vary = std::move(vary);
+    return anholon::sweep(*model, options).text();
+  };
+  expect(error_of({{"case", {"lng"}}}).find("did you mean 'long'") != std::string::npos, "a slip has a suggestion");
+  expect(error_of({{"case", {"long", "long"}}}).find("twice") != std::string::npos, "a scenario is named once");
+  options.vary = {{"case", {"long"}}};
+  expect(anholon::sweep(*late, options).text().find("sweep(model, …)") != std::string::npos,
+         "a system has one scenario");
+}
+
 void analysis(const anholon::Model& model, const anholon::System& system) {
   const auto compared = anholon::compare(model, "a: l*theta'' = -9.81*sin(theta)\nb: l*theta'' = 9.81*sin(theta)\n");
   expect(compared && compared->size() == 2 && (*compared)[0].verdict == anholon::Verdict::proved,
@@ -187,10 +244,15 @@ int main() {
   expect(system->degrees_of_freedom() == 1, "it has one degree of freedom");
   motion(*system);
   sweep(*system);
+  sweep_over_scenarios();
   const auto source = anholon::program_text(*system, anholon::Language::c);
   expect(source && source->find("#include <math.h>") != std::string::npos, "the motion is written as a program");
   const auto disc = anholon::read_file("disc");
   expect(bool(disc), "a shipped model is found");
+  const auto f = anholon::dynamics(*system), rolling = anholon::dynamics(*anholon::prepare(*disc));
+  expect(f && !f->minimal() && f->obstacle().find("no constraints") != std::string::npos && rolling &&
+             rolling->minimal() && rolling->obstacle().empty(),
+         "a function tells why its velocities are not independent ones");
   const auto rest = anholon::prepare(*anholon::read_text(kPendulum), {.initial = {{"theta", 0}}});
   const auto linear = anholon::linearize(*rest);
   expect(linear && linear->eigenvalues.size() == 2 && std::abs(std::abs(linear->eigenvalues[0].imag()) - 2) < 1e-12,

@@ -20,6 +20,7 @@ RunInfo run_info(const SystemCommand& o, const Reader& in, const Scenario& scena
     info.settings[name] = word.empty() ? std::vector<std::string>{} : std::vector<std::string>{word};
   };
   for (const ModelOption& m : model_options()) info.settings[m.name] = o.*m.words;
+  if (!o.mode.empty()) info.settings["mode"] = split(o.mode);
   one("t", o.t), one("start", number_text(scenario.state.t));
   for (const MotionOption& m : motion_options()) info.settings[m.name] = words(settings, m);
   one("continued", continued);

@@ -4,6 +4,7 @@
 
 #include "base/join.h"
 #include "base/read_file.h"
+#include "cli/contacts.h"
 #include "cli/input.h"
 #include "cli/models/show.h"
 #include "cli/motions/progress.h"
@@ -12,6 +13,8 @@
 #include "cli/motions/sweep_output.h"
 #include "cli/say.h"
 #include "cli/stop.h"
+#include "ensemble/parts/judgement.h"
+#include "ensemble/parts/scenarios.h"
 #include "ensemble/request.h"
 #include "ensemble/variation.h"
 #include "ensemble/with_contacts.h"
@@ -48,19 +51,14 @@ std::string text_of_table(const std::string& path) {
 std::vector<std::string> cases_of_file(std::vector<std::string>& words) {
   constexpr std::string_view kName = "case=";
   std::vector<std::string> names;
+  bool named = false;
   std::erase_if(words, [&](const std::string& word) {
     if (!word.starts_with(kName)) return false;
+    named = true;
     for (const std::string& name : split({word.substr(kName.size())})) names.push_back(name);
-    if (names.empty())
-      throw UsageError{
-          "error: --vary case= names no case\nhint: --vary case=a,b with sections [case.a] and [case.b] in "
-          "the model file\n"};
     return true;
   });
-  for (std::size_t k = 0; k < names.size(); ++k)
-    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(k), names[k]) !=
-        names.begin() + static_cast<std::ptrdiff_t>(k))
-      throw UsageError{"error: --vary names the case '" + names[k] + "' twice\nhint: each case once\n"};
+  if (named) must_name_each_once(names, "--vary");
   return names;
 }
 
@@ -106,6 +104,8 @@ Reductions reductions_of(const SweepCommand& o, const Reader& in) {
 // Returns false if --show has printed what was asked for.
 bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   p.in = read(p.asked);
+  // Without a mode the contacts move, too.
+  if (!p.asked.mode.empty()) p.in = in_mode(std::move(p.in), p.asked, "sweep");
   const SweepCommand o = p.asked = with_form(p.asked, p.in);
   p.variation = variation_of(o, *p.in.model, table, !p.word.empty());
   EnsembleOptions& e = p.options;
@@ -122,7 +122,7 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   if (!o.show.empty()) return false;
   ask(o.motion, p.scenario, asker(), e);
   try {
-    move_with(contacts(*p.in.names), e);
+    if (o.mode.empty()) move_with(contacts(*p.in.names), e);
   } catch (const Failure& f) {
     throw UsageError{"error: " + f.diagnostic.message + "\nhint: " + f.diagnostic.hint + "\n"};
   }
@@ -134,12 +134,6 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   }
   if (!p.word.empty()) p.table->add_word("case_name");
   return true;
-}
-
-std::vector<std::string> names_of(const SweepTable& table) {
-  std::vector<std::string> names;
-  for (const SweepColumn& c : table.columns()) names.push_back(c.name);
-  return names;
 }
 
 std::vector<SweepPiece> pieces_of(std::deque<Part>& parts) {
@@ -155,11 +149,13 @@ std::vector<std::pair<std::string, std::string>> asked_of(const RunInfo& info, c
   const auto add = [&](const std::string& name, const std::string& text) {
     if (!text.empty()) all.emplace_back(name, text);
   };
+  // The mode comes first: messages name it before the title that tells it, too.
+  if (const auto mode = info.settings.find("mode"); mode != info.settings.end()) add("mode", joined(mode->second, " "));
   add("title", info.title);
   for (std::size_t k = 0; k < info.model.size(); ++k)
     add(k == 0 ? "model" : "base file " + std::to_string(k), info.model[k].text);
   for (const auto& [name, words] : info.settings)
-    if (name != "model_sha256" && name != "error-estimate") add(name, joined(words, " "));
+    if (name != "model_sha256" && name != "error-estimate" && name != "mode") add(name, joined(words, " "));
   add("vary", joined(o.varied, " ")), add("table of cases", table_text), add("n", o.case_count), add("draw", o.draw);
   add("seed", std::to_string(o.seed)), add("reduce", joined(o.reduce, " "));
   return all;
@@ -214,17 +210,19 @@ int sweep(const SweepCommand& asked) {
       print_outcome(p.start);
       return kStopped;
     }
-    if (names_of(*p.table) != names_of(*parts.front().table))
-      throw UsageError{"error: the case '" + p.word + "' has other columns than the case '" + parts.front().word +
-                       "'\nhint: --columns chooses those that both have\n"};
+    must_have_columns_of(*parts.front().table, parts.front().word, *p.table, p.word,
+                         "--columns chooses those that both have");
     cases += p.options.cases;
   }
   catch_stop(o.output);
   const Part& first = parts.front();
-  const RunInfo info = run_info(first.asked, first.in, first.scenario, merged(o.motion, first.in.model->simulate));
+  const auto info_with = [&](const MotionSettings& s) { return run_info(first.asked, first.in, first.scenario, s); };
+  const RunInfo info = info_with(merged(o.motion, first.in.model->simulate));
   if (names_folder(o.output))
-    return sweep_into_folder(o, {pieces_of(parts), asked_of(info, asked, table_text), cases,
-                                 parts.size() == 1 ? &*first.variation : nullptr});
+    // Each scenario has settings of its own, which follow from its name.
+    return sweep_into_folder(o, {pieces_of(parts),
+                                 asked_of(names.empty() ? info : info_with(first.asked.motion), asked, table_text),
+                                 cases, parts.size() == 1 ? &*first.variation : nullptr});
   for (const auto& [option, word] :
        {std::pair{"--shard", &o.shard}, {"--chunk", &o.chunk}, {"--refine", &o.refine}, {"--refine-by", &o.refine_by}})
     if (!word->empty())

@@ -51,33 +51,6 @@ const ResultFormat& sweep_format(const std::string& output, bool json) {
   return named ? *named : plain_format();
 }
 
-void add_report(EnsembleReport& all, const EnsembleReport& next) {
-  const std::size_t before = all.done;
-  all.done += next.done, all.finished += next.finished, all.in_workspaces += next.in_workspaces;
-  all.seconds += next.seconds;
-  all.threads = next.threads;
-  if (!next.outcome.ok()) all.outcome = next.outcome;
-  for (std::size_t k : next.error.cases) all.error.cases.push_back(before + k);
-  if (const auto& error = next.error.error) {
-    if (!all.error.error || error->worst().error > all.error.error->worst().error)
-      all.error.worst = before + next.error.worst;
-    if (!all.error.error)
-      all.error.error = error;
-    else
-      all.error.error->take_worse(*error);
-  }
-  if (!next.error.none.empty()) all.error.none = next.error.none;
-  CasesResiduals& r = all.residuals;
-  const auto take = [&](CasesResiduals::Worst& worst, const CasesResiduals::Worst& other) {
-    if (!next.residuals.cases.empty() && (r.cases.empty() || other.residual > worst.residual))
-      worst = {other.residual, before + other.number};
-  };
-  take(r.newton, next.residuals.newton), take(r.constraints, next.residuals.constraints);
-  take(r.power, next.residuals.power);
-  for (std::size_t k : next.residuals.cases) r.cases.push_back(before + k);
-  if (!next.residuals.none.empty()) r.none = next.residuals.none;
-}
-
 void report_sweep(const EnsembleReport& r, std::size_t cases, const SweepOutput& out) {
   std::string list;
   for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);

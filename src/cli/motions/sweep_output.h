@@ -41,9 +41,6 @@ class SweepOutput final : public CaseSink {
 // The format of the file that -o names; without a file --json decides. Throws UsageError.
 const ResultFormat& sweep_format(const std::string& output, bool json);
 
-// Adds the report of cases that follow on those of `all`.
-void add_report(EnsembleReport& all, const EnsembleReport& next);
-
 // On stderr: how many cases finished, how far they can be trusted; why the others stopped.
 void report_sweep(const EnsembleReport& report, std::size_t cases, const SweepOutput& output);
 void report_stopped(const SweepOutput& output);

@@ -86,7 +86,7 @@ void add_sweep(CommandLine& line) {
       "          anholon sweep disc --vary \"phi'=1:7:1000000\" --to 3 -o falls/        goes on after a kill\n"
       "          anholon sweep disc --vary \"phi'=1:7:1000000\" --to 3 -o falls/ --shard 3/8\n"
       "          anholon sweep disc --vary \"phi'=1:7:61\" --vary theta=0.2:1.4:49 --to 3 -o falls/ --refine 4");
-  parameters(c, o), state(c, o), form_option(c, o);
+  parameters(c, o), state(c, o), form_option(c, o), mode_of_contacts(c, o);
   c->add_option("--vary", o.varied,
                 "NAME=FROM:TO:COUNT, NAME=A,B,…, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO)")
       ->type_name("WHAT")

@@ -171,7 +171,10 @@ std::vector<unsigned> SweepCases::generations() const {
   return list;
 }
 
-std::string SweepCases::command() const { return store_ ? v1::command_of_sweep(*store_) : std::string(); }
+// `report` shows a motion with its changes of mode, and not that of one mode.
+std::string SweepCases::command() const {
+  return store_ && store_->asked("mode").empty() ? v1::command_of_sweep(*store_) : std::string();
+}
 
 // Units and meanings come from the model in the folder; a model that refers to files that are not there has none.
 void SweepCases::read_model() {

@@ -97,6 +97,33 @@ std::string judgement_json(const EnsembleReport& r) {
          ",\n  \"text\": " + text.close().text() + "\n}\n";
 }
 
+void add_report(EnsembleReport& all, const EnsembleReport& next) {
+  const std::size_t before = all.done;
+  all.done += next.done, all.finished += next.finished, all.in_workspaces += next.in_workspaces;
+  all.seconds += next.seconds;
+  all.threads = next.threads;
+  if (!next.outcome.ok()) all.outcome = next.outcome;
+  for (std::size_t k : next.error.cases) all.error.cases.push_back(before + k);
+  if (const auto& error = next.error.error) {
+    if (!all.error.error || error->worst().error > all.error.error->worst().error)
+      all.error.worst = before + next.error.worst;
+    if (!all.error.error)
+      all.error.error = error;
+    else
+      all.error.error->take_worse(*error);
+  }
+  if (!next.error.none.empty()) all.error.none = next.error.none;
+  CasesResiduals& r = all.residuals;
+  const auto take = [&](CasesResiduals::Worst& worst, const CasesResiduals::Worst& other) {
+    if (!next.residuals.cases.empty() && (r.cases.empty() || other.residual > worst.residual))
+      worst = {other.residual, before + other.number};
+  };
+  take(r.newton, next.residuals.newton), take(r.constraints, next.residuals.constraints);
+  take(r.power, next.residuals.power);
+  for (std::size_t k : next.residuals.cases) r.cases.push_back(before + k);
+  if (!next.residuals.none.empty()) r.none = next.residuals.none;
+}
+
 EnsembleReport judge_piece(const SweepPiece& piece, const std::function<bool()>& cancelled) {
   const std::vector<std::size_t> numbers = cases_to_compare(piece.options->cases);
   EnsembleOptions o = *piece.options;

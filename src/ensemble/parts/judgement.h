@@ -8,6 +8,9 @@ namespace anholon {
 // Judges the same cases of a piece that a sweep without a folder judges; the numbers in the report are those of the piece.
 EnsembleReport judge_piece(const SweepPiece& piece, const std::function<bool()>& cancelled);
 
+// Adds the report of cases that follow on those of `all`.
+void add_report(EnsembleReport& all, const EnsembleReport& next);
+
 // The values of a report as JSON objects, for an object that holds them.
 std::string error_json(const CasesError& error);
 std::string residuals_json(const CasesResiduals& residuals);

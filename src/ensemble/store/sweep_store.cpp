@@ -46,13 +46,15 @@ void must_agree(const std::string& folder, const SweepRequest& there, const Swee
                       (old == now ? " differs" : " is " + old + " there and " + now + " here"),
                   "give another folder; a sweep goes on by the same command");
   };
+  // In the order of the request that asks for more: it names what the other one lacks in its place.
+  const bool more_there = there.asked.size() > here.asked.size();
   std::set<std::string> names;
-  for (const SweepRequest* r : {&here, &there})
-    for (const auto& [name, text] : r->asked) {
+  for (const SweepRequest* r : {more_there ? &there : &here, more_there ? &here : &there})
+    for (const auto& entry : r->asked) {
+      const std::string& name = entry.first;
       if (!names.insert(name).second) continue;
-      const auto text_in = [&, &sought = name](const SweepRequest& of) {
-        const auto at =
-            std::find_if(of.asked.begin(), of.asked.end(), [&](const auto& e) { return e.first == sought; });
+      const auto text_in = [&](const SweepRequest& of) {
+        const auto at = std::find_if(of.asked.begin(), of.asked.end(), [&](const auto& e) { return e.first == name; });
         return at == of.asked.end() ? std::string() : at->second;
       };
       const std::string old = text_in(there), now = text_in(here);

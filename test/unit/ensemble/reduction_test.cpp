@@ -54,11 +54,10 @@ class Results final : public CaseSink {
 struct Sweep {
   Sweep(const std::string& text, const std::vector<std::string>& words) {
     Diagnostics diagnostics;
-    const auto open = open_model({"model.toml", text}, diagnostics);
+    open = open_model({"model.toml", text}, diagnostics);
     if (!open) throw std::runtime_error(diagnostics.print({"model.toml", text}));
     for (const std::string& word : words) options.reductions.add(word, *open);
     EXPECT_TRUE(make_scenario(open->model, *find_formulation("routh"), {}, scenario).ok());
-    options.reductions.move_to(scenario);
     options.to = 3;
     options.varied = {{Varied::Kind::initial, 0, 0, "x"}};
   }
@@ -70,6 +69,7 @@ struct Sweep {
     report = ensemble(scenario, options, results);
     return results.list;
   }
+  std::optional<OpenModel> open;  // in whose graph the formulas are
   Scenario scenario;
   EnsembleOptions options;
   EnsembleReport report;

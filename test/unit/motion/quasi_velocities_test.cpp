@@ -27,11 +27,12 @@ struct Found {
     if (s.constraints.empty()) return;
     parameters = parameter_values<long double>(*scenario->model);
     // A fixed point is as good as any: the choice of pivots alone depends on it.
-    q = quasi_velocities(s, *scenario->mechanics, {}, [&](const Node& n) {
+    const auto symbol = [&](const Node& n) {
       if (n.kind == Kind::time) return static_cast<double>(start.t);
       if (n.kind == Kind::parameter) return static_cast<double>(parameters[n.index]);
       return n.kind == Kind::jet && n.order < 2 ? static_cast<double>(start.state[2 * n.index + n.order]) : 0.0;
-    });
+    };
+    q = quasi_velocities(s, *scenario->mechanics, {}, symbol, why);
   }
   std::vector<std::string> of_state() const { return print(q->of_state, q->system.model->names, Format::text); }
 
@@ -40,6 +41,7 @@ struct Found {
   Start<long double> start;
   std::vector<long double> parameters;
   std::optional<QuasiVelocities> q;
+  std::string why;  // there are none
 };
 
 using Texts = std::vector<std::string>;
@@ -56,6 +58,17 @@ TEST(QuasiVelocities, AreThoseOfTheBooks) {
   EXPECT_EQ(print(sleigh.q->velocities, sleigh.q->system.model->names, Format::text),
             (Texts{"p1*cos(th)", "p1*sin(th)", "p2"}));
   EXPECT_TRUE(is_number(sleigh.q->determinant)) << "never singular";
+}
+
+TEST(QuasiVelocities, TellWhyThereAreNone) {
+  EXPECT_EQ(Found(test::shipped("zoo/disc")).why, "");
+  for (const auto& [name, why] :
+       {std::pair{"zoo/double-pendulum-cartesian", "the constraint 'rod2' is of order 0"},
+        {"asked/perpendicular-velocities", "the constraint 'square' is not linear in the velocities"}}) {
+    const Found none(test::shipped(name));
+    EXPECT_FALSE(none.q) << name;
+    EXPECT_EQ(none.why, why);
+  }
 }
 
 ExpansionWork work_in_quasi_velocities(const std::string& model, const Overrides& overrides = {}) {
