@@ -30,9 +30,8 @@ void note_begun(MotionTrack<N>& track, const std::vector<Wider<N>>& guess, bool 
 
 // What the reference starts from.
 template <Number N>
-void note_reference(MotionTrack<N>& track, const Expansion<N>& series, const std::vector<int>& sides) {
+void note_reference(MotionTrack<N>& track, const Expansion<N>& series) {
   track.begun().at.direction = series.weakest_direction();
-  track.begun().at.sides = sides;
   track.now.own.clear();
   if (track.now.carry.empty()) track.now.carry.assign(track.now.state.size(), Wider<N>(0));
 }
@@ -57,9 +56,8 @@ void ReferenceExpander<N>::begin(MotionTrack<N>& track, const std::vector<W>& gu
 }
 
 template <Number N>
-Outcome ReferenceExpander<N>::prepare(MotionTrack<N>& track, const std::vector<W>& guess,
-                                      const std::vector<int>& sides) {
-  note_reference(track, series(), sides);
+Outcome ReferenceExpander<N>::prepare(MotionTrack<N>& track, const std::vector<W>& guess) {
+  note_reference(track, series());
   return reference_.prepare(track.now, guess);
 }
 
@@ -131,9 +129,8 @@ bool GuardedExpander::end_at_once(MotionTrack<double>& track) {
   return true;
 }
 
-Outcome GuardedExpander::prepare(MotionTrack<double>& track, const std::vector<W>& guess,
-                                 const std::vector<int>& sides) {
-  note_reference(track, series(), sides);
+Outcome GuardedExpander::prepare(MotionTrack<double>& track, const std::vector<W>& guess) {
+  note_reference(track, series());
   maker_ = Maker::reference;
   point_.known = Point::Known::values;
   return reference_.prepare(track.now, guess);
@@ -146,12 +143,12 @@ MotionState<double> GuardedExpander::motion(const MotionTrack<double>& track, bo
   return m;
 }
 
-// Expansions by the kernel change neither the direction nor the sides.
-StepperState<double> GuardedExpander::begun(const MotionTrack<double>& track, const std::vector<int>& sides) const {
+// Expansions by the kernel do not change the direction.
+StepperState<double> GuardedExpander::begun(const MotionTrack<double>& track) const {
   if (!kernel_) return track.begun().at;
   MotionTrack<double> all = track;
   kernel_->read_begun(all);
-  if (kernel()) all.begun().at.direction = series().weakest_direction(), all.begun().at.sides = sides;
+  if (kernel()) all.begun().at.direction = series().weakest_direction();
   return all.begun().at;
 }
 

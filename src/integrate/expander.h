@@ -32,7 +32,8 @@ class ReferenceExpander {
   void begin(MotionTrack<N>& track, const std::vector<W>& guess, bool again);
   static constexpr void expand_kernel() {}
   static constexpr bool end_by_kernel(MotionTrack<N>&) { return false; }
-  Outcome prepare(MotionTrack<N>& track, const std::vector<W>& guess, const std::vector<int>& sides);
+  static constexpr void refuse_kernel(MotionTrack<N>&) {}
+  Outcome prepare(MotionTrack<N>& track, const std::vector<W>& guess);
   Outcome solve(MotionTrack<N>& track, const std::vector<W>& guess) {
     return reference_.solve(track.now, guess, point_);
   }
@@ -46,7 +47,7 @@ class ReferenceExpander {
 
   // A motion that is in a kernel's lane is read, or taken out of it.
   MotionState<N> motion(const MotionTrack<N>& track, bool) const { return track.now; }
-  StepperState<N> begun(const MotionTrack<N>& track, const std::vector<int>&) const { return track.begun().at; }
+  StepperState<N> begun(const MotionTrack<N>& track) const { return track.begun().at; }
   void take_back(MotionTrack<N>&, bool) {}
   static constexpr void round_state() {}
 
@@ -97,11 +98,17 @@ class GuardedExpander {
     if (awaits_kernel_) kernel_->expand();
   }
   bool end_by_kernel(MotionTrack<double>& track);
+  // The reference is to make the expansion instead of the kernel, which has made it.
+  void refuse_kernel(MotionTrack<double>& track) {
+    kernel_->take_back_as_begun(track);
+    maker_ = Maker::reference;
+    --by_kernel_;
+  }
   // Whether an expansion is awaited of the kernel that has made the one before. As end_by_kernel(), where nothing in it
   // asks for a closer look; else false, and nothing is changed.
   bool goes_on_with_kernel() const { return awaits_kernel_ && kernel() && kernel()->may_be_ordinary(); }
   bool end_at_once(MotionTrack<double>& track);
-  Outcome prepare(MotionTrack<double>& track, const std::vector<W>& guess, const std::vector<int>& sides);
+  Outcome prepare(MotionTrack<double>& track, const std::vector<W>& guess);
   Outcome solve(MotionTrack<double>& track, const std::vector<W>& guess) {
     return reference_.solve(track.now, guess, point_.solution);
   }
@@ -119,7 +126,7 @@ class GuardedExpander {
   }
 
   MotionState<double> motion(const MotionTrack<double>& track, bool expanded) const;
-  StepperState<double> begun(const MotionTrack<double>& track, const std::vector<int>& sides) const;
+  StepperState<double> begun(const MotionTrack<double>& track) const;
   void take_back(MotionTrack<double>& track, bool expanded) {
     if (kernel_) kernel_->take_back(track, expanded);
   }

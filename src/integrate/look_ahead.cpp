@@ -1,10 +1,13 @@
 #include "integrate/look_ahead.h"
 
+#include <utility>
+
 namespace anholon {
 
 template <Number N>
 Expansion<N>& LookAhead<N>::load(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
   if (!there_) there_ = std::make_unique<Expansion<N>>(*program_, parameters_, 1);
+  quadratures_known_ = false;
   convert_all(state, state_);
   convert_all(leading, leading_);
   there_->load(convert<N>(t), state_, leading_);
@@ -19,8 +22,19 @@ Expansion<N>* LookAhead<N>::prepare(const W& t, const std::vector<W>& state, con
 }
 
 template <Number N>
+void LookAhead<N>::evaluate_quadratures() {
+  if (!std::exchange(quadratures_known_, true)) there_->evaluate_quadratures();
+}
+
+template <Number N>
+N LookAhead<N>::quadrature_terms(std::size_t i) {
+  evaluate_quadratures();
+  return there_->quadrature_terms(i);
+}
+
+template <Number N>
 std::optional<N> LookAhead<N>::quadrature(std::size_t i) {
-  there_->evaluate_quadratures();
+  evaluate_quadratures();
   const N value = there_->quadrature(i)[0];
   return value == value ? std::optional<N>(value) : std::nullopt;
 }

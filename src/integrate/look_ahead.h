@@ -18,14 +18,19 @@ class LookAhead {
   // … with J and its LU; null if J has none. What was met elsewhere says nothing there: the iteration for the singular
   // value starts anew, so that a run that goes on finds the same.
   Expansion<N>* prepare(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
-  // A quadrature where the motion was loaded last, if it has a value there.
+  // A quadrature where the motion was loaded last, and the formulas evaluated; nullopt if it has no value there.
   std::optional<N> quadrature(std::size_t i);
+  // The magnitude of the terms of this value.
+  N quadrature_terms(std::size_t i);
 
  private:
+  void evaluate_quadratures();
+
   const Program* program_;
   std::vector<N> parameters_;
   std::unique_ptr<Expansion<N>> there_;  // made when it is first asked for
   std::vector<N> state_, leading_;
+  bool quadratures_known_ = false;
 };
 
 // What those who judge a step see of it.

@@ -116,8 +116,7 @@ bool StepEnd<N>::may_end_at(PresentStep<N>& step, const EventWatch<N>& events, c
     const N where = check_.where();
     auto next = check_.seen(defect(step, decides && where == length ? h : convert<W>(where)));
     if (decides && next != EndCheck<N>::Next::shorten &&
-        !events.as_foretold(step.series(), order_ - 1, where, log_tolerance_,
-                            [&](std::size_t i) { return step.look.quadrature(i); }))
+        !events.as_foretold(where, log_tolerance_, [&](std::size_t i) { return step.look.quadrature(i); }))
       next = check_.refuse();
     switch (next) {
     case EndCheck<N>::Next::good:
@@ -130,6 +129,14 @@ bool StepEnd<N>::may_end_at(PresentStep<N>& step, const EventWatch<N>& events, c
   }
 }
 
+// Whether what is watched has the values of its series h beyond the expansion of a kernel.
+template <Number N>
+bool StepEnd<N>::shows_events(PresentStep<N>& step, const EventWatch<N>& events, const W& h) {
+  if (events.empty()) return true;
+  step.load(h).evaluate();
+  return events.as_foretold(convert<N>(h), log_tolerance_, [&](std::size_t i) { return step.look.quadrature(i); });
+}
+
 template <Number N>
 Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W& h, const W& whole) {
   const bool forward = h > W(0);
@@ -138,8 +145,7 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
   // Where a formula that is watched has no series, its values are looked at, in a short step: then it has some, or none
   // at all.
   constexpr double kShort = 0x1p-10, kAsShort = 0x1p-8;
-  if (!events.empty() && (last_step == W(0) || last_step > abs(h) * W(kAsShort)) &&
-      events.without_series(step.series(), order_ - 1))
+  if (!events.empty() && (last_step == W(0) || last_step > abs(h) * W(kAsShort)) && events.without_series())
     h = shorter(whole, W(h * W(kShort)));
   Kink<N> kink;
   W where, past;
@@ -159,7 +165,9 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
     // Beyond a kink other functions hold.
     looked_ = kink.ahead ? W(where - (forward ? past : W(-past))) : where;
     if (!(abs(where) > past)) looked_ = W(0);
-    if (refused || kernel || looked_ == W(0) || may_end_at(step, events, looked_)) break;
+    if (refused || looked_ == W(0) ||
+        (kernel ? shows_events(step, events, looked_) : may_end_at(step, events, looked_)))
+      break;
     refused = true;
   }
   at_kink_ = kink.at_start || kink.ahead;

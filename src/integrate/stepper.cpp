@@ -116,6 +116,7 @@ EndOfStep Stepper<N>::look_at_end(const W& end) {
   }
   guard_.set_singular_ahead(false);
   end_.again();
+  events_.take_back();
   phase_ = Phase::expanded;
   kernel->show_advanced(false);
   const bool good = aim(end);
@@ -178,6 +179,7 @@ template <Number N>
 void Stepper<N>::begin_expansion() {
   ANHOLON_ASSERT(phase_ == Phase::placed || phase_ == Phase::advanced);
   expander_.begin(track_, track_.now.leading, false);
+  track_.begun().at.sides = events_.sides();
   phase_ = Phase::begun;
 }
 
@@ -199,7 +201,13 @@ template <Number N>
 bool Stepper<N>::end_by_kernel() {
   if (!expander_.end_by_kernel(track_)) return false;
   one_sided_.reset();
+  read_events();
+  if (!events_.have_series()) {
+    expander_.refuse_kernel(track_);
+    return false;
+  }
   horizon_ = expander_.reach();
+  limit_by_events();
   limit_by_quadratures();
   expander_.set_horizon(horizon_);
   phase_ = Phase::expanded;
@@ -215,19 +223,38 @@ Outcome Stepper<N>::expand_by_reference(const std::vector<W>& guess) {
 
 template <Number N>
 Outcome Stepper<N>::expand_regularly(const std::vector<W>& guess) {
-  if (Outcome o = expander_.prepare(track_, guess, events_.sides()); !o.ok()) return o;
+  if (Outcome o = expander_.prepare(track_, guess); !o.ok()) return o;
   if (Outcome o = guard_.check(expander_.series(), time(), record()); !o.ok()) return o;
   if (Outcome o = expander_.solve(track_, guess); !o.ok()) return o;
   if (Outcome o = expander_.extend(); !o.ok()) return o;
   horizon_ = expander_.reach();
-  // What is watched may change faster than the motion, on which it has no influence: the density of thin air.
-  const Expansion<N>& series = expander_.series();
-  const double reach = std::min(kinks_log_reach<N>(series.machine(), end_.slots(), order_ - 1, settings_.log_tolerance),
-                                events_.log_reach(series, order_ - 1, settings_.log_tolerance));
+  const Machine<N>& machine = expander_.series().machine();
+  const double reach = kinks_log_reach<N>(machine, end_.slots(), order_ - 1, settings_.log_tolerance);
   if (const N known(std::exp(reach)); known < horizon_) horizon_ = known;
+  read_events();
+  limit_by_events();
   limit_by_quadratures();
   phase_ = Phase::expanded;
   return {};
+}
+
+// Where the present expansion was made, the formulas of a kernel's are evaluated for the magnitude of their terms.
+template <Number N>
+void Stepper<N>::read_events() {
+  if (events_.empty()) return;
+  const auto coefficient = [&](std::size_t i, int k) { return expander_.quadrature(i, k); };
+  if (expander_.kernel()) {
+    present().load(W(0)).evaluate();
+    events_.read(order_ - 1, coefficient, [&](std::size_t i) { return look_.quadrature_terms(i); });
+  } else {
+    events_.read(order_ - 1, coefficient, [&](std::size_t i) { return expander_.series().quadrature_terms(i); });
+  }
+}
+
+// What is watched may change faster than the motion, on which it has no influence: the density of thin air.
+template <Number N>
+void Stepper<N>::limit_by_events() {
+  if (const N known(std::exp(events_.log_reach(settings_.log_tolerance))); known < horizon_) horizon_ = known;
 }
 
 template <Number N>
@@ -426,7 +453,7 @@ void Stepper<N>::shorten_at_event(W& h, const std::optional<N>& kink) {
   N to = convert<N>(h);
   const N length = to;
   PresentStep<N> step = present();
-  fired_ = events_.look(expander_.series(), order_ - 1, convert<N>(time()), to, kink,
+  fired_ = events_.look(convert<N>(time()), to, kink,
                         [&](std::size_t i, const N& where) { return step.quadrature(i, where); });
   if (to == length) return;
   h = convert<W>(to);
@@ -443,6 +470,7 @@ bool Stepper<N>::aim_one_sided(const W& left) {
   guard_.set_singular_ahead(false);
   end_.set_one_sided();
   if (!events_.empty()) h = convert<W>(convert<N>(h));
+  read_events();
   shorten_at_event(h, std::nullopt);
   const bool last = !(abs(h) < abs(left));
   end_.aim(step, last ? W(time() + left) : convert<W>(convert<N>(W(time() + h))), last);
@@ -542,7 +570,7 @@ template <Number N>
 void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane)
   requires std::same_as<N, double>
 {
-  if (may_have_kinks(program_->tape, end_.slots()) || !events_.empty()) return;
+  if (may_have_kinks(program_->tape, end_.slots())) return;
   leave_kernel();
   track_.now.own.clear();
   expander_.accelerate(KernelExpansion(std::move(kernel), lane, *program_, order_, settings_.log_tolerance));

@@ -43,7 +43,7 @@ class Stepper {
   Outcome resume(const StepperState<N>& begun);
 
   // Makes the expansions by a kernel wherever that serves: not where its pivots have become small, nor for motions with
-  // kinks or events. Before the start.
+  // kinks. If events are watched, the kernel has the unknowns of the motion: others know no multipliers. Before the start.
   void accelerate(std::shared_ptr<const KernelPlan> plan)
     requires std::same_as<N, double>;
   // As above, by one lane of a kernel that others use, too; its parameters are those of this motion. Steps are then
@@ -82,7 +82,7 @@ class Stepper {
   std::vector<W> leading() const { return motion().leading; }
   // Where the present expansion was begun: the start of the last step, or of the next one if that is expanded already. A
   // step cut short by its end is thus repeated in full by whoever resumes.
-  StepperState<N> begun() const { return expander_.begun(track_, events_.sides()); }
+  StepperState<N> begun() const { return expander_.begun(track_); }
   const W& before() const { return before_; }                    // the time where the last step began
   const std::vector<Fired<N>>& fired() const { return fired_; }  // in the last step, in order
   // Integrals of the quadratures since the start.
@@ -157,6 +157,8 @@ class Stepper {
   Outcome expand_one_sided(Outcome fault);
   bool take_one_sided(const W& h);
   void limit_by_quadratures();
+  void limit_by_events();
+  void read_events();
   void watch_kinks();
   void expand_again(const StepperState<N>& last);
   Outcome look_back();

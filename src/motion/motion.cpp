@@ -56,6 +56,10 @@ Outcome Motion<N>::start(const StateChoice& choice) {
 template <Number N>
 void Motion<N>::accelerate(Leg& leg) const {
   if constexpr (std::same_as<N, double>) {
+    // A plan is made for one set of modes, and a run that is taken up again could not know for which.
+    const auto is_mode = [](const Parameter& p) { return p.mode; };
+    const std::vector<Parameter>& parameters = s_.model->parameters;
+    if (watches() && std::any_of(parameters.begin(), parameters.end(), is_mode)) return;
     if (!settings_.kernel || !no_plan(leg.program).empty() || start_.state.size() != leg.point.state_size()) return;
     if (given_) {
       leg.stepper.accelerate(given_->plan);

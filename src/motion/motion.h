@@ -150,7 +150,7 @@ class Motion {
   void accelerate(Leg& leg) const;
   ToRepresent to_represent(const Leg& leg, std::shared_ptr<const KernelPlan> derived) const;
   const Representation& best(const std::vector<Representation>& list) const {
-    return settings_.multipliers ? cheapest_unmapped(list) : cheapest(list);
+    return settings_.multipliers || watches() ? cheapest_unmapped(list) : cheapest(list);
   }
   void write_anew();
   std::unique_ptr<Leg> same_leg() const;
@@ -169,6 +169,7 @@ class Motion {
   Outcome fire(const Event& event, std::vector<W>& state, std::vector<W>& parameters, Occurrence<W>& occurrence);
   std::vector<Expr> with_events(Workspace& in) const;
   std::vector<WatchedSeries> watched() const;
+  bool watches() const { return !s_.model->events.empty() || !s_.model->bounds.empty(); }
 
   std::vector<Expr> quadratures_;
   int stages_;

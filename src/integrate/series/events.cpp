@@ -97,43 +97,48 @@ EventWatch<N>::crossings(const N* c, int degree, const N& h, const N& floor, con
 }
 
 template <Number N>
-double EventWatch<N>::log_reach(const Expansion<N>& e, int degree, double log_tolerance) const {
+double EventWatch<N>::log_reach(double log_tolerance) const {
   double reach = 300;
-  for (const WatchedSeries& s : series_) {
-    const N floor = unit_roundoff<N>() * N(kNoise) * e.quadrature_terms(s.quadrature);
-    reach = std::min(reach, anholon::log_reach<N>(e.quadrature(s.quadrature), degree, floor, log_tolerance));
+  for (const Known& s : known_) {
+    const N floor = unit_roundoff<N>() * N(kNoise) * s.terms;
+    reach = std::min(reach, anholon::log_reach<N>(s.c.data(), degree_, floor, log_tolerance));
   }
   return reach;
 }
 
 template <Number N>
-bool EventWatch<N>::has_series(const N* c, int degree) {
-  return std::all_of(c, c + degree + 1, [](const N& x) { return is_finite(x); });
+bool EventWatch<N>::has_series(const Known& known) {
+  return std::all_of(known.c.begin(), known.c.end(), [](const N& x) { return is_finite(x); });
 }
 
 template <Number N>
-bool EventWatch<N>::without_series(const Expansion<N>& e, int degree) const {
-  return std::any_of(series_.begin(), series_.end(), [&](const WatchedSeries& s) {
-    return s.of_state && !has_series(e.quadrature(s.quadrature), degree);
-  });
+bool EventWatch<N>::have_series() const {
+  return std::all_of(known_.begin(), known_.end(), has_series);
 }
 
 template <Number N>
-bool EventWatch<N>::as_foretold(const Expansion<N>& e, int degree, const N& where, double log_tolerance,
-                                const ValueThere& value) const {
+bool EventWatch<N>::without_series() const {
+  for (std::size_t i = 0; i < series_.size(); ++i)
+    if (series_[i].of_state && !has_series(known_[i])) return true;
+  return false;
+}
+
+template <Number N>
+bool EventWatch<N>::as_foretold(const N& where, double log_tolerance, const ValueThere& value) const {
   // Measured as the steps of the motion are (end_check.cpp); where there is no value, the motion is what ends.
   constexpr double kTolerances = 100, kRoundoffs = 4096;
-  for (const WatchedSeries& s : series_) {
-    const N* c = e.quadrature(s.quadrature);
-    if (!s.of_state || !has_series(c, degree)) continue;
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    const WatchedSeries& s = series_[i];
+    const N* c = known_[i].c.data();
+    if (!s.of_state || !has_series(known_[i])) continue;
     const std::optional<N> is = value(s.quadrature);
     if (!is) continue;
     if (!is_finite(*is)) return false;
-    N terms = e.quadrature_terms(s.quadrature), power(1);
-    for (int k = 0; k <= degree; ++k, power *= where) terms = std::max(terms, N(abs(N(c[k] * power))));
+    N terms = known_[i].terms, power(1);
+    for (int k = 0; k <= degree_; ++k, power *= where) terms = std::max(terms, N(abs(N(c[k] * power))));
     if (const N size = abs(*is); size > terms) terms = size;
     const N most = std::max(N(N(exp(N(log_tolerance))) * N(kTolerances)), N(unit_roundoff<N>() * N(kRoundoffs)));
-    if (!(abs(N(*is - value_at(c, degree, where))) <= most * terms)) return false;
+    if (!(abs(N(*is - value_at(c, degree_, where))) <= most * terms)) return false;
   }
   return true;
 }
@@ -174,8 +179,9 @@ std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings_of_values
 }
 
 template <Number N>
-std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, const N& t, N& h,
-                                          const std::optional<N>& kink, const Values& values) {
+std::vector<Fired<N>> EventWatch<N>::look(const N& t, N& h, const std::optional<N>& kink, const Values& values) {
+  sides_before_ = sides_;
+  at_zero_before_ = at_zero_;
   const N eps = unit_roundoff<N>();
   const int forward = h > N(0) ? 1 : -1;
   std::vector<std::vector<Crossing>> each;
@@ -184,11 +190,11 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
   N end = h;
   for (std::size_t i = 0; i < series_.size(); ++i) {
     const WatchedSeries& s = series_[i];
-    const N* c = e.quadrature(s.quadrature);
+    const N* c = known_[i].c.data();
     // What a value is made of, and the rounding of the time at which it is taken.
-    const N floor = eps * N(kNoise) * (e.quadrature_terms(s.quadrature) + abs(c[1]) * abs(t));
+    const N floor = eps * N(kNoise) * (known_[i].terms + abs(c[1]) * abs(t));
     floors.push_back(floor);
-    if (s.of_state && !has_series(c, degree)) {
+    if (s.of_state && !has_series(known_[i])) {
       if (is_finite(c[0]) && abs(c[0]) > N(0) && sides_[i] == 0) sides_[i] = c[0] > N(0) ? 1 : -1;
       if (abs(sides_[i]) > 1) sides_[i] /= 2;
       each.push_back(crossings_of_values(s, sides_[i], h, values));
@@ -197,10 +203,10 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
       continue;
     }
     if (sides_[i] == 0)
-      sides_[i] = side_after(c, degree, h, floor);
+      sides_[i] = side_after(c, degree_, h, floor);
     else if (abs(sides_[i]) > 1)
       sides_[i] = abs(c[0]) > floor ? (c[0] > N(0) ? 1 : -1) : sides_[i] / 2;
-    each.push_back(crossings(c, degree, h, floor, s, sides_[i]));
+    each.push_back(crossings(c, degree_, h, floor, s, sides_[i]));
     // What the series do beyond a kink is not what the formula does: it may touch zero there, and turn.
     if (s.of_state && kink && !each[i].empty() && !(abs(each[i].back().where) < abs(*kink))) {
       const std::optional<N> there = values(s.quadrature, h);
@@ -208,7 +214,7 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
     }
     if (s.of_state)
       for (Crossing& x : each[i])
-        x.where = improved<N>(c, degree, x.where, h, [&](const N& where) { return values(s.quadrature, where); });
+        x.where = improved<N>(c, degree_, x.where, h, [&](const N& where) { return values(s.quadrature, where); });
     if (each[i].empty() || !s.ends_step || !s.fires(each[i].back().towards * forward)) continue;
     if (!ended || abs(each[i].back().where) < abs(end)) end = each[i].back().where, ended = true;
   }
@@ -227,7 +233,7 @@ std::vector<Fired<N>> EventWatch<N>::look(const Expansion<N>& e, int degree, con
   if (ended) h = end;
   at_zero_.clear();
   for (std::size_t i = 0; i < series_.size(); ++i)
-    at_zero_.push_back(!(abs(value_at(e.quadrature(series_[i].quadrature), degree, h)) > floors[i] * N(kMargin)));
+    at_zero_.push_back(!(abs(value_at(known_[i].c.data(), degree_, h)) > floors[i] * N(kMargin)));
   for (const Fired<N>& f : fired)
     if (!(abs(f.where) < abs(h))) at_zero_[f.series] = false;
   return fired;

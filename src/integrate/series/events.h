@@ -41,37 +41,58 @@ class EventWatch {
   // The sides are found anew at the next step.
   void restart();
 
+  // Takes the series out of the present expansion, which the functions below are about: coefficient(q, k) is that of order
+  // k, up to `degree`, of quadrature q of the program, and terms(q) the magnitude of the terms of its value.
+  template <class Coefficient, class Terms>
+  void read(int degree, const Coefficient& coefficient, const Terms& terms) {
+    degree_ = degree;
+    known_.resize(series_.size());
+    for (std::size_t i = 0; i < series_.size(); ++i) {
+      const std::size_t q = series_[i].quadrature;
+      known_[i].c.resize(static_cast<std::size_t>(degree) + 1);
+      for (int k = 0; k <= degree; ++k) known_[i].c[static_cast<std::size_t>(k)] = coefficient(q, k);
+      known_[i].terms = terms(q);
+    }
+  }
+  // Whether all coefficients are finite numbers.
+  bool have_series() const;
   // The logarithm of how far all series are known from the present expansion.
-  double log_reach(const Expansion<N>& e, int degree, double log_tolerance) const;
+  double log_reach(double log_tolerance) const;
 
   // The value of a quadrature on the state at a time from the start of the step, where it has one.
   using Values = std::function<std::optional<N>(std::size_t quadrature, const N& where)>;
   // Whether the series of formulas of the state, finite ones, have their values at a point on the way; `value`: of a
   // quadrature there.
   using ValueThere = std::function<std::optional<N>(std::size_t quadrature)>;
-  bool as_foretold(const Expansion<N>& e, int degree, const N& where, double log_tolerance,
-                   const ValueThere& value) const;
+  bool as_foretold(const N& where, double log_tolerance, const ValueThere& value) const;
   // A formula of the state that has a value, but no series: the root of what is zero.
-  bool without_series(const Expansion<N>& e, int degree) const;
+  bool without_series() const;
   // What fires in (0, h], up to and with the first moment that ends the step; h is then that moment. In order of time,
   // those of one moment in the order of the series. Sides become those after it. `t`: the time of the expansion.
   // `kink`: series hold up to there only, and the step ends shortly after.
-  std::vector<Fired<N>> look(const Expansion<N>& e, int degree, const N& t, N& h, const std::optional<N>& kink,
-                             const Values& values);
+  std::vector<Fired<N>> look(const N& t, N& h, const std::optional<N>& kink, const Values& values);
+  // The step over which look() was asked is not made: sides are again those before it.
+  void take_back() { sides_ = sides_before_, at_zero_ = at_zero_before_; }
 
  private:
   struct Crossing {
     N where{0};
     int towards = 0;
   };
-  static bool has_series(const N* c, int degree);
+  struct Known {
+    std::vector<N> c;
+    N terms{0};
+  };
+  static bool has_series(const Known& known);
   static std::vector<Crossing> crossings_of_values(const WatchedSeries& s, int& side, const N& h, const Values& values);
   static std::vector<Crossing> crossings(const N* c, int degree, const N& h, const N& floor, const WatchedSeries& s,
                                          int side);
 
   std::vector<WatchedSeries> series_;
-  std::vector<int> sides_;
-  std::vector<bool> at_zero_;  // at the end of the last step, without having fired there
+  std::vector<Known> known_;  // of each
+  int degree_ = 0;
+  std::vector<int> sides_, sides_before_;
+  std::vector<bool> at_zero_, at_zero_before_;  // at the end of the last step, without having fired there
 };
 
 extern template class EventWatch<double>;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "motion/motion.h"
 #include "support/models.h"
 #include "support/motion.h"
 
@@ -154,26 +155,72 @@ TEST(Events, EnergyIsBalancedOverThem) {
   EXPECT_LT(r.report.power, 1e-12);
 }
 
+// A ball in a wind, which bounces; `counted`: by a mode, so that the equations change.
+std::string bouncing(bool counted) {
+  const std::string mode = counted ? "mode.n = 0\n" : "", set = counted ? ", n = \"n + 1\"" : "";
+  return mass_on_a_line("-10 - x'/5", "initial = {x = 2}\n" + mode + "state.z = {rate = \"x - " +
+                                          (counted ? "n*z" : "z") +
+                                          "\", initial = 0}\nevent = [{name = \"b\", when = \"x\", direction = "
+                                          "\"down\", set = {\"x'\" = \"-0.9*x'\"" +
+                                          set + "}}, {name = \"top\", when = \"x'\", direction = \"down\"}]\n");
+}
+
 TEST(Events, RunsGoOnAcrossThemWithTheSameBits) {
-  const std::string text = mass_on_a_line(
-      "-10 - x'/5", "initial = {x = 2}\nmode.n = 0\nstate.z = {rate = \"x - n*z\", initial = 0}\n"
-                    "event = [{name = \"b\", when = \"x\", direction = \"down\", set = {\"x'\" = \"-0.9*x'\", n = \"n "
-                    "+ 1\"}}, {name = \"top\", when = \"x'\", direction = \"down\"}]\n");
-  std::string saved;
-  const auto save = [&](SimulationOptions& o) { o.save = [&](const SavedRun& s) { saved = print(s); }; };
-  const Result whole = run(text, 3, "1/1000000000000", save);
-  const std::string end = saved;
-  ASSERT_GE(whole.report.events.size(), 4U);
-  for (const char* half : {"1/2", "16/25", "7/5", "5/2"}) {
-    run(text, Rational(half), "1/1000000000000", save);
-    const SavedRun from = read_saved({"run.state", saved});
-    const Result second = run(text, 3, "1/1000000000000", [&](SimulationOptions& o) {
-      save(o);
-      o.resume = &from;
-    });
-    EXPECT_EQ(second.rows.rows().back(), whole.rows.rows().back()) << half;
-    EXPECT_EQ(test::of_the_motion(saved), test::of_the_motion(end)) << half;
+  for (const bool counted : {true, false}) {
+    const std::string text = bouncing(counted);
+    std::string saved;
+    const auto save = [&](SimulationOptions& o) { o.save = [&](const SavedRun& s) { saved = print(s); }; };
+    const Result whole = run(text, 3, "1/1000000000000", save);
+    const std::string end = saved;
+    ASSERT_GE(whole.report.events.size(), 4U);
+    for (const char* half : {"1/2", "16/25", "7/5", "5/2"}) {
+      run(text, Rational(half), "1/1000000000000", save);
+      const SavedRun from = read_saved({"run.state", saved});
+      const Result second = run(text, 3, "1/1000000000000", [&](SimulationOptions& o) {
+        save(o);
+        o.resume = &from;
+      });
+      EXPECT_EQ(second.rows.rows().back(), whole.rows.rows().back()) << half;
+      EXPECT_EQ(test::of_the_motion(saved), test::of_the_motion(end)) << half;
+    }
   }
+}
+
+TEST(Events, AreThoseOfTheReferenceIfAKernelMakesTheSteps) {
+  const std::string swings = "coordinates = [\"a\", \"b\"]\npoint.P = \"sin(a)*ex - cos(a)*ey\"\n"
+                             "gravity.field = \"-9.81*ey\"\n"
+                             "particle = [{name = \"p\", mass = 1, position = \"P\"}, {name = \"q\", mass = 2, "
+                             "position = \"P + sin(b)*ex - cos(b)*ey\"}]\ninitial = {a = 1, b = 2}\n"
+                             "event = [{name = \"low\", when = \"sin(a) + sin(b)\"}, {name = \"turns\", when = "
+                             "\"a'\", set = {\"b'\" = \"b'/2\"}}]\n";
+  for (const std::string& text : {bouncing(false), swings}) {
+    const auto by = [&](bool kernel) {
+      return run(text, 4, "1/1000000000000000", [&](SimulationOptions& o) { o.kernel = kernel; });
+    };
+    const Result one = by(true), other = by(false);
+    ASSERT_GE(one.report.events.size(), 5U);
+    ASSERT_EQ(one.report.events.size(), other.report.events.size());
+    for (std::size_t i = 0; i < one.report.events.size(); ++i) {
+      EXPECT_EQ(one.report.events[i].name, other.report.events[i].name) << i;
+      EXPECT_NEAR(one.report.events[i].t.value, other.report.events[i].t.value, 1e-12) << i;
+    }
+  }
+}
+
+TEST(Events, LeaveTheStepsToTheKernel) {
+  Scenario s;
+  ASSERT_TRUE(make_scenario(test::model_of(bouncing(false)), *find_formulation("routh"), {}, s).ok());
+  Workspace own(s);
+  Motion<double> motion(own, {}, {}, 0);
+  ASSERT_TRUE(motion.start({}).ok());
+  std::vector<Occurrence<long double>> seen;
+  bool goes_on = true;
+  while (motion.stepper().time() < 3) {
+    ASSERT_TRUE(motion.step(3).ok());
+    if (!motion.stepper().fired().empty()) ASSERT_TRUE(motion.settle(seen, goes_on).ok());
+  }
+  EXPECT_GE(seen.size(), 4U);
+  EXPECT_GT(4 * motion.stepper().expansions_by_kernel(), 3 * motion.stepper().expansions());
 }
 
 TEST(States, FirstOrderLagAndTsiolkovsky) {
