@@ -410,6 +410,11 @@ class HybridMotion {
     return any;
   }
 
+  // Whether the segment ended because its end lies too many of its short steps ahead.
+  bool gave_up(const SimulationReport& r) const {
+    return r.outcome.kind == OutcomeKind::interrupted && r.steps < o_.most_steps && !(o_.cancelled && o_.cancelled());
+  }
+
   // Follows the motion in the present modes to their end; returns false if it ends there.
   bool segment(const Rational& to, Outcome& outcome) {
     ModeModel mode;
@@ -441,7 +446,7 @@ class HybridMotion {
     rows_.last_state(at_);
     dynamics_.pass(from, at_);
     const bool every_event_known = joined_.add(r, mode.events);
-    if (outcome.kind == OutcomeKind::step_collapse && slip_vanishes()) {
+    if ((outcome.kind == OutcomeKind::step_collapse || gave_up(r)) && slip_vanishes()) {
       outcome = {};
       excluded_.assign(contacts_.size(), {});
       return true;

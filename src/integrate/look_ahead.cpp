@@ -33,6 +33,13 @@ N LookAhead<N>::quadrature_terms(std::size_t i) {
 }
 
 template <Number N>
+N LookAhead<N>::quadrature_made_of(std::size_t i) {
+  evaluate_quadratures();
+  there_->machine().made_of(sizes_);
+  return sizes_[program_->tape.roots[program_->unknowns() + i]];
+}
+
+template <Number N>
 std::optional<N> LookAhead<N>::quadrature(std::size_t i) {
   evaluate_quadratures();
   const N value = there_->quadrature(i)[0];

@@ -22,6 +22,8 @@ class LookAhead {
   std::optional<N> quadrature(std::size_t i);
   // The magnitude of the terms of this value.
   N quadrature_terms(std::size_t i);
+  // The magnitude of all that the value is made of, down to the unknowns: its round-off may come from there.
+  N quadrature_made_of(std::size_t i);
 
  private:
   void evaluate_quadratures();
@@ -29,7 +31,7 @@ class LookAhead {
   const Program* program_;
   std::vector<N> parameters_;
   std::unique_ptr<Expansion<N>> there_;  // made when it is first asked for
-  std::vector<N> state_, leading_;
+  std::vector<N> state_, leading_, sizes_;
   bool quadratures_known_ = false;
 };
 

@@ -115,9 +115,7 @@ bool StepEnd<N>::may_end_at(PresentStep<N>& step, const EventWatch<N>& events, c
     const bool decides = check_.decides();
     const N where = check_.where();
     auto next = check_.seen(defect(step, decides && where == length ? h : convert<W>(where)));
-    if (decides && next != EndCheck<N>::Next::shorten &&
-        !events.as_foretold(where, log_tolerance_, [&](std::size_t i) { return step.look.quadrature(i); }))
-      next = check_.refuse();
+    if (decides && next != EndCheck<N>::Next::shorten && !as_foretold(step, events, where)) next = check_.refuse();
     switch (next) {
     case EndCheck<N>::Next::good:
       return true;
@@ -129,12 +127,20 @@ bool StepEnd<N>::may_end_at(PresentStep<N>& step, const EventWatch<N>& events, c
   }
 }
 
-// Whether what is watched has the values of its series h beyond the expansion of a kernel.
+// Whether what is watched has the values of its series there, where the formulas have been evaluated.
+template <Number N>
+bool StepEnd<N>::as_foretold(PresentStep<N>& step, const EventWatch<N>& events, const N& where) const {
+  return events.as_foretold(
+      where, log_tolerance_, [&](std::size_t i) { return step.look.quadrature(i); },
+      [&](std::size_t i) { return step.look.quadrature_made_of(i); });
+}
+
+// The same h beyond the expansion of a kernel.
 template <Number N>
 bool StepEnd<N>::shows_events(PresentStep<N>& step, const EventWatch<N>& events, const W& h) {
   if (events.empty()) return true;
   step.load(h).evaluate();
-  return events.as_foretold(convert<N>(h), log_tolerance_, [&](std::size_t i) { return step.look.quadrature(i); });
+  return as_foretold(step, events, convert<N>(h));
 }
 
 template <Number N>

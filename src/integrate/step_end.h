@@ -62,6 +62,7 @@ class StepEnd {
   };
   Outcome note_kink(bool at_start, const W& where, const W& past);
   bool may_end_at(PresentStep<N>& step, const EventWatch<N>& events, const W& h);
+  bool as_foretold(PresentStep<N>& step, const EventWatch<N>& events, const N& where) const;
   bool shows_events(PresentStep<N>& step, const EventWatch<N>& events, const W& h);
   N defect(PresentStep<N>& step, const W& h);
   void find_hidden(PresentStep<N>& step, const W& h);

@@ -1,5 +1,8 @@
 #include "motion/motion.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "expr/copy.h"
 #include "kernel/kernel.h"
 
@@ -123,6 +126,14 @@ static bool can_go_on(OutcomeKind kind) {
          kind == OutcomeKind::no_convergence;
 }
 
+// A motion that an event may stop is expected to last as long again as it has lasted.
+static double expected_end(const Model& m, double begin, double now, double end) {
+  const bool may_stop = std::any_of(m.events.begin(), m.events.end(), [](const Event& e) { return e.stop; });
+  const double lasted = std::abs(now - begin);
+  if (!may_stop || std::abs(end - now) <= lasted) return end;
+  return end > now ? now + lasted : now - lasted;
+}
+
 // What is done between steps needs no step by step: the pivots of an elimination do, and the equations are written
 // anew after fixed numbers of steps.
 template <Number N>
@@ -130,7 +141,8 @@ Outcome Motion<N>::steps(const W& end, Stretch<W>& stretch) {
   if (stepped_ && leg_->pivots && pivot_is_small(present())) eliminate_again();
   if (stepped_) write_anew();
   stretch.limit(leg_->pivots ? 1 : steps_with_effort(leg_->stepper.steps()));
-  code_.step(leg_->plan, to_double(leg_->stepper.time()), to_double(end));
+  const double now = to_double(leg_->stepper.time());
+  code_.step(leg_->plan, now, expected_end(*s_.model, to_double(start_.t), now, to_double(end)));
   const Mark before{choices_.size(), chosen_};
   const std::size_t expansions = leg_->stepper.expansions(), steps = leg_->stepper.steps();
   Outcome o = leg_->stepper.steps(end, stretch);

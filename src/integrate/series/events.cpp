@@ -124,7 +124,8 @@ bool EventWatch<N>::without_series() const {
 }
 
 template <Number N>
-bool EventWatch<N>::as_foretold(const N& where, double log_tolerance, const ValueThere& value) const {
+bool EventWatch<N>::as_foretold(const N& where, double log_tolerance, const ValueThere& value,
+                                const MadeOf& made_of) const {
   // Measured as the steps of the motion are (end_check.cpp); where there is no value, the motion is what ends.
   constexpr double kTolerances = 100, kRoundoffs = 4096;
   for (std::size_t i = 0; i < series_.size(); ++i) {
@@ -138,7 +139,8 @@ bool EventWatch<N>::as_foretold(const N& where, double log_tolerance, const Valu
     for (int k = 0; k <= degree_; ++k, power *= where) terms = std::max(terms, N(abs(N(c[k] * power))));
     if (const N size = abs(*is); size > terms) terms = size;
     const N most = std::max(N(N(exp(N(log_tolerance))) * N(kTolerances)), N(unit_roundoff<N>() * N(kRoundoffs)));
-    if (!(abs(N(*is - value_at(c, degree_, where))) <= most * terms)) return false;
+    const N miss = abs(N(*is - value_at(c, degree_, where)));
+    if (!(miss <= most * terms) && !(miss <= unit_roundoff<N>() * N(kRoundoffs) * made_of(s.quadrature))) return false;
   }
   return true;
 }

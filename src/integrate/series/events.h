@@ -61,10 +61,12 @@ class EventWatch {
 
   // The value of a quadrature on the state at a time from the start of the step, where it has one.
   using Values = std::function<std::optional<N>(std::size_t quadrature, const N& where)>;
-  // Whether the series of formulas of the state, finite ones, have their values at a point on the way; `value`: of a
-  // quadrature there.
+  // Whether the series of formulas of the state, finite ones, have their values at a point on the way, to the tolerance and
+  // the round-off of the values; `value`: of a quadrature there.
   using ValueThere = std::function<std::optional<N>(std::size_t quadrature)>;
-  bool as_foretold(const N& where, double log_tolerance, const ValueThere& value) const;
+  // The magnitude of all that the value is made of.
+  using MadeOf = std::function<N(std::size_t quadrature)>;
+  bool as_foretold(const N& where, double log_tolerance, const ValueThere& value, const MadeOf& made_of) const;
   // A formula of the state that has a value, but no series: the root of what is zero.
   bool without_series() const;
   // What fires in (0, h], up to and with the first moment that ends the step; h is then that moment. In order of time,
