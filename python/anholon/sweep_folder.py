@@ -26,7 +26,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
     """A sweep in a folder. It is read when it is asked, so it shows the parts that are there then.
 
     ``folder["theta"]`` has one number for each case (each case and time with ``at``), in the order of the cases; columns of
-    words (``outcome``, ``event``) are arrays of strings. Each part that is read is compared with the hash in its file.
+    words (``outcome``, ``event``, ``case_name``) are arrays of strings. Each part that is read is compared with the hash in its file.
 
     Example:
         >>> import anholon as an, tempfile
@@ -161,6 +161,8 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
     def where(self, conditions: Mapping[str, Any]) -> npt.NDArray[Any]:
         """The numbers of the cases for which each column has the value given, or lies within the pair given, ends included.
 
+        ``{"case": "moon"}`` chooses a scenario, whose name is in the column ``case_name``; ``case`` holds the numbers.
+
         Returns:
             Sorted numbers, shape (cases that are chosen,).
 
@@ -172,7 +174,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         numbers = self["case"]
         chosen = np.ones(numbers.shape, dtype=bool)
         for name, wanted in conditions.items():
-            column = self[name]
+            column = self["case_name" if name == "case" and isinstance(wanted, str) else name]
             chosen &= (column >= wanted[0]) & (column <= wanted[1]) if isinstance(wanted, tuple) else column == wanted
         return np.unique(numbers[chosen])
 

@@ -33,6 +33,9 @@ struct System::Data {
   inner::Scenario scenario;
 };
 
+// The options of a motion that members of MotionOptions give, each with its words on the command line.
+using OptionWords = std::vector<std::pair<std::string, std::vector<std::string>>>;
+OptionWords words_of_members(const MotionOptions& asked);
 // The model with one of its scenarios laid over it. Errors: as of read_file.
 Result<Model> with_scenario(const Model& model, const std::string& scenario);
 // What `prepare` makes of a model; `start` tells whether it has a consistent start. Throws Failure.

@@ -49,12 +49,21 @@ std::optional<inner::OpenModel> Model::Data::open_again(inner::Diagnostics& diag
   return open;
 }
 
+Result<Model> with_scenario(const Model& model, const std::string& scenario) {
+  auto data = std::make_shared<Model::Data>();
+  data->source = model.data().source;
+  data->overrides = model.data().overrides, data->mode = model.data().mode;
+  data->cases = model.data().cases;
+  data->cases.push_back(scenario);
+  return opened(std::move(data));
+}
+
 const char* version() { return ANHOLON_VERSION; }
 
 const std::string& Model::title() const { return data_->model->title; }
 const std::vector<Diagnostic>& Model::remarks() const { return data_->remarks; }
 const std::string& Model::text() const { return data_->source.text; }
-std::size_t Model::base_files() const { return data_->source.others.size(); }
+std::size_t Model::base_files() const { return data_->model->source_text.others.size(); }
 
 std::vector<Coordinate> Model::coordinates() const {
   const inner::Model& m = *data_->model;

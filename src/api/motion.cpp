@@ -16,6 +16,23 @@
 
 namespace anholon::v1 {
 
+OptionWords words_of_members(const MotionOptions& asked) {
+  OptionWords list;
+  const auto set = [&](const char* name, std::vector<std::string> words) { list.emplace_back(name, std::move(words)); };
+  for (const auto& [name, number] :
+       {std::pair{"to", asked.to}, std::pair{"every", asked.every}, std::pair{"tolerance", asked.tolerance}})
+    if (number) set(name, {number->text()});
+  std::vector<std::string> times;
+  for (const Number& t : asked.at) times.push_back(t.text());
+  if (!times.empty()) set("at", std::move(times));
+  if (asked.order != 0) set("order", {std::to_string(asked.order)});
+  if (asked.digits != 16) set("digits", {std::to_string(asked.digits)});
+  if (!asked.method.empty()) set("method", {asked.method});
+  if (!asked.error_estimate) set("error-estimate", {"never"});
+  if (asked.most_steps) set("most-steps", {std::to_string(*asked.most_steps)});
+  return list;
+}
+
 namespace {
 
 // Keeps the rows, and what their columns hold.
@@ -66,17 +83,7 @@ inner::MotionSettings settings_of(const MotionOptions& asked) {
     inner::set(settings, option, words, name,
                [&](const std::string& text) { return option_value(Number(text), option); });
   };
-  for (const auto& [name, number] :
-       {std::pair{"to", asked.to}, std::pair{"every", asked.every}, std::pair{"tolerance", asked.tolerance}})
-    if (number) set(name, {number->text()});
-  std::vector<std::string> times;
-  for (const Number& t : asked.at) times.push_back(t.text());
-  if (!times.empty()) set("at", times);
-  if (asked.order != 0) set("order", {std::to_string(asked.order)});
-  if (asked.digits != 16) set("digits", {std::to_string(asked.digits)});
-  if (!asked.method.empty()) set("method", {asked.method});
-  if (!asked.error_estimate) set("error-estimate", {"never"});
-  if (asked.most_steps) set("most-steps", {std::to_string(*asked.most_steps)});
+  for (const auto& [name, words] : words_of_members(asked)) set(name, words);
   for (const auto& [name, word] : asked.others) {
     std::vector<std::string> known;
     for (const inner::MotionOption& o : inner::motion_options()) known.emplace_back(o.name);

@@ -305,10 +305,9 @@ Result<System> system_of_case(const SweepStore& store, std::size_t number) {
 
 MotionOptions options_of_case(const SweepStore& store, const MotionOptions& given) {
   MotionOptions options = given;
+  const OptionWords members = words_of_members(given);
   const auto is_given = [&](const std::string& name) {
-    return (name == "to" && given.to) || (name == "every" && given.every) || (name == "tolerance" && given.tolerance) ||
-           (name == "order" && given.order != 0) || (name == "method" && !given.method.empty()) ||
-           (name == "most-steps" && given.most_steps);
+    return std::any_of(members.begin(), members.end(), [&](const auto& each) { return each.first == name; });
   };
   for (const AskedWord& w : words_of_sweep(store))
     if (w.option != "form" && is_motion_option(w.option) && !is_given(w.option))

@@ -342,7 +342,10 @@ Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* ti
     for (const LowOrders& low : low_orders_)
       for (std::uint32_t k = 0; k < low.count; ++k) low_numbers_.push_back(low.at + k);
   for (const std::uint32_t x : p.x) unknowns_.push_back(last_series(x));
-  for (const Place& q : p.quadratures) quadratures_.push_back(last_series(q.at));
+  for (const Place& q : p.quadratures) {
+    quadratures_.push_back(last_series(q.at));
+    if (q.at == p.time) times_.resize(static_cast<std::size_t>(lanes_));
+  }
 }
 
 // REQUIRES: `low_orders_` holds the series' first number.
@@ -403,7 +406,14 @@ bool Kernel::solve(const Code* code, bool projected) {
   return moved;
 }
 
+// The time is set to that of the next expansion long before the quadratures of the last one are read.
+void Kernel::keep_times() {
+  for (std::size_t lane = 0; lane < times_.size(); ++lane)
+    times_[lane] = number(plan_->plan().time, static_cast<int>(lane));
+}
+
 void Kernel::extend(const Code* code) {
+  keep_times();
   if (!code && lanes_ == 1) code = plan_->code_of_stages();
   if (code)
     code->extend(arena_);

@@ -219,6 +219,7 @@ class Kernel {
   }
   // Taylor coefficient of quadrature i.
   double quadrature(std::size_t i, int order, int lane = 0) const {
+    if (order == 0 && quadratures_[i].at == plan_->plan().time) return times_[static_cast<std::size_t>(lane)];
     return order == 0 || !constant_quadrature(i) ? last(quadratures_[i], static_cast<std::uint32_t>(order), lane) : 0;
   }
   bool constant_quadrature(std::size_t i) const { return !plan_->plan().quadratures[i].series; }
@@ -256,6 +257,7 @@ class Kernel {
   void extend(const Code* code);
   void start_expansion();
   void keep_projected();
+  void keep_times();
   void start(const Code* code);
   void swap_low_orders() const;
   bool project(const Code* code);
@@ -294,6 +296,7 @@ class Kernel {
     return aside_[(series.aside + k) * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane)];
   }
   std::vector<LastSeries> unknowns_, quadratures_;
+  std::vector<double> times_;             // of the last expansion, if t itself is a quadrature: lane by lane
   mutable std::vector<double> aside_;     // the saved numbers of the last expansion, or of the next one
   bool started_ = false, moved_ = false;  // `started_`: the next expansion; `moved_`: its projection moved a state
   mutable bool shows_last_ = true;

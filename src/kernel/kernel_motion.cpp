@@ -69,6 +69,7 @@ void Kernel::keep_projected() {
 
 void Kernel::begin_point() {
   start_expansion();
+  keep_times();
   arithmetic_->quadratures();
   keep_projected();
 }
@@ -157,7 +158,7 @@ double Kernel::integral(std::size_t i, int lane) const {
   const LastSeries& q = quadratures_[i];
   const KernelTables& t = plan_->tables();
   const double h = number(t.step, lane);
-  if (constant_quadrature(i)) return last(q, 0, lane) * h;
+  if (constant_quadrature(i)) return quadrature(i, 0, lane) * h;
   const std::size_t lanes = static_cast<std::size_t>(lanes_);
   const std::uint32_t count = static_cast<std::uint32_t>(plan_->plan().stages) + 1;
   const double *numbers = arena_ + q.at * lanes + static_cast<std::size_t>(lane),
@@ -168,7 +169,8 @@ double Kernel::integral(std::size_t i, int lane) const {
   std::uint32_t k = count;
   const auto term = [&] {
     --k;
-    return (k < aside ? last(q, k, lane) : numbers[k * lanes]) * reciprocal[k];
+    const double number = k == 0 ? quadrature(i, 0, lane) : k < aside ? last(q, k, lane) : numbers[k * lanes];
+    return number * reciprocal[k];
   };
   if (count % 2 != 0) even = term();
   while (k > 0) {

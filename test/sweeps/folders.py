@@ -361,8 +361,8 @@ class Folders:
             page.write_text(text.replace("</body>", click))
             words = [browser, "--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=3000", "--dump-dom", page.as_uri()]
             shown = subprocess.run(words, capture_output=True, text=True, timeout=PATIENCE, check=False).stdout
-            must("<pre>anholon report disc" in shown, f"no command: {shown[-500:]}")
-            words = shlex.split(html.unescape(shown.split("<pre>")[1].split("</pre>")[0]))
+            must('<pre class="command">anholon report disc' in shown, f"no command: {shown[-500:]}")
+            words = shlex.split(html.unescape(shown.split('<pre class="command">')[1].split("</pre>")[0]))
             number = int(words[-1].removeprefix("case-").removesuffix(".html"))
             motion = self.place / "motion.csv"
             self.run("simulate", *words[2:-2], "--at", "3", "-o", str(motion), status=0)

@@ -139,6 +139,15 @@ TEST(Reduction, ThreadsAndLanesHaveNoInfluence) {
       EXPECT_NEAR(reference[k].reduced[i], one[k].reduced[i], 1e-11 * (1 + std::abs(one[k].reduced[i])));
 }
 
+TEST(Reduction, TheTimeItselfEndsWithTheMotion) {
+  Sweep run(kPendulum, {"max(t)", "mean(t)", "min(t)"});
+  for (const CaseResult& r : run.go(40, 2)) {
+    EXPECT_EQ(r.reduced[0], r.t);
+    EXPECT_NEAR(r.reduced[1], r.t / 2, 1e-14);
+    EXPECT_EQ(r.reduced[2], 0);
+  }
+}
+
 TEST(Reduction, AnEventThatEndsACaseIsNamed) {
   Sweep run(std::string(kPendulum) + kStop, {"min(x)", "max(t)"});
   const auto list = run.go(80, 2);
