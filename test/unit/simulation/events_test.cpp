@@ -218,7 +218,9 @@ TEST(Events, LeaveTheStepsToTheKernel) {
   bool goes_on = true;
   while (motion.stepper().time() < 20) {
     ASSERT_TRUE(motion.step(20).ok());
-    if (!motion.stepper().fired().empty()) ASSERT_TRUE(motion.settle(seen, goes_on).ok());
+    if (!motion.stepper().fired().empty()) {
+      ASSERT_TRUE(motion.settle(seen, goes_on).ok());
+    }
   }
   EXPECT_GE(seen.size(), 10U);
   EXPECT_GT(4 * motion.stepper().expansions_by_kernel(), 3 * motion.stepper().expansions());
