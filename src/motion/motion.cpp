@@ -73,13 +73,16 @@ void Motion<N>::accelerate(Leg& leg) const {
                                           parameters_, to_double(start_.t), {start_.state.begin(), start_.state.end()});
     leg.stepper.accelerate(derived);
     if (!leg.stepper.accelerated()) return;
-    const std::vector<Representation> list = representations(to_represent(leg, derived), effort_);
+    // A segment between events is short more often than not: its equations are written anew only if it has lasted.
+    const bool as_derived = watches() && effort_ == WritingEffort::at_once;
+    const std::vector<Representation> list = as_derived ? std::vector{Representation{Writing::derived, derived, {}}}
+                                                        : representations(to_represent(leg, derived), effort_);
     const Representation& taken = best(list);
     if (taken.plan != derived) leg.stepper.accelerate(taken.plan);
     leg.plan = taken.plan;
     leg.unmapped_plan = cheapest_unmapped(list).plan;
     leg.writing = taken.writing;
-    if (effort_ == WritingEffort::at_once) leg.at_once = list;
+    if (effort_ == WritingEffort::at_once && !as_derived) leg.at_once = list;
   } else {
     (void)leg;
   }
