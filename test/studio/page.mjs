@@ -1,38 +1,22 @@
 // The page of `anholon studio` in Chromium and Firefox: node page.mjs PROGRAM. Exit 77: there is no browser, or no studio.
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
 import { copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { browsers } from '../support/browsers.mjs';
+import { accessibility, colour_count, studio as start_studio, watched } from './studio.mjs';
 
 const program = resolve(process.argv[2]);
 const skip = (why) => { console.log(`skipped: ${why}`); process.exit(77); };
 if (!existsSync('viewer/dist/studio.js')) skip('the studio is not built');
 const started = await browsers();
-const axe = readFileSync('viewer/node_modules/axe-core/axe.min.js', 'utf8');
 
 const folder = mkdtempSync(join(tmpdir(), 'anholon-studio-'));
-async function studio(file, browser) {
-  const child = spawn(program, ['studio', file, '--no-browser', '--quiet'], { stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, ANHOLON_CACHE: '' } });
-  const address = await new Promise((done, fail) => {
-    let text = '';
-    child.stdout.on('data', (d) => { text += d; if (text.includes('\n')) done(text.trim()); });
-    child.on('exit', (code) => fail(new Error(`the studio ended with status ${code}`)));
-  });
-  return { address, browser, end: () => new Promise((done) => { child.removeAllListeners('exit'); child.on('exit', done); child.kill('SIGINT'); }) };
-}
-
-// A page that must not complain and asks its own server for everything. `draws`: the browser has WebGL; a machine without a screen may have none for Firefox.
+const studio = async (file, browser) => ({ ...await start_studio(program, file), browser });
 async function open({ address, browser }, width = 1280) {
-  const page = await browser.newPage({ viewport: { width, height: 800 } });
-  const faults = [], draws = await page.evaluate(() => document.createElement('canvas').getContext('webgl2') !== null);
-  page.on('console', (m) => { if ((m.type() === 'error' || m.type() === 'warning') && (draws || !m.text().includes('WebGL'))) faults.push(m.text()); });
-  page.on('pageerror', (e) => faults.push(e.stack ?? e.message));
-  page.on('request', (r) => { if (!r.url().startsWith(address) && !/^(data|blob):/.test(r.url())) faults.push(`asked for ${r.url()}`); });
-  await page.goto(address);
-  await page.waitForFunction(() => document.documentElement.dataset.done, null, { timeout: 90000 });
-  return { page, faults, draws };
+  const opened = await watched(browser, address, width);
+  await opened.page.waitForFunction(() => document.documentElement.dataset.done, null, { timeout: 90000 });
+  return opened;
 }
 
 const editor = (page) => page.locator('.cm-content');
@@ -49,15 +33,6 @@ async function edit(page, from, to) {
     return performance.now() - began;
   }, [from, to]);
 }
-const colour_count = (page) => page.evaluate(() => {
-  const canvas = document.querySelector('.player canvas.view');
-  if (!canvas || canvas.width === 0) return 0;
-  const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-  const seen = new Set();
-  for (let k = 0; k < data.length; k += 4) seen.add((data[k] << 16) | (data[k + 1] << 8) | data[k + 2]);
-  return seen.size;
-});
-
 const tests = {
   async 'a model is shown: picture, plots, equations, proof'(s) {
     const { page, faults, draws } = await open(s);
@@ -187,19 +162,6 @@ const tests = {
     }
   },
 };
-
-// The faults that axe-core finds, which takes a head of a table in MathML for an empty one. The content policy of the page lets no foreign script in, so it goes through the
-// debugger, which Firefox does not have.
-async function accessibility(page) {
-  if (page.context().browser().browserType().name() !== 'chromium') return [];
-  const session = await page.context().newCDPSession(page);
-  await session.send('Runtime.evaluate', { expression: axe });
-  const { result } = await session.send('Runtime.evaluate', {
-    awaitPromise: true, returnByValue: true,
-    expression: 'axe.run(document).then((r) => r.violations.map((v) => ({ id: v.id, nodes: v.nodes.filter((n) => v.id !== "empty-table-header" || !n.html.includes("<math>")) })).filter((v) => v.nodes.length > 0).map((v) => v.id + ": " + v.nodes.slice(0, 3).map((n) => n.html.slice(0, 160)).join(" | ")))',
-  });
-  return result.value;
-}
 
 let failed = 0;
 const wanted = process.argv[3] ?? '';

@@ -1,17 +1,17 @@
 // The map of a sweep in Chromium and Firefox, in the studio and in the page of `anholon plot`: node sweeps.mjs PROGRAM. Exit 77: there is no browser, or no viewer.
 import assert from 'node:assert/strict';
-import { execFileSync, spawn } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, renameSync, rmSync } from 'node:fs';
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, renameSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { browsers } from '../support/browsers.mjs';
+import { accessibility, colour_count, studio, watched } from './studio.mjs';
 
 const program = resolve(process.argv[2]);
 const skip = (why) => { console.log(`skipped: ${why}`); process.exit(77); };
 if (!existsSync('viewer/dist/studio.js')) skip('the viewer is not built');
 const started = await browsers();
-const axe = readFileSync('viewer/node_modules/axe-core/axe.min.js', 'utf8');
 const folder = mkdtempSync(join(tmpdir(), 'anholon-sweeps-'));
 const anholon = (...words) => execFileSync(program, words, { cwd: folder, stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, ANHOLON_CACHE: '' } }).toString();
 
@@ -21,26 +21,10 @@ anholon('plot', 'falls/', '-o', 'plain.html');
 anholon('plot', 'falls/', 'theta', '--motions', '6', '-o', 'motions.html');
 anholon('plot', 'line/', 'theta', '--motions', '3', '-o', 'line.html');
 
-async function studio(name) {
-  const child = spawn(program, ['studio', name, '--no-browser', '--quiet'], { cwd: folder, stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, ANHOLON_CACHE: '' } });
-  const address = await new Promise((done, fail) => {
-    let text = '';
-    child.stdout.on('data', (d) => { text += d; if (text.includes('\n')) done(text.trim()); });
-    child.on('exit', (code) => fail(new Error(`the studio ended with status ${code}`)));
-  });
-  return { address, end: () => new Promise((done) => { child.removeAllListeners('exit'); child.on('exit', done); child.kill('SIGINT'); }) };
-}
-
-// A page that must not complain and asks nobody but its own address.
 async function open(browser, address, width = 1280) {
-  const page = await browser.newPage({ viewport: { width, height: 800 } });
-  const faults = [], draws = await page.evaluate(() => document.createElement('canvas').getContext('webgl2') !== null);
-  page.on('console', (m) => { if ((m.type() === 'error' || m.type() === 'warning') && (draws || !m.text().includes('WebGL'))) faults.push(m.text()); });
-  page.on('pageerror', (e) => faults.push(e.stack ?? e.message));
-  page.on('request', (r) => { if (!r.url().startsWith(address) && !/^(data|blob):/.test(r.url())) faults.push(`asked for ${r.url()}`); });
-  await page.goto(address);
-  await page.locator('.map canvas').waitFor({ timeout: 30000 });
-  return { page, faults, draws };
+  const opened = await watched(browser, address, width);
+  await opened.page.locator('.map canvas').waitFor({ timeout: 30000 });
+  return opened;
 }
 const file = (name) => pathToFileURL(join(folder, name)).href;
 
@@ -50,14 +34,6 @@ async function click(page, x, y) {
   await canvas.click({ position: { x: 64 + (box.width - 76) * x, y: 8 + (box.height - 52) * y } });
 }
 const heading = (page) => page.locator('.about h2').innerText();
-const colour_count = (page) => page.evaluate(() => {
-  const canvas = document.querySelector('.player canvas.view');
-  if (!canvas || canvas.width === 0) return 0;
-  const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-  const seen = new Set();
-  for (let k = 0; k < data.length; k += 4) seen.add((data[k] << 16) | (data[k + 1] << 8) | data[k + 2]);
-  return seen.size;
-});
 async function seen(page, draws) {
   await page.locator('.player .play-bar, .player input.scrub').first().waitFor({ timeout: 30000 });
   await page.locator('.plots canvas').first().waitFor({ state: 'attached', timeout: 10000 });     // made when there is nothing else to do
@@ -161,17 +137,6 @@ const in_page = {
   },
 };
 
-// The faults that axe-core finds. The content policy of a page lets no foreign script in, so it goes through the debugger, which Firefox does not have.
-async function accessibility(page) {
-  if (page.context().browser().browserType().name() !== 'chromium') return [];
-  const session = await page.context().newCDPSession(page);
-  await session.send('Runtime.evaluate', { expression: axe });
-  const { result } = await session.send('Runtime.evaluate', {
-    awaitPromise: true, returnByValue: true,
-    expression: 'axe.run(document).then((r) => r.violations.map((v) => ({ id: v.id, nodes: v.nodes.filter((n) => v.id !== "empty-table-header" || !n.html.includes("<math")) })).filter((v) => v.nodes.length > 0).map((v) => v.id + ": " + v.nodes.slice(0, 3).map((n) => n.html.slice(0, 160)).join(" | ")))',
-  });
-  return result.value;
-}
 async function usable(browser, address, motion) {
   for (const width of [1280, 390]) {
     const { page, faults } = await open(browser, address, width);
@@ -190,7 +155,7 @@ async function attempt(name, test) {
   try { await test(); console.log(`ok: ${name}`); } catch (e) { ++failed; console.log(`FAULT ${name}: ${e.stack ?? e}`); }
 }
 async function run_tests({ name: of, browser }) {
-  const s = await studio('falls');
+  const s = await studio(program, 'falls', folder);
   for (const [name, test] of Object.entries(in_studio)) {
     await attempt(`${of}, studio: ${name}`, async () => {
       const { page, faults, draws } = await open(browser, s.address);

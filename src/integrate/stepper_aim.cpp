@@ -1,0 +1,163 @@
+// Where a step of the stepper is to end.
+#include <cmath>
+
+#include "integrate/step_budget.h"
+#include "integrate/stepper.h"
+
+namespace anholon {
+
+namespace {
+
+// Steps smaller than this many round-offs of the time are a collapse.
+constexpr int kCollapsedRoundoffs = 16;
+// Nearer to that, in relation to the time, no step is an ordinary one.
+constexpr double kShortStep = 2 * kCollapsedRoundoffs * 0x1p-53;
+
+}  // namespace
+
+// A step as most are, after one of the same kernel: nothing asks for a closer look at the expansion, at the way to where
+// its series reach, nor (look_at_end) there. Then nothing else is asked, and all else is as it was; whatever asks gets
+// its look by the other functions, from there on.
+template <Number N>
+bool Stepper<N>::aim_ordinarily(const W& end) {
+  if constexpr (std::same_as<N, double>) {
+    if (phase_ != Phase::begun || !settings_.ordinary_steps || !expander_.goes_on_with_kernel() ||
+        guard_.singular_ahead() || !end_.idle() || !fired_.empty() || !events_.empty() ||
+        !expander_.end_at_once(track_))
+      return false;
+    ++expansions_;
+    phase_ = Phase::expanded;
+    KernelExpansion& kernel = *expander_.kernel();
+    horizon_ = kernel.reach();
+    limit_by_quadratures();
+    const W left = end - time();
+    if (!(horizon_ > std::abs(to_double(time())) * kShortStep) || !(horizon_ < abs(left)) ||
+        out_of_reach(horizon_, left))
+      return false;
+    ordinary_end_ = static_cast<double>(left > 0 ? time() + horizon_ : time() - horizon_);
+    const double length = to_double(W(ordinary_end_ - time()));
+    if (!kernel.hides_nothing_over(length)) return false;
+    kernel.send(length, to_double(ordinary_end_));
+    return true;
+  } else {
+    (void)end;
+    return false;
+  }
+}
+
+// A step of a kernel, of the length that the series allow. False if there may be something in the way.
+template <Number N>
+bool Stepper<N>::aim_freely(const W& end) {
+  const KernelExpansion* kernel = expander_.kernel();
+  if (!kernel || kernel->suspected() || guard_.singular_ahead() || kernel->may_touch_zero() || !end_.free_of_kinks() ||
+      !fired_.empty() || !events_.empty() || !(to_double(horizon()) > std::abs(to_double(time())) * kShortStep))
+    return false;
+  const W left = end - time(), h = horizon();
+  if (!(h < abs(left)) || out_of_reach(h, left)) return false;
+  aim_at(convert<W>(convert<N>(W(left > W(0) ? time() + h : time() - h))));
+  return true;
+}
+
+template <Number N>
+void Stepper<N>::aim_at(const W& to) {
+  end_.set_free(to - time());
+  PresentStep<N> step = present();
+  end_.aim(step, to, false);
+}
+
+template <Number N>
+bool Stepper<N>::aim_with_care(const W& end) {
+  const W left = end - time();
+  const bool forward = left > W(0);
+  if (one_sided_) return aim_one_sided(left);
+  PresentStep<N> step = present();
+  W h = horizon();
+  // Not from what is left to the end: steps must not depend on where a run is to stop, if another one is to go on from
+  // there.
+  if (program_->nonlinear) h = abs(guard_.on_the_branch(step, forward ? h : W(-h), record()));
+  const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * abs(time());
+  if (!(h > floor))
+    return fail({OutcomeKind::step_collapse, "the step size fell below what the time can resolve",
+                 "the motion approaches a singularity: stop before it, or look at the last good state"});
+  if (out_of_reach(h, left)) return fail(end_out_of_reach(settings_, to_double(h)));
+  if (guard_.singular_ahead()) return fail(becomes_singular());
+  const W whole = h;
+  if (!(h < abs(left))) h = abs(left);
+  if (!forward) h = -h;
+  if (Outcome o = end_.shorten(step, events_, h, whole); !o.ok()) return fail(std::move(o));
+  if (!shorten_at_singular_point(h, floor)) return fail(becomes_singular());
+  shorten_at_event(h, end_.kink());
+  // The step that t can show exactly: otherwise the time loses a round-off at every step.
+  if (h == left)
+    end_.aim(step, end, true);
+  else
+    end_.aim(step, convert<W>(convert<N>(W(time() + h))), false);
+  return true;
+}
+
+// Up to where J is still regular. False if that is shorter than the floor.
+template <Number N>
+bool Stepper<N>::shorten_at_singular_point(W& h, const W& floor) {
+  constexpr double kShortOf = 1 - 1e-7;
+  if (expander_.kernel() && !expander_.suspected()) return true;
+  leave_kernel();
+  PresentStep<N> step = present();
+  const std::optional<W> met = guard_.singular_within(step, h, record().last_step);
+  if (!met) return true;
+  h = *met * W(kShortOf);
+  guard_.set_singular_ahead(true);
+  return abs(h) > floor;
+}
+
+template <Number N>
+void Stepper<N>::shorten_at_event(W& h, const std::optional<N>& kink) {
+  fired_.clear();
+  if (events_.empty()) return;
+  N to = convert<N>(h);
+  const N length = to;
+  PresentStep<N> step = present();
+  fired_ = events_.look(convert<N>(time()), to, kink,
+                        [&](std::size_t i, const N& where) { return step.quadrature(i, where); });
+  if (to == length) return;
+  h = convert<W>(to);
+  guard_.set_singular_ahead(false);
+}
+
+template <Number N>
+bool Stepper<N>::aim_one_sided(const W& left) {
+  PresentStep<N> step = present();
+  W h = convert<W>(horizon_);
+  if (!(h < abs(left))) h = abs(left);
+  if (left < W(0)) h = -h;
+  if (!take_one_sided(h)) return fail(one_sided_->fault(step, h));
+  guard_.set_singular_ahead(false);
+  end_.set_one_sided();
+  if (!events_.empty()) h = convert<W>(convert<N>(h));
+  read_events();
+  shorten_at_event(h, std::nullopt);
+  const bool last = !(abs(h) < abs(left));
+  end_.aim(step, last ? W(time() + left) : convert<W>(convert<N>(W(time() + h))), last);
+  return true;
+}
+
+template <Number N>
+bool Stepper<N>::out_of_reach(const W& h, const W& left) {
+  return paces_.out_of_reach(settings_, record().steps, to_double(time()), to_double(h), to_double(left));
+}
+
+#define INSTANTIATE(N)                                                                                                 \
+  template bool Stepper<N>::aim_ordinarily(const Wider<N>&);                                                           \
+  template bool Stepper<N>::aim_freely(const Wider<N>&);                                                               \
+  template void Stepper<N>::aim_at(const Wider<N>&);                                                                   \
+  template bool Stepper<N>::aim_with_care(const Wider<N>&);                                                            \
+  template bool Stepper<N>::aim_one_sided(const Wider<N>&);                                                            \
+  template bool Stepper<N>::shorten_at_singular_point(Wider<N>&, const Wider<N>&);                                     \
+  template void Stepper<N>::shorten_at_event(Wider<N>&, const std::optional<N>&);                                      \
+  template bool Stepper<N>::out_of_reach(const Wider<N>&, const Wider<N>&);
+INSTANTIATE(double)
+INSTANTIATE(long double)
+INSTANTIATE(Quad)
+INSTANTIATE(Multi)
+#undef INSTANTIATE
+
+}  // namespace anholon
