@@ -349,11 +349,13 @@ class HybridMotion {
     return goes_on && outcome.ok() && at_.t >= to;
   }
 
-  // A slip that begins where the friction that holds has become too large begins against this friction.
+  // A slip that begins where the friction that holds has become too large begins against this friction, which is that of
+  // the mode before: resistance to rolling turns it.
   void against_friction(ContactProblem& p, std::size_t c) const {
-    ContactModes modes(p.contacts.size());
+    ContactModes modes = modes_;
+    for (std::size_t o = 0; o < modes.size(); ++o)
+      if (p.contacts[o].moves) modes[o].direction = p.contacts[o].direction;
     modes[c].touch = Touch::sticks;
-    if (const auto& under = contacts_[c].under) modes[*under] = modes_[*under];
     const auto held = of_modes(p, modes);
     const long double size = held ? std::hypot(held->friction[c][0], held->friction[c][1]) : 0;
     if (size > 0) p.contacts[c].direction = {-held->friction[c][0] / size, -held->friction[c][1] / size};
