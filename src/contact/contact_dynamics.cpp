@@ -178,6 +178,12 @@ long double ContactDynamics::slip_acceleration(std::size_t c, const std::vector<
   return std::hypot(a[0], a[1]);
 }
 
+bool ContactDynamics::loses_rank(std::size_t c) const {
+  ContactModes modes(contacts_.size());
+  modes[c].touch = Touch::sticks;
+  return !of_modes(problem_, modes);
+}
+
 bool walls_move(const std::vector<Contact>& contacts) {
   return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) {
     const std::vector<NodeId> all = symbols({&c.gap, 1});

@@ -175,8 +175,11 @@ class HybridMotion {
 
   Outcome undecided(std::size_t modes) const {
     std::string names;
-    for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (near_.closed(c) && !contacts_[c].under) names += (names.empty() ? "'" : ", '") + contacts_[c].name + "'";
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      if (!near_.closed(c) || contacts_[c].under) continue;
+      names += (names.empty() ? "'" : ", '") + contacts_[c].name + "'";
+      if (modes == 0 && dynamics_.loses_rank(c)) return rank_lost(contacts_[c].name, when());
+    }
     return painleve(modes, names + " ", when());
   }
 

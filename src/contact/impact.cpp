@@ -58,6 +58,14 @@ Outcome painleve(std::size_t modes, const std::string& contacts, const std::stri
           "rigid bodies with this friction have several motions here: take less friction, or end the motion before"};
 }
 
+Outcome rank_lost(const std::string& contact, const std::string& when) {
+  return {OutcomeKind::singular,
+          "the gap and the slip velocities of contact '" + contact +
+              "' are no longer independent in these coordinates" + when,
+          "end the motion before, or take coordinates that are regular there: Euler's angles are not where a disc lies "
+          "flat"};
+}
+
 std::vector<Jump> impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
                                const std::vector<bool>& touches) {
   const bool poisson =

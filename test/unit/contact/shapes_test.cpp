@@ -94,6 +94,60 @@ TEST(Shapes, CoinTouchesWithItsRim) {
                     contact_motion(coin(formula), Rational(3, 10)), all));  // the mutant
 }
 
+// Euler's disc, 8 cm wide and almost flat.
+test::Motion eulers_disc(const std::string& initial, const Rational& to) {
+  return contact_motion(R"toml(coordinates = ["x", "y", "z", "psi", "theta", "phi"]
+parameters = {m = 0.4, R = 0.04, g = 9.81}
+gravity.field = "-g*ez"
+frame.B = "rotz(psi)*rotx(theta)*rotz(phi)"
+[[body]]
+name = "disc"
+mass = "m"
+shape = "disc(R)"
+center = "x*ex + y*ey + z*ez"
+orientation = "B"
+[[contact]]
+name = "table"
+body = "disc"
+friction = 0.5
+rolling_resistance = "R/200"
+[initial]
+)toml" + initial,
+                        to);
+}
+
+// Where the disc lies flat its angles are singular, which is no paradox of friction.
+TEST(Shapes, EulersDiscEndsWhereItsAnglesAreSingular) {
+  const auto m = eulers_disc(R"toml(theta = 3e-5
+z = "R*sin(3e-5)"
+"psi'" = "sqrt(4*g/(R*sin(3e-5)))"
+"phi'" = "-sqrt(4*g/(R*sin(3e-5)))*cos(3e-5)"
+)toml",
+                             1);
+  EXPECT_EQ(m.report.outcome.kind, OutcomeKind::singular) << m.report.outcome.message;
+  EXPECT_NE(m.report.outcome.message.find("contact 'table'"), std::string::npos) << m.report.outcome.message;
+  EXPECT_LT(m.last("theta"), 2.9e-5);
+}
+
+// The disc sticks, and begins to slip against the friction that held it. The resistance to rolling turns this friction: a
+// direction found without the resistance leads to no consistent mode.
+TEST(Shapes, EulersDiscBeginsToSlipAgainstItsFriction) {
+  const auto m = eulers_disc(R"toml(psi = 569.875976
+theta = 0.000106676556
+phi = -568.724833
+z = "R*sin(0.000106676556)"
+"x'" = 0.000465357443
+"y'" = 0.0013898546
+"psi'" = 3022.32943
+"theta'" = -0.000451497456
+"phi'" = -3022.29277
+"z'" = "R*cos(0.000106676556)*(-0.000451497456)"
+)toml",
+                             Rational(182, 10000));
+  EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  EXPECT_GT(test::times(m, "table.slips").size(), 0U);
+}
+
 // A disc on a smooth floor rocks from one side of its rim to the other. It lies almost flat in between, where its gap needs all
 // digits; its energy and its spins about the vertical and about its axis stay.
 TEST(Shapes, DiscRocksAlmostFlatOnASmoothFloor) {
