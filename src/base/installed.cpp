@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <link.h>
+#include <sys/auxv.h>
 
 namespace anholon {
 
@@ -16,7 +17,9 @@ fs::path own_file() {
           0 &&
       object != nullptr && object->l_name[0] != '\0')
     return fs::canonical(object->l_name, ignored);
-  return fs::read_symlink("/proc/self/exe", ignored);
+  if (const fs::path file = fs::read_symlink("/proc/self/exe", ignored); !file.empty()) return file;
+  // A root without /proc: the kernel also passes the name by which it started the program.
+  return fs::canonical(reinterpret_cast<const char*>(getauxval(AT_EXECFN)), ignored);
 }
 
 std::vector<fs::path> data_folders(const char* name, const char* in_source) {

@@ -7,6 +7,7 @@
 
 #include <spawn.h>
 
+#include "base/installed.h"
 #include "cli/input.h"
 #include "cli/pictures/child.h"
 #include "cli/pictures/sweep_cases.h"
@@ -77,9 +78,7 @@ int studio(const StudioCommand& o) {
     throw UsageError{"error: this program was built without the viewer, and so without the studio\nhint: ./dev build "
                      "builds it where there is npm\n"};
   options.port = o.port;
-  std::error_code none;
-  const std::string self = std::filesystem::read_symlink("/proc/self/exe", none).string();
-  options.worker = {self, "studio", "--worker"};
+  options.worker = {own_file().string(), "studio", "--worker"};
   options.opened = [&](const std::string& address) {
     say(stdout, "%s\n", address.c_str());
     std::fflush(stdout);
