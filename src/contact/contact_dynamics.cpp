@@ -179,6 +179,7 @@ long double ContactDynamics::slip_acceleration(std::size_t c, const std::vector<
 }
 
 bool ContactDynamics::loses_rank(std::size_t c) const {
+  if (n_ < independent_.size() + 1 + contacts_[c].slip.size()) return false;
   ContactModes modes(contacts_.size());
   modes[c].touch = Touch::sticks;
   return !of_modes(problem_, modes);

@@ -31,8 +31,8 @@ class ContactDynamics {
   const ContactProblem& accelerations() const { return problem_; }
   // The size of the rate of a slip velocity with these accelerations.
   long double slip_acceleration(std::size_t contact, const std::vector<long double>& accelerations) const;
-  // Whether the accelerations are undetermined if this contact alone sticks: the coordinates are singular, or the bodies
-  // cannot move in all its directions.
+  // Whether the accelerations are undetermined if this contact alone sticks, though there are degrees of freedom for its
+  // gap and its slip: the coordinates are singular.
   bool loses_rank(std::size_t contact) const;
   // The jumps of the velocities at an impact by Newton's law in Moreau's form, with the restitutions of the contacts or
   // with this one.
