@@ -136,10 +136,11 @@ def try_in_root(deb, scratch):
     for folder in ("tmp", "proc", "dev"):
         (root / folder).mkdir()
     script = f'mount -t proc proc "{root}/proc" && exec chroot "{root}" /usr/bin/anholon "$@"'
+    environment = {"ANHOLON_CACHE": "", "PATH": os.environ["PATH"]}
     for words in (["simulate", "disc", "--to", "2000", "--at", "2000", "-o", "/tmp/disc.csv"], ["report", "disc", "--to", "1", "--quiet", "-o", "/tmp/disc.html"]):
-        run("unshare", "-rmpf", "sh", "-c", script, "sh", *words, env={"ANHOLON_CACHE": "", "PATH": os.environ["PATH"]}, stderr=subprocess.DEVNULL)
+        run("unshare", "-rmpf", "sh", "-c", script, "sh", *words, env=environment, stderr=subprocess.DEVNULL)
     # Without /proc the program finds the shipped models as well.
-    run("unshare", "-r", "chroot", root, "/usr/bin/anholon", "check", "disc", env={"ANHOLON_CACHE": ""}, stdout=subprocess.DEVNULL)
+    run("unshare", "-r", "chroot", root, "/usr/bin/anholon", "check", "disc", env=environment, stdout=subprocess.DEVNULL)
     assert (root / "tmp" / "disc.csv").stat().st_size > 50 and (root / "tmp" / "disc.html").stat().st_size > 100_000
 
 
