@@ -22,6 +22,7 @@ enum class Touch : std::uint8_t { open, slips, sticks };
 struct ContactMode {
   Touch touch = Touch::open;
   std::array<long double, 2> direction{};  // of the slip, of length 1
+  std::optional<long double> fast;  // a slip velocity v with two components that is larger has the direction v/|v|
   bool free = false;                       // sticks without friction of its own, as other contacts hold it
   bool held = false;                       // sticks, whatever friction this needs
   long double rest = 0;                    // a slip velocity with two components is zero below it

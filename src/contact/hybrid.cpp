@@ -8,6 +8,7 @@
 #include "contact/contact_dynamics.h"
 #include "contact/impact.h"
 #include "contact/joined_report.h"
+#include "contact/ready_modes.h"
 #include "contact/round_off.h"
 #include "contact/segment_rows.h"
 #include "contact/switched_motion.h"
@@ -35,7 +36,7 @@ void refuse(const SimulationOptions& o, const Scenario& s, bool switches) {
 class HybridMotion {
  public:
   HybridMotion(Workspace& s, const std::vector<Contact>& contacts, const SimulationOptions& o, RowSink& sink)
-      : s_(s), contacts_(contacts), o_(o), dynamics_(s, contacts), near_(contacts, dynamics_, at_),
+      : s_(s), contacts_(contacts), o_(o), dynamics_(s, contacts), ready_(s, contacts), near_(contacts, dynamics_, at_),
         rows_(sink, contacts), joined_(*s.model), accumulation_(contacts.size()) {
     at_.t = o.state.t ? *o.state.t : Rational(s.state.t);
     at_.q = s.state.q, at_.qd = s.state.qd, at_.states = s.state.states;
@@ -50,6 +51,7 @@ class HybridMotion {
 
   SimulationReport go() {
     excluded_.assign(contacts_.size(), {});
+    turned_.assign(contacts_.size(), false);
     held_.assign(contacts_.size(), 0);
     // A parameter that is varied may give a coefficient any value.
     if (const std::vector<Diagnostic> wrong = wrong_coefficients(contacts_, *s_.model); !wrong.empty())
@@ -121,6 +123,7 @@ class HybridMotion {
       modes_[c].slack = kRest * (force > 0 ? force : 1);
       if (contacts_[c].under) modes_[c].slack *= p.contacts[c].friction;
       if (contacts_[c].slip.size() < 2 || modes_[c].free) continue;
+      if (modes_[c].touch == Touch::slips && p.contacts[c].moves) modes_[c].fast = fast(c);
       const bool begins = modes_[c].touch == Touch::slips && contacts_[c].rough() && !p.contacts[c].moves;
       if (begins) set_slip(c, modes_[c].direction, first_slip(c, list[0].x));
     }
@@ -129,6 +132,16 @@ class HybridMotion {
     stop(modes_);
     drop_left_over();
     return {};
+  }
+
+  // From which slip velocity on a contact that slips has the direction v/|v|: nullopt where v is small, unless it has turned
+  // since, so that it passes no zero.
+  std::optional<long double> fast(std::size_t c) const {
+    constexpr long double kFar = 1e-3L, kPart = 1.0L / 16;
+    const ContactDynamics::Place& at = dynamics_.place(c);
+    const long double far = kFar * at.slip_scale, v = std::hypot(at.slip[0], at.slip[1]);
+    if (v < far && !turned_[c]) return std::nullopt;
+    return kPart * std::min(v, far);
   }
 
   // What the jump leaves of velocities that it stops. Those that a constraint joins, as the norm of a quaternion does, are
@@ -422,15 +435,11 @@ class HybridMotion {
 
   // Follows the motion in the present modes to their end; returns false if it ends there.
   bool segment(const Rational& to, Outcome& outcome) {
-    ModeModel mode;
-    Scenario scenario;
+    ReadyMode* mode = nullptr;
     do {
-      mode = mode_model(*s_.model, contacts_, modes_, at_);
-      scenario = {};
-      outcome = make_scenario(mode.model, *s_.system.form, {}, scenario);
+      mode = &ready_.begin(modes_, at_, outcome);
       if (!outcome.ok()) return false;
-    } while (deeper(scenario.state.q));
-    Workspace own(scenario);
+    } while (deeper(mode->own->state.q));
     SimulationOptions o = o_;
     o.state = {};
     o.to = to;
@@ -444,13 +453,13 @@ class HybridMotion {
     o.conserved.clear();
     o.note = nullptr;
     o.state.t = at_.t;
-    rows_.begin_segment(mode.stopped);
-    const SimulationReport r = simulate_in(own, o, rows_);
+    rows_.begin_segment(mode->of.stopped);
+    const SimulationReport r = simulate_in(*mode->own, o, rows_, &mode->plans);
     outcome = r.outcome;
     const ContactState from = at_;
     rows_.last_state(at_);
     dynamics_.pass(from, at_);
-    const bool every_event_known = joined_.add(r, mode.events);
+    const bool every_event_known = joined_.add(r, mode->of.events);
     if ((outcome.kind == OutcomeKind::step_collapse || gave_up(r)) && slip_vanishes()) {
       outcome = {};
       excluded_.assign(contacts_.size(), {});
@@ -458,11 +467,13 @@ class HybridMotion {
     }
     if (!outcome.ok()) return false;
     for (Excluded& e : excluded_) e = {};
+    turned_.assign(contacts_.size(), false);
     bool changed = false;
     for (const EventReport& e : r.events) {
-      const auto known = mode.events.find(e.name);
-      if (known == mode.events.end()) continue;
+      const auto known = mode->of.events.find(e.name);
+      if (known == mode->of.events.end()) continue;
       changed = true;
+      if (known->second.change == ModeChange::turns) turned_[known->second.contact] = true;
       if (known->second.change == ModeChange::leaves) excluded_[known->second.contact].touch = true;
       if (known->second.change == ModeChange::slips) excluded_[known->second.contact].stick = true;
       if (known->second.change == ModeChange::sticks) excluded_[known->second.contact].slips = true;
@@ -474,6 +485,7 @@ class HybridMotion {
   const std::vector<Contact>& contacts_;
   const SimulationOptions& o_;
   ContactDynamics dynamics_;
+  ReadyModes ready_;
   ContactState at_;
   RoundOff near_;
   SegmentRows rows_;
@@ -482,6 +494,7 @@ class HybridMotion {
   std::vector<Rational> times_;
   ContactModes modes_;
   std::vector<Excluded> excluded_;
+  std::vector<bool> turned_;       // whether the last segment ended as a slip turned
   long double before_ = 0;         // the largest acceleration without contacts where the last mode began
   std::vector<long double> held_;  // the time for which a contact that begins to slip was held
   Accumulation accumulation_;

@@ -4,6 +4,15 @@
 
 namespace anholon {
 
+// Whether two warnings differ in the time that they name alone.
+static bool same_but_time(const Warning& a, const Warning& b) {
+  const auto without_time = [](const std::string& text) {
+    const std::size_t at = text.find(" at t = "), end = text.find(':', at);
+    return at == std::string::npos ? text : text.substr(0, at) + (end == std::string::npos ? "" : text.substr(end));
+  };
+  return without_time(a.message) == without_time(b.message);
+}
+
 JoinedReport::JoinedReport(const Model& model) {
   all_.model = model.title;
   all_.looks_for_events = true;
@@ -25,7 +34,9 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
       all_.*member = std::max(all_.*member, r.*member);
     if (r.smallest_sigma < all_.smallest_sigma)
       all_.smallest_sigma = r.smallest_sigma, all_.smallest_sigma_t = r.smallest_sigma_t;
-    all_.warnings.insert(all_.warnings.end(), r.warnings.begin(), r.warnings.end());
+    for (const Warning& w : r.warnings)
+      if (std::none_of(all_.warnings.begin(), all_.warnings.end(), [&](const Warning& o) { return same_but_time(o, w); }))
+        all_.warnings.push_back(w);
     all_.method.taylor_steps += r.method.taylor_steps;
   }
   for (const ConstraintReport& c : r.constraints_each) {
@@ -54,7 +65,7 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
     const auto known = contacts.find(e.name);
     if (known == contacts.end() && e.stop) goes_on = false;
     if (known != contacts.end()) {
-      if (known->second.change == ModeChange::turns) continue;  // the formula of friction has another reference
+      if (known->second.of_direction()) continue;
       e.stop = false;
       while (!e.name.empty() && e.name.back() == '\'') e.name.pop_back();
       // A change has two events where its forces may be zero at the start, and they may fall together.

@@ -1,5 +1,7 @@
 #include "contact/mode_model.h"
 
+#include <array>
+
 namespace anholon {
 
 void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
@@ -21,15 +23,25 @@ void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
 
 namespace {
 
+// The numbers of a contact in a mode, in the order of their parameters.
+enum class ModeNumber : std::uint8_t { along, across, fast, rest, slack, depth };
+constexpr std::size_t kModeNumbers = 6;
+
+std::array<long double, kModeNumbers> numbers_of(const ContactMode& m) {
+  return {m.direction[0], m.direction[1], m.fast.value_or(0), m.rest, m.slack, m.depth};
+}
+
 class ModeBuilder {
  public:
-  ModeBuilder(const Model& model, const ContactState& at) : model_(clone(model)), g_(*model_->graph) { begin_at(at); }
+  explicit ModeBuilder(const Model& model) : model_(clone(model)), g_(*model_->graph) { begin(); }
 
   void add(const Contact& of, const ContactMode& mode) {
     Contact c = of;
     c.gap = g_.own(c.gap);
     for (Expr& v : c.slip) v = g_.own(v);
     c.friction = g_.own(c.friction), c.static_friction = g_.own(c.static_friction);
+    numbers_.clear();
+    for (std::size_t k = 0; k < kModeNumbers; ++k) numbers_.push_back(parameter(c.name + ".begin." + std::to_string(k)));
     Expr normal = g_.zero(), friction = g_.zero();
     components_.push_back(std::vector<Expr>(c.slip.size(), g_.zero()));
     if (c.under) {
@@ -39,13 +51,13 @@ class ModeBuilder {
     } else if (mode.touch == Touch::open) {
       event(c, ModeChange::hits, c.gap, -1);
       // A gap that is zero at the start passes no zero when it closes again at once.
-      event(c, ModeChange::hits, c.gap + g_.number(Rational(static_cast<double>(mode.depth))), -1);
+      event(c, ModeChange::hits, c.gap + number(ModeNumber::depth), -1);
     } else {
       normal = keep(c.name + ".gap", c.name + ".n", c.gap, 0);
       act(c, 0, normal, c.gap);
       event(c, ModeChange::leaves, normal, -1);
       // A force that is zero at the start passes no zero when it begins to pull.
-      event(c, ModeChange::leaves, normal + slack(mode), -1);
+      event(c, ModeChange::leaves, normal + number(ModeNumber::slack), -1);
       if (c.rough()) friction = mode.touch == Touch::sticks ? stick(c, mode, normal) : slip(c, mode, normal);
     }
     const auto record = [&](const char* what, Expr e) {
@@ -68,18 +80,27 @@ class ModeBuilder {
   ModeModel take() { return {std::move(model_), std::move(events_), std::move(stopped_)}; }
 
  private:
-  void begin_at(const ContactState& at) {
+  void begin() {
     InitialData& initial = model_->initial;
     initial = {};
-    initial.t = g_.number(at.t);
-    stopped_.assign(at.q.size(), false);
-    for (std::size_t a = 0; a < at.q.size(); ++a) {
-      const auto index = static_cast<std::uint32_t>(a);
-      initial.given.push_back({g_.jet(index, 0), g_.number(Rational(at.q[a])), model_->coordinates[a].span});
-      initial.given.push_back({g_.jet(index, 1), g_.number(Rational(at.qd[a])), model_->coordinates[a].span});
-    }
-    for (std::size_t k = 0; k < at.states.size(); ++k) model_->states[k].initial = g_.number(Rational(at.states[k]));
+    initial.t = parameter("begin.t");
+    stopped_.assign(model_->coordinates.size(), false);
+    for (const std::uint32_t order : {0U, 1U})
+      for (std::size_t a = 0; a < model_->coordinates.size(); ++a) {
+        const Coordinate& q = model_->coordinates[a];
+        initial.given.push_back({g_.jet(static_cast<std::uint32_t>(a), order),
+                                 parameter("begin." + q.name + (order == 0 ? "" : "'")), q.span});
+      }
+    for (auto& state : model_->states) state.initial = parameter("begin." + state.name);
   }
+
+  Expr parameter(const std::string& name) {
+    const std::size_t index = model_->parameters.size();
+    model_->parameters.push_back({name, g_.zero(), {}, {}});
+    model_->names.parameters.push_back(name);
+    return g_.parameter(static_cast<std::uint32_t>(index));
+  }
+  Expr number(ModeNumber which) const { return numbers_[static_cast<std::size_t>(which)]; }
 
   // Notes the coordinate that a constraint stops: the one whose velocity alone its rate holds, as a factor.
   void note_stopped(Expr phi, int order) {
@@ -134,38 +155,41 @@ class ModeBuilder {
     if (forces.size() == 1) {
       for (const Expr force : {forces[0], g_.number(-1) * forces[0]}) {
         event(c, ModeChange::slips, force - most, 1);
-        event(c, ModeChange::slips, force - most - slack(mode), 1);
+        event(c, ModeChange::slips, force - most - number(ModeNumber::slack), 1);
       }
       return size;
     }
     const Expr square = forces[0] * forces[0] + forces[1] * forces[1];
     event(c, ModeChange::slips, square - most * most, 1);
-    event(c, ModeChange::slips, square - most * most - slack(mode) * slack(mode), 1);
+    event(c, ModeChange::slips, square - most * most - number(ModeNumber::slack) * number(ModeNumber::slack), 1);
     return size;
   }
 
-  Expr slack(const ContactMode& mode) const { return g_.number(Rational(static_cast<double>(mode.slack))); }
-
-  // d = v/|v| by the ratio r of the components across and along the direction e in which it slips at the start: (e + r
-  // e')/sqrt(1 + r^2) is analytic where v passes zero on a straight line.
+  // d = v/|v|, of a slow slip by the ratio r of the components across and along the direction e in which it slips at the
+  // start: (e + r e')/sqrt(1 + r^2) is analytic where v passes zero on a straight line.
   Expr slip(const Contact& c, const ContactMode& mode, Expr normal) {
     const Expr force = g_.number(-1) * c.friction * normal;
-    const auto number = [&](long double x) { return g_.number(Rational(static_cast<double>(x))); };
     if (c.slip.size() == 1) {
-      const Expr sign = number(mode.direction[0]);
+      const Expr sign = g_.number(mode.direction[0] < 0 ? -1 : 1);
       components_.back()[0] = force * sign;
       act(c, 1, force * sign, c.slip[0]);
       event(c, ModeChange::sticks, sign * c.slip[0], -1);
       return force * sign;
     }
-    const Expr e1 = number(mode.direction[0]), e2 = number(mode.direction[1]);
+    if (mode.fast) {
+      const Expr square = c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1], inverse = pow(square, Rational(-1, 2));
+      components_.back() = {force * c.slip[0] * inverse, force * c.slip[1] * inverse};
+      for (std::size_t a = 0; a < 2; ++a) act(c, 1, components_.back()[a], c.slip[a]);
+      event(c, ModeChange::slows, square - number(ModeNumber::fast) * number(ModeNumber::fast), -1);
+      return c.friction * normal;
+    }
+    const Expr e1 = number(ModeNumber::along), e2 = number(ModeNumber::across);
     const Expr along = c.slip[0] * e1 + c.slip[1] * e2, across = c.slip[1] * e1 - c.slip[0] * e2;
     const Expr r = across * pow(along, Rational(-1)), length = pow(g_.one() + r * r, Rational(-1, 2));
     components_.back() = {force * (e1 - r * e2) * length, force * (e2 + r * e1) * length};
-    act(c, 1, components_.back()[0], c.slip[0]);
-    act(c, 1, components_.back()[1], c.slip[1]);
+    for (std::size_t a = 0; a < 2; ++a) act(c, 1, components_.back()[a], c.slip[a]);
     // At v = 0 the direction has no derivatives, unless v passes zero on a straight line.
-    event(c, ModeChange::sticks, along - number(mode.rest), -1);
+    event(c, ModeChange::sticks, along - number(ModeNumber::rest), -1);
     event(c, ModeChange::turns, across * across - along * along, 1);
     return c.friction * normal;
   }
@@ -180,7 +204,7 @@ class ModeBuilder {
   std::shared_ptr<Model> model_;
   Graph& g_;
   std::map<std::string, ModeEvent> events_;
-  std::vector<Expr> normals_;
+  std::vector<Expr> normals_, numbers_;  // numbers_: of the contact that is added
   std::vector<std::vector<Expr>> components_;  // of friction, along the components of the slip
   std::size_t contact_ = 0;
   std::vector<bool> stopped_;
@@ -198,6 +222,8 @@ std::string word(const Contact& c, ModeChange change) {
     return c.under ? "starts" : "slips";
   case ModeChange::sticks:
     return c.under ? "stops" : "sticks";
+  case ModeChange::slows:
+    return "slows";
   case ModeChange::turns:
     return "turns";
   }
@@ -221,12 +247,30 @@ std::vector<std::string> contact_columns(const std::vector<Contact>& contacts) {
   return names;
 }
 
-ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes,
-                     const ContactState& at) {
-  ModeBuilder builder(model, at);
+ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes) {
+  ModeBuilder builder(model);
   for (std::size_t c = 0; c < contacts.size(); ++c) builder.add(contacts[c], modes[c]);
   if (!contacts.empty() && contacts[0].forces) builder.put(*contacts[0].forces);
   return builder.take();
+}
+
+std::vector<Rational> mode_numbers(const ContactModes& modes, const ContactState& at) {
+  std::vector<Rational> values = {at.t};
+  for (const std::vector<double>* list : {&at.q, &at.qd, &at.states})
+    for (const double x : *list) values.emplace_back(x);
+  for (const ContactMode& m : modes)
+    for (const long double x : numbers_of(m)) values.emplace_back(static_cast<double>(x));
+  return values;
+}
+
+std::vector<int> mode_shape(const std::vector<Contact>& contacts, const ContactModes& modes) {
+  std::vector<int> shape;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const ContactMode& m = modes[c];
+    const bool backwards = contacts[c].slip.size() == 1 && m.touch == Touch::slips && m.direction[0] < 0;
+    shape.insert(shape.end(), {static_cast<int>(m.touch), m.free, m.held, m.fast.has_value(), backwards});
+  }
+  return shape;
 }
 
 void put_ideal_mode(Model& model, const std::vector<Contact>& contacts, const std::vector<Touch>& touches) {

@@ -16,10 +16,12 @@ struct ContactState {
 };
 
 // Why a mode ends.
-enum class ModeChange : std::uint8_t { hits, leaves, slips, sticks, turns };
+// `slows` and `turns` change how the direction of a slip is written, and nothing of the motion.
+enum class ModeChange : std::uint8_t { hits, leaves, slips, sticks, slows, turns };
 struct ModeEvent {
   std::size_t contact = 0;
   ModeChange change = ModeChange::hits;
+  bool of_direction() const { return change == ModeChange::slows || change == ModeChange::turns; }
 };
 
 struct ModeModel {
@@ -39,9 +41,13 @@ std::vector<std::string> contact_columns(const std::vector<Contact>& contacts);
 void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
                 const std::vector<std::vector<Expr>>& components, Model& model);
 
-// direction: of the slip, to which the formula of friction refers.
-ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes,
-                     const ContactState& at);
+// The model of a mode. What differs between two times at which the mode begins, its state and the numbers of its contacts
+// (the direction to which a slip refers, and what is taken for zero), is a parameter each, after those of the model.
+ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes);
+// The values of these parameters.
+std::vector<Rational> mode_numbers(const ContactModes& modes, const ContactState& at);
+// Two modes have the same model, but for these values, if they are equal here.
+std::vector<int> mode_shape(const std::vector<Contact>& contacts, const ContactModes& modes);
 
 // Makes the model that of a mode in which the contacts exert ideal forces alone: one that touches is a constraint NAME, gap = 0, one that
 // sticks has constraints NAME.t1, … as well, that its slip velocity is zero. Their multipliers are the forces of the

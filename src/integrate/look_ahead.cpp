@@ -22,6 +22,19 @@ Expansion<N>* LookAhead<N>::prepare(const W& t, const std::vector<W>& state, con
 }
 
 template <Number N>
+void LookAhead<N>::watch(const std::vector<std::size_t>& quadratures) {
+  std::vector<std::uint32_t> roots;
+  for (const std::size_t i : quadratures) roots.push_back(program_->tape.roots[program_->unknowns() + i]);
+  watched_ = precedents(program_->tape, roots);
+}
+
+template <Number N>
+void LookAhead<N>::evaluate_watched() {
+  there_->evaluate(watched_);
+  quadratures_known_ = true;
+}
+
+template <Number N>
 void LookAhead<N>::evaluate_quadratures() {
   if (!std::exchange(quadratures_known_, true)) there_->evaluate_quadratures();
 }

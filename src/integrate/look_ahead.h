@@ -13,11 +13,15 @@ class LookAhead {
   using W = Wider<N>;
   LookAhead(const Program& program, const std::vector<N>& parameters) : program_(&program), parameters_(parameters) {}
 
+  // These quadratures are those of evaluate_watched().
+  void watch(const std::vector<std::size_t>& quadratures);
   // The motion there, without any values.
   Expansion<N>& load(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
   // … with J and its LU; null if J has none. What was met elsewhere says nothing there: the iteration for the singular
   // value starts anew, so that a run that goes on finds the same.
   Expansion<N>* prepare(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
+  // What is watched where the motion was loaded last.
+  void evaluate_watched();
   // A quadrature where the motion was loaded last, and the formulas evaluated; nullopt if it has no value there.
   std::optional<N> quadrature(std::size_t i);
   // The magnitude of the terms of this value.
@@ -30,6 +34,7 @@ class LookAhead {
 
   const Program* program_;
   std::vector<N> parameters_;
+  std::vector<std::uint32_t> watched_;   // the slots of what is watched
   std::unique_ptr<Expansion<N>> there_;  // made when it is first asked for
   std::vector<N> state_, leading_, sizes_;
   bool quadratures_known_ = false;

@@ -235,7 +235,8 @@ void Stepper<N>::read_events() {
   if (events_.empty()) return;
   const auto coefficient = [&](std::size_t i, int k) { return expander_.quadrature(i, k); };
   if (expander_.kernel()) {
-    present().load(W(0)).evaluate();
+    present().load(W(0));
+    look_.evaluate_watched();
     events_.read(order_ - 1, coefficient, [&](std::size_t i) { return look_.quadrature_terms(i); });
   } else {
     events_.read(order_ - 1, coefficient, [&](std::size_t i) { return expander_.series().quadrature_terms(i); });
@@ -445,6 +446,9 @@ void Stepper<N>::watch_kinks() {
 
 template <Number N>
 void Stepper<N>::watch(std::vector<WatchedSeries> series) {
+  std::vector<std::size_t> quadratures;
+  for (const WatchedSeries& s : series) quadratures.push_back(s.quadrature);
+  look_.watch(quadratures);
   events_ = EventWatch<N>(std::move(series));
   watch_kinks();
 }

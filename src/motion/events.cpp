@@ -105,6 +105,8 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
   if (parameters != parameters_) {
     set_modes(parameters);
     auto next = same_leg();
+    take(plans(), *next);
+    next->at_once = leg_->at_once;
     next->stepper.adopt(leg_->stepper);
     leg_ = std::move(next);
     chosen_.clear();

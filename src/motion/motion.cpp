@@ -25,7 +25,7 @@ template <Number N>
 Motion<N>::Motion(Workspace& s, const StepSettings& settings, std::vector<Expr> quadratures, int stages)
     : s_(s), base_(s.elimination.pivots().empty() ? nullptr : std::make_unique<const Workspace>(s)),
       settings_(settings), quadratures_(std::move(quadratures)), stages_(stages),
-      parameters_(parameter_values<W>(*s.model)), narrow_parameters_(parameter_values<N>(*s.model)),
+      start_parameters_(parameter_values<W>(*s.model)), parameters_(start_parameters_), narrow_parameters_(parameter_values<N>(*s.model)),
       leg_(std::make_unique<Leg>(*this, nullptr, s.elimination, s.system, s.structure)) {
   begun_parameters_ = parameters_;
 }
@@ -55,22 +55,21 @@ Outcome Motion<N>::start(const StateChoice& choice) {
   return o;
 }
 
-// Pivots are chosen at the start of the whole motion, so that a run that goes on has the same.
+template <Number N>
+void Motion<N>::take(const MotionPlans& plans, Leg& leg) {
+  if constexpr (std::same_as<N, double>) leg.stepper.accelerate(plans.plan);
+  leg.plan = plans.plan, leg.unmapped_plan = plans.unmapped_plan, leg.writing = plans.writing;
+}
+
+// Pivots are chosen at the start of the whole motion, with the modes there, so that a run that goes on has the same.
 template <Number N>
 void Motion<N>::accelerate(Leg& leg) const {
   if constexpr (std::same_as<N, double>) {
-    // A plan is made for one set of modes, and a run that is taken up again could not know for which.
-    const auto is_mode = [](const Parameter& p) { return p.mode; };
-    const std::vector<Parameter>& parameters = s_.model->parameters;
-    if (watches() && std::any_of(parameters.begin(), parameters.end(), is_mode)) return;
     if (!settings_.kernel || !no_plan(leg.program).empty() || start_.state.size() != leg.point.state_size()) return;
-    if (given_) {
-      leg.stepper.accelerate(given_->plan);
-      leg.plan = given_->plan, leg.unmapped_plan = given_->unmapped_plan, leg.writing = given_->writing;
-      return;
-    }
-    const auto derived = KernelPlan::make(std::make_shared<const Program>(leg.program), leg.stepper.order() - 1,
-                                          parameters_, to_double(start_.t), {start_.state.begin(), start_.state.end()});
+    if (given_) return take(*given_, leg);
+    const auto derived =
+        KernelPlan::make(std::make_shared<const Program>(leg.program), leg.stepper.order() - 1, start_parameters_,
+                         to_double(start_.t), {start_.state.begin(), start_.state.end()});
     leg.stepper.accelerate(derived);
     if (!leg.stepper.accelerated()) return;
     // A segment between events is short more often than not: its equations are written anew only if it has lasted.
@@ -99,7 +98,7 @@ ToRepresent Motion<N>::to_represent(const Leg& leg, std::shared_ptr<const Kernel
                 to_double(start_.t),
                 std::move(state),
                 workspace(leg).mechanics.get()};
-  if constexpr (std::same_as<N, double>) e.parameters = parameters_;
+  if constexpr (std::same_as<N, double>) e.parameters = start_parameters_;
   return e;
 }
 

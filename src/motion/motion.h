@@ -44,6 +44,13 @@ Outcome settle_at(Expansion<W>& point, const Start<W>& place, bool beyond) {
   return o;
 }
 
+// What a kernel's motion has found about its equations, for further motions of the same equations with the same orders.
+struct MotionPlans {
+  std::shared_ptr<const KernelPlan> plan, unmapped_plan;  // null where there is no kernel
+  Writing writing = Writing::derived;
+  WritingEffort effort = WritingEffort::at_once;
+};
+
 // N: the numbers of the Taylor coefficients; W: those of the state and of everything written.
 template <Number N>
 class Motion {
@@ -54,12 +61,9 @@ class Motion {
   // leading derivatives the points know.
   Motion(Workspace& scenario, const StepSettings& settings, std::vector<Expr> quadratures, int stages);
 
-  // A second motion of the same equations with the same orders: it takes the kernel's plans of the first one as they are.
-  // Before the start.
-  void use_plans_of(const Motion& first) {
-    given_ = GivenPlans{first.leg_->plan, first.leg_->unmapped_plan, first.leg_->writing};
-    effort_ = first.effort_;
-  }
+  MotionPlans plans() const { return {leg_->plan, leg_->unmapped_plan, leg_->writing, effort_}; }
+  // Before the start: the motion takes these plans as they are.
+  void use(const MotionPlans& plans) { given_ = plans, effort_ = plans.effort; }
   // The motion will be computed once more, with somewhat shorter steps.
   void expect_second_run() { code_.expect(kBothRuns); }
   // From the consistent state; on request from one that differs from it by some round-offs.
@@ -127,10 +131,6 @@ class Motion {
     std::unique_ptr<OutputTape<W>> pivots;  // of the elimination, where there are any
   };
 
-  struct GivenPlans {
-    std::shared_ptr<const KernelPlan> plan, unmapped_plan;
-    Writing writing;
-  };
   // Every choice of dependent coordinates on the way: whoever resumes makes the last one that was taken again.
   struct Choice {
     InitialState<double> here;
@@ -148,6 +148,7 @@ class Motion {
   const Expansion<W>& present();
   InitialState<double> here();
   void accelerate(Leg& leg) const;
+  static void take(const MotionPlans& plans, Leg& leg);
   ToRepresent to_represent(const Leg& leg, std::shared_ptr<const KernelPlan> derived) const;
   const Representation& best(const std::vector<Representation>& list) const {
     return settings_.multipliers || watches() ? cheapest_unmapped(list) : cheapest(list);
@@ -173,13 +174,13 @@ class Motion {
 
   std::vector<Expr> quadratures_;
   int stages_;
-  std::vector<W> parameters_;
+  std::vector<W> start_parameters_, parameters_;  // modes differ
   std::vector<N> narrow_parameters_;
   Start<W> start_;
   std::vector<W> begun_parameters_;  // where the last expansion was made
   std::unique_ptr<Leg> leg_;
   bool stepped_ = false, other_digits_ = false;
-  std::optional<GivenPlans> given_;
+  std::optional<MotionPlans> given_;
   std::vector<double> chosen_;  // what the pivots were when the elimination was chosen
   std::vector<Choice> choices_;
   Mark mark_;

@@ -35,7 +35,7 @@ class SharperRun {
     // Both runs in one type of numbers would round their start alike, and grow alike from what is lost there.
     motion_.start_in_other_digits(std::same_as<W, V> && s_.model->events.empty());
     if constexpr (std::same_as<M, double>)
-      if (run_.motion) motion_.use_plans_of(*run_.motion);
+      if (run_.motion) motion_.use(run_.motion->plans());
     if (Outcome o = motion_.start(o_.state); !o.ok()) return o;
     t0_ = motion_.stepper().time();
     end_ = times_.back();

@@ -85,6 +85,14 @@ void Expansion<N>::sweep_known(int last_stage) {
 }
 
 template <Number N>
+void Expansion<N>::evaluate(const std::vector<std::uint32_t>& slots) {
+  for (int s = -program_->tape.largest_lead; s <= 0; ++s) {
+    set_inputs(s, 0, program_->inputs.size());
+    machine_.sweep(s, slots);
+  }
+}
+
+template <Number N>
 void Expansion<N>::sweep_quadratures(int last_stage) {
   const Program& p = *program_;
   if (p.quadratures == 0) return;

@@ -53,6 +53,8 @@ class Expansion {
   Outcome prepare();
   // Values at the point only.
   void evaluate() { sweep_known(0); }
+  // As evaluate() and evaluate_quadratures(), of these slots alone (tape/tape.h: precedents).
+  void evaluate(const std::vector<std::uint32_t>& slots);
   // Solves J y = r; by default with the LU of prepare().
   using Solver = std::function<void(const std::vector<N>& r, std::vector<N>& y)>;
   // Corrects the state by least change so that all hidden constraints hold to round-off.

@@ -251,6 +251,16 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
   return o;
 }
 
+std::optional<Outcome> begin_anew(Workspace& s) {
+  if (s.routh || !s.elimination.pivots().empty()) return std::nullopt;
+  const std::vector<double> parameters = parameter_values<double>(*s.model);
+  const InitialProblem<double> problem{s.mechanics.get(), parameters, {}, std::nullopt, nullptr, s.start.get()};
+  if (Outcome o = consistent_state(problem, s.state); !o.ok()) return o;
+  if (Outcome o = admissible(*s.model, parameters, s.state); !o.ok()) return o;
+  if (independent_constraints(*s.mechanics, parameters, s.state).independent != s.independent) return std::nullopt;
+  return Outcome{};
+}
+
 Workspace::Workspace(const Scenario& from) : own_model_(clone(*from.model)) {
   const auto& [model_of, nodes, mechanics_of, classes_of, start_of, state_of, independent_of, redundant_of,
                elimination_of, system_of, structure_of, routh_of, routh_structure_of, notes_of] = from;

@@ -65,6 +65,9 @@ class Run {
     report_.looks_for_events = !s.model->events.empty();
   }
 
+  void use(const MotionPlans& plans) { motion().use(plans); }
+  MotionPlans plans() const { return motion().plans(); }
+
   SimulationReport go() {
     report_.outcome = o_.resume ? resume(*o_.resume) : begin();
     if (report_.outcome.ok()) {
@@ -466,6 +469,14 @@ class Run {
   std::unique_ptr<KernelRows> kernel_rows_;  // null if rows are made by the reference; the last: uses the others
 };
 
+SimulationReport in_doubles(Workspace& s, const SimulationOptions& o, RowSink& sink, MotionPlans* plans) {
+  Run<double> run(s, o, sink);
+  if (plans && plans->plan) run.use(*plans);
+  SimulationReport r = run.go();
+  if (plans) *plans = run.plans();
+  return r;
+}
+
 }  // namespace
 
 SimulationReport simulate(const Scenario& scenario, const SimulationOptions& options, RowSink& sink) {
@@ -473,7 +484,7 @@ SimulationReport simulate(const Scenario& scenario, const SimulationOptions& opt
   return simulate_in(own, options, sink);
 }
 
-SimulationReport simulate_in(Workspace& s, const SimulationOptions& options, RowSink& sink) {
+SimulationReport simulate_in(Workspace& s, const SimulationOptions& options, RowSink& sink, MotionPlans* plans) {
   const auto start = std::chrono::steady_clock::now();
   SimulationOptions o = options;
   for (Conserved& c : o.conserved) for_each_expression(c, [&](Expr& e) { e = s.graph().own(e); });
@@ -486,7 +497,7 @@ SimulationReport simulate_in(Workspace& s, const SimulationOptions& options, Row
   SimulationReport r;
   switch (o.precision) {
   case Precision::real:
-    r = Run<double>(s, o, sink).go();
+    r = in_doubles(s, o, sink, plans);
     break;
   case Precision::long_real:
     r = Run<long double>(s, o, sink).go();

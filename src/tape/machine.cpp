@@ -31,12 +31,27 @@ N pi_value() {
 bool smooth(Function f, const Ball& u) { return (f != Function::abs && f != Function::sign) || !u.contains_zero(); }
 bool smooth(const Ball& y, const Ball& x) { return !y.contains_zero() || x.is_positive(); }
 
+// `exact` in halves, if it is one of the exponents that are roots; else 0.
+int halves_of(const Rational& exact) {
+  for (const int halves : {1, -1, 3, -3})
+    if (exact == Rational(halves, 2)) return halves;
+  return 0;
+}
+
 template <Scalar N>
-N power_value(const N& u, const N& r, const Rational& exact) {
-  if (exact == Rational(1, 2)) return sqrt(u);
-  if (exact == Rational(-1, 2)) return N(1) / sqrt(u);
-  if (exact == Rational(3, 2)) return u * sqrt(u);
-  if (exact == Rational(-3, 2)) return N(1) / (u * sqrt(u));
+N power_value(const N& u, const N& r, const Rational& exact, int halves) {
+  switch (halves) {
+  case 1:
+    return sqrt(u);
+  case -1:
+    return N(1) / sqrt(u);
+  case 3:
+    return u * sqrt(u);
+  case -3:
+    return N(1) / (u * sqrt(u));
+  default:
+    break;
+  }
   if constexpr (std::same_as<N, Ball>)
     return pow(u, exact);
   else
@@ -130,7 +145,7 @@ Machine<N>::Machine(const Tape& tape, std::size_t orders, const std::vector<N>& 
     : tape_(&tape),
       // An odd stride keeps histories of different slots off the same cache sets.
       stride_((orders + static_cast<std::size_t>(tape.largest_lead) + 1) | 1), data_(stride_ * tape.code.size(), N(0)) {
-  for (const Rational& r : tape.rationals) rationals_.push_back(constant_value<N>(r));
+  for (const Rational& r : tape.rationals) rationals_.push_back(constant_value<N>(r)), halves_.push_back(halves_of(r));
   for (const StepFunction& f : tape.step_functions) {
     Steps s;
     for (const Rational& r : f.knots) s.knots.push_back(constant_value<N>(r));
@@ -148,12 +163,20 @@ Machine<N>::Machine(const Tape& tape, std::size_t orders, const std::vector<N>& 
 
 template <Scalar N>
 void Machine<N>::sweep(int stage, std::uint32_t from, std::uint32_t to) {
-  for (std::uint32_t s = from; s < to; ++s) {
-    const Instruction& in = tape_->code[s];
-    const int p = stage + in.lead;
-    if (in.constant || in.op == Op::input || p < 0) continue;
-    step(in, s, static_cast<std::size_t>(p));
-  }
+  for (std::uint32_t s = from; s < to; ++s) step_of_stage(s, stage);
+}
+
+template <Scalar N>
+void Machine<N>::sweep(int stage, const std::vector<std::uint32_t>& slots) {
+  for (const std::uint32_t s : slots) step_of_stage(s, stage);
+}
+
+template <Scalar N>
+void Machine<N>::step_of_stage(std::uint32_t slot, int stage) {
+  const Instruction& in = tape_->code[slot];
+  const int p = stage + in.lead;
+  if (in.constant || in.op == Op::input || p < 0) return;
+  step(in, slot, static_cast<std::size_t>(p));
 }
 
 // Row by row: how the coefficient of order p follows from the operands' coefficients up to p, and from its own below p.
@@ -231,7 +254,7 @@ template <Scalar N>
 N Machine<N>::power(const Instruction& in, const N* w, std::size_t p) const {
   const N* u = series(in.a);
   const N& r = rationals_[in.index];
-  if (p == 0) return power_value(u[0], r, tape_->rationals[in.index]);
+  if (p == 0) return power_value(u[0], r, tape_->rationals[in.index], halves_[in.index]);
   // A positive power of a series that is zero up to the known order is zero up to that order.
   if (sgn(tape_->rationals[in.index]) > 0 && vanishes(u, p)) return N(0);
   N rates_of_u(0), rates_of_w(0);

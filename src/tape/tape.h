@@ -88,6 +88,9 @@ Tape compile(std::span<const Expr> es);
 // The slots, without the inputs, whose coefficients of order 0 depend on one of these slots, in the order of the tape.
 std::vector<std::uint32_t> dependents(const Tape& tape, const std::vector<std::uint32_t>& of);
 
+// The slots, ascending, from which the series of these slots are computed, themselves and those of derivatives among them.
+std::vector<std::uint32_t> precedents(const Tape& tape, const std::vector<std::uint32_t>& of);
+
 // The number type of a tape: a floating-point type, or balls, which are never compared. In a machine of balls, the
 // series of a slot encloses its Taylor coefficients for all inputs enclosed by the input series, if the slot is smooth
 // on all of the balls; otherwise its coefficients are not finite.
@@ -106,6 +109,8 @@ class Machine {
 
   // Computes stage s of slots [from, to); inputs must be set by the caller.
   void sweep(int stage, std::uint32_t from, std::uint32_t to);
+  // As above, of these slots alone, in this order.
+  void sweep(int stage, const std::vector<std::uint32_t>& slots);
   // Computes values only: all slots at order 0.
   void evaluate() { sweep(0, 0, static_cast<std::uint32_t>(tape_->code.size())); }
   // As above, for these slots alone, in this order.
@@ -131,6 +136,7 @@ class Machine {
   const Tape& tape() const { return *tape_; }
 
  private:
+  void step_of_stage(std::uint32_t slot, int stage);
   void step(const Instruction& in, std::uint32_t slot, std::size_t p);
   // The coefficient of order p of a slot; `w` is its series, known below p.
   N sum(const Instruction& in, std::size_t p) const;
@@ -146,6 +152,7 @@ class Machine {
   std::size_t stride_;
   std::vector<N> data_;
   std::vector<N> rationals_;
+  std::vector<int> halves_;  // of each rational, if as an exponent it is a root; else 0
   struct Steps {
     std::vector<N> knots, values;
   };

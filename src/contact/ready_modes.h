@@ -1,0 +1,33 @@
+// The modes of one motion with contacts, each derived once: where a mode begins anew, its numbers alone are other ones.
+#pragma once
+#include <map>
+#include <memory>
+
+#include "contact/mode_model.h"
+#include "motion/motion.h"
+#include "setup/scenario.h"
+
+namespace anholon {
+
+struct ReadyMode {
+  ModeModel of;
+  std::unique_ptr<Workspace> own;
+  MotionPlans plans;  // of the last segment in this mode
+};
+
+class ReadyModes {
+ public:
+  // `s`: the model with all contacts open. Both outlive the modes.
+  ReadyModes(const Workspace& s, const std::vector<Contact>& contacts) : s_(s), contacts_(contacts) {}
+  // The mode, at its consistent state near `at`. The outcome tells if there is none.
+  ReadyMode& begin(const ContactModes& modes, const ContactState& at, Outcome& outcome);
+
+ private:
+  Outcome derive(const ContactModes& modes, const std::vector<Rational>& numbers, ReadyMode& mode) const;
+
+  const Workspace& s_;
+  const std::vector<Contact>& contacts_;
+  std::map<std::vector<int>, ReadyMode> known_;  // by their shapes
+};
+
+}  // namespace anholon
