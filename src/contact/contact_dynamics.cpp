@@ -117,16 +117,26 @@ void ContactDynamics::go(const ContactState& at) {
                               : std::array<long double, 2>{1, 0};
     // A velocity within round-off of those that the motion had is zero.
     constexpr long double kZero = 1e-13L;
-    long double scale = 0;
     for (const auto& t : rows.tangential)
       for (std::size_t i = 0; i < n_; ++i) {
-        scale = std::max(scale, std::abs(t[i] * most_[i]));
+        place.slip_reach = std::max(place.slip_reach, std::abs(t[i] * most_[i]));
         place.slip_scale = std::max(place.slip_scale, std::abs(t[i] * met_[i]));
       }
-    rows.moves = size > kZero * scale && size > 0;
+    rows.moves = size > kZero * place.slip_reach && size > 0;
     problem_.contacts.push_back(std::move(rows));
     places_.push_back(place);
   }
+}
+
+bool ContactDynamics::note_fall(const ContactState& at) {
+  const auto free = of_modes(problem_, ContactModes(contacts_.size()));
+  bool more = false;
+  for (std::size_t a = 0; free && a < n_; ++a) {
+    const long double v = std::sqrt(std::abs(free->x[a]) * (1 + std::abs(static_cast<long double>(at.q[a]))));
+    more = more || v > most_[a];
+    most_[a] = std::max(most_[a], v);
+  }
+  return more;
 }
 
 void ContactDynamics::pass(const ContactState& from, const ContactState& to) {

@@ -18,12 +18,16 @@ class ContactDynamics {
     long double gap = 0, gap_rate = 0;
     std::array<long double, 2> slip{};
     long double slip_scale = 0;  // the size of the terms of the slip velocity at the states up to now
+    long double slip_reach = 0;  // of those of the velocities that the coordinates might have
     long double restitution = 0;
   };
   // Evaluates all formulas at a state.
   void go(const ContactState& at);
   // Notes the mean velocities of a segment between two states: a motion from rest to rest is fast between them.
   void pass(const ContactState& from, const ContactState& to);
+  // Notes for each coordinate the velocity of a fall without contacts through its own size, as one that it might have: what is
+  // round-off of it is no velocity. Returns whether that is new.
+  bool note_fall(const ContactState& at);
   const Place& place(std::size_t contact) const { return places_[contact]; }
   long double speed() const { return speed_; }                                  // the largest velocity of a coordinate
   long double most(std::size_t coordinate) const { return most_[coordinate]; }  // its largest velocity up to now

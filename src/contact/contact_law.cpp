@@ -4,27 +4,15 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/rows.h"
+#include "contact/shared_friction.h"
+
 namespace anholon {
 
 namespace {
 
 using Real = long double;
-using Numbers = std::vector<Real>;
-
-// Solutions that differ by less, in relation to their size, are the same; a pivot below it is zero.
-constexpr Real kSame = 1e-10L;
-
-Real dot(const Numbers& a, const Numbers& b) {
-  Real sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-Real largest(const Numbers& a) {
-  Real most = 0;
-  for (Real x : a) most = std::max(most, std::abs(x));
-  return most;
-}
+using Numbers = ContactNumbers;
 
 // Square linear equations, solved by Gauss with complete pivoting, rows scaled to 1 and columns to about 1, as friction
 // may be large.
@@ -127,62 +115,118 @@ class PivotedEquations {
 
 }  // namespace
 
-// The linear equations of given modes. Columns: x, lambda, then N and T of each contact.
-std::optional<ContactSolution> of_modes(const ContactProblem& p, const ContactModes& modes) {
-  const std::size_t n = p.b.size(), s = p.beta.size();
-  std::vector<std::size_t> first;
-  std::size_t size = n + s;
-  for (std::size_t c = 0; c < modes.size(); ++c) {
-    first.push_back(size);
-    if (modes[c].touch == Touch::open) continue;
-    size += (p.contacts[c].under ? 0 : 1) +
-            (modes[c].touch == Touch::sticks && !modes[c].free ? p.contacts[c].tangential.size() : 0);
+std::vector<HeldComponent> held_components(const ContactProblem& p, const ContactModes& modes) {
+  std::vector<HeldComponent> list;
+  for (std::size_t c = 0; c < modes.size(); ++c)
+    for (std::size_t a = 0; modes[c].touch == Touch::sticks && a < p.contacts[c].tangential.size(); ++a)
+      if (!modes[c].shares[a].shared) list.push_back({c, a});
+  return list;
+}
+
+bool shares_friction(const ContactModes& modes) {
+  return std::any_of(modes.begin(), modes.end(), [](const ContactMode& m) {
+    return m.touch == Touch::sticks && (m.shares[0].shared || m.shares[1].shared);
+  });
+}
+
+namespace {
+
+// The linear equations of given modes. Unknowns: x, lambda, N of each contact that touches, and the forces that hold.
+class ModeEquations {
+ public:
+  ModeEquations(const ContactProblem& p, const ContactModes& modes)
+      : p_(p), modes_(modes), held_(held_components(p, modes)) {
+    std::size_t size = p.b.size() + p.beta.size();
+    for (std::size_t c = 0; c < modes.size(); ++c) {
+      normals_.push_back(size);
+      if (modes[c].touch != Touch::open && !p.contacts[c].under) ++size;
+    }
+    forces_ = size;
+    m_.emplace(size + held_.size());
+    smooth();
+    for (std::size_t c = 0; c < modes.size(); ++c)
+      if (modes[c].touch != Touch::open) contact(c);
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+      const ContactRows& rows = p.contacts[held_[k].contact];
+      const Numbers& t = rows.tangential[held_[k].component];
+      std::copy(t.begin(), t.end(), (*m_)[forces_ + k]);
+      m_->right()[forces_ + k] = -rows.tangential_rate[held_[k].component];
+    }
   }
-  const auto normal = [&](std::size_t c) { return first[p.contacts[c].under.value_or(c)]; };
-  const auto tangential = [&](std::size_t c) { return first[c] + (p.contacts[c].under ? 0 : 1); };
-  PivotedEquations m(size);
-  Numbers& right = m.right();
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) m[i][j] = p.A[i][j];
-    for (std::size_t r = 0; r < s; ++r) m[i][n + r] = -p.Phi[r][i], m[n + r][i] = p.Phi[r][i];
-    right[i] = -p.b[i];
+
+  std::optional<ContactSolution> solve() {
+    const auto found = m_->solve();
+    if (!found) return std::nullopt;
+    ContactSolution f;
+    f.modes = modes_;
+    f.x.assign(found->begin(), found->begin() + static_cast<std::ptrdiff_t>(p_.b.size()));
+    for (std::size_t c = 0; c < modes_.size(); ++c) {
+      const bool open = modes_[p_.contacts[c].under.value_or(c)].touch == Touch::open;
+      f.normal.push_back((open ? 0 : (*found)[normal(c)]) + p_.contacts[c].pressed);
+      std::array<Real, 2> t{};
+      for (std::size_t a = 0; modes_[c].touch == Touch::sticks && a < p_.contacts[c].tangential.size(); ++a) {
+        t[a] = modes_[c].shares[a].given;
+        for (std::size_t k = 0; k < held_.size(); ++k) t[a] += part(c, a, k) * (*found)[forces_ + k];
+      }
+      f.friction.push_back(t);
+    }
+    return f;
   }
-  for (std::size_t r = 0; r < s; ++r) right[n + r] = -p.beta[r];
-  for (std::size_t c = 0; c < modes.size(); ++c) {
-    const ContactRows& rows = p.contacts[c];
-    if (modes[c].touch == Touch::open) continue;
-    const std::size_t k = normal(c), kt = tangential(c);
-    const bool presses = modes[rows.under.value_or(c)].touch != Touch::open;
+
+ private:
+  std::size_t normal(std::size_t c) const { return normals_[p_.contacts[c].under.value_or(c)]; }
+  // Of the force k that holds, in component a of the friction of a contact.
+  Real part(std::size_t c, std::size_t a, std::size_t k) const {
+    const FrictionShare& share = modes_[c].shares[a];
+    if (share.shared) return k < share.of.size() ? share.of[k] : 0;
+    return held_[k].contact == c && held_[k].component == a ? 1 : 0;
+  }
+
+  void smooth() {
+    const std::size_t n = p_.b.size();
+    PivotedEquations& m = *m_;
     for (std::size_t i = 0; i < n; ++i) {
-      if (!rows.under) m[k][i] = rows.normal[i], m[i][k] = -rows.normal[i];
+      for (std::size_t j = 0; j < n; ++j) m[i][j] = p_.A[i][j];
+      for (std::size_t r = 0; r < p_.beta.size(); ++r) m[i][n + r] = -p_.Phi[r][i], m[n + r][i] = p_.Phi[r][i];
+      m.right()[i] = -p_.b[i];
+    }
+    for (std::size_t r = 0; r < p_.beta.size(); ++r) m.right()[n + r] = -p_.beta[r];
+  }
+
+  void contact(std::size_t c) {
+    const ContactRows& rows = p_.contacts[c];
+    PivotedEquations& m = *m_;
+    const std::size_t N = normal(c);
+    const bool presses = modes_[rows.under.value_or(c)].touch != Touch::open;
+    for (std::size_t i = 0; i < p_.b.size(); ++i) {
+      if (!rows.under) m[N][i] = rows.normal[i], m[i][N] -= rows.normal[i];
       for (std::size_t a = 0; a < rows.tangential.size(); ++a) {
-        if (modes[c].touch == Touch::sticks) {
-          if (!modes[c].free) m[kt + a][i] = rows.tangential[a][i], m[i][kt + a] = -rows.tangential[a][i];
+        const Real t = rows.tangential[a][i];
+        if (modes_[c].touch == Touch::sticks) {
+          for (std::size_t k = 0; k < held_.size(); ++k) m[i][forces_ + k] -= part(c, a, k) * t;
+          m.right()[i] += modes_[c].shares[a].given * t;
           continue;
         }
-        const long double friction = rows.friction * modes[c].direction[a] * rows.tangential[a][i];
-        if (presses) m[i][k] += friction;
-        right[i] -= friction * rows.pressed;
+        const Real friction = rows.friction * modes_[c].direction[a] * t;
+        if (presses) m[i][N] += friction;
+        m.right()[i] -= friction * rows.pressed;
       }
     }
-    if (!rows.under) right[k] = -rows.normal_rate;
-    if (modes[c].touch == Touch::sticks && !modes[c].free)
-      for (std::size_t a = 0; a < rows.tangential.size(); ++a) right[kt + a] = -rows.tangential_rate[a];
+    if (!rows.under) m.right()[N] = -rows.normal_rate;
   }
-  const auto found = m.solve();
-  if (!found) return std::nullopt;
-  ContactSolution f;
-  f.modes = modes;
-  f.x.assign(found->begin(), found->begin() + static_cast<std::ptrdiff_t>(n));
-  for (std::size_t c = 0; c < modes.size(); ++c) {
-    const bool open = modes[p.contacts[c].under.value_or(c)].touch == Touch::open;
-    f.normal.push_back((open ? 0 : (*found)[normal(c)]) + p.contacts[c].pressed);
-    std::array<Real, 2> t{};
-    if (modes[c].touch == Touch::sticks && !modes[c].free)
-      for (std::size_t a = 0; a < p.contacts[c].tangential.size(); ++a) t[a] = (*found)[tangential(c) + a];
-    f.friction.push_back(t);
-  }
-  return f;
+
+  const ContactProblem& p_;
+  const ContactModes& modes_;
+  std::vector<HeldComponent> held_;
+  std::vector<std::size_t> normals_;
+  std::size_t forces_ = 0;
+  std::optional<PivotedEquations> m_;
+};
+
+}  // namespace
+
+std::optional<ContactSolution> of_modes(const ContactProblem& p, const ContactModes& modes) {
+  return ModeEquations(p, modes).solve();
 }
 
 namespace {
@@ -272,7 +316,94 @@ class DirectionSearch {
   std::array<Real, 2> v_{};
 };
 
-// The directions of slips that begin, each by a search with the others as they are, one after the other until none turns.
+// The directions of slips that begin together, near a first guess: the angles at which no slip rate has a part across, by
+// Newton's method with differences.
+class DirectionsTogether {
+ public:
+  DirectionsTogether(const ContactProblem& p, const ContactModes& modes, const std::vector<std::size_t>& list)
+      : p_(p), modes_(modes), list_(list), first_(modes) {}
+
+  std::optional<ContactSolution> find() {
+    constexpr int kMost = 40;
+    Numbers angles(list_.size(), 0), F = across(angles);
+    for (int k = 0; k < kMost && f_; ++k) {
+      if (found()) return f_;
+      const auto change = newton(angles, F);
+      if (!change || !improve(angles, F, *change)) return std::nullopt;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  Numbers across(const Numbers& angles) {
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      const auto& d = first_[list_[i]].direction;
+      const Real cosine = std::cos(angles[i]), sine = std::sin(angles[i]);
+      modes_[list_[i]].direction = {d[0] * cosine - d[1] * sine, d[1] * cosine + d[0] * sine};
+    }
+    f_ = of_modes(p_, modes_);
+    Numbers F;
+    along_.clear();
+    for (const std::size_t c : list_) {
+      const auto v = f_ ? slip_rate(p_.contacts[c], f_->x) : std::array<Real, 2>{};
+      const auto& d = modes_[c].direction;
+      F.push_back(v[1] * d[0] - v[0] * d[1]);
+      along_.push_back(v[0] * d[0] + v[1] * d[1]);
+    }
+    return F;
+  }
+
+  bool found() const {
+    constexpr Real kFound = 1e-9L;
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      const auto v = slip_rate(p_.contacts[list_[i]], f_->x);
+      if (!(along_[i] > 0) || f_->normal[list_[i]] < 0 ||
+          !(std::hypot(v[0], v[1]) - along_[i] <= kFound * kFound * along_[i]))
+        return false;
+    }
+    return true;
+  }
+
+  std::optional<Numbers> newton(const Numbers& angles, const Numbers& F) {
+    constexpr Real kStep = 1e-7L;
+    PivotedEquations m(list_.size());
+    for (std::size_t j = 0; j < list_.size(); ++j) {
+      Numbers turned = angles;
+      turned[j] += kStep;
+      const Numbers there = across(turned);
+      if (!f_) return std::nullopt;
+      for (std::size_t i = 0; i < list_.size(); ++i) m[i][j] = (there[i] - F[i]) / kStep;
+    }
+    m.right() = F;
+    return m.solve();
+  }
+
+  // Takes as much of a change as makes F smaller.
+  bool improve(Numbers& angles, Numbers& F, const Numbers& change) {
+    constexpr int kHalves = 12;
+    constexpr Real kTurn = 0.5L;
+    Real part = std::min<Real>(1, kTurn / std::max(largest(change), std::numeric_limits<Real>::min()));
+    for (int k = 0; k < kHalves; ++k, part /= 2) {
+      Numbers next = angles;
+      for (std::size_t i = 0; i < next.size(); ++i) next[i] -= part * change[i];
+      const Numbers there = across(next);
+      if (!f_ || !(largest(there) <= largest(F))) continue;
+      angles = std::move(next), F = there;
+      return true;
+    }
+    across(angles);
+    return false;
+  }
+
+  const ContactProblem& p_;
+  ContactModes modes_;
+  const std::vector<std::size_t>& list_;
+  const ContactModes first_;
+  std::optional<ContactSolution> f_;
+  Numbers along_;  // the parts of the slip rates along the directions
+};
+
+// The directions of slips that begin, by the two ways above: each with the others as they are until none turns.
 std::optional<ContactSolution> with_searched_directions(const ContactProblem& p, ContactModes modes) {
   constexpr int kMost = 60;
   constexpr Real kSettled = 1e-12L;
@@ -280,6 +411,8 @@ std::optional<ContactSolution> with_searched_directions(const ContactProblem& p,
   for (std::size_t c = 0; c < modes.size(); ++c)
     if (has_direction_to_find(p.contacts[c], modes[c])) list.push_back(c);
   std::optional<ContactSolution> f;
+  if (list.size() > 1)
+    if (f = DirectionsTogether(p, modes, list).find(); f) return f;
   for (int k = 0; k < kMost; ++k) {
     Real change = 0;
     for (const std::size_t c : list) {
@@ -335,6 +468,9 @@ std::optional<ContactSolution> with_directions(const ContactProblem& p, ContactM
 // free: the size of the accelerations without contacts. Where the contacts leave no acceleration, those of the modes
 // are the round-off of this size.
 bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
+  // A contact at rest that the others hold does not slip.
+  const bool others_hold =
+      std::any_of(f.modes.begin(), f.modes.end(), [](const ContactMode& m) { return m.touch == Touch::sticks; });
   const Real force = largest(p.b), size = std::max(largest(f.x), free);
   for (std::size_t c = 0; c < p.contacts.size(); ++c) {
     const ContactRows& rows = p.contacts[c];
@@ -357,28 +493,34 @@ bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
     for (std::size_t a = 0; a < rows.tangential.size(); ++a)
       span = std::max(span, kSame * (largest(rows.tangential[a]) * size + std::abs(rows.tangential_rate[a])) +
                                 kRounded * rows.friction * largest(rows.tangential[a]) * free);
+    const Real along = v[0] * mode.direction[0] + v[1] * mode.direction[1];
     if (mode.touch == Touch::sticks) {
-      if (mode.free ? std::hypot(v[0], v[1]) > span
-                    : std::hypot(f.friction[c][0], f.friction[c][1]) > rows.static_friction * N + forces)
-        return false;
-    } else if (!rows.moves && v[0] * mode.direction[0] + v[1] * mode.direction[1] < -span) {
+      for (std::size_t a = 0; a < rows.tangential.size(); ++a)
+        if (mode.shares[a].shared && std::abs(v[a]) > span) return false;
+      if (std::hypot(f.friction[c][0], f.friction[c][1]) > rows.static_friction * N + forces) return false;
+    } else if (!rows.moves && (along < -span || (others_hold && rows.may_stick && along <= span))) {
       return false;
     }
   }
   return true;
 }
 
+ContactMode mode(Touch touch, const std::array<Real, 2>& direction) {
+  ContactMode m;
+  m.touch = touch, m.direction = direction;
+  return m;
+}
+
 // The modes that one contact may take, those that touch first, and of them those that stick.
 ContactModes choices(const ContactRows& rows, bool may_touch) {
   ContactModes list;
   if (may_touch) {
-    if (rows.rough && !rows.moves && rows.may_stick)
-      for (const bool free : {false, true}) list.push_back({Touch::sticks, {}, free});
+    if (rows.rough && !rows.moves && rows.may_stick) list.push_back(mode(Touch::sticks, {}));
     if (!rows.rough || rows.moves || rows.tangential.size() > 1) {
-      list.push_back({Touch::slips, rows.direction, false});
+      list.push_back(mode(Touch::slips, rows.direction));
     } else {
-      list.push_back({Touch::slips, {1, 0}, false});
-      list.push_back({Touch::slips, {-1, 0}, false});
+      list.push_back(mode(Touch::slips, {1, 0}));
+      list.push_back(mode(Touch::slips, {-1, 0}));
     }
   }
   if (rows.may_open) list.push_back({});
@@ -421,7 +563,9 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
       rest /= each[c].size();
     }
     if (!possible(p, modes)) continue;
-    const auto f = with_directions(p, modes, free);
+    share_friction(p, modes);
+    auto f = with_directions(p, modes, free);
+    if (f && shares_friction(modes)) f = distributed(p, *f);
     if (!f || !consistent(p, *f, free)) continue;
     const bool known = std::any_of(list.begin(), list.end(), [&](const ContactSolution& o) {
       Real difference = 0;

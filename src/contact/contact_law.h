@@ -19,15 +19,23 @@ namespace anholon {
 
 enum class Touch : std::uint8_t { open, slips, sticks };
 
+// One component of the friction T of a contact that sticks. Where the slip velocities of contacts depend on each other, some
+// components are held, by unknown forces, and the others share these (contact/shared_friction.h).
+struct FrictionShare {
+  bool shared = false;          // its slip velocity follows from those that are held
+  long double given = 0;        // a part of T that is known
+  std::vector<long double> of;  // shared: the rest of T is this part of each unknown force; none if it is empty
+};
+
 struct ContactMode {
   Touch touch = Touch::open;
   std::array<long double, 2> direction{};  // of the slip, of length 1
   std::optional<long double> fast;  // a slip velocity v with two components that is larger has the direction v/|v|
-  bool free = false;                       // sticks without friction of its own, as other contacts hold it
-  bool held = false;                       // sticks, whatever friction this needs
-  long double rest = 0;                    // a slip velocity with two components is zero below it
-  long double slack = 0;                   // forces below it are round-off
-  long double depth = 0;                   // a gap is negative below minus this
+  std::array<FrictionShare, 2> shares{};  // of a contact that sticks
+  bool held = false;                      // sticks, whatever friction this needs
+  long double rest = 0;                   // a slip velocity with two components is zero below it
+  long double slack = 0;                  // forces below it are round-off
+  long double depth = 0;                  // a gap is negative below minus this
 };
 using ContactModes = std::vector<ContactMode>;
 
@@ -57,7 +65,18 @@ struct ContactSolution {
   std::vector<long double> x;
   std::vector<long double> normal;                   // N, of resistance that which presses it
   std::vector<std::array<long double, 2>> friction;  // T of what sticks
+  // Where friction is shared: the largest part of its bound that a contact can be spared, by the best of all distributions, or
+  // one that suffices. Negative if none holds.
+  std::optional<long double> spare;
 };
+
+// The components that are held by forces of their own, in the order in which FrictionShare::of counts them.
+struct HeldComponent {
+  std::size_t contact = 0, component = 0;
+};
+std::vector<HeldComponent> held_components(const ContactProblem& problem, const ContactModes& modes);
+// Whether a contact that sticks shares friction.
+bool shares_friction(const ContactModes& modes);
 
 // The accelerations and forces of given modes, whether or not they are consistent; nullopt if the equations are singular.
 std::optional<ContactSolution> of_modes(const ContactProblem& problem, const ContactModes& modes);

@@ -11,6 +11,7 @@
 #include "contact/ready_modes.h"
 #include "contact/round_off.h"
 #include "contact/segment_rows.h"
+#include "contact/shared_friction.h"
 #include "contact/switched_motion.h"
 #include "numeric/number.h"
 #include "simulation/request.h"
@@ -52,6 +53,7 @@ class HybridMotion {
   SimulationReport go() {
     excluded_.assign(contacts_.size(), {});
     turned_.assign(contacts_.size(), false);
+    told_.assign(contacts_.size(), false);
     held_.assign(contacts_.size(), 0);
     // A parameter that is varied may give a coefficient any value.
     if (const std::vector<Diagnostic> wrong = wrong_coefficients(contacts_, *s_.model); !wrong.empty())
@@ -98,17 +100,22 @@ class HybridMotion {
                 hint};
     return {};
   }
+  void look() {
+    dynamics_.go(at_);
+    if (dynamics_.note_fall(at_)) dynamics_.go(at_);
+  }
   // Impacts where a closed gap shrinks, then the modes by the accelerations.
   Outcome choose() {
-    dynamics_.go(at_);
+    look();
     for (std::size_t k = 0; shrinks() && k < kMostImpacts; ++k)
       if (Outcome o = impact(); !o.ok()) return o;
     land();
     ContactProblem p = with_touching();
     for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (excluded_[c].stick && contacts_[c].slip.size() == 2) against_friction(p, c);
+      if (contacts_[c].slip.size() == 2 && (excluded_[c].stick || was_held(c))) against_friction(p, c);
     const std::vector<ContactSolution> list = consistent_modes(p);
     if (list.size() != 1) return undecided(list.size());
+    tell_who_slips_too(list[0].modes);
     modes_ = list[0].modes;
     if (const auto open = of_modes(p, ContactModes(contacts_.size()))) {
       before_ = 0;
@@ -117,16 +124,22 @@ class HybridMotion {
     come_to_rest();
     long double force = 0;
     for (const long double b : p.b) force = std::max(force, std::abs(b));
+    std::vector<std::size_t> beginning;
     for (std::size_t c = 0; c < contacts_.size(); ++c) {
       modes_[c].rest = kRest * dynamics_.place(c).slip_scale;
       modes_[c].depth = RoundOff::kPlace / 2 * near_.place_size(c) + std::max(0.0L, -dynamics_.place(c).gap);
       modes_[c].slack = kRest * (force > 0 ? force : 1);
       if (contacts_[c].under) modes_[c].slack *= p.contacts[c].friction;
-      if (contacts_[c].slip.size() < 2 || modes_[c].free) continue;
-      if (modes_[c].touch == Touch::slips && p.contacts[c].moves) modes_[c].fast = fast(c);
-      const bool begins = modes_[c].touch == Touch::slips && contacts_[c].rough() && !p.contacts[c].moves;
-      if (begins) set_slip(c, modes_[c].direction, first_slip(c, list[0].x));
+      if (contacts_[c].slip.size() < 2 || modes_[c].touch != Touch::slips) continue;
+      if (p.contacts[c].moves)
+        modes_[c].fast = fast(c);
+      else if (contacts_[c].rough())
+        beginning.push_back(c);
     }
+    if (beginning.size() == 1)
+      set_slip(beginning[0], modes_[beginning[0]].direction, first_slip(beginning[0], list[0].x));
+    else if (!beginning.empty())
+      begin_together(beginning, list[0].x);
     // The velocities at the end of a segment have the round-off of those before, which may be much larger.
     dynamics_.go(at_);
     stop(modes_);
@@ -278,6 +291,11 @@ class HybridMotion {
   // contact that the others stop already is left out.
   void stop(const ContactModes& modes) {
     const ContactProblem p = dynamics_.stop();
+    const auto leave_out_dependent = [](const ContactProblem& of, ContactModes& stopped) {
+      share_friction(of, stopped);
+      for (ContactMode& m : stopped)
+        for (FrictionShare& share : m.shares) share.of.clear();
+    };
     ContactModes stopped(contacts_.size());
     std::optional<ContactSolution> jump;
     if (!p.beta.empty()) jump = of_modes(p, stopped);
@@ -285,11 +303,12 @@ class HybridMotion {
       for (const Touch touch : {Touch::sticks, Touch::slips}) {
         if (touch > modes[c].touch) continue;
         stopped[c].touch = touch;
+        leave_out_dependent(p, stopped);
         if (auto further = of_modes(p, stopped)) {
           jump = std::move(further);
           break;
         }
-        stopped[c].touch = Touch::open;
+        stopped[c] = {};
       }
     }
     if (jump) add_to_velocities(jump->x);
@@ -307,16 +326,125 @@ class HybridMotion {
     return held_[c] > 0 ? std::max(seed, dynamics_.slip_acceleration(c, accelerations) * held_[c] / 2) : seed;
   }
 
+  // Whether a contact shared friction and may begin to slip.
+  bool was_held(std::size_t c) const { return together_ > 0 && modes_[c].touch == Touch::sticks; }
+
+  // Slips that begin at once on bodies that join them have velocities as their accelerations are.
+  void begin_together(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations) {
+    long double time = 0;
+    for (const std::size_t c : list)
+      if (const long double a = dynamics_.slip_acceleration(c, accelerations); a > 0)
+        time = std::max(time, first_slip(c, accelerations) / a);
+    std::vector<long double> jump = accelerations;
+    for (long double& v : jump) v *= time;
+    add_to_velocities(jump);
+  }
+
+  // Of contacts that shared friction, those that slip with the one at which the last segment ended.
+  void tell_who_slips_too(const ContactModes& now) {
+    if (!modes_.empty() && shares_friction(modes_))
+      for (std::size_t c = 0; c < now.size(); ++c)
+        if (modes_[c].touch == Touch::sticks && now[c].touch == Touch::slips && !told_[c])
+          joined_.event(contacts_[c].name + "." + word(contacts_[c], ModeChange::slips),
+                        at_.t.get_d() - static_cast<double>(together_));
+    told_.assign(contacts_.size(), false);
+  }
+
+  // Where contacts share friction, one at its limit may leave the rest to the others. Then they share it anew, which is no
+  // event; else they are held until those that begin to slip are told by their accelerations. Returns false if the motion
+  // ends meanwhile.
+  bool share_anew(Outcome& outcome) {
+    constexpr long double kSpared = 1e-9L, kTrial = 1e-6L, kLonger = 4;
+    std::vector<std::size_t> limited;
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      if (excluded_[c].stick && modes_[c].touch == Touch::sticks) limited.push_back(c);
+    const long double last = std::exchange(together_, 0);
+    if (limited.empty()) return true;
+    look();
+    ContactProblem p = with_touching();
+    for (ContactRows& rows : p.contacts) rows.may_stick = true;
+    const std::vector<ContactSolution> list = consistent_modes(p);
+    const bool sticks =
+        list.size() == 1 && std::equal(modes_.begin(), modes_.end(), list[0].modes.begin(),
+                                       [](const ContactMode& a, const ContactMode& b) { return a.touch == b.touch; });
+    if (sticks && list[0].spare.value_or(0) > kSpared) {
+      for (const std::size_t c : limited) {
+        joined_.take_back(contacts_[c].name + "." + word(contacts_[c], ModeChange::slips));
+        excluded_[c].stick = told_[c] = false;
+      }
+      return true;
+    }
+    const ContactRows& rows = p.contacts[limited[0]];
+    if (rows.friction != rows.static_friction) {
+      // All at their limit slip with an acceleration.
+      constexpr long double kAtLimit = 1 - 1e-6L;
+      for (std::size_t c = 0; sticks && c < contacts_.size(); ++c)
+        if (modes_[c].touch == Touch::sticks && std::hypot(list[0].friction[c][0], list[0].friction[c][1]) >=
+                                                    kAtLimit * p.contacts[c].static_friction * list[0].normal[c])
+          excluded_[c].stick = true;
+      return true;
+    }
+    together_ = last > 0 ? kLonger * last : kTrial / std::max(dynamics_.speed(), 1.0L);
+    for (const std::size_t c : limited) excluded_[c].stick = false;
+    return hold_together(together_, outcome) && hold_to_grow(outcome);
+  }
+
+  // Holds all contacts that stick; returns false if the motion ends meanwhile.
+  bool hold_together(long double time, Outcome& outcome) {
+    const Rational to(at_.t.get_d() + static_cast<double>(time));
+    if (to >= end_) return true;
+    const std::vector<bool> told = told_;
+    for (ContactMode& m : modes_) m.held = m.touch == Touch::sticks;
+    stop(modes_);
+    const bool goes_on = segment(to, outcome);
+    for (ContactMode& m : modes_) m.held = false;
+    told_ = told;
+    return goes_on && outcome.ok();
+  }
+
+  // As hold() does for one contact: those of two components are held until their slip has a velocity by which it is followed.
+  bool hold_to_grow(Outcome& outcome) {
+    look();
+    ContactProblem p = with_touching();
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      if (contacts_[c].slip.size() == 2 && was_held(c)) against_friction(p, c);
+    const std::vector<ContactSolution> list = consistent_modes(p);
+    if (list.size() != 1) return true;
+    long double h = 0;
+    std::vector<std::size_t> slipping;
+    for (std::size_t c = 0; c < contacts_.size(); ++c) {
+      if (!was_held(c) || contacts_[c].slip.size() != 2 || list[0].modes[c].touch != Touch::slips) continue;
+      slipping.push_back(c);
+      h = std::max(h, time_to_grow(c, list[0].x, together_));
+    }
+    if (!(h > 2 * together_)) return true;
+    if (!hold_together(h - together_, outcome)) return false;
+    together_ = h;
+    for (const std::size_t c : slipping) held_[c] = h;
+    return true;
+  }
+
+  // How long a contact that was held for `trial` is to be held until the slip velocity is kHeld of its terms.
+  long double time_to_grow(std::size_t c, const std::vector<long double>& accelerations, long double trial) const {
+    constexpr long double kHeld = 1e-7L, kMost = 3e-2L, kRoundOff = 1e-9L;
+    const ContactDynamics::Place& at = dynamics_.place(c);
+    const long double rate = dynamics_.slip_acceleration(c, accelerations) / trial;
+    // A contact that never moved has terms of unknown size.
+    const long double scale = at.slip_scale > kRoundOff * at.slip_reach ? at.slip_scale : 1;
+    return std::min(std::sqrt(2 * kHeld * scale / rate), kMost / std::max(dynamics_.speed(), 1.0L));
+  }
+
   // Where a slip with two components begins without acceleration, its velocity grows by the square of the time, and as long
   // as it is small its direction is stiff. The contact is held for the time h in which the velocity reaches kHeld of its
   // terms; the error is of the order of h^3 (theory: contact). Returns false if the motion ends meanwhile.
   bool hold(Outcome& outcome) {
-    constexpr long double kHeld = 1e-7L, kTrial = 1e-6L, kMost = 3e-2L;
+    constexpr long double kTrial = 1e-6L;
     std::fill(held_.begin(), held_.end(), 0);
+    if (shares_friction(modes_)) return share_anew(outcome);
     std::size_t c = 0;
     while (c < contacts_.size() && !begins_at_rest(c)) ++c;
     if (c == contacts_.size()) return true;
-    const long double pace = 1 / std::max(dynamics_.speed(), 1.0L), trial = kTrial * pace;
+    const long double trial = kTrial / std::max(dynamics_.speed(), 1.0L);
     if (!hold_for(c, trial, outcome)) return outcome.ok();
     dynamics_.go(at_);
     ContactProblem p = with_touching();
@@ -324,9 +452,7 @@ class HybridMotion {
     const std::vector<ContactSolution> list = consistent_modes(p);
     if (list.size() != 1 || list[0].modes[c].touch != Touch::slips) return true;
     held_[c] = trial;
-    const long double rate = dynamics_.slip_acceleration(c, list[0].x) / trial, scale = dynamics_.place(c).slip_scale;
-    // A contact that never moved has terms of unknown size.
-    const long double h = std::min(std::sqrt(2 * kHeld * (scale > 0 ? scale : 1) / rate), kMost * pace);
+    const long double h = time_to_grow(c, list[0].x, trial);
     if (!(h > 2 * trial)) return true;
     if (!hold_for(c, h - trial, outcome)) return outcome.ok();
     held_[c] = h;
@@ -475,7 +601,8 @@ class HybridMotion {
       changed = true;
       if (known->second.change == ModeChange::turns) turned_[known->second.contact] = true;
       if (known->second.change == ModeChange::leaves) excluded_[known->second.contact].touch = true;
-      if (known->second.change == ModeChange::slips) excluded_[known->second.contact].stick = true;
+      if (known->second.change == ModeChange::slips)
+        excluded_[known->second.contact].stick = told_[known->second.contact] = true;
       if (known->second.change == ModeChange::sticks) excluded_[known->second.contact].slips = true;
     }
     return (changed || to < end_) && every_event_known && at_.t < end_;
@@ -494,6 +621,8 @@ class HybridMotion {
   std::vector<Rational> times_;
   ContactModes modes_;
   std::vector<Excluded> excluded_;
+  std::vector<bool> told_;         // whether the event that ended the last segment tells that a contact slips
+  long double together_ = 0;       // for how long contacts that share friction were held last
   std::vector<bool> turned_;       // whether the last segment ended as a slip turned
   long double before_ = 0;         // the largest acceleration without contacts where the last mode began
   std::vector<long double> held_;  // the time for which a contact that begins to slip was held

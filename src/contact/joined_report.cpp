@@ -35,7 +35,8 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
     if (r.smallest_sigma < all_.smallest_sigma)
       all_.smallest_sigma = r.smallest_sigma, all_.smallest_sigma_t = r.smallest_sigma_t;
     for (const Warning& w : r.warnings)
-      if (std::none_of(all_.warnings.begin(), all_.warnings.end(), [&](const Warning& o) { return same_but_time(o, w); }))
+      if (std::none_of(all_.warnings.begin(), all_.warnings.end(),
+                       [&](const Warning& o) { return same_but_time(o, w); }))
         all_.warnings.push_back(w);
     all_.method.taylor_steps += r.method.taylor_steps;
   }
@@ -87,6 +88,12 @@ void JoinedReport::set(double t, const std::vector<EventReport::Change>& changes
 }
 
 void JoinedReport::event(const std::string& name, double t) { all_.events.push_back({name, {t, ""}, {}}); }
+
+void JoinedReport::take_back(const std::string& name) {
+  const auto last =
+      std::find_if(all_.events.rbegin(), all_.events.rend(), [&](const EventReport& e) { return e.name == name; });
+  if (last != all_.events.rend()) all_.events.erase(std::next(last).base());
+}
 
 SimulationReport JoinedReport::report(Outcome outcome, double t, std::size_t rows) {
   all_.outcome = std::move(outcome);

@@ -24,16 +24,28 @@ void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
 namespace {
 
 // The numbers of a contact in a mode, in the order of their parameters.
-enum class ModeNumber : std::uint8_t { along, across, fast, rest, slack, depth };
-constexpr std::size_t kModeNumbers = 6;
+enum class ModeNumber : std::uint8_t { along, across, fast, rest, slack, depth, given };
+constexpr std::size_t kModeNumbers = 8;
 
-std::array<long double, kModeNumbers> numbers_of(const ContactMode& m) {
-  return {m.direction[0], m.direction[1], m.fast.value_or(0), m.rest, m.slack, m.depth};
+// Then, of each component that is shared, its part of each force that holds.
+std::vector<long double> numbers_of(const ContactMode& m) {
+  std::vector<long double> list = {m.direction[0], m.direction[1], m.fast.value_or(0), m.rest,
+                                   m.slack,        m.depth,        m.shares[0].given,  m.shares[1].given};
+  for (const FrictionShare& s : m.shares)
+    if (m.touch == Touch::sticks && s.shared) list.insert(list.end(), s.of.begin(), s.of.end());
+  return list;
 }
 
 class ModeBuilder {
  public:
-  explicit ModeBuilder(const Model& model) : model_(clone(model)), g_(*model_->graph) { begin(); }
+  ModeBuilder(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes)
+      : model_(clone(model)), g_(*model_->graph) {
+    begin();
+    if (!shares_friction(modes)) return;
+    for (std::size_t c = 0; c < contacts.size(); ++c)
+      for (std::size_t a = 0; modes[c].touch == Touch::sticks && a < contacts[c].slip.size(); ++a)
+        if (!modes[c].shares[a].shared) held_.push_back({{c, a}, hold(contacts[c], a)});
+  }
 
   void add(const Contact& of, const ContactMode& mode) {
     Contact c = of;
@@ -41,7 +53,8 @@ class ModeBuilder {
     for (Expr& v : c.slip) v = g_.own(v);
     c.friction = g_.own(c.friction), c.static_friction = g_.own(c.static_friction);
     numbers_.clear();
-    for (std::size_t k = 0; k < kModeNumbers; ++k) numbers_.push_back(parameter(c.name + ".begin." + std::to_string(k)));
+    for (std::size_t k = 0; k < numbers_of(mode).size(); ++k)
+      numbers_.push_back(parameter(c.name + ".begin." + std::to_string(k)));
     Expr normal = g_.zero(), friction = g_.zero();
     components_.push_back(std::vector<Expr>(c.slip.size(), g_.zero()));
     if (c.under) {
@@ -139,15 +152,37 @@ class ModeBuilder {
     model_->forces.push_back(std::move(f));
   }
 
-  Expr stick(const Contact& c, const ContactMode& mode, Expr normal) {
-    if (mode.free) return g_.zero();
+  // The force that holds a component.
+  Expr hold(const Contact& c, std::size_t a) {
+    const std::string tag = std::to_string(a + 1);
+    return keep(c.name + ".slip" + tag, c.name + ".t" + tag, g_.own(c.slip[a]), 1);
+  }
+
+  // Components of friction that is shared.
+  std::vector<Expr> shared(const Contact& c, const ContactMode& mode) {
     std::vector<Expr> forces;
+    std::size_t next = kModeNumbers;
     for (std::size_t a = 0; a < c.slip.size(); ++a) {
-      const std::string tag = std::to_string(a + 1);
-      forces.push_back(keep(c.name + ".slip" + tag, c.name + ".t" + tag, c.slip[a], 1));
-      components_.back()[a] = forces.back();
-      act(c, 1, forces.back(), c.slip[a]);
+      Expr force = numbers_[static_cast<std::size_t>(ModeNumber::given) + a];
+      for (const auto& [place, holds] : held_) {
+        if (mode.shares[a].shared)
+          force = force + numbers_[next++] * holds;
+        else if (place.contact == contact_ && place.component == a)
+          force = force + holds;
+      }
+      forces.push_back(force);
     }
+    return forces;
+  }
+
+  Expr stick(const Contact& c, const ContactMode& mode, Expr normal) {
+    std::vector<Expr> forces;
+    if (held_.empty())
+      for (std::size_t a = 0; a < c.slip.size(); ++a) forces.push_back(hold(c, a));
+    else
+      forces = shared(c, mode);
+    components_.back() = forces;
+    for (std::size_t a = 0; a < c.slip.size(); ++a) act(c, 1, forces[a], c.slip[a]);
     const Expr size =
         forces.size() == 1 ? forces[0] : pow(forces[0] * forces[0] + forces[1] * forces[1], Rational(1, 2));
     if (mode.held) return size;
@@ -204,7 +239,12 @@ class ModeBuilder {
   std::shared_ptr<Model> model_;
   Graph& g_;
   std::map<std::string, ModeEvent> events_;
-  std::vector<Expr> normals_, numbers_;  // numbers_: of the contact that is added
+  struct Held {
+    HeldComponent place;
+    Expr force;
+  };
+  std::vector<Held> held_;                     // where friction is shared
+  std::vector<Expr> normals_, numbers_;        // numbers_: of the contact that is added
   std::vector<std::vector<Expr>> components_;  // of friction, along the components of the slip
   std::size_t contact_ = 0;
   std::vector<bool> stopped_;
@@ -248,7 +288,7 @@ std::vector<std::string> contact_columns(const std::vector<Contact>& contacts) {
 }
 
 ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes) {
-  ModeBuilder builder(model);
+  ModeBuilder builder(model, contacts, modes);
   for (std::size_t c = 0; c < contacts.size(); ++c) builder.add(contacts[c], modes[c]);
   if (!contacts.empty() && contacts[0].forces) builder.put(*contacts[0].forces);
   return builder.take();
@@ -268,7 +308,9 @@ std::vector<int> mode_shape(const std::vector<Contact>& contacts, const ContactM
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const ContactMode& m = modes[c];
     const bool backwards = contacts[c].slip.size() == 1 && m.touch == Touch::slips && m.direction[0] < 0;
-    shape.insert(shape.end(), {static_cast<int>(m.touch), m.free, m.held, m.fast.has_value(), backwards});
+    const bool sticks = m.touch == Touch::sticks;
+    shape.insert(shape.end(), {static_cast<int>(m.touch), sticks && m.shares[0].shared, sticks && m.shares[1].shared,
+                               m.held, m.fast.has_value(), backwards});
   }
   return shape;
 }

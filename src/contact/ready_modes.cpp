@@ -21,8 +21,7 @@ Outcome ReadyModes::derive(const ContactModes& modes, const std::vector<Rational
   mode = {mode_model(*s_.model, contacts_, modes), nullptr, {}};
   Model& model = *mode.of.model;
   const std::size_t first = model.parameters.size() - numbers.size();
-  for (std::size_t k = 0; k < numbers.size(); ++k)
-    model.parameters[first + k].value = model.graph->number(numbers[k]);
+  for (std::size_t k = 0; k < numbers.size(); ++k) model.parameters[first + k].value = model.graph->number(numbers[k]);
   Scenario scenario;
   if (Outcome o = make_scenario(mode.of.model, *s_.system.form, {}, scenario); !o.ok()) return o;
   mode.own = std::make_unique<Workspace>(scenario);
