@@ -1,6 +1,6 @@
 // The equations of the contacts at a state, as numbers: accelerations and impulses, gaps and slip velocities.
 #pragma once
-#include "contact/contact_law.h"
+#include "contact/law/mode_equations.h"
 #include "contact/mode_model.h"
 #include "setup/scenario.h"
 

@@ -5,13 +5,12 @@
 #include <cmath>
 
 #include "contact/accumulation.h"
-#include "contact/contact_dynamics.h"
 #include "contact/impact.h"
 #include "contact/joined_report.h"
+#include "contact/law/consistent_modes.h"
 #include "contact/ready_modes.h"
-#include "contact/round_off.h"
 #include "contact/segment_rows.h"
-#include "contact/shared_friction.h"
+#include "contact/slip_start.h"
 #include "contact/switched_motion.h"
 #include "numeric/number.h"
 #include "simulation/request.h"
@@ -37,227 +36,149 @@ void refuse(const SimulationOptions& o, const Scenario& s, bool switches) {
 class HybridMotion {
  public:
   HybridMotion(Workspace& s, const std::vector<Contact>& contacts, const SimulationOptions& o, RowSink& sink)
-      : s_(s), contacts_(contacts), o_(o), dynamics_(s, contacts), ready_(s, contacts), near_(contacts, dynamics_, at_),
-        rows_(sink, contacts), joined_(*s.model), accumulation_(contacts.size()) {
-    at_.t = o.state.t ? *o.state.t : Rational(s.state.t);
-    at_.q = s.state.q, at_.qd = s.state.qd, at_.states = s.state.states;
+      : s_(s), o_(o), bodies_(s, contacts, start_of(s, o)), ready_(s, contacts), rows_(sink, contacts),
+        joined_(*s.model), accumulation_(contacts.size()) {
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
-    if (end_ < at_.t) throw Failure({}, "a motion with contacts goes forwards only", "an end after the start");
+    if (end_ < bodies_.at.t) throw Failure({}, "a motion with contacts goes forwards only", "an end after the start");
     times_ = o.at;
     if (o.every)
-      for (Rational t = at_.t; t < end_; t += *o.every) times_.push_back(t);
+      for (Rational t = bodies_.at.t; t < end_; t += *o.every) times_.push_back(t);
     if (!times_.empty() && times_.back() != end_) times_.push_back(end_);
     rows_.only_at(times_);
+    slips_.emplace(bodies_, joined_, end_,
+                   [this](const Rational& to, Outcome& outcome) { return segment(to, outcome); });
   }
 
   SimulationReport go() {
-    excluded_.assign(contacts_.size(), {});
-    turned_.assign(contacts_.size(), false);
-    told_.assign(contacts_.size(), false);
-    held_.assign(contacts_.size(), 0);
     // A parameter that is varied may give a coefficient any value.
-    if (const std::vector<Diagnostic> wrong = wrong_coefficients(contacts_, *s_.model); !wrong.empty())
-      return joined_.report({OutcomeKind::inconsistent, wrong[0].message, wrong[0].hint}, at_.t.get_d(), 0);
+    if (const std::vector<Diagnostic> wrong = wrong_coefficients(bodies_.contacts, *s_.model); !wrong.empty())
+      return joined_.report({OutcomeKind::inconsistent, wrong[0].message, wrong[0].hint}, bodies_.at.t.get_d(), 0);
     Outcome outcome = not_inside(" at the start", "start at a position where the gap is zero or positive");
     constexpr std::size_t kMostSegments = 100'000;
-    for (std::size_t k = 0; outcome.ok() && at_.t < end_; ++k) {
+    for (std::size_t k = 0; outcome.ok() && bodies_.at.t < end_; ++k) {
       if (k == kMostSegments)
         outcome = {OutcomeKind::interrupted, "more than 100000 changes of the contacts" + when(),
                    "end the motion earlier"};
       else
         outcome = choose();
       if (outcome.ok() && !segment(end_, outcome)) break;
-      if (outcome.ok() && !hold(outcome)) break;
+      if (outcome.ok() && !slips_->hold(outcome)) break;
       if (outcome.ok()) outcome = not_inside(when(), kPassed);
     }
     if (outcome.ok()) outcome = not_inside(when(), kPassed);
-    return joined_.report(std::move(outcome), at_.t.get_d(), rows_.rows());
+    return joined_.report(std::move(outcome), bodies_.at.t.get_d(), rows_.rows());
   }
 
  private:
-  // A slip velocity with two components ends at kRest and begins at kSeed of the velocities: at zero it has no direction.
-  static constexpr long double kRest = 1e-12L, kSeed = 1e-10L;
-  // The jump that stops a velocity leaves this part of what the velocity has been.
-  static constexpr long double kLeftOver = 1e-16L;
+  // A slip velocity with two components ends at this part of the velocities.
+  static constexpr long double kRest = 1e-12L;
   // Impacts at one instant; others follow after a segment.
   static constexpr std::size_t kMostImpacts = 16;
   static constexpr const char* kPassed =
       "the contact is deeper than the round-off of its event: take a smaller --tolerance, or end the motion before";
-  // What the event at which the last segment ended excludes.
-  struct Excluded {
-    bool touch = false, stick = false, slips = false;
-  };
-  std::string when() const { return " at t = " + number_text(at_.t.get_d(), 12); }
+  static ContactState start_of(const Workspace& s, const SimulationOptions& o) {
+    return {o.state.t ? *o.state.t : Rational(s.state.t), s.state.q, s.state.qd, s.state.states};
+  }
+  std::string when() const { return " at t = " + number_text(bodies_.at.t.get_d(), 12); }
 
   // An outcome if a gap is negative.
   Outcome not_inside(const std::string& where, const std::string& hint) {
-    dynamics_.go(at_);
-    for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (dynamics_.place(c).gap < 0 && !near_.negligible(c))
+    bodies_.dynamics.go(bodies_.at);
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
+      if (bodies_.dynamics.place(c).gap < 0 && !bodies_.near.negligible(c))
         return {OutcomeKind::inconsistent,
-                "the gap of contact '" + contacts_[c].name + "' is " +
-                    number_text(static_cast<double>(dynamics_.place(c).gap), 6) + where + ", and a gap is not negative",
+                "the gap of contact '" + bodies_.contacts[c].name + "' is " +
+                    number_text(static_cast<double>(bodies_.dynamics.place(c).gap), 6) + where +
+                    ", and a gap is not negative",
                 hint};
     return {};
   }
-  void look() {
-    dynamics_.go(at_);
-    if (dynamics_.note_fall(at_)) dynamics_.go(at_);
-  }
+
   // Impacts where a closed gap shrinks, then the modes by the accelerations.
   Outcome choose() {
-    look();
-    for (std::size_t k = 0; shrinks() && k < kMostImpacts; ++k)
+    bodies_.look();
+    for (std::size_t k = 0; bodies_.shrinks() && k < kMostImpacts; ++k)
       if (Outcome o = impact(); !o.ok()) return o;
     land();
-    ContactProblem p = with_touching();
-    for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (contacts_[c].slip.size() == 2 && (excluded_[c].stick || was_held(c))) against_friction(p, c);
+    ContactProblem p = bodies_.with_touching();
+    slips_->guess_directions(p);
     const std::vector<ContactSolution> list = consistent_modes(p);
     if (list.size() != 1) return undecided(list.size());
-    tell_who_slips_too(list[0].modes);
-    modes_ = list[0].modes;
-    if (const auto open = of_modes(p, ContactModes(contacts_.size()))) {
-      before_ = 0;
-      for (const long double a : open->x) before_ = std::max(before_, std::abs(a));
+    slips_->tell_who_slips_too(list[0].modes);
+    bodies_.modes = list[0].modes;
+    if (const auto open = of_modes(p, ContactModes(bodies_.contacts.size()))) {
+      bodies_.before = 0;
+      for (const long double a : open->x) bodies_.before = std::max(bodies_.before, std::abs(a));
     }
-    come_to_rest();
+    bodies_.come_to_rest();
     long double force = 0;
     for (const long double b : p.b) force = std::max(force, std::abs(b));
     std::vector<std::size_t> beginning;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      modes_[c].rest = kRest * dynamics_.place(c).slip_scale;
-      modes_[c].depth = RoundOff::kPlace / 2 * near_.place_size(c) + std::max(0.0L, -dynamics_.place(c).gap);
-      modes_[c].slack = kRest * (force > 0 ? force : 1);
-      if (contacts_[c].under) modes_[c].slack *= p.contacts[c].friction;
-      if (contacts_[c].slip.size() < 2 || modes_[c].touch != Touch::slips) continue;
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+      bodies_.modes[c].rest = kRest * bodies_.dynamics.place(c).slip_scale;
+      bodies_.modes[c].depth =
+          RoundOff::kPlace / 2 * bodies_.near.place_size(c) + std::max(0.0L, -bodies_.dynamics.place(c).gap);
+      bodies_.modes[c].slack = kRest * (force > 0 ? force : 1);
+      if (bodies_.contacts[c].under) bodies_.modes[c].slack *= p.contacts[c].friction;
+      if (bodies_.contacts[c].slip.size() < 2 || bodies_.modes[c].touch != Touch::slips) continue;
       if (p.contacts[c].moves)
-        modes_[c].fast = fast(c);
-      else if (contacts_[c].rough())
+        bodies_.modes[c].fast = bodies_.fast(c);
+      else if (bodies_.contacts[c].rough())
         beginning.push_back(c);
     }
-    if (beginning.size() == 1)
-      set_slip(beginning[0], modes_[beginning[0]].direction, first_slip(beginning[0], list[0].x));
-    else if (!beginning.empty())
-      begin_together(beginning, list[0].x);
+    slips_->begin(beginning, list[0].x);
     // The velocities at the end of a segment have the round-off of those before, which may be much larger.
-    dynamics_.go(at_);
-    stop(modes_);
-    drop_left_over();
+    bodies_.dynamics.go(bodies_.at);
+    bodies_.stop(bodies_.modes);
+    bodies_.drop_left_over();
     return {};
-  }
-
-  // From which slip velocity on a contact that slips has the direction v/|v|: nullopt where v is small, unless it has turned
-  // since, so that it passes no zero.
-  std::optional<long double> fast(std::size_t c) const {
-    constexpr long double kFar = 1e-3L, kPart = 1.0L / 16;
-    const ContactDynamics::Place& at = dynamics_.place(c);
-    const long double far = kFar * at.slip_scale, v = std::hypot(at.slip[0], at.slip[1]);
-    if (v < far && !turned_[c]) return std::nullopt;
-    return kPart * std::min(v, far);
-  }
-
-  // What the jump leaves of velocities that it stops. Those that a constraint joins, as the norm of a quaternion does, are
-  // dropped together: a part of them would contradict the constraint.
-  void drop_left_over() {
-    for (std::size_t a = 0; a < at_.qd.size(); ++a)
-      if (std::abs(at_.qd[a]) <= kLeftOver * dynamics_.most(a)) at_.qd[a] = 0;
-    for (const std::vector<long double>& row : dynamics_.accelerations().Phi) {
-      long double now = 0, most = 0;
-      for (std::size_t a = 0; a < row.size(); ++a)
-        if (row[a] != 0)
-          now = std::max<long double>(now, std::abs(at_.qd[a])), most = std::max(most, dynamics_.most(a));
-      for (std::size_t a = 0; a < row.size(); ++a)
-        if (row[a] != 0 && now <= RoundOff::kPlace * most) at_.qd[a] = 0;
-    }
-  }
-
-  // The accelerations, in which each contact may do what its gap and the event at which the last segment ended allow.
-  ContactProblem with_touching() const {
-    ContactProblem p = dynamics_.accelerations();
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      ContactRows& rows = p.contacts[c];
-      rows.may_touch = near_.closed(c) && near_.gap_rate(c) == 0 && !excluded_[c].touch;
-      rows.may_stick = !excluded_[c].stick;
-      if (excluded_[c].touch) rows.before = before_;
-      rows.moves = rows.moves && !excluded_[c].slips;
-      // A gap that is open, or opens, is not bounded by its acceleration.
-      if (!near_.closed(c) || near_.gap_rate(c) > 0) rows.normal.assign(at_.q.size(), 0), rows.normal_rate = 0;
-    }
-    return p;
-  }
-
-  // Velocities within round-off of those that the motion had are zero, and so are coordinates: where the modes leave no
-  // motion, the remainders would contradict each other.
-  void come_to_rest() {
-    constexpr long double kZero = 1e-13L, kNoPlace = 1e-16L;
-    most_place_.resize(at_.q.size(), 0);
-    for (std::size_t a = 0; a < at_.qd.size(); ++a) {
-      if (std::abs(at_.qd[a]) <= kZero * dynamics_.most(a)) at_.qd[a] = 0;
-      most_place_[a] = std::max<long double>(most_place_[a], std::abs(at_.q[a]));
-      if (std::abs(at_.q[a]) <= kNoPlace * most_place_[a]) at_.q[a] = 0;
-    }
   }
 
   Outcome undecided(std::size_t modes) const {
     std::string names;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      if (!near_.closed(c) || contacts_[c].under) continue;
-      names += (names.empty() ? "'" : ", '") + contacts_[c].name + "'";
-      if (modes == 0 && dynamics_.loses_rank(c)) return rank_lost(contacts_[c].name, when());
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+      if (!bodies_.near.closed(c) || bodies_.contacts[c].under) continue;
+      names += (names.empty() ? "'" : ", '") + bodies_.contacts[c].name + "'";
+      if (modes == 0 && bodies_.dynamics.loses_rank(c)) return rank_lost(bodies_.contacts[c].name, when());
     }
     return painleve(modes, names + " ", when());
   }
 
-  // Whether a closed gap shrinks.
-  bool shrinks() const {
-    bool any = false;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) any = any || (near_.closed(c) && near_.gap_rate(c) < 0);
-    return any;
-  }
-
-  // Impacts within round-off of one instant for which no mode is consistent follow each other: the least gap comes first.
-  void first_alone(std::vector<bool>& touches) const {
-    std::size_t first = contacts_.size();
-    for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (touches[c] && near_.gap_rate(c) < 0 &&
-          (first == contacts_.size() || dynamics_.place(c).gap < dynamics_.place(first).gap))
-        first = c;
-    for (std::size_t c = 0; c < contacts_.size(); ++c)
-      touches[c] = touches[c] && (c == first || near_.gap_rate(c) == 0);
-  }
-
   Outcome impact() {
-    const std::size_t n = at_.q.size();
+    const std::size_t n = bodies_.at.q.size();
     std::vector<bool> touches;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) touches.push_back(near_.closed(c) && near_.gap_rate(c) <= 0);
-    std::vector<std::vector<long double>> list = impact_jumps(dynamics_, contacts_, touches);
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
+      touches.push_back(bodies_.near.closed(c) && bodies_.near.gap_rate(c) <= 0);
+    std::vector<std::vector<long double>> list = impact_jumps(bodies_.dynamics, bodies_.contacts, touches);
     if (list.size() != 1) {
-      first_alone(touches);
-      list = impact_jumps(dynamics_, contacts_, touches);
+      bodies_.first_alone(touches);
+      list = impact_jumps(bodies_.dynamics, bodies_.contacts, touches);
     }
     if (list.size() != 1) return undecided(list.size());
-    std::vector<long double> before(at_.qd.begin(), at_.qd.end()), after = before;
+    std::vector<long double> before(bodies_.at.qd.begin(), bodies_.at.qd.end()), after = before;
     for (std::size_t a = 0; a < n; ++a) after[a] += list[0][a];
     constexpr long double kGrows = 1e-12L;
     // Formulas that hold t move a wall, which may give energy.
-    if (!walls_move(contacts_) && dynamics_.energy(after) > dynamics_.energy(before) * (1 + kGrows))
+    if (!walls_move(bodies_.contacts) &&
+        bodies_.dynamics.energy(after) > bodies_.dynamics.energy(before) * (1 + kGrows))
       return {OutcomeKind::inconsistent, "the impact would raise the energy" + when(),
-              contacts_[0].law == ImpactLaw::newton
+              bodies_.contacts[0].law == ImpactLaw::newton
                   ? "Newton's law with friction does so in this direction: impact = \"poisson\" in the contacts"
                   : "take a smaller restitution"};
     std::vector<EventReport::Change> changes;
     for (std::size_t a = 0; a < n; ++a) {
       const auto v = static_cast<double>(after[a]);
-      if (v != at_.qd[a]) changes.push_back({s_.model->coordinates[a].name + "'", {at_.qd[a], ""}, {v, ""}});
-      at_.qd[a] = v;
+      if (v != bodies_.at.qd[a])
+        changes.push_back({s_.model->coordinates[a].name + "'", {bodies_.at.qd[a], ""}, {v, ""}});
+      bodies_.at.qd[a] = v;
     }
-    joined_.set(at_.t.get_d(), changes);
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      if (touches[c] && near_.gap_rate(c) != 0 && !contacts_[c].under) accumulation_.impact(c, at_.t.get_d());
-      excluded_[c] = {};
+    joined_.set(bodies_.at.t.get_d(), changes);
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+      if (touches[c] && bodies_.near.gap_rate(c) != 0 && !bodies_.contacts[c].under)
+        accumulation_.impact(c, bodies_.at.t.get_d());
+      bodies_.excluded[c] = {};
     }
-    dynamics_.go(at_);
+    bodies_.dynamics.go(bodies_.at);
     land();
     return {};
   }
@@ -267,290 +188,47 @@ class HybridMotion {
   // the impacts of each set the others in motion; and so does a slip that friction ends within round-off of the place.
   void land() {
     constexpr double kLeft = 1e-7;
-    const double t = at_.t.get_d();
-    ContactModes stops(contacts_.size());
+    const double t = bodies_.at.t.get_d();
+    ContactModes stops(bodies_.contacts.size());
     bool any = false;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      if (!near_.closed(c) || contacts_[c].under) continue;
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+      if (!bodies_.near.closed(c) || bodies_.contacts[c].under) continue;
       const std::optional<double> limit = accumulation_.limit(c);
-      const bool rests = near_.gap_rate(c) != 0 && ((limit && *limit - t < kLeft) || near_.hardly_rises(c));
-      if (rests || near_.gap_rate(c) == 0) stops[c].touch = Touch::slips;
+      const bool rests =
+          bodies_.near.gap_rate(c) != 0 && ((limit && *limit - t < kLeft) || bodies_.near.hardly_rises(c));
+      if (rests || bodies_.near.gap_rate(c) == 0) stops[c].touch = Touch::slips;
       if (!rests) continue;
       any = true;
-      joined_.event(contacts_[c].name + ".rests", limit ? std::max(*limit, t) : t);
+      joined_.event(bodies_.contacts[c].name + ".rests", limit ? std::max(*limit, t) : t);
       accumulation_.forget(c);
     }
     if (!any) return;
-    stop(stops);
-    for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (stops[c].touch != Touch::open && near_.hardly_slips(c)) stops[c].touch = Touch::sticks;
-    stop(stops);
-  }
-
-  // The jump of least change after which what touches does not move along its normal, and what sticks does not slip. A
-  // contact that the others stop already is left out.
-  void stop(const ContactModes& modes) {
-    const ContactProblem p = dynamics_.stop();
-    const auto leave_out_dependent = [](const ContactProblem& of, ContactModes& stopped) {
-      share_friction(of, stopped);
-      for (ContactMode& m : stopped)
-        for (FrictionShare& share : m.shares) share.of.clear();
-    };
-    ContactModes stopped(contacts_.size());
-    std::optional<ContactSolution> jump;
-    if (!p.beta.empty()) jump = of_modes(p, stopped);
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      for (const Touch touch : {Touch::sticks, Touch::slips}) {
-        if (touch > modes[c].touch) continue;
-        stopped[c].touch = touch;
-        leave_out_dependent(p, stopped);
-        if (auto further = of_modes(p, stopped)) {
-          jump = std::move(further);
-          break;
-        }
-        stopped[c] = {};
-      }
-    }
-    if (jump) add_to_velocities(jump->x);
-    dynamics_.go(at_);
-  }
-
-  void add_to_velocities(const std::vector<long double>& jump) {
-    for (std::size_t a = 0; a < at_.qd.size(); ++a) at_.qd[a] = static_cast<double>(at_.qd[a] + jump[a]);
-  }
-
-  // The slip velocity from which a slip with two components is followed. After held_ it has grown with the acceleration,
-  // which is zero where the slip begins.
-  long double first_slip(std::size_t c, const std::vector<long double>& accelerations) const {
-    const long double seed = kSeed * std::max(dynamics_.speed(), 1.0L);
-    return held_[c] > 0 ? std::max(seed, dynamics_.slip_acceleration(c, accelerations) * held_[c] / 2) : seed;
-  }
-
-  // Whether a contact shared friction and may begin to slip.
-  bool was_held(std::size_t c) const { return together_ > 0 && modes_[c].touch == Touch::sticks; }
-
-  // Slips that begin at once on bodies that join them have velocities as their accelerations are.
-  void begin_together(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations) {
-    long double time = 0;
-    for (const std::size_t c : list)
-      if (const long double a = dynamics_.slip_acceleration(c, accelerations); a > 0)
-        time = std::max(time, first_slip(c, accelerations) / a);
-    std::vector<long double> jump = accelerations;
-    for (long double& v : jump) v *= time;
-    add_to_velocities(jump);
-  }
-
-  // Of contacts that shared friction, those that slip with the one at which the last segment ended.
-  void tell_who_slips_too(const ContactModes& now) {
-    if (!modes_.empty() && shares_friction(modes_))
-      for (std::size_t c = 0; c < now.size(); ++c)
-        if (modes_[c].touch == Touch::sticks && now[c].touch == Touch::slips && !told_[c])
-          joined_.event(contacts_[c].name + "." + word(contacts_[c], ModeChange::slips),
-                        at_.t.get_d() - static_cast<double>(together_));
-    told_.assign(contacts_.size(), false);
-  }
-
-  // Where contacts share friction, one at its limit may leave the rest to the others. Then they share it anew, which is no
-  // event; else they are held until those that begin to slip are told by their accelerations. Returns false if the motion
-  // ends meanwhile.
-  bool share_anew(Outcome& outcome) {
-    constexpr long double kSpared = 1e-9L, kTrial = 1e-6L, kLonger = 4;
-    std::vector<std::size_t> limited;
-    for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (excluded_[c].stick && modes_[c].touch == Touch::sticks) limited.push_back(c);
-    const long double last = std::exchange(together_, 0);
-    if (limited.empty()) return true;
-    look();
-    ContactProblem p = with_touching();
-    for (ContactRows& rows : p.contacts) rows.may_stick = true;
-    const std::vector<ContactSolution> list = consistent_modes(p);
-    const bool sticks =
-        list.size() == 1 && std::equal(modes_.begin(), modes_.end(), list[0].modes.begin(),
-                                       [](const ContactMode& a, const ContactMode& b) { return a.touch == b.touch; });
-    if (sticks && list[0].spare.value_or(0) > kSpared) {
-      for (const std::size_t c : limited) {
-        joined_.take_back(contacts_[c].name + "." + word(contacts_[c], ModeChange::slips));
-        excluded_[c].stick = told_[c] = false;
-      }
-      return true;
-    }
-    const ContactRows& rows = p.contacts[limited[0]];
-    if (rows.friction != rows.static_friction) {
-      // All at their limit slip with an acceleration.
-      constexpr long double kAtLimit = 1 - 1e-6L;
-      for (std::size_t c = 0; sticks && c < contacts_.size(); ++c)
-        if (modes_[c].touch == Touch::sticks && std::hypot(list[0].friction[c][0], list[0].friction[c][1]) >=
-                                                    kAtLimit * p.contacts[c].static_friction * list[0].normal[c])
-          excluded_[c].stick = true;
-      return true;
-    }
-    together_ = last > 0 ? kLonger * last : kTrial / std::max(dynamics_.speed(), 1.0L);
-    for (const std::size_t c : limited) excluded_[c].stick = false;
-    return hold_together(together_, outcome) && hold_to_grow(outcome);
-  }
-
-  // Holds all contacts that stick; returns false if the motion ends meanwhile.
-  bool hold_together(long double time, Outcome& outcome) {
-    const Rational to(at_.t.get_d() + static_cast<double>(time));
-    if (to >= end_) return true;
-    const std::vector<bool> told = told_;
-    for (ContactMode& m : modes_) m.held = m.touch == Touch::sticks;
-    stop(modes_);
-    const bool goes_on = segment(to, outcome);
-    for (ContactMode& m : modes_) m.held = false;
-    told_ = told;
-    return goes_on && outcome.ok();
-  }
-
-  // As hold() does for one contact: those of two components are held until their slip has a velocity by which it is followed.
-  bool hold_to_grow(Outcome& outcome) {
-    look();
-    ContactProblem p = with_touching();
-    for (std::size_t c = 0; c < contacts_.size(); ++c)
-      if (contacts_[c].slip.size() == 2 && was_held(c)) against_friction(p, c);
-    const std::vector<ContactSolution> list = consistent_modes(p);
-    if (list.size() != 1) return true;
-    long double h = 0;
-    std::vector<std::size_t> slipping;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      if (!was_held(c) || contacts_[c].slip.size() != 2 || list[0].modes[c].touch != Touch::slips) continue;
-      slipping.push_back(c);
-      h = std::max(h, time_to_grow(c, list[0].x, together_));
-    }
-    if (!(h > 2 * together_)) return true;
-    if (!hold_together(h - together_, outcome)) return false;
-    together_ = h;
-    for (const std::size_t c : slipping) held_[c] = h;
-    return true;
-  }
-
-  // How long a contact that was held for `trial` is to be held until the slip velocity is kHeld of its terms.
-  long double time_to_grow(std::size_t c, const std::vector<long double>& accelerations, long double trial) const {
-    constexpr long double kHeld = 1e-7L, kMost = 3e-2L, kRoundOff = 1e-9L;
-    const ContactDynamics::Place& at = dynamics_.place(c);
-    const long double rate = dynamics_.slip_acceleration(c, accelerations) / trial;
-    // A contact that never moved has terms of unknown size.
-    const long double scale = at.slip_scale > kRoundOff * at.slip_reach ? at.slip_scale : 1;
-    return std::min(std::sqrt(2 * kHeld * scale / rate), kMost / std::max(dynamics_.speed(), 1.0L));
-  }
-
-  // Where a slip with two components begins without acceleration, its velocity grows by the square of the time, and as long
-  // as it is small its direction is stiff. The contact is held for the time h in which the velocity reaches kHeld of its
-  // terms; the error is of the order of h^3 (theory: contact). Returns false if the motion ends meanwhile.
-  bool hold(Outcome& outcome) {
-    constexpr long double kTrial = 1e-6L;
-    std::fill(held_.begin(), held_.end(), 0);
-    if (shares_friction(modes_)) return share_anew(outcome);
-    std::size_t c = 0;
-    while (c < contacts_.size() && !begins_at_rest(c)) ++c;
-    if (c == contacts_.size()) return true;
-    const long double trial = kTrial / std::max(dynamics_.speed(), 1.0L);
-    if (!hold_for(c, trial, outcome)) return outcome.ok();
-    dynamics_.go(at_);
-    ContactProblem p = with_touching();
-    against_friction(p, c);
-    const std::vector<ContactSolution> list = consistent_modes(p);
-    if (list.size() != 1 || list[0].modes[c].touch != Touch::slips) return true;
-    held_[c] = trial;
-    const long double h = time_to_grow(c, list[0].x, trial);
-    if (!(h > 2 * trial)) return true;
-    if (!hold_for(c, h - trial, outcome)) return outcome.ok();
-    held_[c] = h;
-    if (holds_again(c)) excluded_[c].stick = false;
-    return true;
-  }
-
-  // Whether the friction that is needed to hold a contact, which was too large, no longer is: a disc that rocks needs most
-  // where it turns back.
-  bool holds_again(std::size_t c) {
-    dynamics_.go(at_);
-    ContactProblem p = with_touching();
-    p.contacts[c].may_stick = true;
-    const std::vector<ContactSolution> list = consistent_modes(p);
-    if (list.size() != 1 || list[0].modes[c].touch != Touch::sticks) return false;
-    const auto& T = list[0].friction[c];
-    return std::hypot(T[0], T[1]) < p.contacts[c].static_friction * list[0].normal[c];
-  }
-
-  // Whether the last segment ended with a slip of this contact that has two components and one coefficient of friction.
-  bool begins_at_rest(std::size_t c) const {
-    const ContactRows& rows = dynamics_.accelerations().contacts[c];
-    return excluded_[c].stick && modes_[c].touch == Touch::sticks && contacts_[c].slip.size() == 2 &&
-           rows.friction == rows.static_friction;
-  }
-
-  // Returns false if something else happens before.
-  bool hold_for(std::size_t c, long double time, Outcome& outcome) {
-    const Rational to(at_.t.get_d() + static_cast<double>(time));
-    if (to >= end_) return false;
-    modes_[c].held = true;
-    stop(modes_);
-    const bool goes_on = segment(to, outcome);
-    modes_[c].held = false;
-    excluded_[c].stick = true;
-    return goes_on && outcome.ok() && at_.t >= to;
-  }
-
-  // A slip that begins where the friction that holds has become too large begins against this friction, which is that of
-  // the mode before: resistance to rolling turns it.
-  void against_friction(ContactProblem& p, std::size_t c) const {
-    ContactModes modes = modes_;
-    for (std::size_t o = 0; o < modes.size(); ++o)
-      if (p.contacts[o].moves) modes[o].direction = p.contacts[o].direction;
-    modes[c].touch = Touch::sticks;
-    const auto held = of_modes(p, modes);
-    const long double size = held ? std::hypot(held->friction[c][0], held->friction[c][1]) : 0;
-    if (size > 0) p.contacts[c].direction = {-held->friction[c][0] / size, -held->friction[c][1] / size};
-  }
-
-  // The jump of least change that gives a contact the slip velocity v along d.
-  void set_slip(std::size_t c, const std::array<long double, 2>& d, long double v) {
-    ContactProblem p = dynamics_.impact(std::vector<bool>(contacts_.size(), false));
-    ContactModes modes(contacts_.size());
-    modes[c].touch = Touch::sticks;
-    p.contacts[c] = dynamics_.accelerations().contacts[c];
-    p.contacts[c].normal_rate = 0;
-    for (std::size_t a = 0; a < 2; ++a) p.contacts[c].tangential_rate[a] = dynamics_.place(c).slip[a] - v * d[a];
-    const auto jump = of_modes(p, modes);
-    if (!jump) return;
-    add_to_velocities(jump->x);
+    bodies_.stop(stops);
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
+      if (stops[c].touch != Touch::open && bodies_.near.hardly_slips(c)) stops[c].touch = Touch::sticks;
+    bodies_.stop(stops);
   }
 
   // A slip velocity with two components that vanishes on a curved line has no Taylor series there, and the steps become
   // short without end. Returns whether that is how the segment ended; the contact then sticks.
   bool slip_vanishes() {
     constexpr long double kVanished = 1e-8L;
-    dynamics_.go(at_);
+    bodies_.dynamics.go(bodies_.at);
     bool any = false;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      const ContactRows& rows = dynamics_.accelerations().contacts[c];
-      if (modes_[c].touch != Touch::slips || !rows.rough || rows.tangential.size() < 2) continue;
-      const auto& slip = dynamics_.place(c).slip;
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+      const ContactRows& rows = bodies_.dynamics.accelerations().contacts[c];
+      if (bodies_.modes[c].touch != Touch::slips || !rows.rough || rows.tangential.size() < 2) continue;
+      const auto& slip = bodies_.dynamics.place(c).slip;
       long double size = 0;
       for (const std::vector<long double>& t : rows.tangential)
-        for (std::size_t a = 0; a < at_.qd.size(); ++a) size = std::max(size, std::abs(t[a] * dynamics_.most(a)));
+        for (std::size_t a = 0; a < bodies_.at.qd.size(); ++a)
+          size = std::max(size, std::abs(t[a] * bodies_.dynamics.most(a)));
       if (std::hypot(slip[0], slip[1]) > kVanished * size) continue;
-      set_slip(c, {}, 0);
-      joined_.event(contacts_[c].name + "." + word(contacts_[c], ModeChange::sticks), at_.t.get_d());
+      bodies_.set_slip(c, {}, 0);
+      joined_.event(bodies_.contacts[c].name + "." + word(bodies_.contacts[c], ModeChange::sticks),
+                    bodies_.at.t.get_d());
       any = true;
     }
-    return any;
-  }
-
-  // The places at which a segment begins close the gaps of what touches, which may push an open gap below the depth at which
-  // it hits. Returns whether that is so; the depth is then that of the gap.
-  bool deeper(const std::vector<double>& q) {
-    ContactState begin = at_;
-    begin.q = q;
-    dynamics_.go(begin);
-    bool any = false;
-    for (std::size_t c = 0; c < contacts_.size(); ++c) {
-      const long double gap = dynamics_.place(c).gap;
-      if (modes_[c].touch != Touch::open || gap > -modes_[c].depth || !near_.closed(c)) continue;
-      modes_[c].depth = RoundOff::kPlace / 2 * near_.place_size(c) - gap;
-      any = true;
-    }
-    dynamics_.go(at_);
     return any;
   }
 
@@ -563,9 +241,9 @@ class HybridMotion {
   bool segment(const Rational& to, Outcome& outcome) {
     ReadyMode* mode = nullptr;
     do {
-      mode = &ready_.begin(modes_, at_, outcome);
+      mode = &ready_.begin(bodies_.modes, bodies_.at, outcome);
       if (!outcome.ok()) return false;
-    } while (deeper(mode->own->state.q));
+    } while (bodies_.deeper(mode->own->state.q));
     SimulationOptions o = o_;
     o.state = {};
     o.to = to;
@@ -573,61 +251,51 @@ class HybridMotion {
     o.at_text.clear();
     o.at.clear();
     for (std::size_t k = rows_.due(); k < times_.size(); ++k)
-      if (times_[k] <= to && (joined_.segments() == 0 ? times_[k] >= at_.t : times_[k] > at_.t))
+      if (times_[k] <= to && (joined_.segments() == 0 ? times_[k] >= bodies_.at.t : times_[k] > bodies_.at.t))
         o.at.push_back(times_[k]);
     o.estimate = ErrorEstimate::never;
     o.conserved.clear();
     o.note = nullptr;
-    o.state.t = at_.t;
+    o.state.t = bodies_.at.t;
     rows_.begin_segment(mode->of.stopped);
     const SimulationReport r = simulate_in(*mode->own, o, rows_, &mode->plans);
     outcome = r.outcome;
-    const ContactState from = at_;
-    rows_.last_state(at_);
-    dynamics_.pass(from, at_);
+    const ContactState from = bodies_.at;
+    rows_.last_state(bodies_.at);
+    bodies_.dynamics.pass(from, bodies_.at);
     const bool every_event_known = joined_.add(r, mode->of.events);
     if ((outcome.kind == OutcomeKind::step_collapse || gave_up(r)) && slip_vanishes()) {
       outcome = {};
-      excluded_.assign(contacts_.size(), {});
+      bodies_.excluded.assign(bodies_.contacts.size(), {});
       return true;
     }
     if (!outcome.ok()) return false;
-    for (Excluded& e : excluded_) e = {};
-    turned_.assign(contacts_.size(), false);
+    for (TouchingBodies::Excluded& e : bodies_.excluded) e = {};
+    bodies_.turned.assign(bodies_.contacts.size(), false);
     bool changed = false;
     for (const EventReport& e : r.events) {
       const auto known = mode->of.events.find(e.name);
       if (known == mode->of.events.end()) continue;
       changed = true;
-      if (known->second.change == ModeChange::turns) turned_[known->second.contact] = true;
-      if (known->second.change == ModeChange::leaves) excluded_[known->second.contact].touch = true;
+      if (known->second.change == ModeChange::turns) bodies_.turned[known->second.contact] = true;
+      if (known->second.change == ModeChange::leaves) bodies_.excluded[known->second.contact].touch = true;
       if (known->second.change == ModeChange::slips)
-        excluded_[known->second.contact].stick = told_[known->second.contact] = true;
-      if (known->second.change == ModeChange::sticks) excluded_[known->second.contact].slips = true;
+        bodies_.excluded[known->second.contact].stick = true, slips_->told(known->second.contact);
+      if (known->second.change == ModeChange::sticks) bodies_.excluded[known->second.contact].slips = true;
     }
-    return (changed || to < end_) && every_event_known && at_.t < end_;
+    return (changed || to < end_) && every_event_known && bodies_.at.t < end_;
   }
 
   Workspace& s_;
-  const std::vector<Contact>& contacts_;
   const SimulationOptions& o_;
-  ContactDynamics dynamics_;
+  TouchingBodies bodies_;
   ReadyModes ready_;
-  ContactState at_;
-  RoundOff near_;
   SegmentRows rows_;
   JoinedReport joined_;
   Rational end_;
   std::vector<Rational> times_;
-  ContactModes modes_;
-  std::vector<Excluded> excluded_;
-  std::vector<bool> told_;         // whether the event that ended the last segment tells that a contact slips
-  long double together_ = 0;       // for how long contacts that share friction were held last
-  std::vector<bool> turned_;       // whether the last segment ended as a slip turned
-  long double before_ = 0;         // the largest acceleration without contacts where the last mode began
-  std::vector<long double> held_;  // the time for which a contact that begins to slip was held
   Accumulation accumulation_;
-  std::vector<long double> most_place_;  // the largest value of each coordinate at a change of mode
+  std::optional<SlipStart> slips_;
 };
 
 }  // namespace

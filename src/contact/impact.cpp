@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "contact/law/consistent_modes.h"
+
 namespace anholon {
 
 namespace {

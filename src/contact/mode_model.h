@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-#include "contact/contact_law.h"
+#include "contact/law/mode_equations.h"
 #include "modelfile/contacts.h"
 
 namespace anholon {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/law/consistent_modes.h"
+
 namespace anholon {
 
 bool RoundOff::closed(std::size_t c) const {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "contact/contact_law.h"
+#include "contact/law/consistent_modes.h"
 
 namespace anholon {
 

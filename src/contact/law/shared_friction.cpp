@@ -1,8 +1,8 @@
-#include "contact/shared_friction.h"
+#include "contact/law/shared_friction.h"
 
 #include <limits>
 
-#include "contact/rows.h"
+#include "contact/law/rows.h"
 
 namespace anholon {
 

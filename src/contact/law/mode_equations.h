@@ -81,7 +81,4 @@ bool shares_friction(const ContactModes& modes);
 // The accelerations and forces of given modes, whether or not they are consistent; nullopt if the equations are singular.
 std::optional<ContactSolution> of_modes(const ContactProblem& problem, const ContactModes& modes);
 
-// The consistent modes whose accelerations differ. Modes that give the same x are one; the first of them touches most.
-std::vector<ContactSolution> consistent_modes(const ContactProblem& problem);
-
 }  // namespace anholon

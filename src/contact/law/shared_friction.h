@@ -5,7 +5,7 @@
 // that of equal creep, T proportional to mu N where all would slip alike; where it leaves a cone, it is the one that spares
 // most of them.
 #pragma once
-#include "contact/contact_law.h"
+#include "contact/law/mode_equations.h"
 
 namespace anholon {
 

@@ -1,0 +1,129 @@
+#include "contact/law/consistent_modes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/law/rows.h"
+#include "contact/law/shared_friction.h"
+#include "contact/law/slip_directions.h"
+
+namespace anholon {
+
+namespace {
+
+using Real = long double;
+using Numbers = ContactNumbers;
+
+// free: the size of the accelerations without contacts. Where the contacts leave no acceleration, those of the modes
+// are the round-off of this size.
+bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
+  // A contact at rest that the others hold does not slip.
+  const bool others_hold =
+      std::any_of(f.modes.begin(), f.modes.end(), [](const ContactMode& m) { return m.touch == Touch::sticks; });
+  const Real force = largest(p.b), size = std::max(largest(f.x), free);
+  for (std::size_t c = 0; c < p.contacts.size(); ++c) {
+    const ContactRows& rows = p.contacts[c];
+    const ContactMode& mode = f.modes[c];
+    const Real scale = kSame * (largest(rows.normal) * std::max(size, rows.before) + std::abs(rows.normal_rate));
+    const Real N = f.normal[c];
+    if (mode.touch == Touch::open) {
+      if (rows.under) continue;
+      if (dot(rows.normal, f.x) + rows.normal_rate < -scale) return false;
+      continue;
+    }
+    // Friction multiplies the round-off of N.
+    constexpr Real kRounded = 1e-14L;
+    const Real lever = rows.under ? rows.static_friction : 1;
+    const Real forces = kSame * lever * std::max(force, std::abs(N)) + kRounded * rows.static_friction * force;
+    if (!rows.under && N < -forces) return false;
+    if (!rows.rough) continue;
+    const auto v = slip_rate(rows, f.x);
+    Real span = 0;
+    for (std::size_t a = 0; a < rows.tangential.size(); ++a)
+      span = std::max(span, kSame * (largest(rows.tangential[a]) * size + std::abs(rows.tangential_rate[a])) +
+                                kRounded * rows.friction * largest(rows.tangential[a]) * free);
+    const Real along = v[0] * mode.direction[0] + v[1] * mode.direction[1];
+    if (mode.touch == Touch::sticks) {
+      for (std::size_t a = 0; a < rows.tangential.size(); ++a)
+        if (mode.shares[a].shared && std::abs(v[a]) > span) return false;
+      if (std::hypot(f.friction[c][0], f.friction[c][1]) > rows.static_friction * N + forces) return false;
+    } else if (!rows.moves && (along < -span || (others_hold && rows.may_stick && along <= span))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+ContactMode mode(Touch touch, const std::array<Real, 2>& direction) {
+  ContactMode m;
+  m.touch = touch, m.direction = direction;
+  return m;
+}
+
+// The modes that one contact may take, those that touch first, and of them those that stick.
+ContactModes choices(const ContactRows& rows, bool may_touch) {
+  ContactModes list;
+  if (may_touch) {
+    if (rows.rough && !rows.moves && rows.may_stick) list.push_back(mode(Touch::sticks, {}));
+    if (!rows.rough || rows.moves || rows.tangential.size() > 1) {
+      list.push_back(mode(Touch::slips, rows.direction));
+    } else {
+      list.push_back(mode(Touch::slips, {1, 0}));
+      list.push_back(mode(Touch::slips, {-1, 0}));
+    }
+  }
+  if (rows.may_open) list.push_back({});
+  return list;
+}
+
+// Sticking is the way in which a contact that may stick goes on, whether or not it could begin to slip as well.
+bool alternatives(const ContactSolution& a, const ContactSolution& b) {
+  bool open = false;
+  for (std::size_t c = 0; c < a.modes.size(); ++c)
+    open = open || (a.modes[c].touch == Touch::open) != (b.modes[c].touch == Touch::open);
+  return open;
+}
+
+// Resistance is open where its contact is, unless a given force presses it.
+bool possible(const ContactProblem& p, const ContactModes& modes) {
+  for (std::size_t c = 0; c < modes.size(); ++c)
+    if (const auto& under = p.contacts[c].under)
+      if ((modes[c].touch == Touch::open) != (modes[*under].touch == Touch::open && p.contacts[c].pressed == 0))
+        return false;
+  return true;
+}
+
+}  // namespace
+
+std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
+  std::vector<ContactModes> each;
+  std::size_t count = 1;
+  for (const ContactRows& rows : p.contacts) {
+    each.push_back(choices(rows, rows.under ? p.contacts[*rows.under].may_touch : rows.may_touch));
+    count *= each.back().size();
+  }
+  std::vector<ContactSolution> list;
+  const auto open = of_modes(p, ContactModes(p.contacts.size()));
+  const Real free = std::max(open ? largest(open->x) : 0, Real(1e-300L));
+  for (std::size_t k = 0; k < count; ++k) {
+    ContactModes modes;
+    for (std::size_t c = 0, rest = k; c < each.size(); ++c) {
+      modes.push_back(each[c][rest % each[c].size()]);
+      rest /= each[c].size();
+    }
+    if (!possible(p, modes)) continue;
+    share_friction(p, modes);
+    auto f = with_directions(p, modes, free);
+    if (f && shares_friction(modes)) f = distributed(p, *f);
+    if (!f || !consistent(p, *f, free)) continue;
+    const bool known = std::any_of(list.begin(), list.end(), [&](const ContactSolution& o) {
+      Real difference = 0;
+      for (std::size_t i = 0; i < o.x.size(); ++i) difference = std::max(difference, std::abs(o.x[i] - f->x[i]));
+      return difference <= 100 * kSame * std::max({largest(o.x), largest(f->x), free}) || !alternatives(o, *f);
+    });
+    if (!known) list.push_back(*f);
+  }
+  return list;
+}
+
+}  // namespace anholon

@@ -1,0 +1,124 @@
+#include "contact/law/mode_equations.h"
+
+#include "contact/law/pivoted_equations.h"
+
+namespace anholon {
+
+std::vector<HeldComponent> held_components(const ContactProblem& p, const ContactModes& modes) {
+  std::vector<HeldComponent> list;
+  for (std::size_t c = 0; c < modes.size(); ++c)
+    for (std::size_t a = 0; modes[c].touch == Touch::sticks && a < p.contacts[c].tangential.size(); ++a)
+      if (!modes[c].shares[a].shared) list.push_back({c, a});
+  return list;
+}
+
+bool shares_friction(const ContactModes& modes) {
+  return std::any_of(modes.begin(), modes.end(), [](const ContactMode& m) {
+    return m.touch == Touch::sticks && (m.shares[0].shared || m.shares[1].shared);
+  });
+}
+
+namespace {
+
+using Real = long double;
+using Numbers = ContactNumbers;
+
+// The linear equations of given modes. Unknowns: x, lambda, N of each contact that touches, and the forces that hold.
+class ModeEquations {
+ public:
+  ModeEquations(const ContactProblem& p, const ContactModes& modes)
+      : p_(p), modes_(modes), held_(held_components(p, modes)) {
+    std::size_t size = p.b.size() + p.beta.size();
+    for (std::size_t c = 0; c < modes.size(); ++c) {
+      normals_.push_back(size);
+      if (modes[c].touch != Touch::open && !p.contacts[c].under) ++size;
+    }
+    forces_ = size;
+    m_.emplace(size + held_.size());
+    smooth();
+    for (std::size_t c = 0; c < modes.size(); ++c)
+      if (modes[c].touch != Touch::open) contact(c);
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+      const ContactRows& rows = p.contacts[held_[k].contact];
+      const Numbers& t = rows.tangential[held_[k].component];
+      std::copy(t.begin(), t.end(), (*m_)[forces_ + k]);
+      m_->right()[forces_ + k] = -rows.tangential_rate[held_[k].component];
+    }
+  }
+
+  std::optional<ContactSolution> solve() {
+    const auto found = m_->solve();
+    if (!found) return std::nullopt;
+    ContactSolution f;
+    f.modes = modes_;
+    f.x.assign(found->begin(), found->begin() + static_cast<std::ptrdiff_t>(p_.b.size()));
+    for (std::size_t c = 0; c < modes_.size(); ++c) {
+      const bool open = modes_[p_.contacts[c].under.value_or(c)].touch == Touch::open;
+      f.normal.push_back((open ? 0 : (*found)[normal(c)]) + p_.contacts[c].pressed);
+      std::array<Real, 2> t{};
+      for (std::size_t a = 0; modes_[c].touch == Touch::sticks && a < p_.contacts[c].tangential.size(); ++a) {
+        t[a] = modes_[c].shares[a].given;
+        for (std::size_t k = 0; k < held_.size(); ++k) t[a] += part(c, a, k) * (*found)[forces_ + k];
+      }
+      f.friction.push_back(t);
+    }
+    return f;
+  }
+
+ private:
+  std::size_t normal(std::size_t c) const { return normals_[p_.contacts[c].under.value_or(c)]; }
+  // Of the force k that holds, in component a of the friction of a contact.
+  Real part(std::size_t c, std::size_t a, std::size_t k) const {
+    const FrictionShare& share = modes_[c].shares[a];
+    if (share.shared) return k < share.of.size() ? share.of[k] : 0;
+    return held_[k].contact == c && held_[k].component == a ? 1 : 0;
+  }
+
+  void smooth() {
+    const std::size_t n = p_.b.size();
+    PivotedEquations& m = *m_;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) m[i][j] = p_.A[i][j];
+      for (std::size_t r = 0; r < p_.beta.size(); ++r) m[i][n + r] = -p_.Phi[r][i], m[n + r][i] = p_.Phi[r][i];
+      m.right()[i] = -p_.b[i];
+    }
+    for (std::size_t r = 0; r < p_.beta.size(); ++r) m.right()[n + r] = -p_.beta[r];
+  }
+
+  void contact(std::size_t c) {
+    const ContactRows& rows = p_.contacts[c];
+    PivotedEquations& m = *m_;
+    const std::size_t N = normal(c);
+    const bool presses = modes_[rows.under.value_or(c)].touch != Touch::open;
+    for (std::size_t i = 0; i < p_.b.size(); ++i) {
+      if (!rows.under) m[N][i] = rows.normal[i], m[i][N] -= rows.normal[i];
+      for (std::size_t a = 0; a < rows.tangential.size(); ++a) {
+        const Real t = rows.tangential[a][i];
+        if (modes_[c].touch == Touch::sticks) {
+          for (std::size_t k = 0; k < held_.size(); ++k) m[i][forces_ + k] -= part(c, a, k) * t;
+          m.right()[i] += modes_[c].shares[a].given * t;
+          continue;
+        }
+        const Real friction = rows.friction * modes_[c].direction[a] * t;
+        if (presses) m[i][N] += friction;
+        m.right()[i] -= friction * rows.pressed;
+      }
+    }
+    if (!rows.under) m.right()[N] = -rows.normal_rate;
+  }
+
+  const ContactProblem& p_;
+  const ContactModes& modes_;
+  std::vector<HeldComponent> held_;
+  std::vector<std::size_t> normals_;
+  std::size_t forces_ = 0;
+  std::optional<PivotedEquations> m_;
+};
+
+}  // namespace
+
+std::optional<ContactSolution> of_modes(const ContactProblem& p, const ContactModes& modes) {
+  return ModeEquations(p, modes).solve();
+}
+
+}  // namespace anholon

@@ -1,0 +1,181 @@
+#include "contact/slip_start.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/law/consistent_modes.h"
+
+namespace anholon {
+
+// A slip velocity with two components begins at this part of the velocities: at zero it has no direction.
+static constexpr long double kSeed = 1e-10L;
+
+bool SlipStart::hold(Outcome& outcome) {
+  constexpr long double kTrial = 1e-6L;
+  std::fill(held_.begin(), held_.end(), 0);
+  if (shares_friction(bodies_.modes)) return share_anew(outcome);
+  together_ = 0;
+  std::size_t c = 0;
+  while (c < bodies_.contacts.size() && !begins_at_rest(c)) ++c;
+  if (c == bodies_.contacts.size()) return true;
+  const long double trial = kTrial / std::max(bodies_.dynamics.speed(), 1.0L);
+  if (!hold_for(c, trial, outcome)) return outcome.ok();
+  bodies_.dynamics.go(bodies_.at);
+  ContactProblem p = bodies_.with_touching();
+  bodies_.against_friction(p, c);
+  const std::vector<ContactSolution> list = consistent_modes(p);
+  if (list.size() != 1 || list[0].modes[c].touch != Touch::slips) return true;
+  held_[c] = trial;
+  const long double h = time_to_grow(c, list[0].x, trial);
+  if (!(h > 2 * trial)) return true;
+  if (!hold_for(c, h - trial, outcome)) return outcome.ok();
+  held_[c] = h;
+  if (holds_again(c)) bodies_.excluded[c].stick = false;
+  return true;
+}
+
+void SlipStart::tell_who_slips_too(const ContactModes& now) {
+  if (!bodies_.modes.empty() && shares_friction(bodies_.modes))
+    for (std::size_t c = 0; c < now.size(); ++c)
+      if (bodies_.modes[c].touch == Touch::sticks && now[c].touch == Touch::slips && !told_[c])
+        joined_.event(bodies_.contacts[c].name + "." + word(bodies_.contacts[c], ModeChange::slips),
+                      bodies_.at.t.get_d() - static_cast<double>(together_));
+  told_.assign(bodies_.contacts.size(), false);
+}
+
+bool SlipStart::was_held(std::size_t c) const { return together_ > 0 && bodies_.modes[c].touch == Touch::sticks; }
+
+long double SlipStart::first_slip(std::size_t c, const std::vector<long double>& accelerations) const {
+  const long double seed = kSeed * std::max(bodies_.dynamics.speed(), 1.0L);
+  return held_[c] > 0 ? std::max(seed, bodies_.dynamics.slip_acceleration(c, accelerations) * held_[c] / 2) : seed;
+}
+
+void SlipStart::guess_directions(ContactProblem& p) const {
+  for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
+    if (bodies_.contacts[c].slip.size() == 2 && (bodies_.excluded[c].stick || was_held(c)))
+      bodies_.against_friction(p, c);
+}
+
+void SlipStart::begin(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations) {
+  if (list.size() == 1)
+    bodies_.set_slip(list[0], bodies_.modes[list[0]].direction, first_slip(list[0], accelerations));
+  else if (!list.empty())
+    begin_together(list, accelerations);
+}
+
+void SlipStart::begin_together(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations) {
+  long double time = 0;
+  for (const std::size_t c : list)
+    if (const long double a = bodies_.dynamics.slip_acceleration(c, accelerations); a > 0)
+      time = std::max(time, first_slip(c, accelerations) / a);
+  std::vector<long double> jump = accelerations;
+  for (long double& v : jump) v *= time;
+  bodies_.add_to_velocities(jump);
+}
+
+bool SlipStart::share_anew(Outcome& outcome) {
+  constexpr long double kSpared = 1e-9L, kTrial = 1e-6L, kLonger = 4;
+  std::vector<std::size_t> limited;
+  for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
+    if (bodies_.excluded[c].stick && bodies_.modes[c].touch == Touch::sticks) limited.push_back(c);
+  const long double last = std::exchange(together_, 0);
+  if (limited.empty()) return true;
+  bodies_.look();
+  ContactProblem p = bodies_.with_touching();
+  for (ContactRows& rows : p.contacts) rows.may_stick = true;
+  const std::vector<ContactSolution> list = consistent_modes(p);
+  const bool sticks =
+      list.size() == 1 && std::equal(bodies_.modes.begin(), bodies_.modes.end(), list[0].modes.begin(),
+                                     [](const ContactMode& a, const ContactMode& b) { return a.touch == b.touch; });
+  if (sticks && list[0].spare.value_or(0) > kSpared) {
+    for (const std::size_t c : limited) {
+      joined_.take_back(bodies_.contacts[c].name + "." + word(bodies_.contacts[c], ModeChange::slips));
+      bodies_.excluded[c].stick = told_[c] = false;
+    }
+    return true;
+  }
+  const ContactRows& rows = p.contacts[limited[0]];
+  if (rows.friction != rows.static_friction) {
+    // All at their limit slip with an acceleration.
+    constexpr long double kAtLimit = 1 - 1e-6L;
+    for (std::size_t c = 0; sticks && c < bodies_.contacts.size(); ++c)
+      if (bodies_.modes[c].touch == Touch::sticks && std::hypot(list[0].friction[c][0], list[0].friction[c][1]) >=
+                                                         kAtLimit * p.contacts[c].static_friction * list[0].normal[c])
+        bodies_.excluded[c].stick = true;
+    return true;
+  }
+  together_ = last > 0 ? kLonger * last : kTrial / std::max(bodies_.dynamics.speed(), 1.0L);
+  for (const std::size_t c : limited) bodies_.excluded[c].stick = false;
+  return hold_together(together_, outcome) && hold_to_grow(outcome);
+}
+
+bool SlipStart::hold_together(long double time, Outcome& outcome) {
+  const Rational to(bodies_.at.t.get_d() + static_cast<double>(time));
+  if (to >= end_) return true;
+  const std::vector<bool> told = told_;
+  for (ContactMode& m : bodies_.modes) m.held = m.touch == Touch::sticks;
+  bodies_.stop(bodies_.modes);
+  const bool goes_on = segment_(to, outcome);
+  for (ContactMode& m : bodies_.modes) m.held = false;
+  told_ = told;
+  return goes_on && outcome.ok();
+}
+
+bool SlipStart::hold_to_grow(Outcome& outcome) {
+  bodies_.look();
+  ContactProblem p = bodies_.with_touching();
+  guess_directions(p);
+  const std::vector<ContactSolution> list = consistent_modes(p);
+  if (list.size() != 1) return true;
+  long double h = 0;
+  std::vector<std::size_t> slipping;
+  for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+    if (!was_held(c) || bodies_.contacts[c].slip.size() != 2 || list[0].modes[c].touch != Touch::slips) continue;
+    slipping.push_back(c);
+    h = std::max(h, time_to_grow(c, list[0].x, together_));
+  }
+  if (!(h > 2 * together_)) return true;
+  if (!hold_together(h - together_, outcome)) return false;
+  together_ = h;
+  for (const std::size_t c : slipping) held_[c] = h;
+  return true;
+}
+
+long double SlipStart::time_to_grow(std::size_t c, const std::vector<long double>& accelerations,
+                                    long double trial) const {
+  constexpr long double kHeld = 1e-7L, kMost = 3e-2L, kRoundOff = 1e-9L;
+  const ContactDynamics::Place& at = bodies_.dynamics.place(c);
+  const long double rate = bodies_.dynamics.slip_acceleration(c, accelerations) / trial;
+  // A contact that never moved has terms of unknown size.
+  const long double scale = at.slip_scale > kRoundOff * at.slip_reach ? at.slip_scale : 1;
+  return std::min(std::sqrt(2 * kHeld * scale / rate), kMost / std::max(bodies_.dynamics.speed(), 1.0L));
+}
+
+bool SlipStart::holds_again(std::size_t c) {
+  bodies_.dynamics.go(bodies_.at);
+  ContactProblem p = bodies_.with_touching();
+  p.contacts[c].may_stick = true;
+  const std::vector<ContactSolution> list = consistent_modes(p);
+  if (list.size() != 1 || list[0].modes[c].touch != Touch::sticks) return false;
+  const auto& T = list[0].friction[c];
+  return std::hypot(T[0], T[1]) < p.contacts[c].static_friction * list[0].normal[c];
+}
+
+bool SlipStart::begins_at_rest(std::size_t c) const {
+  const ContactRows& rows = bodies_.dynamics.accelerations().contacts[c];
+  return bodies_.excluded[c].stick && bodies_.modes[c].touch == Touch::sticks && bodies_.contacts[c].slip.size() == 2 &&
+         rows.friction == rows.static_friction;
+}
+
+bool SlipStart::hold_for(std::size_t c, long double time, Outcome& outcome) {
+  const Rational to(bodies_.at.t.get_d() + static_cast<double>(time));
+  if (to >= end_) return false;
+  bodies_.modes[c].held = true;
+  bodies_.stop(bodies_.modes);
+  const bool goes_on = segment_(to, outcome);
+  bodies_.modes[c].held = false;
+  bodies_.excluded[c].stick = true;
+  return goes_on && outcome.ok() && bodies_.at.t >= to;
+}
+
+}  // namespace anholon

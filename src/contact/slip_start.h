@@ -1,0 +1,67 @@
+// How contacts at rest begin to slip where friction no longer holds them (theory: contact).
+#pragma once
+#include <functional>
+
+#include "contact/joined_report.h"
+#include "contact/touching_bodies.h"
+
+namespace anholon {
+
+class SlipStart {
+ public:
+  // Follows the motion in the present modes to a time, or to their end; returns false if the motion ends there.
+  using Segment = std::function<bool(const Rational& to, Outcome& outcome)>;
+  // Refers to the bodies and the report. `end`: of the motion.
+  SlipStart(TouchingBodies& bodies, JoinedReport& joined, Rational end, Segment segment)
+      : bodies_(bodies), joined_(joined), end_(std::move(end)), segment_(std::move(segment)),
+        told_(bodies.contacts.size(), false), held_(bodies.contacts.size(), 0) {}
+
+  // The event at which a segment has ended tells that the contact slips.
+  void told(std::size_t contact) { told_[contact] = true; }
+  // Where a slip with two components begins without acceleration, its velocity grows by the square of the time, and as long
+  // as it is small its direction is stiff. The contact is held for the time h in which the velocity reaches kHeld of its
+  // terms; the error is of the order of h^3 (theory: contact). Returns false if the motion ends meanwhile.
+  bool hold(Outcome& outcome);
+  // Of contacts that shared friction, those that slip with the one at which the last segment ended.
+  void tell_who_slips_too(const ContactModes& now);
+  // Puts in the directions against the friction that held, as first guesses.
+  void guess_directions(ContactProblem& problem) const;
+  // Gives slips with two components the velocities with which they begin. `list`: the contacts of the present modes.
+  void begin(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations);
+
+ private:
+  // Whether a contact shared friction and may begin to slip.
+  bool was_held(std::size_t c) const;
+  // The slip velocity from which a slip with two components is followed. After held_ it has grown with the acceleration,
+  // which is zero where the slip begins.
+  long double first_slip(std::size_t c, const std::vector<long double>& accelerations) const;
+  // Slips that begin at once on bodies that join them have velocities as their accelerations are.
+  void begin_together(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations);
+  // Where contacts share friction, one at its limit may leave the rest to the others. Then they share it anew, which is no
+  // event; else they are held until those that begin to slip are told by their accelerations. Returns false if the motion
+  // ends meanwhile.
+  bool share_anew(Outcome& outcome);
+  // Holds all contacts that stick; returns false if the motion ends meanwhile.
+  bool hold_together(long double time, Outcome& outcome);
+  // As hold() does for one contact: those of two components are held until their slip has a velocity by which it is followed.
+  bool hold_to_grow(Outcome& outcome);
+  // How long a contact that was held for `trial` is to be held until the slip velocity is kHeld of its terms.
+  long double time_to_grow(std::size_t c, const std::vector<long double>& accelerations, long double trial) const;
+  // Whether the friction that is needed to hold a contact, which was too large, no longer is: a disc that rocks needs most
+  // where it turns back.
+  bool holds_again(std::size_t c);
+  // Whether the last segment ended with a slip of this contact that has two components and one coefficient of friction.
+  bool begins_at_rest(std::size_t c) const;
+  // Returns false if something else happens before.
+  bool hold_for(std::size_t c, long double time, Outcome& outcome);
+
+  TouchingBodies& bodies_;
+  JoinedReport& joined_;
+  Rational end_;
+  Segment segment_;
+  std::vector<bool> told_;
+  long double together_ = 0;       // for how long contacts that share friction were held last
+  std::vector<long double> held_;  // the time for which a contact that begins to slip was held
+};
+
+}  // namespace anholon

@@ -1,0 +1,148 @@
+#include "contact/touching_bodies.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/law/shared_friction.h"
+
+namespace anholon {
+
+// The jump that stops a velocity leaves this part of what the velocity has been.
+static constexpr long double kLeftOver = 1e-16L;
+
+TouchingBodies::TouchingBodies(Workspace& s, const std::vector<Contact>& of, ContactState start)
+    : contacts(of), dynamics(s, of), at(std::move(start)), near(of, dynamics, at), excluded(of.size()),
+      turned(of.size(), false) {}
+
+void TouchingBodies::look() {
+  dynamics.go(at);
+  if (dynamics.note_fall(at)) dynamics.go(at);
+}
+
+ContactProblem TouchingBodies::with_touching() const {
+  ContactProblem p = dynamics.accelerations();
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    ContactRows& rows = p.contacts[c];
+    rows.may_touch = near.closed(c) && near.gap_rate(c) == 0 && !excluded[c].touch;
+    rows.may_stick = !excluded[c].stick;
+    if (excluded[c].touch) rows.before = before;
+    rows.moves = rows.moves && !excluded[c].slips;
+    // A gap that is open, or opens, is not bounded by its acceleration.
+    if (!near.closed(c) || near.gap_rate(c) > 0) rows.normal.assign(at.q.size(), 0), rows.normal_rate = 0;
+  }
+  return p;
+}
+
+void TouchingBodies::come_to_rest() {
+  constexpr long double kZero = 1e-13L, kNoPlace = 1e-16L;
+  most_place.resize(at.q.size(), 0);
+  for (std::size_t a = 0; a < at.qd.size(); ++a) {
+    if (std::abs(at.qd[a]) <= kZero * dynamics.most(a)) at.qd[a] = 0;
+    most_place[a] = std::max<long double>(most_place[a], std::abs(at.q[a]));
+    if (std::abs(at.q[a]) <= kNoPlace * most_place[a]) at.q[a] = 0;
+  }
+}
+
+void TouchingBodies::drop_left_over() {
+  for (std::size_t a = 0; a < at.qd.size(); ++a)
+    if (std::abs(at.qd[a]) <= kLeftOver * dynamics.most(a)) at.qd[a] = 0;
+  for (const std::vector<long double>& row : dynamics.accelerations().Phi) {
+    long double now = 0, most = 0;
+    for (std::size_t a = 0; a < row.size(); ++a)
+      if (row[a] != 0) now = std::max<long double>(now, std::abs(at.qd[a])), most = std::max(most, dynamics.most(a));
+    for (std::size_t a = 0; a < row.size(); ++a)
+      if (row[a] != 0 && now <= RoundOff::kPlace * most) at.qd[a] = 0;
+  }
+}
+
+std::optional<long double> TouchingBodies::fast(std::size_t c) const {
+  constexpr long double kFar = 1e-3L, kPart = 1.0L / 16;
+  const ContactDynamics::Place& place = dynamics.place(c);
+  const long double far = kFar * place.slip_scale, v = std::hypot(place.slip[0], place.slip[1]);
+  if (v < far && !turned[c]) return std::nullopt;
+  return kPart * std::min(v, far);
+}
+
+bool TouchingBodies::shrinks() const {
+  bool any = false;
+  for (std::size_t c = 0; c < contacts.size(); ++c) any = any || (near.closed(c) && near.gap_rate(c) < 0);
+  return any;
+}
+
+void TouchingBodies::first_alone(std::vector<bool>& touches) const {
+  std::size_t first = contacts.size();
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    if (touches[c] && near.gap_rate(c) < 0 &&
+        (first == contacts.size() || dynamics.place(c).gap < dynamics.place(first).gap))
+      first = c;
+  for (std::size_t c = 0; c < contacts.size(); ++c) touches[c] = touches[c] && (c == first || near.gap_rate(c) == 0);
+}
+
+void TouchingBodies::stop(const ContactModes& to) {
+  const ContactProblem p = dynamics.stop();
+  const auto leave_out_dependent = [](const ContactProblem& of, ContactModes& stopped) {
+    share_friction(of, stopped);
+    for (ContactMode& m : stopped)
+      for (FrictionShare& share : m.shares) share.of.clear();
+  };
+  ContactModes stopped(contacts.size());
+  std::optional<ContactSolution> jump;
+  if (!p.beta.empty()) jump = of_modes(p, stopped);
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    for (const Touch touch : {Touch::sticks, Touch::slips}) {
+      if (touch > to[c].touch) continue;
+      stopped[c].touch = touch;
+      leave_out_dependent(p, stopped);
+      if (auto further = of_modes(p, stopped)) {
+        jump = std::move(further);
+        break;
+      }
+      stopped[c] = {};
+    }
+  }
+  if (jump) add_to_velocities(jump->x);
+  dynamics.go(at);
+}
+
+void TouchingBodies::add_to_velocities(const std::vector<long double>& jump) {
+  for (std::size_t a = 0; a < at.qd.size(); ++a) at.qd[a] = static_cast<double>(at.qd[a] + jump[a]);
+}
+
+void TouchingBodies::set_slip(std::size_t c, const std::array<long double, 2>& d, long double v) {
+  ContactProblem p = dynamics.impact(std::vector<bool>(contacts.size(), false));
+  ContactModes alone(contacts.size());
+  alone[c].touch = Touch::sticks;
+  p.contacts[c] = dynamics.accelerations().contacts[c];
+  p.contacts[c].normal_rate = 0;
+  for (std::size_t a = 0; a < 2; ++a) p.contacts[c].tangential_rate[a] = dynamics.place(c).slip[a] - v * d[a];
+  const auto jump = of_modes(p, alone);
+  if (!jump) return;
+  add_to_velocities(jump->x);
+}
+
+void TouchingBodies::against_friction(ContactProblem& p, std::size_t c) const {
+  ContactModes held_by = modes;
+  for (std::size_t o = 0; o < held_by.size(); ++o)
+    if (p.contacts[o].moves) held_by[o].direction = p.contacts[o].direction;
+  held_by[c].touch = Touch::sticks;
+  const auto held = of_modes(p, held_by);
+  const long double size = held ? std::hypot(held->friction[c][0], held->friction[c][1]) : 0;
+  if (size > 0) p.contacts[c].direction = {-held->friction[c][0] / size, -held->friction[c][1] / size};
+}
+
+bool TouchingBodies::deeper(const std::vector<double>& q) {
+  ContactState begin = at;
+  begin.q = q;
+  dynamics.go(begin);
+  bool any = false;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const long double gap = dynamics.place(c).gap;
+    if (modes[c].touch != Touch::open || gap > -modes[c].depth || !near.closed(c)) continue;
+    modes[c].depth = RoundOff::kPlace / 2 * near.place_size(c) - gap;
+    any = true;
+  }
+  dynamics.go(at);
+  return any;
+}
+
+}  // namespace anholon

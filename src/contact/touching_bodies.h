@@ -1,0 +1,58 @@
+// The bodies of a motion with contacts where a mode of the contacts has ended: their state, and what they may do next.
+#pragma once
+#include "contact/contact_dynamics.h"
+#include "contact/round_off.h"
+
+namespace anholon {
+
+struct TouchingBodies {
+  TouchingBodies(Workspace& s, const std::vector<Contact>& contacts, ContactState at);
+  TouchingBodies(const TouchingBodies&) = delete;
+  TouchingBodies& operator=(const TouchingBodies&) = delete;
+
+  // What the event at which the last segment ended excludes.
+  struct Excluded {
+    bool touch = false, stick = false, slips = false;
+  };
+
+  void look();
+  // The accelerations, in which each contact may do what its gap and the event at which the last segment ended allow.
+  ContactProblem with_touching() const;
+  // Velocities within round-off of those that the motion had are zero, and so are coordinates: where the modes leave no
+  // motion, the remainders would contradict each other.
+  void come_to_rest();
+  // What the jump leaves of velocities that it stops. Those that a constraint joins, as the norm of a quaternion does, are
+  // dropped together: a part of them would contradict the constraint.
+  void drop_left_over();
+  // From which slip velocity on a contact that slips has the direction v/|v|: nullopt where v is small, unless it has turned
+  // since, so that it passes no zero.
+  std::optional<long double> fast(std::size_t c) const;
+  // Whether a closed gap shrinks.
+  bool shrinks() const;
+  // Impacts within round-off of one instant for which no mode is consistent follow each other: the least gap comes first.
+  void first_alone(std::vector<bool>& touches) const;
+  // The jump of least change after which what touches does not move along its normal, and what sticks does not slip. A
+  // contact that the others stop already is left out.
+  void stop(const ContactModes& to);
+  void add_to_velocities(const std::vector<long double>& jump);
+  // The jump of least change that gives a contact the slip velocity v along d.
+  void set_slip(std::size_t c, const std::array<long double, 2>& d, long double v);
+  // A slip that begins where the friction that holds has become too large begins against this friction, which is that of
+  // the mode before: resistance to rolling turns it.
+  void against_friction(ContactProblem& p, std::size_t c) const;
+  // The places at which a segment begins close the gaps of what touches, which may push an open gap below the depth at which
+  // it hits. Returns whether that is so; the depth is then that of the gap.
+  bool deeper(const std::vector<double>& q);
+
+  const std::vector<Contact>& contacts;
+  ContactDynamics dynamics;
+  ContactState at;
+  RoundOff near;
+  ContactModes modes;  // of the last segment, or of the next one
+  std::vector<Excluded> excluded;
+  std::vector<bool> turned;             // whether the last segment ended as a slip turned
+  long double before = 0;               // the largest acceleration without contacts where the last mode began
+  std::vector<long double> most_place;  // the largest value of each coordinate at a change of mode
+};
+
+}  // namespace anholon
