@@ -282,6 +282,15 @@ void give(const ContactSolution& f, const Sharing& sharing, const Numbers& y, Re
 
 }  // namespace
 
+bool loads_undetermined(const ContactProblem& p) {
+  Rows rows(p.beta.size() + p.contacts.size());
+  for (const Numbers& r : p.Phi) rows.add(r);
+  bool any = false;
+  for (const ContactRows& c : p.contacts)
+    if (!c.under && c.may_touch) any = rows.add(c.normal).has_value() || any;
+  return any;
+}
+
 void share_friction(const ContactProblem& p, ContactModes& modes) {
   std::size_t stick = 0;
   for (const ContactMode& m : modes) stick += m.touch == Touch::sticks ? 1 : 0;

@@ -9,6 +9,10 @@
 
 namespace anholon {
 
+// Whether the gaps of contacts that may touch depend on each other in these coordinates: then the loads of each, which bound
+// its friction, are not determined.
+bool loads_undetermined(const ContactProblem& problem);
+
 // Marks the components of friction whose slip velocities follow from the constraints, the gaps and the components before
 // them, and gives each its part of the forces that hold (ContactMode::shares).
 void share_friction(const ContactProblem& problem, ContactModes& modes);

@@ -1,4 +1,4 @@
-#include "contact/accumulation.h"
+#include "contact/law/accumulation.h"
 
 #include <cmath>
 

@@ -1,0 +1,158 @@
+// Contacts at rest on one body share their friction: they stick as long as some distribution of it lies in all cones.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "support/contact_motion.h"
+
+namespace anholon {
+namespace shared_friction_test {
+
+using test::contact_motion;
+
+constexpr double kLimit = 0.3 * 2 * 9.81;  // mu m g
+
+std::string block(const std::string& at, const std::string& right = "") {
+  return R"toml(coordinates = ["x", "z", "p"]
+parameters = {m = 2, k = 0.3}
+gravity.field = "-9.81*ez"
+body = [{name = "s", mass = "m", inertia = [0.1, 0.1, 0.1], center = "x*ex + z*ez", orientation = "roty(p)"}]
+contact = [
+  {name = "l1", body = "s", shape = "point", at = "s.center + s(0.3, 0, -0.1)", friction = "k"},
+  {name = "l2", body = "s", shape = "point", at = "s.center + s(-0.3, 0, -0.1)", friction = "k")toml" +
+         right + R"toml(},
+]
+initial = {z = 0.1}
+force = [{on = {body = "s", at = )toml" +
+         at + "}, vector = \"t*ex\"}]\n";
+}
+
+// The block is pushed by t: it stands until t = mu m g, whatever part each foot carries, and m x'' = t - mu m g from there on.
+TEST(SharedFriction, BlockOnTwoFeetSlidesWhenBothAreAtTheirLimit) {
+  for (const char* at : {"[0, 0, -0.1]", "[0, 0, 0]"}) {
+    const auto m = contact_motion(block(at), 8);
+    ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    for (const char* event : {"l1.slips", "l2.slips"}) {
+      ASSERT_EQ(test::times(m, event).size(), 1U) << event << " " << at;
+      EXPECT_NEAR(test::times(m, event)[0], kLimit, 1e-7) << event << " " << at;
+    }
+    EXPECT_NEAR(m.last("x"), std::pow(8 - kLimit, 3) / 12, 1e-10) << at;
+    EXPECT_NEAR(m.last("x'"), std::pow(8 - kLimit, 2) / 4, 1e-10) << at;
+  }
+}
+
+TEST(SharedFriction, FeetShareByTheirLoads) {
+  const auto m = contact_motion(block("[0, 0, 0]"), 5);
+  EXPECT_NEAR(std::abs(m.last("l1.friction")) + std::abs(m.last("l2.friction")), 5, 1e-12);
+  EXPECT_EQ(m.last("l1.mode"), 2);
+  EXPECT_EQ(m.last("l2.mode"), 2);
+  EXPECT_LT(std::abs(m.last("x'")), 1e-30);
+}
+
+// A foot without friction leaves all to the other one, which slips when it alone is at its limit.
+TEST(SharedFriction, SmoothFootCarriesNothing) {
+  std::string text = block("[0, 0, -0.1]");
+  text.replace(text.rfind("friction = \"k\""), std::string("friction = \"k\"").size(), "friction = 0");
+  const auto m = contact_motion(text, 4);
+  ASSERT_EQ(test::times(m, "l1.slips").size(), 1U);
+  EXPECT_NEAR(test::times(m, "l1.slips")[0], kLimit / 2, 1e-9);
+}
+
+// With a static coefficient the slip begins with an acceleration.
+TEST(SharedFriction, StaticFrictionHoldsLonger) {
+  std::string text = block("[0, 0, -0.1]");
+  for (std::size_t i = 0; (i = text.find("friction = \"k\"", i)) != std::string::npos; i += 40)
+    text.insert(i, "static_friction = 0.4, ");
+  const auto m = contact_motion(text, 8);
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  const double begin = 0.4 * 2 * 9.81;
+  for (const char* event : {"l1.slips", "l2.slips"}) {
+    ASSERT_EQ(test::times(m, event).size(), 1U) << event;
+    EXPECT_NEAR(test::times(m, event)[0], begin, 1e-7) << event;
+  }
+  EXPECT_NEAR(m.last("x'"), (64 - begin * begin) / 4 - kLimit / 2 * (8 - begin), 1e-8);
+}
+
+std::string stool(const std::string& force) {
+  return R"toml(coordinates = ["x", "y", "z", "a", "b", "c"]
+parameters = {m = 2, k = 0.3, h = "sqrt(3)/2"}
+gravity.field = "-9.81*ez"
+body = [{name = "s", mass = "m", inertia = [0.1, 0.1, 0.1], center = "x*ex + y*ey + z*ez", orientation = "rotz(a)*roty(b)*rotx(c)"}]
+contact = [
+  {name = "l1", body = "s", shape = "point", at = "s.center + s(0.3, 0, -0.2)", friction = "k"},
+  {name = "l2", body = "s", shape = "point", at = "s.center + s(-0.15, 0.3*h, -0.2)", friction = "k"},
+  {name = "l3", body = "s", shape = "point", at = "s.center + s(-0.15, -0.3*h, -0.2)", friction = "k"},
+]
+initial = {z = 0.2}
+force = [{)toml" +
+         force + "}]\n";
+}
+
+TEST(SharedFriction, StoolIsPushedAtItsCentre) {
+  const auto m = contact_motion(stool("on = \"s\", vector = \"t*ex\""), 8);
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  EXPECT_NEAR(test::times(m, "l2.slips").at(0), kLimit, 1e-7);
+  EXPECT_NEAR(m.last("x"), std::pow(8 - kLimit, 3) / 12, 1e-9);
+  EXPECT_LT(std::abs(m.last("a")), 1e-9);
+}
+
+// A torque t about the vertical turns it against the moment mu m g r of its three feet.
+TEST(SharedFriction, StoolIsTurned) {
+  const auto m = contact_motion(stool("on = \"s\", torque = \"t*ez\""), 3);
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  const double begin = 0.3 * kLimit;
+  EXPECT_NEAR(test::times(m, "l1.slips").at(0), begin, 1e-7);
+  EXPECT_NEAR(m.last("a"), std::pow(3 - begin, 3) / 0.6, 1e-8);
+}
+
+// Pushed off its centre at the floor, with feet at (0.3, 0) and (-0.15, +-0.26), the stool stands until the limit load of the
+// three cones. The reference is the solution of that convex problem by another program (SLSQP of SciPy).
+TEST(SharedFriction, StoolPushedOffItsCentreSlipsAtItsLimitLoad) {
+  std::string text = stool("on = {body = \"s\", at = [0, 0.15, -0.2]}, vector = \"t*ex\"");
+  text.replace(text.find("sqrt(3)/2"), 9, "0.26/0.3");
+  const auto m = contact_motion(text, 6);
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  for (const char* event : {"l1.slips", "l2.slips", "l3.slips"})
+    EXPECT_NEAR(test::times(m, event).at(0), 4.883257117, 2e-8);
+}
+
+std::string axle(const std::string& roll, const std::string& orientation) {
+  return R"toml(coordinates = ["x", "y", "z", "psi", )toml" + roll + R"toml("r", "l"]
+parameters = {M = 8, R = 0.1, b = 0.2, T = 0.3}
+gravity.field = "-9.81*ez"
+frame.B = ")toml" +
+         orientation + R"toml("
+point.A = "x*ex + y*ey + z*ez"
+body = [
+  {name = "hull", mass = "M", inertia = [0.2, 0.2, 0.2], center = "A", orientation = "B"},
+  {name = "right", mass = 0.5, shape = "disc(R)", center = "A - b*B.y", orientation = "B*rotx(-pi/2)*rotz(r)"},
+  {name = "left", mass = 0.5, shape = "disc(R)", center = "A + b*B.y", orientation = "B*rotx(-pi/2)*rotz(l)"},
+]
+contact = [{name = "cr", body = "right", friction = 0.8}, {name = "cl", body = "left", friction = 0.8}]
+force = [{generalized = {r = "T*t", l = "T*t"}}]
+monitor.slip_r = "x' + b*psi' - R*r'"
+monitor.slip_l = "x' - b*psi' - R*l'"
+initial = {z = "R"}
+)toml";
+}
+
+// Two wheels on one axle hold it sideways together, and each rolls: x'' = (2 T/R)/(M + 2 m + 2 I/R^2).
+TEST(SharedFriction, DrivenAxleRollsStraight) {
+  const auto m = contact_motion(axle("\"roll\", ", "rotz(psi)*rotx(roll)"), 1);
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  EXPECT_NEAR(m.last("x'"), 2 * 0.3 / 0.1 / 2 / (8 + 1 + 0.5), 1e-12);
+  for (const char* slip : {"slip_r", "slip_l"}) EXPECT_LT(std::abs(m.last(slip)), 1e-12) << slip;
+  for (const char* friction : {"cr.friction", "cl.friction"})
+    EXPECT_NEAR(m.last(friction), 27.0 / 9.5, 1e-12) << friction;
+}
+
+// Without the coordinate in which the axle tilts, nothing tells what each wheel carries.
+TEST(SharedFriction, LoadsThatNothingDeterminesAreNamed) {
+  const auto m = contact_motion(axle("", "rotz(psi)"), 1);
+  EXPECT_EQ(m.report.outcome.kind, OutcomeKind::inconsistent);
+  EXPECT_NE(m.report.outcome.message.find("the loads of the contacts 'cr', 'cl' are not determined"), std::string::npos)
+      << m.report.outcome.message;
+}
+
+}  // namespace shared_friction_test
+}  // namespace anholon
