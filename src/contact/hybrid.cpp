@@ -8,7 +8,6 @@
 #include "contact/joined_report.h"
 #include "contact/law/accumulation.h"
 #include "contact/law/consistent_modes.h"
-#include "contact/law/shared_friction.h"
 #include "contact/ready_modes.h"
 #include "contact/segment_rows.h"
 #include "contact/slip_start.h"
@@ -142,7 +141,6 @@ class HybridMotion {
       names += (names.empty() ? "'" : ", '") + bodies_.contacts[c].name + "'";
       if (modes == 0 && bodies_.dynamics.loses_rank(c)) return rank_lost(bodies_.contacts[c].name, when());
     }
-    if (modes > 1 && loads_undetermined(bodies_.with_touching())) return loads_unknown(names + " ", when());
     return painleve(modes, names + " ", when());
   }
 

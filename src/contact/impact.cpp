@@ -68,14 +68,6 @@ Outcome rank_lost(const std::string& contact, const std::string& when) {
           "flat"};
 }
 
-Outcome loads_unknown(const std::string& contacts, const std::string& when) {
-  return {
-      OutcomeKind::inconsistent,
-      "the loads of the contacts " + contacts + "are not determined, as their gaps depend on each other" + when,
-      "give the body the coordinates in which it tilts, as roll and pitch of a vehicle, or let one contact stand for "
-      "those that share a load"};
-}
-
 std::vector<Jump> impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
                                const std::vector<bool>& touches) {
   const bool poisson =

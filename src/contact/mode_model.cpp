@@ -27,11 +27,12 @@ namespace {
 enum class ModeNumber : std::uint8_t { along, across, fast, rest, slack, depth, given };
 constexpr std::size_t kModeNumbers = 8;
 
-// Then, of each component that is shared, its part of each force that holds.
+// Then, of the load and of each component that is shared, its part of each force that holds.
 std::vector<long double> numbers_of(const ContactMode& m) {
   std::vector<long double> list = {m.direction[0], m.direction[1], m.fast.value_or(0), m.rest,
                                    m.slack,        m.depth,        m.shares[0].given,  m.shares[1].given};
-  for (const FrictionShare& s : m.shares)
+  if (m.touch != Touch::open && m.load.shared) list.insert(list.end(), m.load.of.begin(), m.load.of.end());
+  for (const ForceShare& s : m.shares)
     if (m.touch == Touch::sticks && s.shared) list.insert(list.end(), s.of.begin(), s.of.end());
   return list;
 }
@@ -66,7 +67,8 @@ class ModeBuilder {
       // A gap that is zero at the start passes no zero when it closes again at once.
       event(c, ModeChange::hits, c.gap + number(ModeNumber::depth), -1);
     } else {
-      normal = keep(c.name + ".gap", c.name + ".n", c.gap, 0);
+      normal = mode.load.shared ? shared_load(mode) : keep(c.name + ".gap", c.name + ".n", c.gap, 0);
+      if (!mode.load.shared) loads_.push_back(normal);
       act(c, 0, normal, c.gap);
       event(c, ModeChange::leaves, normal, -1);
       // A force that is zero at the start passes no zero when it begins to pull.
@@ -158,10 +160,17 @@ class ModeBuilder {
     return keep(c.name + ".slip" + tag, c.name + ".t" + tag, g_.own(c.slip[a]), 1);
   }
 
+  // The load of a contact whose gap others hold.
+  Expr shared_load(const ContactMode& mode) const {
+    Expr load = g_.zero();
+    for (std::size_t k = 0; k < mode.load.of.size(); ++k) load = load + numbers_[kModeNumbers + k] * loads_[k];
+    return load;
+  }
+
   // Components of friction that is shared.
   std::vector<Expr> shared(const Contact& c, const ContactMode& mode) {
     std::vector<Expr> forces;
-    std::size_t next = kModeNumbers;
+    std::size_t next = kModeNumbers + (mode.load.shared ? mode.load.of.size() : 0);
     for (std::size_t a = 0; a < c.slip.size(); ++a) {
       Expr force = numbers_[static_cast<std::size_t>(ModeNumber::given) + a];
       for (const auto& [place, holds] : held_) {
@@ -244,6 +253,7 @@ class ModeBuilder {
     Expr force;
   };
   std::vector<Held> held_;                     // where friction is shared
+  std::vector<Expr> loads_;                    // those that hold the gaps so far
   std::vector<Expr> normals_, numbers_;        // numbers_: of the contact that is added
   std::vector<std::vector<Expr>> components_;  // of friction, along the components of the slip
   std::size_t contact_ = 0;
@@ -309,8 +319,9 @@ std::vector<int> mode_shape(const std::vector<Contact>& contacts, const ContactM
     const ContactMode& m = modes[c];
     const bool backwards = contacts[c].slip.size() == 1 && m.touch == Touch::slips && m.direction[0] < 0;
     const bool sticks = m.touch == Touch::sticks;
-    shape.insert(shape.end(), {static_cast<int>(m.touch), sticks && m.shares[0].shared, sticks && m.shares[1].shared,
-                               m.held, m.fast.has_value(), backwards});
+    shape.insert(shape.end(),
+                 {static_cast<int>(m.touch), m.touch != Touch::open && m.load.shared, sticks && m.shares[0].shared,
+                  sticks && m.shares[1].shared, m.held, m.fast.has_value(), backwards});
   }
   return shape;
 }

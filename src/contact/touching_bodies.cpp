@@ -81,9 +81,9 @@ void TouchingBodies::first_alone(std::vector<bool>& touches) const {
 void TouchingBodies::stop(const ContactModes& to) {
   const ContactProblem p = dynamics.stop();
   const auto leave_out_dependent = [](const ContactProblem& of, ContactModes& stopped) {
-    share_friction(of, stopped);
+    share_forces(of, stopped);
     for (ContactMode& m : stopped)
-      for (FrictionShare& share : m.shares) share.of.clear();
+      for (ForceShare* share : {&m.load, &m.shares[0], &m.shares[1]}) share->of.clear();
   };
   ContactModes stopped(contacts.size());
   std::optional<ContactSolution> jump;

@@ -36,6 +36,7 @@ bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
     const Real lever = rows.under ? rows.static_friction : 1;
     const Real forces = kSame * lever * std::max(force, std::abs(N)) + kRounded * rows.static_friction * force;
     if (!rows.under && N < -forces) return false;
+    if (mode.load.shared && std::abs(dot(rows.normal, f.x) + rows.normal_rate) > scale) return false;
     if (!rows.rough) continue;
     const auto v = slip_rate(rows, f.x);
     Real span = 0;
@@ -84,6 +85,22 @@ bool alternatives(const ContactSolution& a, const ContactSolution& b) {
   return open;
 }
 
+// Whether b is a with further contacts that touch, whose gaps stay closed in a as well: others hold them there, and they carry
+// nothing.
+bool is_part(const ContactProblem& p, const ContactSolution& a, const ContactSolution& b) {
+  bool more = false;
+  for (std::size_t c = 0; c < a.modes.size(); ++c) {
+    const bool touches_a = a.modes[c].touch != Touch::open, touches_b = b.modes[c].touch != Touch::open;
+    if (touches_a && !touches_b) return false;
+    if (touches_a || !touches_b || p.contacts[c].under) continue;
+    const ContactRows& rows = p.contacts[c];
+    const Real size = largest(rows.normal) * largest(a.x) + std::abs(rows.normal_rate);
+    if (std::abs(dot(rows.normal, a.x) + rows.normal_rate) > kSame * size) return false;
+    more = true;
+  }
+  return more;
+}
+
 // Resistance is open where its contact is, unless a given force presses it.
 bool possible(const ContactProblem& p, const ContactModes& modes) {
   for (std::size_t c = 0; c < modes.size(); ++c)
@@ -112,16 +129,19 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
       rest /= each[c].size();
     }
     if (!possible(p, modes)) continue;
-    share_friction(p, modes);
+    share_forces(p, modes);
     auto f = with_directions(p, modes, free);
     if (f && shares_friction(modes)) f = distributed(p, *f);
     if (!f || !consistent(p, *f, free)) continue;
     const bool known = std::any_of(list.begin(), list.end(), [&](const ContactSolution& o) {
       Real difference = 0;
       for (std::size_t i = 0; i < o.x.size(); ++i) difference = std::max(difference, std::abs(o.x[i] - f->x[i]));
-      return difference <= 100 * kSame * std::max({largest(o.x), largest(f->x), free}) || !alternatives(o, *f);
+      return difference <= 100 * kSame * std::max({largest(o.x), largest(f->x), free}) || !alternatives(o, *f) ||
+             is_part(p, *f, o);
     });
-    if (!known) list.push_back(*f);
+    if (known) continue;
+    std::erase_if(list, [&](const ContactSolution& o) { return is_part(p, o, *f); });
+    list.push_back(*f);
   }
   return list;
 }

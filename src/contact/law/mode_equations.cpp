@@ -12,6 +12,13 @@ std::vector<HeldComponent> held_components(const ContactProblem& p, const Contac
   return list;
 }
 
+std::vector<std::size_t> held_gaps(const ContactProblem& p, const ContactModes& modes) {
+  std::vector<std::size_t> list;
+  for (std::size_t c = 0; c < modes.size(); ++c)
+    if (modes[c].touch != Touch::open && !p.contacts[c].under && !modes[c].load.shared) list.push_back(c);
+  return list;
+}
+
 bool shares_friction(const ContactModes& modes) {
   return std::any_of(modes.begin(), modes.end(), [](const ContactMode& m) {
     return m.touch == Touch::sticks && (m.shares[0].shared || m.shares[1].shared);
@@ -23,38 +30,38 @@ namespace {
 using Real = long double;
 using Numbers = ContactNumbers;
 
-// The linear equations of given modes. Unknowns: x, lambda, N of each contact that touches, and the forces that hold.
+// The linear equations of given modes. Unknowns: x, lambda, the loads and the friction that hold.
 class ModeEquations {
  public:
   ModeEquations(const ContactProblem& p, const ContactModes& modes)
-      : p_(p), modes_(modes), held_(held_components(p, modes)) {
-    std::size_t size = p.b.size() + p.beta.size();
-    for (std::size_t c = 0; c < modes.size(); ++c) {
-      normals_.push_back(size);
-      if (modes[c].touch != Touch::open && !p.contacts[c].under) ++size;
-    }
-    forces_ = size;
-    m_.emplace(size + held_.size());
+      : p_(p), modes_(modes), gaps_(held_gaps(p, modes)), held_(held_components(p, modes)),
+        loads_(p.b.size() + p.beta.size()), forces_(loads_ + gaps_.size()), m_(forces_ + held_.size()) {
     smooth();
     for (std::size_t c = 0; c < modes.size(); ++c)
       if (modes[c].touch != Touch::open) contact(c);
+    for (std::size_t k = 0; k < gaps_.size(); ++k) {
+      const ContactRows& rows = p.contacts[gaps_[k]];
+      std::copy(rows.normal.begin(), rows.normal.end(), m_[loads_ + k]);
+      m_.right()[loads_ + k] = -rows.normal_rate;
+    }
     for (std::size_t k = 0; k < held_.size(); ++k) {
       const ContactRows& rows = p.contacts[held_[k].contact];
       const Numbers& t = rows.tangential[held_[k].component];
-      std::copy(t.begin(), t.end(), (*m_)[forces_ + k]);
-      m_->right()[forces_ + k] = -rows.tangential_rate[held_[k].component];
+      std::copy(t.begin(), t.end(), m_[forces_ + k]);
+      m_.right()[forces_ + k] = -rows.tangential_rate[held_[k].component];
     }
   }
 
   std::optional<ContactSolution> solve() {
-    const auto found = m_->solve();
+    const auto found = m_.solve();
     if (!found) return std::nullopt;
     ContactSolution f;
     f.modes = modes_;
     f.x.assign(found->begin(), found->begin() + static_cast<std::ptrdiff_t>(p_.b.size()));
     for (std::size_t c = 0; c < modes_.size(); ++c) {
-      const bool open = modes_[p_.contacts[c].under.value_or(c)].touch == Touch::open;
-      f.normal.push_back((open ? 0 : (*found)[normal(c)]) + p_.contacts[c].pressed);
+      Real N = p_.contacts[c].pressed;
+      for (std::size_t k = 0; k < gaps_.size(); ++k) N += load(c, k) * (*found)[loads_ + k];
+      f.normal.push_back(N);
       std::array<Real, 2> t{};
       for (std::size_t a = 0; modes_[c].touch == Touch::sticks && a < p_.contacts[c].tangential.size(); ++a) {
         t[a] = modes_[c].shares[a].given;
@@ -66,17 +73,24 @@ class ModeEquations {
   }
 
  private:
-  std::size_t normal(std::size_t c) const { return normals_[p_.contacts[c].under.value_or(c)]; }
+  // Of the load k that holds a gap, in that of a contact, or of the one that presses a resistance.
+  Real load(std::size_t c, std::size_t k) const {
+    const std::size_t of = p_.contacts[c].under.value_or(c);
+    const ForceShare& share = modes_[of].load;
+    if (modes_[of].touch == Touch::open) return 0;
+    if (share.shared) return k < share.of.size() ? share.of[k] : 0;
+    return gaps_[k] == of ? 1 : 0;
+  }
   // Of the force k that holds, in component a of the friction of a contact.
   Real part(std::size_t c, std::size_t a, std::size_t k) const {
-    const FrictionShare& share = modes_[c].shares[a];
+    const ForceShare& share = modes_[c].shares[a];
     if (share.shared) return k < share.of.size() ? share.of[k] : 0;
     return held_[k].contact == c && held_[k].component == a ? 1 : 0;
   }
 
   void smooth() {
     const std::size_t n = p_.b.size();
-    PivotedEquations& m = *m_;
+    PivotedEquations& m = m_;
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j < n; ++j) m[i][j] = p_.A[i][j];
       for (std::size_t r = 0; r < p_.beta.size(); ++r) m[i][n + r] = -p_.Phi[r][i], m[n + r][i] = p_.Phi[r][i];
@@ -87,11 +101,9 @@ class ModeEquations {
 
   void contact(std::size_t c) {
     const ContactRows& rows = p_.contacts[c];
-    PivotedEquations& m = *m_;
-    const std::size_t N = normal(c);
-    const bool presses = modes_[rows.under.value_or(c)].touch != Touch::open;
+    PivotedEquations& m = m_;
     for (std::size_t i = 0; i < p_.b.size(); ++i) {
-      if (!rows.under) m[N][i] = rows.normal[i], m[i][N] -= rows.normal[i];
+      Real along = rows.under ? 0 : -rows.normal[i];  // what a unit of the load exerts, with its friction
       for (std::size_t a = 0; a < rows.tangential.size(); ++a) {
         const Real t = rows.tangential[a][i];
         if (modes_[c].touch == Touch::sticks) {
@@ -100,19 +112,20 @@ class ModeEquations {
           continue;
         }
         const Real friction = rows.friction * modes_[c].direction[a] * t;
-        if (presses) m[i][N] += friction;
+        along += friction;
         m.right()[i] -= friction * rows.pressed;
       }
+      for (std::size_t k = 0; k < gaps_.size(); ++k)
+        if (const Real of = load(c, k); of != 0) m[i][loads_ + k] += of * along;
     }
-    if (!rows.under) m.right()[N] = -rows.normal_rate;
   }
 
   const ContactProblem& p_;
   const ContactModes& modes_;
+  std::vector<std::size_t> gaps_;
   std::vector<HeldComponent> held_;
-  std::vector<std::size_t> normals_;
-  std::size_t forces_ = 0;
-  std::optional<PivotedEquations> m_;
+  std::size_t loads_, forces_;  // the first unknown of each kind
+  PivotedEquations m_;
 };
 
 }  // namespace

@@ -19,23 +19,24 @@ namespace anholon {
 
 enum class Touch : std::uint8_t { open, slips, sticks };
 
-// One component of the friction T of a contact that sticks. Where the slip velocities of contacts depend on each other, some
-// components are held, by unknown forces, and the others share these (contact/shared_friction.h).
-struct FrictionShare {
-  bool shared = false;          // its slip velocity follows from those that are held
-  long double given = 0;        // a part of T that is known
-  std::vector<long double> of;  // shared: the rest of T is this part of each unknown force; none if it is empty
+// Where the gaps or the slip velocities of contacts depend on each other, some are held by unknown forces, and the others
+// share these (law/shared_friction.h). The force of one gap, or of one component of friction:
+struct ForceShare {
+  bool shared = false;          // its rate follows from those that are held
+  long double given = 0;        // a part that is known
+  std::vector<long double> of;  // shared: the rest is this part of each unknown force of its kind; none if it is empty
 };
 
 struct ContactMode {
   Touch touch = Touch::open;
   std::array<long double, 2> direction{};  // of the slip, of length 1
-  std::optional<long double> fast;  // a slip velocity v with two components that is larger has the direction v/|v|
-  std::array<FrictionShare, 2> shares{};  // of a contact that sticks
-  bool held = false;                      // sticks, whatever friction this needs
-  long double rest = 0;                   // a slip velocity with two components is zero below it
-  long double slack = 0;                  // forces below it are round-off
-  long double depth = 0;                  // a gap is negative below minus this
+  std::optional<long double> fast;     // a slip velocity v with two components that is larger has the direction v/|v|
+  ForceShare load;                     // N of a contact that touches
+  std::array<ForceShare, 2> shares{};  // T of a contact that sticks
+  bool held = false;                   // sticks, whatever friction this needs
+  long double rest = 0;                // a slip velocity with two components is zero below it
+  long double slack = 0;               // forces below it are round-off
+  long double depth = 0;               // a gap is negative below minus this
 };
 using ContactModes = std::vector<ContactMode>;
 
@@ -70,11 +71,13 @@ struct ContactSolution {
   std::optional<long double> spare;
 };
 
-// The components that are held by forces of their own, in the order in which FrictionShare::of counts them.
+// The components that are held by forces of their own, in the order in which ForceShare::of counts them.
 struct HeldComponent {
   std::size_t contact = 0, component = 0;
 };
 std::vector<HeldComponent> held_components(const ContactProblem& problem, const ContactModes& modes);
+// The contacts whose gaps are held, likewise.
+std::vector<std::size_t> held_gaps(const ContactProblem& problem, const ContactModes& modes);
 // Whether a contact that sticks shares friction.
 bool shares_friction(const ContactModes& modes);
 

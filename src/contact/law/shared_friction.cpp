@@ -18,9 +18,9 @@ struct Dependent {
 };
 
 // Rows one after the other, by the method of Gram and Schmidt, with the sum of rows that each direction is.
-class Rows {
+class GramSchmidt {
  public:
-  explicit Rows(std::size_t most) : most_(most) {}
+  explicit GramSchmidt(std::size_t most) : most_(most) {}
 
   // Adds a row, or returns the coefficients of the rows before it, of which it is the sum.
   std::optional<Numbers> add(const Numbers& row) {
@@ -61,13 +61,21 @@ class Sharing {
   Sharing(const ContactProblem& p, ContactModes& modes, const std::vector<std::size_t>& order) : p_(p), modes_(modes) {
     std::size_t most = p.beta.size();
     for (const ContactRows& rows : p.contacts) most += 1 + rows.tangential.size();
-    Rows rows(most);
+    GramSchmidt rows(most);
     for (const Numbers& r : p.Phi) rows.add(r);
-    std::vector<std::size_t> gaps(modes.size(), most);
+    std::vector<std::size_t> gaps(modes.size(), most), held_gaps;
     for (std::size_t c = 0; c < modes.size(); ++c) {
       if (modes[c].touch == Touch::open || p.contacts[c].under) continue;
       gaps[c] = rows.count();
-      rows.add(p.contacts[c].normal);
+      const auto sum = rows.add(p.contacts[c].normal);
+      modes[c].load = {};
+      if (!sum) {
+        held_gaps.push_back(c);
+        continue;
+      }
+      // The least loads of all that exert the same.
+      modes[c].load.shared = true;
+      for (const std::size_t g : held_gaps) modes[c].load.of.push_back((*sum)[gaps[g]]);
     }
     struct Found {
       HeldComponent place;
@@ -282,19 +290,9 @@ void give(const ContactSolution& f, const Sharing& sharing, const Numbers& y, Re
 
 }  // namespace
 
-bool loads_undetermined(const ContactProblem& p) {
-  Rows rows(p.beta.size() + p.contacts.size());
-  for (const Numbers& r : p.Phi) rows.add(r);
-  bool any = false;
-  for (const ContactRows& c : p.contacts)
-    if (!c.under && c.may_touch) any = rows.add(c.normal).has_value() || any;
-  return any;
-}
-
-void share_friction(const ContactProblem& p, ContactModes& modes) {
-  std::size_t stick = 0;
-  for (const ContactMode& m : modes) stick += m.touch == Touch::sticks ? 1 : 0;
-  if (stick == 0) return;
+void share_forces(const ContactProblem& p, ContactModes& modes) {
+  const auto touches = [](const ContactMode& m) { return m.touch != Touch::open; };
+  if (std::none_of(modes.begin(), modes.end(), touches)) return;
   Sharing(p, modes, in_order(modes.size())).weigh(Numbers(modes.size(), 1));
 }
 

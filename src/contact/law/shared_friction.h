@@ -9,13 +9,9 @@
 
 namespace anholon {
 
-// Whether the gaps of contacts that may touch depend on each other in these coordinates: then the loads of each, which bound
-// its friction, are not determined.
-bool loads_undetermined(const ContactProblem& problem);
-
-// Marks the components of friction whose slip velocities follow from the constraints, the gaps and the components before
-// them, and gives each its part of the forces that hold (ContactMode::shares).
-void share_friction(const ContactProblem& problem, ContactModes& modes);
+// Marks the gaps and the components of friction whose rates follow from the constraints and from those before them, and gives
+// each its part of the forces that hold: to gaps the least loads, to friction its part by equal creep.
+void share_forces(const ContactProblem& problem, ContactModes& modes);
 
 // The solution of modes that share friction with the distribution above, and what it spares. Returns nullopt if the
 // equations are singular.
