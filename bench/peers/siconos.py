@@ -36,6 +36,23 @@ contact = [{name = "floor", gap = "z", restitution = 0.8}, {name = "ceiling", ga
 initial = {z = 1, "z'" = 10}
 """
 
+PLANE = """
+coordinates = ["z"]
+parameters = {w = "pi/2"}
+gravity.field = "-9.81*ez"
+particle = [{name = "ball", mass = 1, position = "z*ez"}]
+contact = [{name = "plane", gap = "z - 2*t - sin(w*t)/w", restitution = 0.9}]
+initial = {z = 1}
+"""
+
+SPIN = """
+coordinates = ["z", "x", "a"]
+gravity.field = "-9.81*ez"
+body = [{name = "ball", mass = 1, shape = "ball(0.5)", center = "x*ex + z*ez", orientation = "roty(a)"}]
+contact = [{name = "floor", body = "ball", friction = 0.1, restitution = 0.9}]
+initial = {z = 1, "a'" = 2}
+"""
+
 # The inertia is that of a block of 1 x 0.5, the corners are those of one of 0.2 x 0.1.
 BLOCK = """
 coordinates = ["x", "y", "th"]
@@ -211,6 +228,37 @@ EXAMPLES = [
             (0.06, [1.433721403014694e00, -7.676299364909250e00]),
             (0.73, [7.696997918828874e-02, -6.718746937951607e00]),
             (10, [2.032217136619642e-12, 1.869109338129200e-12]),
+        ],
+    ),
+    Example(
+        "ball on a plane that rises and shakes",
+        PLANE,
+        "BallOnMovingPlane/BallOnMovingPlane.ref",
+        "d73f8450550bd0f0234919822f82d83ae711c3e4",
+        "Moreau-Jean, 5e-3",
+        ["z"],
+        ["z'"],
+        [(1.6, [4.325098947344009, 3.238813401135877]), (10, [19.99325651020532, 1.082967032474691])],
+    ),
+    Example(
+        "ball with spin that bounces and rolls",
+        SPIN,
+        "RollingFriction/Ball_2d_with_kernel_only_with_rollingfriction.ref",
+        "45b16f5a7b7dd338927f022837b5a09e338e72e1",
+        "Moreau-Jean, 5e-3",
+        ["z", "x", "a"],
+        ["z'", "x'", "a'"],
+        [
+            (
+                0.32,
+                [5.125288374999982e-01, 7.142857142857604e-04, 6.364285714285712e-01]
+                + [2.781134999999403e00, 2.857142857143039e-01, 5.714285714284806e-01],
+            ),
+            (
+                10,
+                [4.999671039101018e-01, 2.766428571428626e00, 6.167857142857144e00]
+                + [0, 2.857142857142858e-01, 5.714285714285716e-01],
+            ),
         ],
     ),
     Example(
