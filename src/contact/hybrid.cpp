@@ -8,29 +8,15 @@
 #include "contact/contact_dynamics.h"
 #include "contact/impact.h"
 #include "contact/joined_report.h"
+#include "contact/refused_options.h"
 #include "contact/round_off.h"
 #include "contact/segment_rows.h"
 #include "contact/switched_motion.h"
 #include "numeric/number.h"
-#include "simulation/request.h"
 
 namespace anholon {
 
 namespace {
-
-void refuse(const SimulationOptions& o, const Scenario& s, bool switches) {
-  const auto no = [switches](const std::string& what, const std::string& hint) {
-    throw Failure(
-        {}, std::string("a motion with ") + (switches ? "constraints that are switched " : "contacts ") + what, hint);
-  };
-  if (o.precision != Precision::real || o.digits > 16) no("is computed in doubles", "leave out --digits and --numbers");
-  if (o.save || o.resume) no("is not saved", "leave out --save and --continue");
-  if (o.rigorous) no("has no enclosure", "leave out --rigorous");
-  if (o.integrator != Method::taylor) no("is computed by Taylor's method", "leave out --integrator");
-  if (!o.followed.empty() || o.dense) no("has no polynomials", "leave out the dense output");
-  if (s.system.form->eliminates()) no("needs a form with multipliers", "--form routh");
-  if (!switches && sets_values(*s.model)) no("does not go with events that set values", "leave out 'set'");
-}
 
 class HybridMotion {
  public:
@@ -83,6 +69,9 @@ class HybridMotion {
   struct Excluded {
     bool touch = false, stick = false, slips = false;
   };
+  std::string event_name(std::size_t c, ModeChange change) const {
+    return contacts_[c].name + "." + word(contacts_[c], change);
+  }
   std::string when() const { return " at t = " + number_text(at_.t.get_d(), 12); }
 
   // An outcome if a gap is negative.
@@ -108,6 +97,9 @@ class HybridMotion {
     const std::vector<ContactSolution> list = consistent_modes(p);
     if (list.size() != 1) return undecided(list.size());
     modes_ = list[0].modes;
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      if (excluded_[c].slips && modes_[c].touch == Touch::slips)
+        joined_.rename(event_name(c, ModeChange::sticks), event_name(c, ModeChange::reverses));
     if (const auto open = of_modes(p, ContactModes(contacts_.size()))) {
       before_ = 0;
       for (const long double a : open->x) before_ = std::max(before_, std::abs(a));
@@ -392,7 +384,7 @@ class HybridMotion {
         for (std::size_t a = 0; a < at_.qd.size(); ++a) size = std::max(size, std::abs(t[a] * dynamics_.most(a)));
       if (std::hypot(slip[0], slip[1]) > kVanished * size) continue;
       set_slip(c, {}, 0);
-      joined_.event(contacts_[c].name + "." + word(contacts_[c], ModeChange::sticks), at_.t.get_d());
+      joined_.event(event_name(c, ModeChange::sticks), at_.t.get_d());
       any = true;
     }
     return any;
@@ -497,7 +489,7 @@ SimulationReport simulate_with_contacts(Workspace& s, const std::vector<Contact>
   if (held > 0 && held < contacts.size())
     throw Failure({}, "a motion knows contacts or constraints with 'active', and the model has both",
                   "a contact that an event switches: let its gap hold the mode");
-  refuse(options, s, held > 0);
+  refuse_options(options, s, held > 0);
   const auto start = std::chrono::steady_clock::now();
   SimulationReport r =
       held > 0 ? simulate_with_switches(s, contacts, options, sink) : HybridMotion(s, contacts, options, sink).go();

@@ -77,6 +77,12 @@ void JoinedReport::set(double t, const std::vector<EventReport::Change>& changes
 
 void JoinedReport::event(const std::string& name, double t) { all_.events.push_back({name, {t, ""}, {}}); }
 
+void JoinedReport::rename(const std::string& name, const std::string& other) {
+  const auto last =
+      std::find_if(all_.events.rbegin(), all_.events.rend(), [&](const EventReport& e) { return e.name == name; });
+  if (last != all_.events.rend()) last->name = other;
+}
+
 SimulationReport JoinedReport::report(Outcome outcome, double t, std::size_t rows) {
   all_.outcome = std::move(outcome);
   all_.t = t;

@@ -13,6 +13,8 @@ class JoinedReport {
   // Velocities that an impact has set, told with the event that led to it.
   void set(double t, const std::vector<EventReport::Change>& changes);
   void event(const std::string& name, double t);
+  // Gives the last event of this name another one.
+  void rename(const std::string& name, const std::string& other);
   std::size_t segments() const { return segments_; }
   SimulationReport report(Outcome outcome, double t, std::size_t rows);
 

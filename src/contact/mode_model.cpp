@@ -198,6 +198,8 @@ std::string word(const Contact& c, ModeChange change) {
     return c.under ? "starts" : "slips";
   case ModeChange::sticks:
     return c.under ? "stops" : "sticks";
+  case ModeChange::reverses:
+    return "reverses";
   case ModeChange::turns:
     return "turns";
   }

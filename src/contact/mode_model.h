@@ -15,8 +15,8 @@ struct ContactState {
   std::vector<double> q, qd, states;
 };
 
-// Why a mode ends.
-enum class ModeChange : std::uint8_t { hits, leaves, slips, sticks, turns };
+// Why a mode ends. A slip that passes zero sticks, or reverses if it goes on.
+enum class ModeChange : std::uint8_t { hits, leaves, slips, sticks, reverses, turns };
 struct ModeEvent {
   std::size_t contact = 0;
   ModeChange change = ModeChange::hits;
@@ -29,7 +29,7 @@ struct ModeModel {
   std::vector<bool> stopped;
 };
 
-// Of the name NAME.WORD of this change: a resistance starts and stops.
+// Of the name NAME.WORD of this change: a resistance starts, stops and reverses.
 std::string word(const Contact& contact, ModeChange change);
 
 // The columns of rows that contacts add after those of the model.
