@@ -67,7 +67,7 @@ TEST(Siconos, WoodpeckerAfterImpacts) {
   }
 }
 
-// The inertia is that of a block of 1 x 0.5, the corners are those of one of 0.2 x 0.1.
+// The results have the inertia of a block of 1 x 0.5 and the corners of one of 0.2 x 0.1.
 std::string block(const std::string& e) {
   return R"toml(coordinates = ["x", "y", "th"]
 parameters = {J = "(1 + 0.25)/12", a = 0.1, b = 0.05}
