@@ -9,29 +9,15 @@
 #include "contact/law/accumulation.h"
 #include "contact/law/consistent_modes.h"
 #include "contact/ready_modes.h"
+#include "contact/refused_options.h"
 #include "contact/segment_rows.h"
 #include "contact/slip_start.h"
 #include "contact/switched_motion.h"
 #include "numeric/number.h"
-#include "simulation/request.h"
 
 namespace anholon {
 
 namespace {
-
-void refuse(const SimulationOptions& o, const Scenario& s, bool switches) {
-  const auto no = [switches](const std::string& what, const std::string& hint) {
-    throw Failure(
-        {}, std::string("a motion with ") + (switches ? "constraints that are switched " : "contacts ") + what, hint);
-  };
-  if (o.precision != Precision::real || o.digits > 16) no("is computed in doubles", "leave out --digits and --numbers");
-  if (o.save || o.resume) no("is not saved", "leave out --save and --continue");
-  if (o.rigorous) no("has no enclosure", "leave out --rigorous");
-  if (o.integrator != Method::taylor) no("is computed by Taylor's method", "leave out --integrator");
-  if (!o.followed.empty() || o.dense) no("has no polynomials", "leave out the dense output");
-  if (s.system.form->eliminates()) no("needs a form with multipliers", "--form routh");
-  if (!switches && sets_values(*s.model)) no("does not go with events that set values", "leave out 'set'");
-}
 
 class HybridMotion {
  public:
@@ -79,6 +65,9 @@ class HybridMotion {
   static ContactState start_of(const Workspace& s, const SimulationOptions& o) {
     return {o.state.t ? *o.state.t : Rational(s.state.t), s.state.q, s.state.qd, s.state.states};
   }
+  std::string event_name(std::size_t c, ModeChange change) const {
+    return bodies_.contacts[c].name + "." + word(bodies_.contacts[c], change);
+  }
   std::string when() const { return " at t = " + number_text(bodies_.at.t.get_d(), 12); }
 
   // An outcome if a gap is negative.
@@ -106,6 +95,9 @@ class HybridMotion {
     if (list.size() != 1) return undecided(list.size());
     slips_->tell_who_slips_too(list[0].modes);
     bodies_.modes = list[0].modes;
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
+      if (bodies_.excluded[c].slips && bodies_.modes[c].touch == Touch::slips)
+        joined_.rename(event_name(c, ModeChange::sticks), event_name(c, ModeChange::reverses));
     if (const auto open = of_modes(p, ContactModes(bodies_.contacts.size()))) {
       bodies_.before = 0;
       for (const long double a : open->x) bodies_.before = std::max(bodies_.before, std::abs(a));
@@ -225,8 +217,7 @@ class HybridMotion {
           size = std::max(size, std::abs(t[a] * bodies_.dynamics.most(a)));
       if (std::hypot(slip[0], slip[1]) > kVanished * size) continue;
       bodies_.set_slip(c, {}, 0);
-      joined_.event(bodies_.contacts[c].name + "." + word(bodies_.contacts[c], ModeChange::sticks),
-                    bodies_.at.t.get_d());
+      joined_.event(event_name(c, ModeChange::sticks), bodies_.at.t.get_d());
       any = true;
     }
     return any;
@@ -307,7 +298,7 @@ SimulationReport simulate_with_contacts(Workspace& s, const std::vector<Contact>
   if (held > 0 && held < contacts.size())
     throw Failure({}, "a motion knows contacts or constraints with 'active', and the model has both",
                   "a contact that an event switches: let its gap hold the mode");
-  refuse(options, s, held > 0);
+  refuse_options(options, s, held > 0);
   const auto start = std::chrono::steady_clock::now();
   SimulationReport r =
       held > 0 ? simulate_with_switches(s, contacts, options, sink) : HybridMotion(s, contacts, options, sink).go();

@@ -95,6 +95,12 @@ void JoinedReport::take_back(const std::string& name) {
   if (last != all_.events.rend()) all_.events.erase(std::next(last).base());
 }
 
+void JoinedReport::rename(const std::string& name, const std::string& other) {
+  const auto last =
+      std::find_if(all_.events.rbegin(), all_.events.rend(), [&](const EventReport& e) { return e.name == name; });
+  if (last != all_.events.rend()) last->name = other;
+}
+
 SimulationReport JoinedReport::report(Outcome outcome, double t, std::size_t rows) {
   all_.outcome = std::move(outcome);
   all_.t = t;

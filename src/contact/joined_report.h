@@ -15,6 +15,8 @@ class JoinedReport {
   void event(const std::string& name, double t);
   // The last event of this name has changed nothing.
   void take_back(const std::string& name);
+  // Gives the last event of this name another one.
+  void rename(const std::string& name, const std::string& other);
   std::size_t segments() const { return segments_; }
   SimulationReport report(Outcome outcome, double t, std::size_t rows);
 

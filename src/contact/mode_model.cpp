@@ -274,6 +274,8 @@ std::string word(const Contact& c, ModeChange change) {
     return c.under ? "stops" : "sticks";
   case ModeChange::slows:
     return "slows";
+  case ModeChange::reverses:
+    return "reverses";
   case ModeChange::turns:
     return "turns";
   }

@@ -15,9 +15,9 @@ struct ContactState {
   std::vector<double> q, qd, states;
 };
 
-// Why a mode ends.
-// `slows` and `turns` change how the direction of a slip is written, and nothing of the motion.
-enum class ModeChange : std::uint8_t { hits, leaves, slips, sticks, slows, turns };
+// Why a mode ends. A slip that passes zero sticks, or reverses if it goes on; `slows` and `turns` change how the direction of a
+// slip is written, and nothing of the motion.
+enum class ModeChange : std::uint8_t { hits, leaves, slips, sticks, reverses, slows, turns };
 struct ModeEvent {
   std::size_t contact = 0;
   ModeChange change = ModeChange::hits;
@@ -31,7 +31,7 @@ struct ModeModel {
   std::vector<bool> stopped;
 };
 
-// Of the name NAME.WORD of this change: a resistance starts and stops.
+// Of the name NAME.WORD of this change: a resistance starts, stops and reverses.
 std::string word(const Contact& contact, ModeChange change);
 
 // The columns of rows that contacts add after those of the model.

@@ -96,6 +96,31 @@ TEST(ClosedForms, PeriodOfStickAndSlip) {
   EXPECT_GT(std::abs(period(0.2) - formula(0.25)), 1e-2);  // the mutant
 }
 
+// A block on a spring turns back every pi seconds, each time 2 mu g nearer to the middle. It sticks where the spring pulls
+// with less than friction.
+TEST(ClosedForms, BlockOnASpringReversesAndSticksAtLast) {
+  const auto block = [](const std::string& friction) {
+    return contact_motion(R"toml(coordinates = ["x", "z"]
+gravity.field = "-10*ez"
+potential.spring = "x^2/2"
+particle = [{name = "block", mass = 1, position = "x*ex + z*ez"}]
+initial = {x = 12, "x'" = 6}
+contact = [{name = "floor", gap = "z", slip = "x'", friction = )toml" +
+                              friction + "}]\n",
+                          30);
+  };
+  const auto m = block("0.1");
+  const auto reverses = times(m, "floor.reverses"), sticks = times(m, "floor.sticks");
+  ASSERT_EQ(reverses.size(), 7U);
+  ASSERT_EQ(sticks.size(), 1U);
+  for (std::size_t k = 0; k < reverses.size(); ++k)
+    EXPECT_NEAR(reverses[k], std::atan(6.0 / 13) + static_cast<double>(k) * M_PI, 1e-13);
+  EXPECT_NEAR(sticks[0], std::atan(6.0 / 13) + 7 * M_PI, 1e-13);
+  expect_near(m.last("x"), 15 - std::sqrt(205), 1e-13);
+  EXPECT_EQ(m.last("floor.mode"), 2);
+  EXPECT_EQ(times(block("0.2"), "floor.reverses").size(), 3U);  // the mutant
+}
+
 TEST(ClosedForms, NothingCreepsWhereItSticks) {
   std::vector<Rational> at;
   for (int k = 0; k <= 200; ++k) at.emplace_back(k, 10);
