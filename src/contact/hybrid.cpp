@@ -4,10 +4,10 @@
 #include <chrono>
 #include <cmath>
 
-#include "contact/impact.h"
 #include "contact/joined_report.h"
 #include "contact/law/accumulation.h"
 #include "contact/law/consistent_modes.h"
+#include "contact/law/impact.h"
 #include "contact/ready_modes.h"
 #include "contact/refused_options.h"
 #include "contact/segment_rows.h"

@@ -4,16 +4,10 @@
 #include <map>
 #include <optional>
 
-#include "contact/law/mode_equations.h"
+#include "contact/law/contact_dynamics.h"
 #include "modelfile/contacts.h"
 
 namespace anholon {
-
-// The state in which a mode begins.
-struct ContactState {
-  Rational t;
-  std::vector<double> q, qd, states;
-};
 
 // Why a mode ends. A slip that passes zero sticks, or reverses if it goes on; `slows` and `turns` change how the direction of a
 // slip is written, and nothing of the motion.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/contact_dynamics.h"
 #include "contact/joined_report.h"
+#include "contact/law/contact_dynamics.h"
 #include "contact/segment_rows.h"
 #include "contact/switched_model.h"
 #include "numeric/number.h"

@@ -1,7 +1,7 @@
 // The bodies of a motion with contacts where a mode of the contacts has ended: their state, and what they may do next.
 #pragma once
-#include "contact/contact_dynamics.h"
-#include "contact/round_off.h"
+#include "contact/law/contact_dynamics.h"
+#include "contact/law/round_off.h"
 
 namespace anholon {
 

@@ -1,4 +1,4 @@
-#include "contact/contact_dynamics.h"
+#include "contact/law/contact_dynamics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,16 @@
 // The equations of the contacts at a state, as numbers: accelerations and impulses, gaps and slip velocities.
 #pragma once
 #include "contact/law/mode_equations.h"
-#include "contact/mode_model.h"
+#include "modelfile/contacts.h"
 #include "setup/scenario.h"
 
 namespace anholon {
+
+// The state in which a mode begins.
+struct ContactState {
+  Rational t;
+  std::vector<double> q, qd, states;
+};
 
 // Whether the gap of a contact holds t.
 bool walls_move(const std::vector<Contact>& contacts);

@@ -1,4 +1,4 @@
-#include "contact/impact.h"
+#include "contact/law/impact.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "contact/round_off.h"
+#include "contact/law/round_off.h"
 
 #include <algorithm>
 #include <cmath>

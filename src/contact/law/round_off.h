@@ -1,7 +1,7 @@
 // What is zero within round-off at a state of a motion with contacts: gaps, their velocities, and motions that end within
 // round-off of the place (theory: contact).
 #pragma once
-#include "contact/contact_dynamics.h"
+#include "contact/law/contact_dynamics.h"
 
 namespace anholon {
 

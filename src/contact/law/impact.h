@@ -4,7 +4,7 @@
 // whose impulse N_c stops the gap, and an expansion with the impulse e N_c, or more where the gap would close; friction
 // obeys Coulomb's law in both.
 #pragma once
-#include "contact/contact_dynamics.h"
+#include "contact/law/contact_dynamics.h"
 
 namespace anholon {
 
