@@ -75,6 +75,14 @@ CommandLine::CommandLine() {
 }
 
 int CommandLine::run(int argc, char** argv) {
+  // `anholon help simulate` is `anholon simulate --help`.
+  if (argc > 1 && std::string_view(argv[1]) == "help") {
+    static char help[] = "--help";
+    std::vector<char*> asked = {argv[0]};
+    if (argc > 2) asked.push_back(argv[2]);
+    asked.push_back(help);
+    return run(static_cast<int>(asked.size()), asked.data());
+  }
   std::vector<std::string> known;
   for (const CLI::App* command : app_.get_subcommands([](const CLI::App*) { return true; }))
     known.push_back(command->get_name());

@@ -25,7 +25,8 @@ template <Number N>
 Motion<N>::Motion(Workspace& s, const StepSettings& settings, std::vector<Expr> quadratures, int stages)
     : s_(s), base_(s.elimination.pivots().empty() ? nullptr : std::make_unique<const Workspace>(s)),
       settings_(settings), quadratures_(std::move(quadratures)), stages_(stages),
-      start_parameters_(parameter_values<W>(*s.model)), parameters_(start_parameters_), narrow_parameters_(parameter_values<N>(*s.model)),
+      start_parameters_(parameter_values<W>(*s.model)), parameters_(start_parameters_),
+      narrow_parameters_(parameter_values<N>(*s.model)),
       leg_(std::make_unique<Leg>(*this, nullptr, s.elimination, s.system, s.structure)) {
   begun_parameters_ = parameters_;
 }
