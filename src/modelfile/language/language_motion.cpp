@@ -123,10 +123,13 @@ initial = {z = 1, "phi'" = 9}
 ```
 
 - With `body` the gap and the slip velocity follow from the shape of the body and the plane. A disc is turned about its axis z and touches with
-  its rim; a box touches with its corners, whose contacts are called `NAME1`, `NAME2`, …; in a plane motion these are four. `at` without `shape` is a point of the body.
+  its rim; a box touches with its corners, whose contacts are called `NAME1`, `NAME2`, …; in a plane motion these are four. `at` without `shape` is a point of the body, a position in the
+  observer's axes as of a `[point]`: `at = "s.center + s(0.3, 0, -0.1)"` is fixed in the body s, and `[0.3, 0, -0.1]` in space. (In `force.on.at` an array is along the axes of the body.)
 - The normal of a plane does not turn; `through` may move. On a ball the directions of slip are those across `ey`.
 - A contact pushes and does not pull: it is open, sticks or slips. The normal force N acts along the gradient of the gap, friction against the slip velocity:
   μN while it slips, at most the static coefficient times N while it sticks. Without `slip` there is no friction.
+- Contacts of one body whose gaps or slip velocities depend on each other share their forces, each friction by its load: [two feet](contact.md#two-feet-on-a-floor).
+  The body slips when no distribution holds it any more.
 - `rolling_resistance` δ and `drilling_resistance` hold moments against the angular velocity of the body: δN against its part along the surface while the body
   rolls, at most δN while it does not; the same about the normal. They need a `body` with an orientation. Columns are `NAME.rolling.mode` (0 open, 1 rolls, 2 rests),
   `NAME.rolling.moment`, `NAME.drilling.mode`, `NAME.drilling.moment`; events are `NAME.rolling.starts`, `NAME.rolling.stops`, `NAME.rolling.reverses`, and the same of `NAME.drilling`.
@@ -291,7 +294,8 @@ initial = {qddot = {x = 0.2}, qdddot = {x = 0.05}}
 ```
 
 - Every coordinate and its derivatives may be a key: `theta`, `"theta'"`, `"D(theta, 3)"`. What is not given follows from the constraints, and what they leave free
-  is as near to the guess as the mass norm allows. `check` says of each value where it comes from.
+  is as near to the guess, 0 without one, as the mass norm allows. That is not 0 where a constraint forbids it: a torus wheel that leans and spins with `phi' = 8`, without a `psi'`, gets
+  one of several turns per second. Give all velocities of a rolling body. `check` says of each value where it comes from.
 - A value is a number or a formula of parameters. Relations between unknowns stand under `conditions`, which may hold accelerations and
   `lambda.NAME`: they are solved with the equations of motion (`"theta'' = 0"`: a steady motion).
 - Values that miss a constraint by no more than 1e-8 of its scale are taken as rounded, and corrected by the least change; by more
