@@ -52,6 +52,7 @@ class HybridMotion {
       if (outcome.ok()) outcome = not_inside(when(), kPassed);
     }
     if (outcome.ok()) outcome = not_inside(when(), kPassed);
+    if (outcome.ok()) outcome = as_its_modes();
     return joined_.report(std::move(outcome), bodies_.at.t.get_d(), rows_.rows());
   }
 
@@ -83,9 +84,17 @@ class HybridMotion {
     return {};
   }
 
+  // An outcome if a contact has not done what its mode says.
+  Outcome as_its_modes() const {
+    if (const auto how = bodies_.contradiction())
+      return {OutcomeKind::inconsistent, *how + when(), "please report the model, as this is a bug of anholon"};
+    return {};
+  }
+
   // Impacts where a closed gap shrinks, then the modes by the accelerations.
   Outcome choose() {
     bodies_.look();
+    if (Outcome o = as_its_modes(); !o.ok()) return o;
     for (std::size_t k = 0; bodies_.shrinks() && k < kMostImpacts; ++k)
       if (Outcome o = impact(); !o.ok()) return o;
     land();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "contact/law/shared_friction.h"
+#include "numeric/number.h"
 
 namespace anholon {
 
@@ -53,6 +54,22 @@ void TouchingBodies::drop_left_over() {
     for (std::size_t a = 0; a < row.size(); ++a)
       if (row[a] != 0 && now <= RoundOff::kPlace * most) at.qd[a] = 0;
   }
+}
+
+std::optional<std::string> TouchingBodies::contradiction() const {
+  constexpr long double kMoves = 1e-8L;
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    const ContactDynamics::Place& place = dynamics.place(c);
+    const long double most = kMoves * place.slip_reach, v = std::hypot(place.slip[0], place.slip[1]);
+    const bool sticks = modes[c].touch == Touch::sticks && v > most;
+    const bool against = modes[c].touch == Touch::slips && contacts[c].rough() && contacts[c].slip.size() == 1 &&
+                         place.slip[0] * modes[c].direction[0] < -most;
+    if (sticks || against)
+      return "the contact '" + contacts[c].name +
+             (sticks ? "' sticks, and slips with " : "' slips against its direction with ") +
+             number_text(static_cast<double>(v), 6);
+  }
+  return std::nullopt;
 }
 
 std::optional<long double> TouchingBodies::fast(std::size_t c) const {

@@ -44,6 +44,10 @@ struct TouchingBodies {
   // it hits. Returns whether that is so; the depth is then that of the gap.
   bool deeper(const std::vector<double>& q);
 
+  // The contact that does not do what its mode says, and how: it sticks and moves, or slips against its direction. Such a motion
+  // is none, whatever the residuals of its equations.
+  std::optional<std::string> contradiction() const;
+
   const std::vector<Contact>& contacts;
   ContactDynamics dynamics;
   ContactState at;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "contact/touching_bodies.h"
 #include "support/contact_motion.h"
 
 namespace anholon {
@@ -153,6 +154,29 @@ TEST(SharedFriction, LoadsThatNothingDeterminesAreTheLeast) {
   EXPECT_NEAR(m.last("x'"), 2 * 0.3 / 0.1 / 2 / (8 + 1 + 0.5), 1e-12);
   EXPECT_LT(std::abs(m.last("psi'")), 1e-12);
   for (const char* load : {"cr.normal", "cl.normal"}) EXPECT_NEAR(m.last(load), 4.5 * 9.81, 1e-12) << load;
+}
+
+// What the equations of a motion do not show: a contact that moves while its mode says that it sticks.
+TEST(SharedFriction, ContactsThatDoNotAsTheirModesSayAreFound) {
+  const SourceText source{"test.toml", block("[0, 0, 0]")};
+  Diagnostics diagnostics;
+  const auto open = open_model(source, diagnostics, {});
+  ASSERT_TRUE(open) << diagnostics.print(source);
+  Scenario s;
+  ASSERT_TRUE(make_scenario(open->model, *find_formulation("routh"), {}, s).ok());
+  Workspace own(s);
+  const std::vector<Contact> list = contacts(*open->names);
+  const auto says = [&](double velocity, Touch touch, double direction) {
+    TouchingBodies bodies(own, list, {Rational(0), {0, 0.1, 0}, {velocity, 0, 0}, {}});
+    bodies.modes.resize(2);
+    for (ContactMode& m : bodies.modes) m.touch = touch, m.direction = {direction, 0};
+    bodies.look();
+    return bodies.contradiction().value_or("");
+  };
+  EXPECT_EQ(says(0, Touch::sticks, 0), "");
+  EXPECT_EQ(says(1, Touch::slips, 1), "");
+  EXPECT_EQ(says(1, Touch::sticks, 0), "the contact 'l1' sticks, and slips with 1");
+  EXPECT_EQ(says(1, Touch::slips, -1), "the contact 'l1' slips against its direction with 1");
 }
 
 }  // namespace shared_friction_test
