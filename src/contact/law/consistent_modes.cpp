@@ -86,15 +86,15 @@ bool alternatives(const ContactSolution& a, const ContactSolution& b) {
 }
 
 // Whether b is a with further contacts that touch, whose gaps stay closed in a as well: others hold them there, and they carry
-// nothing.
-bool is_part(const ContactProblem& p, const ContactSolution& a, const ContactSolution& b) {
+// nothing. `free`: as above.
+bool is_part(const ContactProblem& p, const ContactSolution& a, const ContactSolution& b, Real free) {
   bool more = false;
   for (std::size_t c = 0; c < a.modes.size(); ++c) {
     const bool touches_a = a.modes[c].touch != Touch::open, touches_b = b.modes[c].touch != Touch::open;
     if (touches_a && !touches_b) return false;
     if (touches_a || !touches_b || p.contacts[c].under) continue;
     const ContactRows& rows = p.contacts[c];
-    const Real size = largest(rows.normal) * largest(a.x) + std::abs(rows.normal_rate);
+    const Real size = largest(rows.normal) * std::max(largest(a.x), free) + std::abs(rows.normal_rate);
     if (std::abs(dot(rows.normal, a.x) + rows.normal_rate) > kSame * size) return false;
     more = true;
   }
@@ -137,10 +137,10 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
       Real difference = 0;
       for (std::size_t i = 0; i < o.x.size(); ++i) difference = std::max(difference, std::abs(o.x[i] - f->x[i]));
       return difference <= 100 * kSame * std::max({largest(o.x), largest(f->x), free}) || !alternatives(o, *f) ||
-             is_part(p, *f, o);
+             is_part(p, *f, o, free);
     });
     if (known) continue;
-    std::erase_if(list, [&](const ContactSolution& o) { return is_part(p, o, *f); });
+    std::erase_if(list, [&](const ContactSolution& o) { return is_part(p, o, *f, free); });
     list.push_back(*f);
   }
   return list;

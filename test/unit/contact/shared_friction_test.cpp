@@ -137,6 +137,30 @@ initial = {z = "R"}
 )toml";
 }
 
+// Four feet, whose loads nothing determines: the least loads are 4.905 each, and the limit load of their cones is the same
+// problem with these.
+TEST(SharedFriction, FourFeetSlipAtTheLimitLoadOfTheirLeastLoads) {
+  const auto m = contact_motion(R"toml(coordinates = ["x", "y", "z", "a", "b", "c"]
+parameters = {m = 2, k = 0.3}
+gravity.field = "-9.81*ez"
+body = [{name = "s", mass = "m", shape = "box(0.6, 0.4, 0.2)", center = "x*ex + y*ey + z*ez", orientation = "rotz(a)*roty(b)*rotx(c)"}]
+contact = [{name = "f", body = "s", friction = "k"}]
+initial = {z = 0.1}
+force = [{on = "s", torque = "t*ez"}]
+)toml",
+                                Rational(5, 2));
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  const double begin = kLimit * std::hypot(0.3, 0.2), inertia = 2 * (0.36 + 0.16) / 12;
+  std::size_t feet = 0;
+  for (const char* foot : {"f1", "f2", "f3", "f4", "f5", "f6", "f7", "f8"})
+    if (const auto times = test::times(m, std::string(foot) + ".slips"); !times.empty()) {
+      ++feet;
+      EXPECT_NEAR(times[0], begin, 1e-7) << foot;
+    }
+  EXPECT_EQ(feet, 4U);
+  EXPECT_NEAR(m.last("a"), std::pow(2.5 - begin, 3) / 6 / inertia, 1e-8);
+}
+
 // Two wheels on one axle hold it sideways together, and each rolls: x'' = (2 T/R)/(M + 2 m + 2 I/R^2).
 TEST(SharedFriction, DrivenAxleRollsStraight) {
   const auto m = contact_motion(axle("\"roll\", ", "rotz(psi)*rotx(roll)"), 1);
