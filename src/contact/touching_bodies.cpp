@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/law/shared_friction.h"
+#include "contact/law/shared_forces.h"
 #include "numeric/number.h"
 
 namespace anholon {

@@ -15,6 +15,7 @@ struct TouchingBodies {
     bool touch = false, stick = false, slips = false;
   };
 
+  // Evaluates the equations at the state, and notes how fast the bodies might fall from it.
   void look();
   // The accelerations, in which each contact may do what its gap and the event at which the last segment ended allow.
   ContactProblem with_touching() const;

@@ -20,7 +20,7 @@ class LookAhead {
   // … with J and its LU; null if J has none. What was met elsewhere says nothing there: the iteration for the singular
   // value starts anew, so that a run that goes on finds the same.
   Expansion<N>* prepare(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
-  // What is watched where the motion was loaded last.
+  // What is watched where the motion was loaded last; of the quadratures these alone are known then.
   void evaluate_watched();
   // A quadrature where the motion was loaded last, and the formulas evaluated; nullopt if it has no value there.
   std::optional<N> quadrature(std::size_t i);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "contact/law/rows.h"
-#include "contact/law/shared_friction.h"
+#include "contact/law/shared_forces.h"
 #include "contact/law/slip_directions.h"
 
 namespace anholon {

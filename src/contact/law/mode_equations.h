@@ -8,7 +8,7 @@
 // Resistance to rolling or drilling is a further T of a contact, bounded by the same N: it has rows of its own, in which t
 // is the angular velocity and mu a length. It is open where its contact is, unless a given force presses it.
 //
-// x are the accelerations, or the jumps of the velocities. All modes are tried; there are at most four contacts.
+// x are the accelerations, or the jumps of the velocities. All modes are tried.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace anholon {
 enum class Touch : std::uint8_t { open, slips, sticks };
 
 // Where the gaps or the slip velocities of contacts depend on each other, some are held by unknown forces, and the others
-// share these (law/shared_friction.h). The force of one gap, or of one component of friction:
+// share these (law/shared_forces.h). The force of one gap, or of one component of friction:
 struct ForceShare {
   bool shared = false;          // its rate follows from those that are held
   long double given = 0;        // a part that is known

@@ -7,7 +7,7 @@
 #include "support/contact_motion.h"
 
 namespace anholon {
-namespace shared_friction_test {
+namespace shared_forces_test {
 
 using test::contact_motion;
 
@@ -203,5 +203,5 @@ TEST(SharedFriction, ContactsThatDoNotAsTheirModesSayAreFound) {
   EXPECT_EQ(says(1, Touch::slips, -1), "the contact 'l1' slips against its direction with 1");
 }
 
-}  // namespace shared_friction_test
+}  // namespace shared_forces_test
 }  // namespace anholon

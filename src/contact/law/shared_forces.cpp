@@ -1,4 +1,4 @@
-#include "contact/law/shared_friction.h"
+#include "contact/law/shared_forces.h"
 
 #include <limits>
 
@@ -58,7 +58,7 @@ Real bound(const ContactProblem& p, const ContactSolution& f, std::size_t c) {
 class Sharing {
  public:
   // `order`: in which contacts are asked to hold.
-  Sharing(const ContactProblem& p, ContactModes& modes, const std::vector<std::size_t>& order) : p_(p), modes_(modes) {
+  Sharing(const ContactProblem& p, ContactModes& modes, const std::vector<std::size_t>& order) : modes_(modes) {
     std::size_t most = p.beta.size();
     for (const ContactRows& rows : p.contacts) most += 1 + rows.tangential.size();
     GramSchmidt rows(most);
@@ -120,7 +120,6 @@ class Sharing {
   const std::vector<Dependent>& dependent() const { return dependent_; }
 
  private:
-  const ContactProblem& p_;
   ContactModes& modes_;
   std::vector<HeldComponent> held_;
   std::vector<Dependent> dependent_;
