@@ -253,6 +253,8 @@ class HybridMotion {
     for (std::size_t k = rows_.due(); k < times_.size(); ++k)
       if (times_[k] <= to && (joined_.segments() == 0 ? times_[k] >= bodies_.at.t : times_[k] > bodies_.at.t))
         o.at.push_back(times_[k]);
+    // The next segment begins with the last row.
+    if (!o.at.empty() && o.at.back() < to) o.at.push_back(to);
     o.estimate = ErrorEstimate::never;
     o.conserved.clear();
     o.note = nullptr;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "contact/law/consistent_modes.h"
+#include "contact/law/shared_forces.h"
 
 namespace anholon {
 
@@ -64,12 +65,18 @@ void SlipStart::begin(const std::vector<std::size_t>& list, const std::vector<lo
 }
 
 void SlipStart::begin_together(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations) {
+  const ContactProblem p = bodies_.with_touching();
+  ContactModes at_rest = bodies_.modes;
+  for (const std::size_t c : list) at_rest[c].touch = Touch::sticks;
+  share_forces(p, at_rest);
+  const auto held = of_modes(p, at_rest);
+  if (!held) return;
   long double time = 0;
   for (const std::size_t c : list)
     if (const long double a = bodies_.dynamics.slip_acceleration(c, accelerations); a > 0)
       time = std::max(time, first_slip(c, accelerations) / a);
-  std::vector<long double> jump = accelerations;
-  for (long double& v : jump) v *= time;
+  std::vector<long double> jump;
+  for (std::size_t a = 0; a < accelerations.size(); ++a) jump.push_back(time * (accelerations[a] - held->x[a]));
   bodies_.add_to_velocities(jump);
 }
 
@@ -110,8 +117,7 @@ bool SlipStart::share_anew(Outcome& outcome) {
 }
 
 bool SlipStart::hold_together(long double time, Outcome& outcome) {
-  const Rational to(bodies_.at.t.get_d() + static_cast<double>(time));
-  if (to >= end_) return true;
+  const Rational to = std::min(end_, Rational(bodies_.at.t.get_d() + static_cast<double>(time)));
   const std::vector<bool> told = told_;
   for (ContactMode& m : bodies_.modes) m.held = m.touch == Touch::sticks;
   bodies_.stop(bodies_.modes);
@@ -168,8 +174,7 @@ bool SlipStart::begins_at_rest(std::size_t c) const {
 }
 
 bool SlipStart::hold_for(std::size_t c, long double time, Outcome& outcome) {
-  const Rational to(bodies_.at.t.get_d() + static_cast<double>(time));
-  if (to >= end_) return false;
+  const Rational to = std::min(end_, Rational(bodies_.at.t.get_d() + static_cast<double>(time)));
   bodies_.modes[c].held = true;
   bodies_.stop(bodies_.modes);
   const bool goes_on = segment_(to, outcome);

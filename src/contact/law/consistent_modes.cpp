@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "contact/law/least_constraint.h"
 #include "contact/law/rows.h"
 #include "contact/law/shared_forces.h"
 #include "contact/law/slip_directions.h"
@@ -14,12 +16,19 @@ namespace {
 using Real = long double;
 using Numbers = ContactNumbers;
 
+// What is round-off of a slip acceleration; `size`: of the accelerations, `free`: as below.
+Real round_off_of_slip(const ContactRows& rows, Real size, Real free) {
+  constexpr Real kRounded = 1e-14L;
+  Real most = 0;
+  for (std::size_t a = 0; a < rows.tangential.size(); ++a)
+    most = std::max(most, kSame * (largest(rows.tangential[a]) * size + std::abs(rows.tangential_rate[a])) +
+                              kRounded * rows.friction * largest(rows.tangential[a]) * free);
+  return most;
+}
+
 // free: the size of the accelerations without contacts. Where the contacts leave no acceleration, those of the modes
 // are the round-off of this size.
 bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
-  // A contact at rest that the others hold does not slip.
-  const bool others_hold =
-      std::any_of(f.modes.begin(), f.modes.end(), [](const ContactMode& m) { return m.touch == Touch::sticks; });
   const Real force = largest(p.b), size = std::max(largest(f.x), free);
   for (std::size_t c = 0; c < p.contacts.size(); ++c) {
     const ContactRows& rows = p.contacts[c];
@@ -39,20 +48,31 @@ bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
     if (mode.load.shared && std::abs(dot(rows.normal, f.x) + rows.normal_rate) > scale) return false;
     if (!rows.rough) continue;
     const auto v = slip_rate(rows, f.x);
-    Real span = 0;
-    for (std::size_t a = 0; a < rows.tangential.size(); ++a)
-      span = std::max(span, kSame * (largest(rows.tangential[a]) * size + std::abs(rows.tangential_rate[a])) +
-                                kRounded * rows.friction * largest(rows.tangential[a]) * free);
-    const Real along = v[0] * mode.direction[0] + v[1] * mode.direction[1];
+    const Real span = round_off_of_slip(rows, size, free);
     if (mode.touch == Touch::sticks) {
       for (std::size_t a = 0; a < rows.tangential.size(); ++a)
         if (mode.shares[a].shared && std::abs(v[a]) > span) return false;
       if (std::hypot(f.friction[c][0], f.friction[c][1]) > rows.static_friction * N + forces) return false;
-    } else if (!rows.moves && (along < -span || (others_hold && rows.may_stick && along <= span))) {
+    } else if (!rows.moves && v[0] * mode.direction[0] + v[1] * mode.direction[1] < -span) {
       return false;
     }
   }
   return true;
+}
+
+// Whether a contact at rest that may stick, and that the others hold, is said to slip though it hardly does.
+bool slips_by_round_off(const ContactProblem& p, const ContactSolution& f, Real free) {
+  const auto sticks = [](const ContactMode& m) { return m.touch == Touch::sticks; };
+  if (std::none_of(f.modes.begin(), f.modes.end(), sticks)) return false;
+  const Real size = std::max(largest(f.x), free);
+  for (std::size_t c = 0; c < p.contacts.size(); ++c) {
+    const ContactRows& rows = p.contacts[c];
+    if (f.modes[c].touch != Touch::slips || !rows.rough || rows.moves || !rows.may_stick) continue;
+    const auto v = slip_rate(rows, f.x);
+    const auto& d = f.modes[c].direction;
+    if (v[0] * d[0] + v[1] * d[1] <= round_off_of_slip(rows, size, free)) return true;
+  }
+  return false;
 }
 
 ContactMode mode(Touch touch, const std::array<Real, 2>& direction) {
@@ -110,6 +130,46 @@ bool possible(const ContactProblem& p, const ContactModes& modes) {
   return true;
 }
 
+// The solutions that are found, of which each is one motion.
+class Solutions {
+ public:
+  explicit Solutions(const ContactProblem& p) : p_(p) {
+    const auto open = of_modes(p, ContactModes(p.contacts.size()));
+    free_ = std::max(open ? largest(open->x) : 0, Real(1e-300L));
+  }
+
+  // The solution of modes, whose directions of slips that begin are guesses; nullopt if they are not consistent.
+  std::optional<ContactSolution> judge(ContactModes modes) const {
+    share_forces(p_, modes);
+    auto f = with_directions(p_, modes, free_);
+    if (f && shares_friction(modes)) f = distributed(p_, *f);
+    if (f && !consistent(p_, *f, free_)) f.reset();
+    return f;
+  }
+  bool slips_by_round_off(const ContactSolution& f) const { return anholon::slips_by_round_off(p_, f, free_); }
+  void add(const ContactSolution& f) {
+    if (known(f)) return;
+    std::erase_if(list_, [&](const ContactSolution& o) { return is_part(p_, o, f, free_); });
+    list_.push_back(f);
+  }
+
+  const std::vector<ContactSolution>& list() const { return list_; }
+
+ private:
+  bool known(const ContactSolution& f) const {
+    return std::any_of(list_.begin(), list_.end(), [&](const ContactSolution& o) {
+      Real difference = 0;
+      for (std::size_t i = 0; i < o.x.size(); ++i) difference = std::max(difference, std::abs(o.x[i] - f.x[i]));
+      return difference <= 100 * kSame * std::max({largest(o.x), largest(f.x), free_}) || !alternatives(o, f) ||
+             is_part(p_, f, o, free_);
+    });
+  }
+
+  const ContactProblem& p_;
+  Real free_ = 0;
+  std::vector<ContactSolution> list_;
+};
+
 }  // namespace
 
 std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
@@ -119,31 +179,26 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
     each.push_back(choices(rows, rows.under ? p.contacts[*rows.under].may_touch : rows.may_touch));
     count *= each.back().size();
   }
-  std::vector<ContactSolution> list;
-  const auto open = of_modes(p, ContactModes(p.contacts.size()));
-  const Real free = std::max(open ? largest(open->x) : 0, Real(1e-300L));
+  Solutions solutions(p);
+  std::map<std::vector<bool>, bool>
+      found;  // by what touches: whether the principle of least constraint has found a solution
   for (std::size_t k = 0; k < count; ++k) {
     ContactModes modes;
+    std::vector<bool> touches;
     for (std::size_t c = 0, rest = k; c < each.size(); ++c) {
       modes.push_back(each[c][rest % each[c].size()]);
+      touches.push_back(modes.back().touch != Touch::open);
       rest /= each[c].size();
     }
     if (!possible(p, modes)) continue;
-    share_forces(p, modes);
-    auto f = with_directions(p, modes, free);
-    if (f && shares_friction(modes)) f = distributed(p, *f);
-    if (!f || !consistent(p, *f, free)) continue;
-    const bool known = std::any_of(list.begin(), list.end(), [&](const ContactSolution& o) {
-      Real difference = 0;
-      for (std::size_t i = 0; i < o.x.size(); ++i) difference = std::max(difference, std::abs(o.x[i] - f->x[i]));
-      return difference <= 100 * kSame * std::max({largest(o.x), largest(f->x), free}) || !alternatives(o, *f) ||
-             is_part(p, *f, o, free);
-    });
-    if (known) continue;
-    std::erase_if(list, [&](const ContactSolution& o) { return is_part(p, o, *f, free); });
-    list.push_back(*f);
+    const auto [at, first] = found.try_emplace(touches, false);
+    if (first)
+      if (const auto guess = modes_of_least_constraint(p, touches))
+        if (const auto f = solutions.judge(*guess)) at->second = true, solutions.add(*f);
+    if (at->second) continue;
+    if (const auto f = solutions.judge(modes); f && !solutions.slips_by_round_off(*f)) solutions.add(*f);
   }
-  return list;
+  return solutions.list();
 }
 
 }  // namespace anholon

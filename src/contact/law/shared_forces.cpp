@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "contact/law/rows.h"
+#include "contact/law/positive_equations.h"
 
 namespace anholon {
 
@@ -220,7 +220,7 @@ class MostSpared {
                      2 * (c.p_z[i] * c.p_z[j] - c.q_z[0][i] * c.q_z[0][j] - c.q_z[1][i] * c.q_z[1][j]) / h;
       }
     }
-    const Numbers d = solved(H, g);
+    const Numbers d = solve_positive(H, g);
     const Real decrement = dot(g, d);
     if (!(decrement > kEnough)) return false;
     const Real before = barrier(z_, steep);
@@ -235,37 +235,6 @@ class MostSpared {
       }
     }
     return false;
-  }
-
-  // H d = g with H positive definite but for round-off: what no cone limits stays.
-  static Numbers solved(std::vector<Numbers> H, Numbers g) {
-    const std::size_t n = g.size();
-    std::vector<std::size_t> order;
-    std::vector<bool> done(n, false);
-    for (std::size_t k = 0; k < n; ++k) {
-      std::size_t best = n;
-      for (std::size_t i = 0; i < n; ++i)
-        if (!done[i] && (best == n || H[i][i] > H[best][best])) best = i;
-      constexpr Real kNone = 1e-17L;
-      if (!order.empty() && !(H[best][best] > kNone * H[order[0]][order[0]])) break;
-      if (!(H[best][best] > 0)) break;
-      done[best] = true;
-      order.push_back(best);
-      for (std::size_t i = 0; i < n; ++i) {
-        if (done[i]) continue;
-        const Real factor = H[i][best] / H[best][best];
-        for (std::size_t j = 0; j < n; ++j) H[i][j] -= factor * H[best][j];
-        g[i] -= factor * g[best];
-      }
-    }
-    Numbers d(n, 0);
-    for (std::size_t k = order.size(); k-- > 0;) {
-      const std::size_t i = order[k];
-      Real sum = g[i];
-      for (std::size_t later = k + 1; later < order.size(); ++later) sum -= H[i][order[later]] * d[order[later]];
-      d[i] = sum / H[i][i];
-    }
-    return d;
   }
 
   std::size_t size_;
