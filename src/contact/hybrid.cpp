@@ -4,13 +4,11 @@
 #include <chrono>
 #include <cmath>
 
-#include "contact/joined_report.h"
 #include "contact/law/accumulation.h"
 #include "contact/law/consistent_modes.h"
 #include "contact/law/impact.h"
-#include "contact/ready_modes.h"
+#include "contact/mode_segments.h"
 #include "contact/refused_options.h"
-#include "contact/segment_rows.h"
 #include "contact/slip_start.h"
 #include "contact/switched_motion.h"
 #include "numeric/number.h"
@@ -22,17 +20,17 @@ namespace {
 class HybridMotion {
  public:
   HybridMotion(Workspace& s, const std::vector<Contact>& contacts, const SimulationOptions& o, RowSink& sink)
-      : s_(s), o_(o), bodies_(s, contacts, start_of(s, o)), ready_(s, contacts), rows_(sink, contacts),
-        joined_(*s.model), accumulation_(contacts.size()) {
+      : s_(s), o_(o), bodies_(s, contacts, start_of(s, o)), joined_(*s.model), accumulation_(contacts.size()) {
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
     if (end_ < bodies_.at.t) throw Failure({}, "a motion with contacts goes forwards only", "an end after the start");
-    times_ = o.at;
+    std::vector<Rational> times = o.at;
     if (o.every)
-      for (Rational t = bodies_.at.t; t < end_; t += *o.every) times_.push_back(t);
-    if (!times_.empty() && times_.back() != end_) times_.push_back(end_);
-    rows_.only_at(times_);
+      for (Rational t = bodies_.at.t; t < end_; t += *o.every) times.push_back(t);
+    if (!times.empty() && times.back() != end_) times.push_back(end_);
+    segments_.emplace(s, o, bodies_, joined_, sink, std::move(times), end_,
+                      [this](std::size_t contact) { slips_->told(contact); });
     slips_.emplace(bodies_, joined_, end_,
-                   [this](const Rational& to, Outcome& outcome) { return segment(to, outcome); });
+                   [this](const Rational& to, Outcome& outcome) { return segments_->follow(to, outcome); });
   }
 
   SimulationReport go() {
@@ -47,13 +45,14 @@ class HybridMotion {
                    "end the motion earlier"};
       else
         outcome = choose();
-      if (outcome.ok() && !segment(end_, outcome)) break;
+      if (outcome.ok() && !segments_->follow(end_, outcome)) break;
       if (outcome.ok() && !slips_->hold(outcome)) break;
       if (outcome.ok()) outcome = not_inside(when(), kPassed);
     }
     if (outcome.ok()) outcome = not_inside(when(), kPassed);
+    bodies_.look();
     if (outcome.ok()) outcome = as_its_modes();
-    return joined_.report(std::move(outcome), bodies_.at.t.get_d(), rows_.rows());
+    return joined_.report(std::move(outcome), bodies_.at.t.get_d(), segments_->rows());
   }
 
  private:
@@ -210,93 +209,13 @@ class HybridMotion {
     bodies_.stop(stops);
   }
 
-  // A slip velocity with two components that vanishes on a curved line has no Taylor series there, and the steps become
-  // short without end. Returns whether that is how the segment ended; the contact then sticks.
-  bool slip_vanishes() {
-    constexpr long double kVanished = 1e-8L;
-    bodies_.dynamics.go(bodies_.at);
-    bool any = false;
-    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
-      const ContactRows& rows = bodies_.dynamics.accelerations().contacts[c];
-      if (bodies_.modes[c].touch != Touch::slips || !rows.rough || rows.tangential.size() < 2) continue;
-      const auto& slip = bodies_.dynamics.place(c).slip;
-      long double size = 0;
-      for (const std::vector<long double>& t : rows.tangential)
-        for (std::size_t a = 0; a < bodies_.at.qd.size(); ++a)
-          size = std::max(size, std::abs(t[a] * bodies_.dynamics.most(a)));
-      if (std::hypot(slip[0], slip[1]) > kVanished * size) continue;
-      bodies_.set_slip(c, {}, 0);
-      joined_.event(event_name(c, ModeChange::sticks), bodies_.at.t.get_d());
-      any = true;
-    }
-    return any;
-  }
-
-  // Whether the segment ended because its end lies too many of its short steps ahead.
-  bool gave_up(const SimulationReport& r) const {
-    return r.outcome.kind == OutcomeKind::interrupted && r.steps < o_.most_steps && !(o_.cancelled && o_.cancelled());
-  }
-
-  // Follows the motion in the present modes to their end; returns false if it ends there.
-  bool segment(const Rational& to, Outcome& outcome) {
-    ReadyMode* mode = nullptr;
-    do {
-      mode = &ready_.begin(bodies_.modes, bodies_.at, outcome);
-      if (!outcome.ok()) return false;
-    } while (bodies_.deeper(mode->own->state.q));
-    SimulationOptions o = o_;
-    o.state = {};
-    o.to = to;
-    o.every.reset();
-    o.at_text.clear();
-    o.at.clear();
-    for (std::size_t k = rows_.due(); k < times_.size(); ++k)
-      if (times_[k] <= to && (joined_.segments() == 0 ? times_[k] >= bodies_.at.t : times_[k] > bodies_.at.t))
-        o.at.push_back(times_[k]);
-    // The next segment begins with the last row.
-    if (!o.at.empty() && o.at.back() < to) o.at.push_back(to);
-    o.estimate = ErrorEstimate::never;
-    o.conserved.clear();
-    o.note = nullptr;
-    o.state.t = bodies_.at.t;
-    rows_.begin_segment(mode->of.stopped);
-    const SimulationReport r = simulate_in(*mode->own, o, rows_, &mode->plans);
-    outcome = r.outcome;
-    const ContactState from = bodies_.at;
-    rows_.last_state(bodies_.at);
-    bodies_.dynamics.pass(from, bodies_.at);
-    const bool every_event_known = joined_.add(r, mode->of.events);
-    if ((outcome.kind == OutcomeKind::step_collapse || gave_up(r)) && slip_vanishes()) {
-      outcome = {};
-      bodies_.excluded.assign(bodies_.contacts.size(), {});
-      return true;
-    }
-    if (!outcome.ok()) return false;
-    for (TouchingBodies::Excluded& e : bodies_.excluded) e = {};
-    bodies_.turned.assign(bodies_.contacts.size(), false);
-    bool changed = false;
-    for (const EventReport& e : r.events) {
-      const auto known = mode->of.events.find(e.name);
-      if (known == mode->of.events.end()) continue;
-      changed = true;
-      if (known->second.change == ModeChange::turns) bodies_.turned[known->second.contact] = true;
-      if (known->second.change == ModeChange::leaves) bodies_.excluded[known->second.contact].touch = true;
-      if (known->second.change == ModeChange::slips)
-        bodies_.excluded[known->second.contact].stick = true, slips_->told(known->second.contact);
-      if (known->second.change == ModeChange::sticks) bodies_.excluded[known->second.contact].slips = true;
-    }
-    return (changed || to < end_) && every_event_known && bodies_.at.t < end_;
-  }
-
   Workspace& s_;
   const SimulationOptions& o_;
   TouchingBodies bodies_;
-  ReadyModes ready_;
-  SegmentRows rows_;
   JoinedReport joined_;
   Rational end_;
-  std::vector<Rational> times_;
   Accumulation accumulation_;
+  std::optional<ModeSegments> segments_;
   std::optional<SlipStart> slips_;
 };
 

@@ -20,6 +20,7 @@ JoinedReport::JoinedReport(const Model& model) {
 
 bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, ModeEvent>& contacts) {
   bool goes_on = true;
+  power_miss_ = std::max(power_miss_, r.power * (r.turned_over > 0 ? r.turned_over : 1));
   if (segments_++ == 0) {
     const SimulationReport first = all_;
     all_ = r;
@@ -30,7 +31,7 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
     all_.rows_looked_at += r.rows_looked_at;
     all_.order = std::max(all_.order, r.order);
     for (const auto member : {&SimulationReport::newton, &SimulationReport::projected, &SimulationReport::constraints,
-                              &SimulationReport::constraints_kept, &SimulationReport::power})
+                              &SimulationReport::constraints_kept, &SimulationReport::turned_over})
       all_.*member = std::max(all_.*member, r.*member);
     if (r.smallest_sigma < all_.smallest_sigma)
       all_.smallest_sigma = r.smallest_sigma, all_.smallest_sigma_t = r.smallest_sigma_t;
@@ -39,6 +40,9 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
                        [&](const Warning& o) { return same_but_time(o, w); }))
         all_.warnings.push_back(w);
     all_.method.taylor_steps += r.method.taylor_steps;
+    all_.method.steps += r.method.steps;
+    all_.method.refused += r.method.refused;
+    all_.method.evaluations += r.method.evaluations;
   }
   for (const ConstraintReport& c : r.constraints_each) {
     const auto known = std::find_if(all_.constraints_each.begin(), all_.constraints_each.end(),
@@ -78,6 +82,15 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
   return goes_on;
 }
 
+void JoinedReport::by_bdf(double t, SimulationReport r) {
+  r.method.asked = Method::automatic, r.method.last = Method::taylor;
+  r.order = 0;
+  add(r, {});
+  if (all_.method.turns.empty())
+    all_.method.turns.push_back(
+        {t, Method::bdf, "where slips are so slow that friction is stiff, and Taylor elsewhere"});
+}
+
 void JoinedReport::set(double t, const std::vector<EventReport::Change>& changes) {
   const auto hit = std::find_if(all_.events.rbegin(), all_.events.rend(),
                                 [&](const EventReport& e) { return e.t.value == t && e.changes.empty(); });
@@ -105,6 +118,7 @@ SimulationReport JoinedReport::report(Outcome outcome, double t, std::size_t row
   all_.outcome = std::move(outcome);
   all_.t = t;
   all_.rows = rows;
+  all_.power = power_miss_ / (all_.turned_over > 0 ? all_.turned_over : 1);
   all_.no_error = "a motion with contacts has no estimate of its error";
   return all_;
 }

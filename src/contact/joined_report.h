@@ -10,6 +10,8 @@ class JoinedReport {
   explicit JoinedReport(const Model& model);
   // The report of a segment; contacts: its events that change a mode. Returns false if an event of the model ends the motion.
   bool add(const SimulationReport& segment, const std::map<std::string, ModeEvent>& contacts);
+  // A segment by BDF that begins at t.
+  void by_bdf(double t, SimulationReport segment);
   // Velocities that an impact has set, told with the event that led to it.
   void set(double t, const std::vector<EventReport::Change>& changes);
   void event(const std::string& name, double t);
@@ -23,6 +25,7 @@ class JoinedReport {
  private:
   SimulationReport all_;
   std::size_t segments_ = 0;
+  double power_miss_ = 0;  // the largest of a segment, in units of energy
 };
 
 }  // namespace anholon

@@ -39,8 +39,8 @@ std::vector<long double> numbers_of(const ContactMode& m) {
 
 class ModeBuilder {
  public:
-  ModeBuilder(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes)
-      : model_(clone(model)), g_(*model_->graph) {
+  ModeBuilder(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes, ModeEnds ends)
+      : model_(clone(model)), g_(*model_->graph), ends_(ends) {
     begin();
     if (!shares_friction(modes)) return;
     for (std::size_t c = 0; c < contacts.size(); ++c)
@@ -63,16 +63,14 @@ class ModeBuilder {
       if (mode.touch != Touch::open && c.rough())
         friction = mode.touch == Touch::sticks ? stick(c, mode, normal) : slip(c, mode, normal);
     } else if (mode.touch == Touch::open) {
-      event(c, ModeChange::hits, c.gap, -1);
       // A gap that is zero at the start passes no zero when it closes again at once.
-      event(c, ModeChange::hits, c.gap + number(ModeNumber::depth), -1);
+      ends(c, ModeChange::hits, c.gap, -1, number(ModeNumber::depth));
     } else {
       normal = mode.load.shared ? shared_load(mode) : keep(c.name + ".gap", c.name + ".n", c.gap, 0);
       if (!mode.load.shared) loads_.push_back(normal);
       act(c, 0, normal, c.gap);
-      event(c, ModeChange::leaves, normal, -1);
       // A force that is zero at the start passes no zero when it begins to pull.
-      event(c, ModeChange::leaves, normal + number(ModeNumber::slack), -1);
+      ends(c, ModeChange::leaves, normal, -1, number(ModeNumber::slack));
       if (c.rough()) friction = mode.touch == Touch::sticks ? stick(c, mode, normal) : slip(c, mode, normal);
     }
     const auto record = [&](const char* what, Expr e) {
@@ -92,7 +90,7 @@ class ModeBuilder {
 
   void put(const ContactForces& forces) { put_forces(forces, normals_, components_, *model_); }
 
-  ModeModel take() { return {std::move(model_), std::move(events_), std::move(stopped_)}; }
+  ModeModel take() { return {std::move(model_), std::move(events_), std::move(conditions_), std::move(stopped_)}; }
 
  private:
   void begin() {
@@ -197,15 +195,12 @@ class ModeBuilder {
     if (mode.held) return size;
     const Expr most = c.static_friction * normal;
     if (forces.size() == 1) {
-      for (const Expr force : {forces[0], g_.number(-1) * forces[0]}) {
-        event(c, ModeChange::slips, force - most, 1);
-        event(c, ModeChange::slips, force - most - number(ModeNumber::slack), 1);
-      }
+      for (const Expr force : {forces[0], g_.number(-1) * forces[0]})
+        ends(c, ModeChange::slips, force - most, 1, number(ModeNumber::slack));
       return size;
     }
     const Expr square = forces[0] * forces[0] + forces[1] * forces[1];
-    event(c, ModeChange::slips, square - most * most, 1);
-    event(c, ModeChange::slips, square - most * most - number(ModeNumber::slack) * number(ModeNumber::slack), 1);
+    ends(c, ModeChange::slips, square - most * most, 1, number(ModeNumber::slack) * number(ModeNumber::slack));
     return size;
   }
 
@@ -217,14 +212,14 @@ class ModeBuilder {
       const Expr sign = g_.number(mode.direction[0] < 0 ? -1 : 1);
       components_.back()[0] = force * sign;
       act(c, 1, force * sign, c.slip[0]);
-      event(c, ModeChange::sticks, sign * c.slip[0], -1);
+      ends(c, ModeChange::sticks, sign * c.slip[0], -1);
       return force * sign;
     }
     if (mode.fast) {
       const Expr square = c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1], inverse = pow(square, Rational(-1, 2));
       components_.back() = {force * c.slip[0] * inverse, force * c.slip[1] * inverse};
       for (std::size_t a = 0; a < 2; ++a) act(c, 1, components_.back()[a], c.slip[a]);
-      event(c, ModeChange::slows, square - number(ModeNumber::fast) * number(ModeNumber::fast), -1);
+      ends(c, ModeChange::slows, square - number(ModeNumber::fast) * number(ModeNumber::fast), -1);
       return c.friction * normal;
     }
     const Expr e1 = number(ModeNumber::along), e2 = number(ModeNumber::across);
@@ -233,9 +228,23 @@ class ModeBuilder {
     components_.back() = {force * (e1 - r * e2) * length, force * (e2 + r * e1) * length};
     for (std::size_t a = 0; a < 2; ++a) act(c, 1, components_.back()[a], c.slip[a]);
     // At v = 0 the direction has no derivatives, unless v passes zero on a straight line.
-    event(c, ModeChange::sticks, along - number(ModeNumber::rest), -1);
-    event(c, ModeChange::turns, across * across - along * along, 1);
+    ends(c, ModeChange::sticks, along - number(ModeNumber::rest), -1);
+    ends(c, ModeChange::turns, across * across - along * along, 1);
     return c.friction * normal;
+  }
+
+  // The mode ends where `when` passes zero in this direction, and also where it begins at zero and passes it by more than the
+  // slack.
+  void ends(const Contact& c, ModeChange change, Expr when, int direction, std::optional<Expr> slack = std::nullopt) {
+    const Expr later = slack ? when - g_.number(direction) * *slack : when;
+    if (ends_ == ModeEnds::conditions) {
+      const std::string name = kCondition + std::to_string(conditions_.size());
+      model_->monitors.push_back({name, put_masses(*model_, later), c.span});
+      conditions_.push_back(-direction);
+      return;
+    }
+    event(c, change, when, direction);
+    if (slack) event(c, change, later, direction);
   }
 
   void event(const Contact& c, ModeChange change, Expr when, int direction) {
@@ -247,7 +256,9 @@ class ModeBuilder {
 
   std::shared_ptr<Model> model_;
   Graph& g_;
+  ModeEnds ends_;
   std::map<std::string, ModeEvent> events_;
+  std::vector<int> conditions_;
   struct Held {
     HeldComponent place;
     Expr force;
@@ -299,8 +310,9 @@ std::vector<std::string> contact_columns(const std::vector<Contact>& contacts) {
   return names;
 }
 
-ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes) {
-  ModeBuilder builder(model, contacts, modes);
+ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes,
+                     ModeEnds ends) {
+  ModeBuilder builder(model, contacts, modes, ends);
   for (std::size_t c = 0; c < contacts.size(); ++c) builder.add(contacts[c], modes[c]);
   if (!contacts.empty() && contacts[0].forces) builder.put(*contacts[0].forces);
   return builder.take();

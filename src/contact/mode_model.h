@@ -18,9 +18,15 @@ struct ModeEvent {
   bool of_direction() const { return change == ModeChange::slows || change == ModeChange::turns; }
 };
 
+// What ends a mode: events of its model, or, for methods that look for none, conditions. These are monitors whose names begin
+// with kCondition; a mode holds as long as each has the sign that is listed, or is zero.
+enum class ModeEnds : std::uint8_t { events, conditions };
+inline constexpr char kCondition = '#';
+
 struct ModeModel {
   std::shared_ptr<Model> model;
   std::map<std::string, ModeEvent> events;  // by their names
+  std::vector<int> conditions;              // the signs, in the order of the monitors
   // The coordinates of which a contact keeps the velocity at 0, as its gap or its slip velocity moves with one alone.
   std::vector<bool> stopped;
 };
@@ -37,7 +43,8 @@ void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
 
 // The model of a mode. What differs between two times at which the mode begins, its state and the numbers of its contacts
 // (the direction to which a slip refers, and what is taken for zero), is a parameter each, after those of the model.
-ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes);
+ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes,
+                     ModeEnds ends = ModeEnds::events);
 // The values of these parameters.
 std::vector<Rational> mode_numbers(const ContactModes& modes, const ContactState& at);
 // Two modes have the same model, but for these values, if they are equal here.

@@ -2,8 +2,8 @@
 
 namespace anholon {
 
-ReadyMode& ReadyModes::begin(const ContactModes& modes, const ContactState& at, Outcome& outcome) {
-  ReadyMode& mode = known_[mode_shape(contacts_, modes)];
+ReadyMode& ReadyModes::begin(const ContactModes& modes, const ContactState& at, Outcome& outcome, ModeEnds ends) {
+  ReadyMode& mode = known_[{ends, mode_shape(contacts_, modes)}];
   const std::vector<Rational> numbers = mode_numbers(modes, at);
   if (mode.own) {
     const std::size_t first = mode.own->model->parameters.size() - numbers.size();
@@ -13,12 +13,13 @@ ReadyMode& ReadyModes::begin(const ContactModes& modes, const ContactState& at, 
       return mode;
     }
   }
-  outcome = derive(modes, numbers, mode);
+  outcome = derive(modes, ends, numbers, mode);
   return mode;
 }
 
-Outcome ReadyModes::derive(const ContactModes& modes, const std::vector<Rational>& numbers, ReadyMode& mode) const {
-  mode = {mode_model(*s_.model, contacts_, modes), nullptr, {}};
+Outcome ReadyModes::derive(const ContactModes& modes, ModeEnds ends, const std::vector<Rational>& numbers,
+                           ReadyMode& mode) const {
+  mode = {mode_model(*s_.model, contacts_, modes, ends), nullptr, {}};
   Model& model = *mode.of.model;
   const std::size_t first = model.parameters.size() - numbers.size();
   for (std::size_t k = 0; k < numbers.size(); ++k) model.parameters[first + k].value = model.graph->number(numbers[k]);

@@ -20,14 +20,15 @@ class ReadyModes {
   // `s`: the model with all contacts open. Both outlive the modes.
   ReadyModes(const Workspace& s, const std::vector<Contact>& contacts) : s_(s), contacts_(contacts) {}
   // The mode, at its consistent state near `at`. The outcome tells if there is none.
-  ReadyMode& begin(const ContactModes& modes, const ContactState& at, Outcome& outcome);
+  ReadyMode& begin(const ContactModes& modes, const ContactState& at, Outcome& outcome,
+                   ModeEnds ends = ModeEnds::events);
 
  private:
-  Outcome derive(const ContactModes& modes, const std::vector<Rational>& numbers, ReadyMode& mode) const;
+  Outcome derive(const ContactModes& modes, ModeEnds ends, const std::vector<Rational>& numbers, ReadyMode& mode) const;
 
   const Workspace& s_;
   const std::vector<Contact>& contacts_;
-  std::map<std::vector<int>, ReadyMode> known_;  // by their shapes
+  std::map<std::pair<ModeEnds, std::vector<int>>, ReadyMode> known_;  // by their shapes
 };
 
 }  // namespace anholon

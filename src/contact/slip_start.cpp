@@ -85,7 +85,10 @@ bool SlipStart::share_anew(Outcome& outcome) {
   std::vector<std::size_t> limited;
   for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
     if (bodies_.excluded[c].stick && bodies_.modes[c].touch == Touch::sticks) limited.push_back(c);
-  const long double last = std::exchange(together_, 0);
+  // Longer than before where the contacts have been held just now, and stick still.
+  const bool just_now = bodies_.at.t.get_d() - held_until_ <= static_cast<double>(together_);
+  const long double last = just_now ? together_ : 0;
+  together_ = 0;
   if (limited.empty()) return true;
   bodies_.look();
   ContactProblem p = bodies_.with_touching();
@@ -122,6 +125,7 @@ bool SlipStart::hold_together(long double time, Outcome& outcome) {
   for (ContactMode& m : bodies_.modes) m.held = m.touch == Touch::sticks;
   bodies_.stop(bodies_.modes);
   const bool goes_on = segment_(to, outcome);
+  held_until_ = bodies_.at.t.get_d();
   for (ContactMode& m : bodies_.modes) m.held = false;
   told_ = told;
   return goes_on && outcome.ok();
@@ -138,6 +142,7 @@ bool SlipStart::hold_to_grow(Outcome& outcome) {
   for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
     if (!was_held(c) || bodies_.contacts[c].slip.size() != 2 || list[0].modes[c].touch != Touch::slips) continue;
     slipping.push_back(c);
+    held_[c] = together_;
     h = std::max(h, time_to_grow(c, list[0].x, together_));
   }
   if (!(h > 2 * together_)) return true;

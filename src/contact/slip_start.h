@@ -60,6 +60,7 @@ class SlipStart {
   Segment segment_;
   std::vector<bool> told_;
   long double together_ = 0;       // for how long contacts that share friction were held last
+  double held_until_ = 0;          // the time at which that ended
   std::vector<long double> held_;  // the time for which a contact that begins to slip was held
 };
 

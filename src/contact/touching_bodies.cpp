@@ -21,13 +21,18 @@ void TouchingBodies::look() {
 }
 
 ContactProblem TouchingBodies::with_touching() const {
+  // What a slip that has ended leaves of others, as bodies join them.
+  constexpr long double kLeft = 1e-11L;
+  const bool one_ended = std::any_of(excluded.begin(), excluded.end(), [](const Excluded& e) { return e.slips; });
   ContactProblem p = dynamics.accelerations();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     ContactRows& rows = p.contacts[c];
     rows.may_touch = near.closed(c) && near.gap_rate(c) == 0 && !excluded[c].touch;
     rows.may_stick = !excluded[c].stick;
     if (excluded[c].touch) rows.before = before;
-    rows.moves = rows.moves && !excluded[c].slips;
+    const ContactDynamics::Place& place = dynamics.place(c);
+    const bool left = one_ended && std::hypot(place.slip[0], place.slip[1]) <= kLeft * place.slip_scale;
+    rows.moves = rows.moves && !excluded[c].slips && !left;
     // A gap that is open, or opens, is not bounded by its acceleration.
     if (!near.closed(c) || near.gap_rate(c) > 0) rows.normal.assign(at.q.size(), 0), rows.normal_rate = 0;
   }
@@ -45,6 +50,8 @@ void TouchingBodies::come_to_rest() {
 }
 
 void TouchingBodies::drop_left_over() {
+  const std::vector<double> found = at.qd;
+  const long double slipped = slip_of_what_sticks();
   for (std::size_t a = 0; a < at.qd.size(); ++a)
     if (std::abs(at.qd[a]) <= kLeftOver * dynamics.most(a)) at.qd[a] = 0;
   for (const std::vector<long double>& row : dynamics.accelerations().Phi) {
@@ -54,6 +61,25 @@ void TouchingBodies::drop_left_over() {
     for (std::size_t a = 0; a < row.size(); ++a)
       if (row[a] != 0 && now <= RoundOff::kPlace * most) at.qd[a] = 0;
   }
+  constexpr long double kContradicts = 1e-6L;
+  dynamics.go(at);
+  if (slip_of_what_sticks() <= std::max(slipped, kContradicts)) return;
+  at.qd = found;
+  dynamics.go(at);
+}
+
+long double TouchingBodies::slip_of_what_sticks() const {
+  long double most = 0;
+  for (std::size_t c = 0; c < modes.size(); ++c) {
+    if (modes[c].touch != Touch::sticks) continue;
+    const ContactRows& rows = dynamics.accelerations().contacts[c];
+    for (std::size_t k = 0; k < rows.tangential.size(); ++k) {
+      long double terms = 0;
+      for (std::size_t a = 0; a < at.qd.size(); ++a) terms += std::abs(rows.tangential[k][a] * at.qd[a]);
+      if (terms > 0) most = std::max(most, std::abs(dynamics.place(c).slip[k]) / terms);
+    }
+  }
+  return most;
 }
 
 std::optional<std::string> TouchingBodies::contradiction() const {

@@ -23,7 +23,7 @@ struct TouchingBodies {
   // motion, the remainders would contradict each other.
   void come_to_rest();
   // What the jump leaves of velocities that it stops. Those that a constraint joins, as the norm of a quaternion does, are
-  // dropped together: a part of them would contradict the constraint.
+  // dropped together: a part of them would contradict the constraint. They stay where without them what sticks would slip.
   void drop_left_over();
   // From which slip velocity on a contact that slips has the direction v/|v|: nullopt where v is small, unless it has turned
   // since, so that it passes no zero.
@@ -48,6 +48,9 @@ struct TouchingBodies {
   // The contact that does not do what its mode says, and how: it sticks and moves, or slips against its direction. Such a motion
   // is none, whatever the residuals of its equations.
   std::optional<std::string> contradiction() const;
+
+  // The largest slip velocity of a contact that sticks, as a part of its terms.
+  long double slip_of_what_sticks() const;
 
   const std::vector<Contact>& contacts;
   ContactDynamics dynamics;

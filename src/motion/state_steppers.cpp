@@ -78,7 +78,8 @@ std::unique_ptr<StateStepper> StateSteppers::make(Method method) {
   make_plans();
   StateRate rate(motion_.program(), parameter_values<double>(model_), motion_.parameters(), plan_, guards_);
   StepSettings settings = settings_;
-  settings.log_tolerance = std::max(settings.log_tolerance, std::log(info(method).least_tolerance));
+  if (info(method).raises_tolerance)
+    settings.log_tolerance = std::max(settings.log_tolerance, std::log(info(method).least_tolerance));
   if (method == Method::bdf) return std::make_unique<Bdf>(std::move(rate), settings);
   return std::make_unique<RungeKutta>(std::move(rate), settings);
 }

@@ -53,6 +53,7 @@ struct SimulationReport {
   double constraints = 0;       // C3: worst hidden constraint, before it was projected
   double constraints_kept = 0;  // C3 at the rows, after projection
   double power = 0;             // |h - h0 - work| in relation to the largest energy and work along the motion
+  double turned_over = 0;       // these, to which power refers
   double smallest_sigma = 1;    // scaled, of the system Jacobian
   double smallest_sigma_t = std::numeric_limits<double>::quiet_NaN();  // when it was met
   std::vector<ConstraintReport> constraints_each;

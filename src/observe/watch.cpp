@@ -261,6 +261,7 @@ void Watch<W>::end(const Expansion<W>& point, const W& work, SimulationReport& r
   }
   for (const W& v : {h, h0_, work}) turn_over(v);
   if (turned_over_ < ways * W(kNone)) turned_over_ = ways;
+  report.turned_over = to_double(turned_over_);
   report.power = to_double(relative_miss(W(h - h0_ - work), turned_over_, [&] { return made_of; }));
   track();
 }

@@ -22,6 +22,16 @@ class GramSchmidt {
  public:
   explicit GramSchmidt(std::size_t most) : most_(most) {}
 
+  // What of a row no earlier one holds, as a part of it.
+  long double left_of(const Numbers& row) const {
+    Numbers v = row;
+    for (const Numbers& direction : directions_) {
+      const Real d = dot(v, direction);
+      for (std::size_t i = 0; i < v.size(); ++i) v[i] -= d * direction[i];
+    }
+    return std::sqrt(dot(v, v) / dot(row, row));
+  }
+
   // Adds a row, or returns the coefficients of the rows before it, of which it is the sum.
   std::optional<Numbers> add(const Numbers& row) {
     Numbers v = row, sum(most_, 0);
@@ -86,8 +96,12 @@ class Sharing {
     for (const std::size_t c : order) {
       if (modes[c].touch != Touch::sticks) continue;
       modes[c].shares = {};
-      for (std::size_t a = 0; a < p.contacts[c].tangential.size(); ++a) {
-        const std::size_t at = rows.count();
+      const std::vector<Numbers>& t = p.contacts[c].tangential;
+      // Of two components the one that depends less on others holds first: as bodies turn, it may be either.
+      constexpr Real kMuchLess = 0.5L;
+      const bool second_first = t.size() == 2 && rows.left_of(t[0]) < kMuchLess * rows.left_of(t[1]);
+      for (std::size_t k = 0; k < t.size(); ++k) {
+        const std::size_t a = second_first ? t.size() - 1 - k : k, at = rows.count();
         found.push_back({{c, a}, at, rows.add(p.contacts[c].tangential[a])});
         modes[c].shares[a].shared = found.back().sum.has_value();
       }

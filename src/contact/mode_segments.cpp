@@ -1,0 +1,174 @@
+#include "contact/mode_segments.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/slow_slips.h"
+#include "simulation/simulate.h"
+
+namespace anholon {
+
+ModeSegments::ModeSegments(const Workspace& s, const SimulationOptions& options, TouchingBodies& bodies,
+                           JoinedReport& joined, RowSink& rows, std::vector<Rational> times, Rational end,
+                           std::function<void(std::size_t)> slips)
+    : o_(options), looks_for_events_(!s.model->events.empty()), bodies_(bodies), joined_(joined),
+      ready_(s, bodies.contacts), rows_(rows, bodies.contacts), times_(std::move(times)), end_(std::move(end)),
+      slips_(std::move(slips)) {
+  rows_.only_at(times_);
+}
+
+bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
+  const ContactState from = bodies_.at;
+  if (by_bdf(to)) {
+    rows_.last_state(bodies_.at);
+    bodies_.dynamics.pass(from, bodies_.at);
+    nothing_has_changed();
+    return bodies_.at.t < end_;
+  }
+  ReadyMode* mode = begin(ModeEnds::events, outcome);
+  if (!mode) return false;
+  rows_.begin_segment(mode->of.stopped);
+  const SimulationReport r = simulate_in(*mode->own, asked(to), rows_, &mode->plans);
+  outcome = r.outcome;
+  rows_.last_state(bodies_.at);
+  bodies_.dynamics.pass(from, bodies_.at);
+  const bool every_event_known = joined_.add(r, mode->of.events);
+  if ((outcome.kind == OutcomeKind::step_collapse || gave_up(r)) && slip_vanishes()) {
+    outcome = {};
+    bodies_.excluded.assign(bodies_.contacts.size(), {});
+    return true;
+  }
+  // Of components that depend on each other others are held from here on.
+  if (outcome.kind == OutcomeKind::singular && shares_friction(bodies_.modes) && bodies_.at.t > from.t) {
+    outcome = {};
+    nothing_has_changed();
+    return true;
+  }
+  if (!outcome.ok()) return false;
+  const bool changed = note(r.events, mode->of.events);
+  return (changed || to < end_) && every_event_known && bodies_.at.t < end_;
+}
+
+bool ModeSegments::note(const std::vector<EventReport>& events, const std::map<std::string, ModeEvent>& known) {
+  nothing_has_changed();
+  bool changed = false;
+  for (const EventReport& e : events) {
+    const auto at = known.find(e.name);
+    if (at == known.end()) continue;
+    changed = true;
+    const auto [contact, change] = at->second;
+    if (change == ModeChange::turns) bodies_.turned[contact] = true;
+    if (change == ModeChange::leaves) bodies_.excluded[contact].touch = true;
+    if (change == ModeChange::slips) bodies_.excluded[contact].stick = true, slips_(contact);
+    if (change == ModeChange::sticks) bodies_.excluded[contact].slips = true;
+  }
+  return changed;
+}
+
+void ModeSegments::nothing_has_changed() {
+  bodies_.excluded.assign(bodies_.contacts.size(), {});
+  bodies_.turned.assign(bodies_.contacts.size(), false);
+}
+
+ReadyMode* ModeSegments::begin(ModeEnds ends, Outcome& outcome) {
+  ReadyMode* mode = nullptr;
+  do {
+    mode = &ready_.begin(bodies_.modes, bodies_.at, outcome, ends);
+    if (!outcome.ok()) return nullptr;
+  } while (bodies_.deeper(mode->own->state.q));
+  return mode;
+}
+
+SimulationOptions ModeSegments::asked(const Rational& to) const {
+  SimulationOptions o = o_;
+  o.state = {};
+  o.to = to;
+  o.every.reset();
+  o.at_text.clear();
+  o.at.clear();
+  for (std::size_t k = rows_.due(); k < times_.size(); ++k)
+    if (times_[k] <= to && (joined_.segments() == 0 ? times_[k] >= bodies_.at.t : times_[k] > bodies_.at.t))
+      o.at.push_back(times_[k]);
+  // The next segment begins with the last row.
+  if (!o.at.empty() && o.at.back() < to) o.at.push_back(to);
+  o.estimate = ErrorEstimate::never;
+  o.conserved.clear();
+  o.note = nullptr;
+  o.state.t = bodies_.at.t;
+  return o;
+}
+
+SimulationOptions ModeSegments::asked_of_stretch(const Rational& to, const Rational& tolerance) const {
+  constexpr std::size_t kMostSteps = 3000;
+  SimulationOptions o = asked(to);
+  const std::vector<Rational> more = times_of_stretch(bodies_.at.t, to);
+  if (o.at.empty() && joined_.segments() == 0) o.at.push_back(bodies_.at.t);
+  o.at.insert(o.at.end(), more.begin(), more.end());
+  std::sort(o.at.begin(), o.at.end());
+  o.at.erase(std::unique(o.at.begin(), o.at.end()), o.at.end());
+  o.method = Method::bdf;
+  o.tolerance = tolerance;
+  o.most_steps = kMostSteps;
+  return o;
+}
+
+bool ModeSegments::by_bdf(const Rational& to) {
+  const Rational least(1, 1'000'000'000'000), most(1, 1'000'000'000);  // of the tolerance
+  if (o_.method != Method::automatic || looks_for_events_ || std::exchange(events_near_, false)) return false;
+  const std::optional<long double> time = stiff_for(bodies_, Rational(to - bodies_.at.t).get_d());
+  if (!time) return false;
+  Rational end = std::min(to, Rational(bodies_.at.t.get_d() + static_cast<double>(*time)));
+  bool whole = true;
+  for (Rational tolerance = std::max(o_.tolerance, least); tolerance <= most;) {
+    Outcome outcome;
+    ReadyMode* mode = begin(ModeEnds::conditions, outcome);
+    if (!mode) return false;
+    StretchRows stretch(mode->of.conditions);
+    SimulationReport r = simulate_in(*mode->own, asked_of_stretch(end, tolerance), stretch);
+    if (o_.cancelled && o_.cancelled()) return false;
+    if (r.outcome.ok() && stretch.held()) {
+      std::erase_if(r.monitors, [](const WatchedReport& m) { return m.name[0] == kCondition; });
+      joined_.by_bdf(bodies_.at.t.get_d(), r);
+      rows_.begin_segment(mode->of.stopped);
+      stretch.pass_to(rows_);
+      events_near_ = !whole;
+      return true;
+    }
+    if (r.outcome.kind == OutcomeKind::interrupted && stretch.held()) {
+      // The round-off of the velocities turns the direction of a slow slip by more than the tolerance.
+      tolerance *= 10;
+      continue;
+    }
+    const std::optional<double> until = stretch.held_until();
+    if (!until || !(Rational(*until) > bodies_.at.t) || !(Rational(*until) < end)) return false;
+    end = Rational(*until);
+    whole = false;
+  }
+  return false;
+}
+
+bool ModeSegments::gave_up(const SimulationReport& r) const {
+  return r.outcome.kind == OutcomeKind::interrupted && r.steps < o_.most_steps && !(o_.cancelled && o_.cancelled());
+}
+
+bool ModeSegments::slip_vanishes() {
+  constexpr long double kVanished = 1e-8L;
+  bodies_.dynamics.go(bodies_.at);
+  bool any = false;
+  for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+    const ContactRows& rows = bodies_.dynamics.accelerations().contacts[c];
+    if (bodies_.modes[c].touch != Touch::slips || !rows.rough || rows.tangential.size() < 2) continue;
+    const auto& slip = bodies_.dynamics.place(c).slip;
+    long double size = 0;
+    for (const std::vector<long double>& t : rows.tangential)
+      for (std::size_t a = 0; a < bodies_.at.qd.size(); ++a)
+        size = std::max(size, std::abs(t[a] * bodies_.dynamics.most(a)));
+    if (std::hypot(slip[0], slip[1]) > kVanished * size) continue;
+    bodies_.set_slip(c, {}, 0);
+    joined_.event(bodies_.contacts[c].name + "." + word(bodies_.contacts[c], ModeChange::sticks), bodies_.at.t.get_d());
+    any = true;
+  }
+  return any;
+}
+
+}  // namespace anholon
