@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 
 #include "expr/normal.h"
 #include "formula/indices.h"
@@ -118,6 +119,7 @@ class Reader {  // its references are used only while it runs
     guard([&] { read_simulate(root, scope_, model_, diagnostics_); });
     for (const Diagnostic& d : scope_.failures)
       if (!is_repeated(diagnostics_, d)) diagnostics_.add(d);
+    leave_out_consequences(root);
     diagnostics_.gather([](const std::string& message) {
       return message.rfind("unknown name '", 0) == 0 || message.rfind("unknown function '", 0) == 0;
     });
@@ -172,6 +174,18 @@ class Reader {  // its references are used only while it runs
         else
           diagnostics_.error(i->span, std::string("'") + key + "' is a text");
       }
+  }
+
+  // A name that an unknown section declares, as "C" in [let], is not reported as unknown, too.
+  void leave_out_consequences(const Item& root) {
+    const std::vector<std::string> known = known_keys(language_section(""));
+    std::set<std::string> declared;
+    for (const Item& i : root.items) {
+      if (std::find(known.begin(), known.end(), i.key) != known.end()) continue;
+      if (i.kind != Item::Kind::table) declared.insert("unknown name '" + i.key + "'");
+      for (const Item& inner : i.items) declared.insert("unknown name '" + inner.key + "'");
+    }
+    diagnostics_.leave_out([&](const std::string& message) { return declared.contains(message); });
   }
 
   const Item* table(const Item& root, const char* key) { return find_section(root, key, diagnostics_); }

@@ -115,7 +115,7 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
   if (!tell && stage.linear() && stage.evaluate(state_) && stage.contradicts(free)) return failed();
   if (!find_by_least_change(stage, state_, free, p_.near)) return no_value(stage);
   mark_derived(stage, before, free);
-  if (!memory_) mark_undetermined(stage, before, free);
+  mark_undetermined(stage, before, free);
   N miss = stage.worst(&worst);
   if (!(miss > stage_rounding<N>())) return {};
   if (to_double(miss) <= kRounded) {
