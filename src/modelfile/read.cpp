@@ -119,10 +119,7 @@ class Reader {  // its references are used only while it runs
     guard([&] { read_simulate(root, scope_, model_, diagnostics_); });
     for (const Diagnostic& d : scope_.failures)
       if (!is_repeated(diagnostics_, d)) diagnostics_.add(d);
-    leave_out_consequences(root);
-    diagnostics_.gather([](const std::string& message) {
-      return message.rfind("unknown name '", 0) == 0 || message.rfind("unknown function '", 0) == 0;
-    });
+    gather_errors(root);
     if (!diagnostics_.has_errors()) check_values(model_, diagnostics_);
     if (!diagnostics_.has_errors())
       for (Diagnostic& d : wrong_coefficients(contacts_, model_)) diagnostics_.add(std::move(d));
@@ -176,8 +173,8 @@ class Reader {  // its references are used only while it runs
       }
   }
 
-  // A name that an unknown section declares, as "C" in [let], is not reported as unknown, too.
-  void leave_out_consequences(const Item& root) {
+  // Reports an unknown name once, and not at all if an unknown section declares it, as "C" in [let].
+  void gather_errors(const Item& root) {
     const std::vector<std::string> known = known_keys(language_section(""));
     std::set<std::string> declared;
     for (const Item& i : root.items) {
@@ -186,6 +183,9 @@ class Reader {  // its references are used only while it runs
       for (const Item& inner : i.items) declared.insert("unknown name '" + inner.key + "'");
     }
     diagnostics_.leave_out([&](const std::string& message) { return declared.contains(message); });
+    diagnostics_.gather([](const std::string& message) {
+      return message.rfind("unknown name '", 0) == 0 || message.rfind("unknown function '", 0) == 0;
+    });
   }
 
   const Item* table(const Item& root, const char* key) { return find_section(root, key, diagnostics_); }
