@@ -130,6 +130,10 @@ void Diagnostics::gather(const std::function<bool(const std::string&)>& is_one) 
   list_ = std::move(kept);
 }
 
+void Diagnostics::leave_out(const std::function<bool(const std::string&)>& is_consequence) {
+  std::erase_if(list_, [&](const Diagnostic& d) { return is_consequence(d.message); });
+}
+
 static std::size_t edit_distance(const std::string& a, const std::string& b) {
   // Insertion, deletion, replacement and the exchange of neighbours count one each.
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
@@ -144,7 +148,21 @@ static std::size_t edit_distance(const std::string& a, const std::string& b) {
   return d[a.size()][b.size()];
 }
 
+// The name in small letters.
+static std::string small(std::string name) {
+  for (char& c : name)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return name;
+}
+
+static std::string sorted(std::string letters) {
+  std::sort(letters.begin(), letters.end());
+  return letters;
+}
+
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates) {
+  for (const std::string& c : candidates)
+    if (c != name && small(c) == small(name)) return c;
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(1, name.size() / 3) + 1;
   if (name.size() > 64 || name.size() < 2) return best;
@@ -152,7 +170,8 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
     if (c == name || c.size() > 64 ||
         std::max(c.size(), name.size()) - std::min(c.size(), name.size()) >= best_distance)
       continue;
-    const std::size_t distance = edit_distance(name, c);
+    // Three or more letters that are only in another order count as one mistake: tetha.
+    const std::size_t distance = name.size() > 3 && sorted(name) == sorted(c) ? 1 : edit_distance(name, c);
     if (distance < best_distance && distance < std::max(c.size(), name.size())) {
       best = c;
       best_distance = distance;

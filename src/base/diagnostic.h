@@ -57,6 +57,8 @@ class Diagnostics {
   // Replaces all reports whose message satisfies `is_one` and that differ only in their position by the first of them,
   // which states their number.
   void gather(const std::function<bool(const std::string&)>& is_one);
+  // Removes the errors whose message is a consequence of others.
+  void leave_out(const std::function<bool(const std::string&)>& is_consequence);
   // `file:line:col: error: …`, the source line, a caret range, `hint: …`; in order of position.
   std::string print(const SourceText& source) const;
   // The other files besides the main one, if the code that reports here has found them.

@@ -37,7 +37,9 @@ class HybridMotion {
     // A parameter that is varied may give a coefficient any value.
     if (const std::vector<Diagnostic> wrong = wrong_coefficients(bodies_.contacts, *s_.model); !wrong.empty())
       return joined_.report({OutcomeKind::inconsistent, wrong[0].message, wrong[0].hint}, bodies_.at.t.get_d(), 0);
-    Outcome outcome = not_inside(" at the start", "start at a position where the gap is zero or positive");
+    Outcome outcome = not_inside(" at the start", "start at a position where the gap is zero or positive, or change "
+                                                  "the sign of the gap: it is positive while the "
+                                                  "contact is open");
     constexpr std::size_t kMostSegments = 100'000;
     for (std::size_t k = 0; outcome.ok() && bodies_.at.t < end_; ++k) {
       if (k == kMostSegments)

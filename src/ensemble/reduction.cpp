@@ -60,6 +60,14 @@ class MonitorNames final : public Names {
   const std::vector<std::string>& multipliers_;
 };
 
+// Whether the text is of the form NAME.mode, or another column that a contact has.
+bool of_contact(const std::string& text) {
+  const std::size_t dot = text.rfind('.');
+  if (dot == std::string::npos || dot == 0) return false;
+  const std::string column = text.substr(dot + 1);
+  return column == "mode" || column == "gap" || column == "normal" || column == "friction" || column == "slip";
+}
+
 // The formula of a monitor, or one that is written out.
 Expr formula_of(const std::string& word, std::size_t at, const std::string& text, const OpenModel& model) {
   for (const Monitor& m : model.model->monitors)
@@ -71,7 +79,11 @@ Expr formula_of(const std::string& word, std::size_t at, const std::string& text
     MonitorNames names(model);
     value = evaluate(parse_formula(FormulaText(text, place)), names);
   } catch (const Failure& f) {
-    throw MistakeInWord{f.diagnostic, word};
+    Diagnostic d = f.diagnostic;
+    if (of_contact(text))
+      d.hint = "mode, gap and forces of a contact are columns of the rows, not names in formulas: --columns t," + text +
+               " with --every or --at; 'simulate --json' tells the times of its events";
+    throw MistakeInWord{d, word};
   }
   if (const Expr* e = std::get_if<Expr>(&value)) return put_masses(*model.model, *e);
   mistake_in(word, at, text.size(), "'" + text + "' is " + type_name(value) + ", no number",

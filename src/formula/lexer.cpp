@@ -145,7 +145,11 @@ class Lexer {
   // "zxz": the axis letters of euler(…) may be quoted.
   void quoted() {
     const std::size_t close = s_.find('"', at_ + 1);
-    if (close == std::string::npos) throw Failure(source_.span(offset_, 1), "this quote is not closed");
+    if (close == std::string::npos)
+      throw Failure(source_.span(offset_, 1), "this quote is not closed",
+                    at_ > 0 && is_name_part(s_.substr(at_ - 1, 1))
+                        ? "a second derivative is written with two primes, in a text in double quotes: \"x''\""
+                        : "");
     const std::string text = s_.substr(at_ + 1, close - at_ - 1);
     push(Token::name, close + 1 - at_, utf8_length(text) + 2, text);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 
 #include "expr/normal.h"
 #include "formula/indices.h"
@@ -118,9 +119,7 @@ class Reader {  // its references are used only while it runs
     guard([&] { read_simulate(root, scope_, model_, diagnostics_); });
     for (const Diagnostic& d : scope_.failures)
       if (!is_repeated(diagnostics_, d)) diagnostics_.add(d);
-    diagnostics_.gather([](const std::string& message) {
-      return message.rfind("unknown name '", 0) == 0 || message.rfind("unknown function '", 0) == 0;
-    });
+    gather_errors(root);
     if (!diagnostics_.has_errors()) check_values(model_, diagnostics_);
     if (!diagnostics_.has_errors())
       for (Diagnostic& d : wrong_coefficients(contacts_, model_)) diagnostics_.add(std::move(d));
@@ -172,6 +171,21 @@ class Reader {  // its references are used only while it runs
         else
           diagnostics_.error(i->span, std::string("'") + key + "' is a text");
       }
+  }
+
+  // Reports an unknown name once, and not at all if an unknown section declares it, as "C" in [let].
+  void gather_errors(const Item& root) {
+    const std::vector<std::string> known = known_keys(language_section(""));
+    std::set<std::string> declared;
+    for (const Item& i : root.items) {
+      if (std::find(known.begin(), known.end(), i.key) != known.end()) continue;
+      if (i.kind != Item::Kind::table) declared.insert("unknown name '" + i.key + "'");
+      for (const Item& inner : i.items) declared.insert("unknown name '" + inner.key + "'");
+    }
+    diagnostics_.leave_out([&](const std::string& message) { return declared.contains(message); });
+    diagnostics_.gather([](const std::string& message) {
+      return message.rfind("unknown name '", 0) == 0 || message.rfind("unknown function '", 0) == 0;
+    });
   }
 
   const Item* table(const Item& root, const char* key) { return find_section(root, key, diagnostics_); }

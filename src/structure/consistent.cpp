@@ -21,7 +21,11 @@ Outcome StateSolver<N>::positions_and_velocities() {
   if (Outcome o = solve(plan.positions, [&] { return plan.kept ? plan.kept_positions : kept_of(plan.positions); });
       !o.ok())
     return o;
-  return solve(plan.velocities, [&] { return plan.kept ? plan.kept_velocities : kept_of(plan.velocities); });
+  if (Outcome o = solve(plan.velocities, [&] { return plan.kept ? plan.kept_velocities : kept_of(plan.velocities); });
+      !o.ok())
+    return o;
+  say_least_change();
+  return {};
 }
 
 // The model's states start with the values of the file.
@@ -111,6 +115,7 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
   if (!tell && stage.linear() && stage.evaluate(state_) && stage.contradicts(free)) return failed();
   if (!find_by_least_change(stage, state_, free, p_.near)) return no_value(stage);
   mark_derived(stage, before, free);
+  mark_undetermined(stage, before, free);
   N miss = stage.worst(&worst);
   if (!(miss > stage_rounding<N>())) return {};
   if (to_double(miss) <= kRounded) {

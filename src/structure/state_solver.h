@@ -59,6 +59,8 @@ class StateSolver {
   void start_unconstrained(const StageEquations& laws, const Column& unknowns, unsigned metric);
   void mark_choices(const StageEquations& equations, const Column& unknowns, unsigned metric);
   void say_choices(const System& s, const Structure& t);
+  void mark_undetermined(const Stage<N>& stage, const InitialState<N>& before, const std::vector<std::size_t>& free);
+  void say_least_change();
 
   // Messages about contradictions (clash.cpp).
   std::string entry_name(const Node& n) const;
@@ -76,7 +78,8 @@ class StateSolver {
   const Model& model_;
   InitialState<N>& state_;
   StartMemory<N>* memory_;
-  bool clash_is_told_ = false;  // the message names the values and equations of the last stage that failed
+  std::vector<Node> changed_least_;  // positions and velocities that the equations move but do not determine
+  bool clash_is_told_ = false;       // the message names the values and equations of the last stage that failed
 };
 
 }  // namespace anholon

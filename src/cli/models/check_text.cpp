@@ -95,10 +95,10 @@ void integrability(const Scenario& s, const Explanation& x) {
   }
   if (!x.accessible) return;
   const int all = s.structure.configuration_dimension;
-  if (*x.accessible == all)
-    say(stdout, "    all %d dimensions of the configuration can be reached\n", all);
-  else
-    say(stdout, "    %d of the %d dimensions of the configuration can be reached\n", *x.accessible, all);
+  const std::string part = *x.accessible == all ? "all " : std::to_string(*x.accessible) + " of the ";
+  say(stdout,
+      "    the constraints leave %s%d dimensions of the space of configurations open to motions from one of them\n",
+      part.c_str(), all);
 }
 
 std::string derivative_of(int order) {
@@ -187,8 +187,9 @@ void state_table(const Scenario& s) {
         value_text(x.qd[a], x.qd_origin[a], x).c_str(), name(x.qd_origin[a]));
   for (const StateEntry& e : higher)
     say(stdout, "  %-8s = %-22s %s\n", e.name.c_str(), number_text(e.value).c_str(), name(e.origin));
-  say(stdout, "  (given; derived from constraints and conditions; chosen: 0 by default; guess: as guessed; corrected: "
-              "a rounded number made consistent)\n");
+  say(stdout,
+      "  (given; derived from constraints and conditions; chosen: 0, or the least change if constraints leave a "
+      "choice; guess: as guessed; corrected: a rounded number made consistent)\n");
 }
 
 }  // namespace

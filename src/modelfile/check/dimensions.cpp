@@ -285,10 +285,21 @@ static void note_bare_numbers(const Scope& scope, Model& model) {
     else if (number.op == Syntax::Op::number && parse_rational(number.text).value_or(0) != 0)
       bare.push_back({i, d.formula.text()});
   }
-  for (const auto& [i, text] : bare)
-    if (const auto other = measured.find(model.parameter_units[i]); other != measured.end())
-      model.notes.push_back("parameter " + names[i] + " = " + text + " has no unit and is " + text + " " +
-                            model.parameter_units[i] + ", beside " + other->second);
+  std::map<std::string, std::pair<std::size_t, std::string>> lists;  // of each unit, how many and which
+  std::vector<std::string> order;
+  for (const auto& [i, text] : bare) {
+    const std::string& unit = model.parameter_units[i];
+    if (!measured.contains(unit)) continue;
+    auto& [count, list] = lists[unit];
+    if (count++ == 0) order.push_back(unit);
+    list += (list.empty() ? "" : ", ") + names[i] + " = " + text;
+  }
+  for (const std::string& unit : order) {
+    const auto& [count, list] = lists[unit];
+    model.notes.push_back((count == 1 ? "parameter " : "parameters ") + list +
+                          (count == 1 ? " has no unit and is in " : " have no unit and are in ") + unit + ", beside " +
+                          measured.at(unit));
+  }
 }
 
 // Whether a file without units is consistent when the values from outside may have any dimension.

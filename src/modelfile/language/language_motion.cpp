@@ -297,7 +297,8 @@ initial = {qddot = {x = 0.2}, qdddot = {x = 0.05}}
   is as near to the guess, 0 without one, as the mass norm allows. That is not 0 where a constraint forbids it: a torus wheel that leans and spins with `phi' = 8`, without a `psi'`, gets
   one of several turns per second. Give all velocities of a rolling body. `check` says of each value where it comes from.
 - A value is a number or a formula of parameters. Relations between unknowns stand under `conditions`, which may hold accelerations and
-  `lambda.NAME`: they are solved with the equations of motion (`"theta'' = 0"`: a steady motion).
+  `lambda.NAME`: they are solved with the equations of motion (`"theta'' = 0"`: a steady motion). `--q` and `--qdot` give
+  numbers for positions and velocities; an acceleration has no such option, as it follows from the state, and a condition on it finds a state that has it.
 - Values that miss a constraint by no more than 1e-8 of its scale are taken as rounded, and corrected by the least change; by more
   it is an error that names the clash.
 - A guess also names one of several solutions: the nearest is taken. `--q` and `--qdot` take the place of values and of conditions that clash with them.

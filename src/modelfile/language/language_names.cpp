@@ -40,6 +40,8 @@ wind     = {}                      # unknown: derived and proved with, not integ
 
 - Functions of t do not depend on coordinates. Functions with arguments may hold anything: names that are not arguments mean what they mean
   in the file. An argument hides a name of the file.
+- A function that jumps is written with `piecewise`: `push = "piecewise(t < 1, 0, t < 3, 5, 0)"` is 0, from t = 1 on 5, and from t = 3 on 0 again.
+  A motion makes a step to each jump.
 - `f(2*t)` puts the argument in place of t; `f'` is the derivative by time. Of functions with arguments: `D(rho(y), 1)`.
 )md"},
       {"define",

@@ -98,7 +98,8 @@ class TableReader {
     for (std::size_t k = 1; k < table.x.size(); ++k)
       if (!(table.x[k - 1] < table.x[k]))
         throw Failure(x ? x->items[k].span : place,
-                      "the knots of a table ascend; the " + std::to_string(k + 1) + ". does not");
+                      file ? "the knots of a table ascend; that in " + lines_[k] + " does not"
+                           : "the knots of a table ascend; the " + std::to_string(k + 1) + ". does not");
   }
 
   void declare(const Item& named, Table table) {
@@ -141,6 +142,7 @@ class TableReader {
     if (std::filesystem::file_size(path, error) > kLargestFile)
       throw Failure(file.span, "the file '" + path.string() + "' is larger than 16 MiB");
     std::ifstream in(path);
+    lines_.clear();
     std::vector<std::string> wanted = {"1", "2"};
     if (columns) {
       if (columns->kind != Item::Kind::array || columns->items.size() != 2)
@@ -180,6 +182,9 @@ class TableReader {
                         at[k] < row.size() ? "'" + row[at[k]] + "' stands there; numbers have a decimal point: 0.8"
                                            : "the line has " + std::to_string(row.size()) + " columns");
         (k == 0 ? table.x : table.y).push_back(*v);
+        if (k == 0)
+          lines_.push_back("line " + std::to_string(number) + ", column " + std::to_string(at[0] + 1) + " of '" +
+                           path.string() + "'");
       }
     }
   }
@@ -187,6 +192,7 @@ class TableReader {
   Scope& scope_;
   Model& model_;
   Diagnostics& diagnostics_;
+  std::vector<std::string> lines_;  // the place of each knot of a table that a file holds
 };
 
 }  // namespace

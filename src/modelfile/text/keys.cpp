@@ -24,6 +24,8 @@ const std::vector<OtherWord>& other_words() {
        "write the masses as [[body]] or [[particle]], and the potential energy under [potential] as V = \"…\""},
       {{"V", "U", "potential_energy"}, "[potential] with V = \"m*g*y\", or [gravity]"},
       {{"q", "variables", "generalized_coordinates", "dofs"}, "coordinates = [\"x\", \"y\"]"},
+      {{"let", "var", "const", "def", "definitions"},
+       "numbers stand under [parameters], formulas under [define], functions of t under [functions]"},
       {{"constants", "values"}, "[parameters] with m = \"2 kg\""},
       {{"generalized_forces", "Q"}, "[[force]] with generalized = {x = \"-k*x\"}"},
       {{"initial_conditions", "x0", "ic"}, "[initial] with x = 1 and \"x'\" = 0"},

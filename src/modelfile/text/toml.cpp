@@ -1,6 +1,7 @@
 #include "modelfile/text/toml.h"
 
 #include <algorithm>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 
@@ -163,6 +164,14 @@ void check_ascii(const SourceText& source) {
   }
 }
 
+// The name C of a line "let C = …", as other languages declare one; empty for another line.
+std::string declared_name(const std::string& line) {
+  static const std::regex declaration(
+      R"(\s*(?:let|var|const|def|set|param|parameter|parameters|define|real|double|float)\s+([A-Za-z_]\w*)\s*=.*)");
+  std::smatch found;
+  return line.size() < 1000 && std::regex_match(line, found, declaration) ? found[1].str() : std::string();
+}
+
 // The parser's message, in the words of a user.
 Failure syntax_error(const toml::parse_error& e, const SourceText& source) {
   const Span span = span_of(e.source());
@@ -196,6 +205,9 @@ Failure syntax_error(const toml::parse_error& e, const SourceText& source) {
   } else if (message.find("control characters other than TAB") != std::string::npos) {
     message = "this text is not closed in its line";
     hint = "a text ends with the quote it began with; one over several lines stands in three quotes";
+  } else if (const std::string of = declared_name(line); !of.empty()) {
+    hint = "a parameter stands under [parameters]: " + of +
+           " = …; a formula under [define], a function of t under [functions]";
   } else if (key.find('\'') != std::string::npos && key.find('"') == std::string::npos) {
     hint = "a key with ' stands in quotes: \"x'\" = …";
   } else if (line.find('=') != std::string::npos &&

@@ -42,6 +42,22 @@ TEST(ConsistentState, MissingVelocitiesFollowFromTheConstraint) {
   EXPECT_EQ(s.qd_origin[1], Origin::given);
 }
 
+TEST(ConsistentState, VelocitiesThatAreNotDeterminedAreChosen) {
+  InitialState<double> s;
+  ASSERT_TRUE(solve(text(constraint("x' = 3*y' + 1"), "x = 0\ny = 0\n"), s).ok());
+  EXPECT_EQ(s.qd_origin[0], Origin::chosen);
+  EXPECT_EQ(s.qd_origin[1], Origin::chosen);
+  ASSERT_EQ(s.notes.size(), 1U);
+  EXPECT_NE(s.notes[0].find("the least change that satisfies the constraints: other values in [initial]"),
+            std::string::npos);
+
+  InitialState<double> one;  // y' alone is determined
+  ASSERT_TRUE(solve(text(constraint("2*y' = 6"), "x = 0\ny = 0\n"), one).ok());
+  EXPECT_EQ(one.qd_origin[0], Origin::chosen);
+  EXPECT_EQ(one.qd_origin[1], Origin::derived);
+  EXPECT_TRUE(one.notes.empty());
+}
+
 TEST(ConsistentState, WhatIsFreeChangesLeastInTheMassNorm) {
   // min x'^2 + 4 y'^2 with x' + y' = 5: x' = 4, y' = 1.
   InitialState<double> s;
