@@ -38,6 +38,13 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
     bodies_.excluded.assign(bodies_.contacts.size(), {});
     return true;
   }
+  if (gave_up(r) && bodies_.at.t > from.t && retries_ < kMostRetries &&
+      stiff_for(bodies_, Rational(to - bodies_.at.t).get_d())) {
+    ++retries_;
+    outcome = {};
+    nothing_has_changed();
+    return true;
+  }
   // Of components that depend on each other others are held from here on.
   if (outcome.kind == OutcomeKind::singular && shares_friction(bodies_.modes) && bodies_.at.t > from.t) {
     outcome = {};

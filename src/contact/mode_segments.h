@@ -49,6 +49,9 @@ class ModeSegments {
   std::vector<Rational> times_;
   Rational end_;
   std::function<void(std::size_t)> slips_;
+  // How often BDF may be tried anew where Taylor's method has not come to the end of a mode that was near.
+  static constexpr int kMostRetries = 20;
+  int retries_ = 0;
   bool events_near_ = false;  // the last segment by BDF has come near the end of a mode
 };
 
