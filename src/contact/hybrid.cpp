@@ -20,7 +20,7 @@ namespace {
 class HybridMotion {
  public:
   HybridMotion(Workspace& s, const std::vector<Contact>& contacts, const SimulationOptions& o, RowSink& sink)
-      : s_(s), o_(o), bodies_(s, contacts, start_of(s, o)), joined_(*s.model), accumulation_(contacts.size()) {
+      : s_(s), bodies_(s, contacts, start_of(s, o)), joined_(*s.model), accumulation_(contacts.size()) {
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
     if (end_ < bodies_.at.t) throw Failure({}, "a motion with contacts goes forwards only", "an end after the start");
     std::vector<Rational> times = o.at;
@@ -212,7 +212,6 @@ class HybridMotion {
   }
 
   Workspace& s_;
-  const SimulationOptions& o_;
   TouchingBodies bodies_;
   JoinedReport joined_;
   Rational end_;
