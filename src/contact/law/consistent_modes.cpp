@@ -60,6 +60,12 @@ bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
   return true;
 }
 
+bool slips_backwards(const ContactRows& rows, const ContactMode& mode, const Numbers& x) {
+  if (mode.touch != Touch::slips || !rows.rough || rows.moves || !rows.may_stick) return false;
+  const auto v = slip_rate(rows, x);
+  return !(v[0] * mode.direction[0] + v[1] * mode.direction[1] > 0);
+}
+
 // Whether a contact at rest that may stick, and that the others hold, is said to slip though it hardly does.
 bool slips_by_round_off(const ContactProblem& p, const ContactSolution& f, Real free) {
   const auto sticks = [](const ContactMode& m) { return m.touch == Touch::sticks; };
@@ -139,12 +145,22 @@ class Solutions {
   }
 
   // The solution of modes, whose directions of slips that begin are guesses; nullopt if they are not consistent.
-  std::optional<ContactSolution> judge(ContactModes modes) const {
-    share_forces(p_, modes);
-    auto f = with_directions(p_, modes, free_);
-    if (f && shares_friction(modes)) f = distributed(p_, *f);
+  std::optional<ContactSolution> judge(const ContactModes& modes) const {
+    auto f = solve(modes);
     if (f && !consistent(p_, *f, free_)) f.reset();
     return f;
+  }
+  // The same for modes of least constraint. A contact at its limit that is said to slip, and would slip backwards, sticks.
+  std::optional<ContactSolution> settle(ContactModes modes) const {
+    for (std::size_t k = 0; k <= modes.size(); ++k) {
+      const auto f = solve(modes);
+      if (!f) return std::nullopt;
+      bool any = false;
+      for (std::size_t c = 0; c < modes.size(); ++c)
+        if (slips_backwards(p_.contacts[c], f->modes[c], f->x)) modes[c].touch = Touch::sticks, any = true;
+      if (!any) return consistent(p_, *f, free_) ? f : std::nullopt;
+    }
+    return std::nullopt;
   }
   bool slips_by_round_off(const ContactSolution& f) const { return anholon::slips_by_round_off(p_, f, free_); }
   void add(const ContactSolution& f) {
@@ -163,6 +179,13 @@ class Solutions {
       return difference <= 100 * kSame * std::max({largest(o.x), largest(f.x), free_}) || !alternatives(o, f) ||
              is_part(p_, f, o, free_);
     });
+  }
+
+  std::optional<ContactSolution> solve(ContactModes modes) const {
+    share_forces(p_, modes);
+    auto f = with_directions(p_, modes, free_);
+    if (f && shares_friction(modes)) f = distributed(p_, *f);
+    return f;
   }
 
   const ContactProblem& p_;
@@ -194,7 +217,7 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
     const auto [at, first] = found.try_emplace(touches, false);
     if (first)
       if (const auto guess = modes_of_least_constraint(p, touches))
-        if (const auto f = solutions.judge(*guess)) at->second = true, solutions.add(*f);
+        if (const auto f = solutions.settle(*guess)) at->second = true, solutions.add(*f);
     if (at->second) continue;
     if (const auto f = solutions.judge(modes); f && !solutions.slips_by_round_off(*f)) solutions.add(*f);
   }

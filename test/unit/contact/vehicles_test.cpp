@@ -98,6 +98,11 @@ const Vehicle kEnding{"ending",   kTricycle,  8.46,
                       {},         0,          {"c0.slips", "c1.slips", "c1.sticks"},
                       1.21219415, 1.68927561, 0.99256844};
 
+// A wheel that is locked comes to its limit while its side force could still leave it some of it.
+const Vehicle kSideForce{"side_force", kTricycle,  8.9,         0.109, 0, 0.35,
+                         0.91,         .34,        "w0 = 0.04", {2},   0, {"c2.slips", "c0.slips"},
+                         0.38047539,   0.29043115, 0.52085993};
+
 class Vehicles : public testing::TestWithParam<Vehicle> {};
 
 TEST_P(Vehicles, MoveAsWithRegularizedFriction) {
@@ -110,7 +115,8 @@ TEST_P(Vehicles, MoveAsWithRegularizedFriction) {
   EXPECT_NEAR(m.last("psi"), v.psi, 5e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(OnASlope, Vehicles, testing::Values(kTurning, kTogether, kSlow, kTurned, kStraight, kEnding),
+INSTANTIATE_TEST_SUITE_P(OnASlope, Vehicles,
+                         testing::Values(kTurning, kTogether, kSlow, kTurned, kStraight, kEnding, kSideForce),
                          [](const auto& test) { return std::string(test.param.name); });
 
 // The motion does not depend on the rows that are asked for, also where one lies in the time for which wheels are held.
