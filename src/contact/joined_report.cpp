@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "motion/stiff_method.h"
+
 namespace anholon {
 
 // Whether two warnings differ in the time that they name alone.
@@ -88,7 +90,7 @@ void JoinedReport::by_bdf(double t, SimulationReport r) {
   add(r, {});
   if (all_.method.turns.empty())
     all_.method.turns.push_back(
-        {t, Method::bdf, "where slips are so slow that friction is stiff, and Taylor elsewhere"});
+        {t, stiff_method(), "where slips are so slow that friction is stiff, and Taylor elsewhere"});
 }
 
 void JoinedReport::set(double t, const std::vector<EventReport::Change>& changes) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "contact/slow_slips.h"
+#include "motion/stiff_method.h"
 #include "simulation/simulate.h"
 
 namespace anholon {
@@ -113,7 +114,7 @@ SimulationOptions ModeSegments::asked_of_stretch(const Rational& to, const Ratio
   o.at.insert(o.at.end(), more.begin(), more.end());
   std::sort(o.at.begin(), o.at.end());
   o.at.erase(std::unique(o.at.begin(), o.at.end()), o.at.end());
-  o.method = Method::bdf;
+  o.method = stiff_method();
   o.tolerance = tolerance;
   o.most_steps = kMostSteps;
   return o;

@@ -3,8 +3,11 @@
 #include <cmath>
 
 #include "kernel/kernel.h"
+#include "motion/stiff_method.h"
 
 namespace anholon {
+
+Method stiff_method() { return Method::bdf; }
 
 namespace {
 
