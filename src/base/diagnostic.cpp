@@ -170,7 +170,7 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
     if (c == name || c.size() > 64 ||
         std::max(c.size(), name.size()) - std::min(c.size(), name.size()) >= best_distance)
       continue;
-    // Three or more letters that are only in another order count as one mistake: tetha.
+    // Four or more letters that are only in another order count as one mistake: tetha.
     const std::size_t distance = name.size() > 3 && sorted(name) == sorted(c) ? 1 : edit_distance(name, c);
     if (distance < best_distance && distance < std::max(c.size(), name.size())) {
       best = c;

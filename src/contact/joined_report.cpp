@@ -86,7 +86,6 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
 
 void JoinedReport::by_bdf(double t, SimulationReport r) {
   r.method.asked = Method::automatic, r.method.last = Method::taylor;
-  r.order = 0;
   add(r, {});
   if (all_.method.turns.empty())
     all_.method.turns.push_back(

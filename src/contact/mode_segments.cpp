@@ -39,15 +39,7 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
     bodies_.excluded.assign(bodies_.contacts.size(), {});
     return true;
   }
-  if (gave_up(r) && bodies_.at.t > from.t && retries_ < kMostRetries &&
-      stiff_for(bodies_, Rational(to - bodies_.at.t).get_d())) {
-    ++retries_;
-    outcome = {};
-    nothing_has_changed();
-    return true;
-  }
-  // Of components that depend on each other others are held from here on.
-  if (outcome.kind == OutcomeKind::singular && shares_friction(bodies_.modes) && bodies_.at.t > from.t) {
+  if (bodies_.at.t > from.t && (may_be_stiff(r, to) || may_hold_others(r))) {
     outcome = {};
     nothing_has_changed();
     return true;
@@ -121,13 +113,13 @@ SimulationOptions ModeSegments::asked_of_stretch(const Rational& to, const Ratio
 }
 
 bool ModeSegments::by_bdf(const Rational& to) {
-  const Rational least(1, 1'000'000'000'000), most(1, 1'000'000'000);  // of the tolerance
+  const Rational least(1, 1'000'000'000'000), first = std::max(o_.tolerance, least), most = 1000 * first;
   if (o_.method != Method::automatic || looks_for_events_ || std::exchange(events_near_, false)) return false;
   const std::optional<long double> time = stiff_for(bodies_, Rational(to - bodies_.at.t).get_d());
   if (!time) return false;
   Rational end = std::min(to, Rational(bodies_.at.t.get_d() + static_cast<double>(*time)));
   bool whole = true;
-  for (Rational tolerance = std::max(o_.tolerance, least); tolerance <= most;) {
+  for (Rational tolerance = first; tolerance <= most;) {
     Outcome outcome;
     ReadyMode* mode = begin(ModeEnds::conditions, outcome);
     if (!mode) return false;
@@ -155,6 +147,15 @@ bool ModeSegments::by_bdf(const Rational& to) {
   return false;
 }
 
+bool ModeSegments::may_be_stiff(const SimulationReport& r, const Rational& to) {
+  constexpr int kMostRetries = 20;
+  return gave_up(r) && stiff_for(bodies_, Rational(to - bodies_.at.t).get_d()) && retries_++ < kMostRetries;
+}
+
+bool ModeSegments::may_hold_others(const SimulationReport& r) const {
+  return r.outcome.kind == OutcomeKind::singular && shares_friction(bodies_.modes);
+}
+
 bool ModeSegments::gave_up(const SimulationReport& r) const {
   return r.outcome.kind == OutcomeKind::interrupted && r.steps < o_.most_steps && !(o_.cancelled && o_.cancelled());
 }
@@ -166,12 +167,8 @@ bool ModeSegments::slip_vanishes() {
   for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
     const ContactRows& rows = bodies_.dynamics.accelerations().contacts[c];
     if (bodies_.modes[c].touch != Touch::slips || !rows.rough || rows.tangential.size() < 2) continue;
-    const auto& slip = bodies_.dynamics.place(c).slip;
-    long double size = 0;
-    for (const std::vector<long double>& t : rows.tangential)
-      for (std::size_t a = 0; a < bodies_.at.qd.size(); ++a)
-        size = std::max(size, std::abs(t[a] * bodies_.dynamics.most(a)));
-    if (std::hypot(slip[0], slip[1]) > kVanished * size) continue;
+    const ContactDynamics::Place& place = bodies_.dynamics.place(c);
+    if (std::hypot(place.slip[0], place.slip[1]) > kVanished * place.slip_reach) continue;
     bodies_.set_slip(c, {}, 0);
     joined_.event(bodies_.contacts[c].name + "." + word(bodies_.contacts[c], ModeChange::sticks), bodies_.at.t.get_d());
     any = true;

@@ -31,6 +31,10 @@ class ModeSegments {
   // Follows slips that are slow by BDF as long as the modes hold, but not beyond `to`. Returns whether the motion has come
   // further so.
   bool by_bdf(const Rational& to);
+  // Whether BDF may go on where Taylor's method gave up, which is not tried without end.
+  bool may_be_stiff(const SimulationReport& r, const Rational& to);
+  // Whether the segment ended because components of friction that hold have become dependent: others may hold in their place.
+  bool may_hold_others(const SimulationReport& r) const;
   // Whether the segment ended because its end lies too many of its short steps ahead.
   bool gave_up(const SimulationReport& r) const;
   // A slip velocity with two components that vanishes on a curved line has no Taylor series there, and the steps become
@@ -49,9 +53,7 @@ class ModeSegments {
   std::vector<Rational> times_;
   Rational end_;
   std::function<void(std::size_t)> slips_;
-  // How often BDF may be tried anew where Taylor's method has not come to the end of a mode that was near.
-  static constexpr int kMostRetries = 20;
-  int retries_ = 0;
+  int retries_ = 0;           // how often BDF went on where Taylor's method gave up
   bool events_near_ = false;  // the last segment by BDF has come near the end of a mode
 };
 

@@ -19,7 +19,8 @@ class SlipStart {
   // The event at which a segment has ended tells that the contact slips.
   void told(std::size_t contact) { told_[contact] = true; }
   // Where a slip with two components begins without acceleration, its velocity grows by the square of the time, and as long
-  // as it is small its direction is stiff. The contact is held for the time h of time_to_grow; the error is of the order of h^3 (theory: contact). Returns false if the motion ends meanwhile.
+  // as it is small its direction is stiff. The contact is held for the time h of time_to_grow; the error is of the order of h^3
+  // (theory: contact). Returns false if the motion ends meanwhile.
   bool hold(Outcome& outcome);
   // Of contacts that shared friction, those that slip with the one at which the last segment ended.
   void tell_who_slips_too(const ContactModes& now);

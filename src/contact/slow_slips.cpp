@@ -8,8 +8,8 @@ namespace anholon {
 
 namespace {
 
-// How fast friction turns the velocity of a slip with two components into its direction: mu N by the mass against which it acts,
-// divided by the velocity.
+// The rate at which friction turns a slip with two components into its direction: mu N by the mass against which it acts,
+// divided by the slip velocity v.
 long double rate_of_direction(const ContactProblem& p, const ContactModes& modes, const ContactSolution& f,
                               std::size_t c, long double v) {
   long double most = 0;

@@ -95,10 +95,9 @@ void integrability(const Scenario& s, const Explanation& x) {
   }
   if (!x.accessible) return;
   const int all = s.structure.configuration_dimension;
-  const std::string part = *x.accessible == all ? "all " : std::to_string(*x.accessible) + " of the ";
   say(stdout,
-      "    the constraints leave %s%d dimensions of the space of configurations open to motions from one of them\n",
-      part.c_str(), all);
+      "    motions from one configuration reach a set of dimension %d in the configuration space of dimension %d\n",
+      *x.accessible, all);
 }
 
 std::string derivative_of(int order) {

@@ -60,10 +60,11 @@ bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
   return true;
 }
 
-bool slips_backwards(const ContactRows& rows, const ContactMode& mode, const Numbers& x) {
-  if (mode.touch != Touch::slips || !rows.rough || rows.moves || !rows.may_stick) return false;
+// The slip acceleration, along its direction, of a contact at rest that may stick and is said to slip; nullopt of another one.
+std::optional<Real> slip_that_begins(const ContactRows& rows, const ContactMode& mode, const Numbers& x) {
+  if (mode.touch != Touch::slips || !rows.rough || rows.moves || !rows.may_stick) return std::nullopt;
   const auto v = slip_rate(rows, x);
-  return !(v[0] * mode.direction[0] + v[1] * mode.direction[1] > 0);
+  return v[0] * mode.direction[0] + v[1] * mode.direction[1];
 }
 
 // Whether a contact at rest that may stick, and that the others hold, is said to slip though it hardly does.
@@ -73,10 +74,8 @@ bool slips_by_round_off(const ContactProblem& p, const ContactSolution& f, Real 
   const Real size = std::max(largest(f.x), free);
   for (std::size_t c = 0; c < p.contacts.size(); ++c) {
     const ContactRows& rows = p.contacts[c];
-    if (f.modes[c].touch != Touch::slips || !rows.rough || rows.moves || !rows.may_stick) continue;
-    const auto v = slip_rate(rows, f.x);
-    const auto& d = f.modes[c].direction;
-    if (v[0] * d[0] + v[1] * d[1] <= round_off_of_slip(rows, size, free)) return true;
+    const auto along = slip_that_begins(rows, f.modes[c], f.x);
+    if (along && *along <= round_off_of_slip(rows, size, free)) return true;
   }
   return false;
 }
@@ -157,7 +156,8 @@ class Solutions {
       if (!f) return std::nullopt;
       bool any = false;
       for (std::size_t c = 0; c < modes.size(); ++c)
-        if (slips_backwards(p_.contacts[c], f->modes[c], f->x)) modes[c].touch = Touch::sticks, any = true;
+        if (const auto along = slip_that_begins(p_.contacts[c], f->modes[c], f->x); along && !(*along > 0))
+          modes[c].touch = Touch::sticks, any = true;
       if (!any) return consistent(p_, *f, free_) ? f : std::nullopt;
     }
     return std::nullopt;
@@ -203,8 +203,8 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
     count *= each.back().size();
   }
   Solutions solutions(p);
-  std::map<std::vector<bool>, bool>
-      found;  // by what touches: whether the principle of least constraint has found a solution
+  // By what touches: whether the principle of least constraint has found a solution.
+  std::map<std::vector<bool>, bool> found;
   for (std::size_t k = 0; k < count; ++k) {
     ContactModes modes;
     std::vector<bool> touches;

@@ -1,4 +1,5 @@
-// The accelerations of bodies whose contacts touch, by Gauss' principle of least constraint with friction (theory: contact).
+// The accelerations of bodies whose contacts touch, by Gauss' principle of least constraint with friction (theory: contact,
+// (co.2)).
 //
 // Where the loads N are known, those accelerations are the least of
 //   1/2 (x - x0)^T A (x - x0) + sum mu N |t x + t0|,

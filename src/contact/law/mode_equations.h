@@ -8,7 +8,7 @@
 // Resistance to rolling or drilling is a further T of a contact, bounded by the same N: it has rows of its own, in which t
 // is the angular velocity and mu a length. It is open where its contact is, unless a given force presses it.
 //
-// x are the accelerations, or the jumps of the velocities. All modes are tried.
+// x are the accelerations, or the jumps of the velocities. law/consistent_modes.h finds the modes.
 #pragma once
 #include <array>
 #include <cstdint>

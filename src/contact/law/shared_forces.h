@@ -1,9 +1,9 @@
 // Forces of contacts on bodies that join them: four feet of a box, two feet of a block, the wheels of an axle.
 //
 // Where their gaps depend on each other, the motion determines sums of loads and not each load; the least ones are taken.
-// Where the slip velocities of contacts at rest do, the same holds for their friction (theory: contact). They stick as long as some distribution lies in all cones |T| <= mu N. The one that is taken is
-// that of equal creep, T proportional to mu N where all would slip alike; where it leaves a cone, it is the one that spares
-// most of them.
+// Where the slip velocities of contacts at rest do, the same holds for their friction (theory: contact, (co.3)). They stick as
+// long as some distribution lies in all cones |T| <= mu N. The one that is taken is that of equal creep,
+// T proportional to mu N where all would slip alike; where it leaves a cone, it is the one that spares most of them.
 #pragma once
 #include "contact/law/mode_equations.h"
 
