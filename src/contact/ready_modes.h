@@ -4,15 +4,15 @@
 #include <memory>
 
 #include "contact/mode_model.h"
-#include "motion/motion.h"
 #include "setup/scenario.h"
+#include "simulation/simulate.h"
 
 namespace anholon {
 
 struct ReadyMode {
   ModeModel of;
   std::unique_ptr<Workspace> own;
-  MotionPlans plans;  // of the last segment in this mode
+  SimulationPlans plans;  // of the last segment in this mode
 };
 
 class ReadyModes {

@@ -21,7 +21,7 @@ void EnsemblePlan::make() {
   const Graph& g = *model.graph;
   settings = {natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
   plain = (o.method == Method::automatic || o.method == Method::taylor) && !s.routh && s.redundant.empty() &&
-          s.elimination.pivots().empty() && !o.own_motion && model.events.empty() && model.bounds.empty();
+          s.elimination.pivots().empty() && !o.own_motion && model.bounds.empty();
   if (!plain) return;
   start.emplace(*s.mechanics, overrides_of(o, nullptr));
   for (std::size_t j = 0; j < s.system.size(); ++j)
@@ -31,6 +31,10 @@ void EnsemblePlan::make() {
   first_reduced = quadratures.size();
   for (const Expr e : o.reductions.formulas) quadratures.push_back(s.graph().own(e));
   settings.known_from = first_reduced, settings.known_to = quadratures.size();
+  watched = watched_series(s, quadratures.size());
+  for (const Expr e : watched_formulas(model)) quadratures.push_back(e);
+  for (const Event& e : model.events)
+    sets.push_back(e.set.empty() ? std::nullopt : std::make_optional<SetByEvent>(s, e));
   program = anholon::program(s.system, s.structure, quadratures);
   settings.measure = false;
   if (Start<long double> at; o.kernel && initial_state(s, o.state, at).ok()) {
@@ -39,21 +43,22 @@ void EnsemblePlan::make() {
     const double t = static_cast<double>(at.t);
     const int order = o.order > 0 ? o.order : taylor_order(settings.log_tolerance);
     if (const auto derived = KernelPlan::make(std::make_shared<const Program>(*program), order - 1, numbers, t, state,
-                                              Company::in_lanes))
-      kernel = cheapest(representations({derived, s.structure, quadratures, numbers, t, state, s.mechanics.get()},
-                                        WritingEffort::long_motion))
-                   .plan;
+                                              Company::in_lanes)) {
+      const std::vector<Representation> list = representations(
+          {derived, s.structure, quadratures, numbers, t, state, s.mechanics.get()}, WritingEffort::long_motion);
+      kernel = (watched.empty() ? cheapest(list) : cheapest_unmapped(list)).plan;
+    }
   }
   constexpr std::size_t kMany = 32;
   if (kernel && o.cases >= kMany) lanes = tiers().back().lanes;
-  Column watched;
-  for (const Monitor& m : model.monitors) watched.push_back(m.value);
-  stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, watched));
+  Column monitors;
+  for (const Monitor& m : model.monitors) monitors.push_back(m.value);
+  stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitors));
   leading = stages > 0 || std::any_of(s.structure.d.begin(),
                                       s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates),
                                       [](int d) { return d < 2; });
-  if (watched.empty()) return;
-  outputs = compile(OutputTape<Wider<double>>::put(s, watched));
+  if (monitors.empty()) return;
+  outputs = compile(OutputTape<Wider<double>>::put(s, monitors));
   for (const Input& in : outputs->inputs) {
     const Node& n = g.node(in.symbol);
     output_inputs.push_back({in.slot, s.system.variable(in.symbol), n.kind == Kind::time ? 0 : n.order});
@@ -87,18 +92,14 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
   if (plan.options.own_motion) return CaseWay::derivation;
   if (!plan.plain) return CaseWay::simulation;
   if (!ready_) {
-    stepper_.emplace(*plan.program, narrow_parameters_, parameters_, plan.settings);
-    if (kernel) {
-      kernel->set_parameters(lane, parameters_);
-      stepper_->accelerate(kernel, lane);
-    }
+    kernel_ = kernel, lane_ = lane;
+    equip(parameters_, narrow_parameters_);
     starts_.emplace(*plan.scenario.mechanics, *plan.start, parameters_);
-    point_.emplace(*plan.program, parameters_, std::max(1, plan.stages));
-    if (plan.outputs) outputs_.emplace(*plan.outputs, 0, parameters_);
     if (!plan.options.reductions.list.empty()) reducer_.emplace(plan.options.reductions);
     ready_ = true;
   }
   if (reducer_) reducer_->restart();
+  if (!plan.watched.empty()) paces_.emplace(plan.scenario.model->events);
   const EnsembleOptions& o = plan.options;
   InitialProblem<W> problem{plan.scenario.mechanics.get(), parameters_, overrides_of(o, &numbers_), o.state.t};
   problem.plan = &*plan.start;
@@ -121,6 +122,18 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
     return stepper_->start(named_.t, state, {}, false).ok() ? after_step() : stop(CaseWay::derivation);
   stepper_->place(named_.t, state);
   return CaseWay::plain;
+}
+
+// What computes with these parameters.
+void CaseWalk::equip(const std::vector<W>& parameters, const std::vector<double>& narrow) {
+  stepper_ = std::make_unique<Stepper<double>>(*plan_->program, narrow, parameters, plan_->settings);
+  if (!plan_->watched.empty()) stepper_->watch(plan_->watched);
+  if (kernel_) {
+    kernel_->set_parameters(lane_, parameters);
+    stepper_->accelerate(kernel_, lane_);
+  }
+  point_.emplace(*plan_->program, parameters, std::max(1, plan_->stages));
+  if (plan_->outputs) outputs_.emplace(*plan_->outputs, 0, parameters);
 }
 
 CaseWay CaseWalk::stop(CaseWay way) {
@@ -166,10 +179,50 @@ CaseWay CaseWalk::after_step() {
                    [&](std::size_t i, int k) { return stepper_->quadrature_coefficient(plan_->first_reduced + i, k); });
     reducer_->values(result_->reduced);
   }
-  if (!(stepper_->time() == end_)) return CaseWay::plain;
-  result_->t = to_double(end_);
+  if (!stepper_->fired().empty()) return take_events();
+  return stepper_->time() == end_ ? arrive() : CaseWay::plain;
+}
+
+CaseWay CaseWalk::arrive() {
+  result_->t = to_double(stepper_->time());
   result_->steps = stepper_->steps();
-  return stop(keep(end_, result_->last) ? CaseWay::plain : CaseWay::simulation);
+  return stop(keep(stepper_->time(), result_->last) ? CaseWay::plain : CaseWay::simulation);
+}
+
+// Takes what fired in the last step. Where something is set at the very end of a motion, `simulate` decides.
+CaseWay CaseWalk::take_events() {
+  const std::vector<Event>& events = plan_->scenario.model->events;
+  const std::vector<Fired<double>> fired = stepper_->fired();
+  bool ends = stepper_->time() == end_, sets = false;
+  for (const Fired<double>& f : fired) {
+    const Event& e = events[f.series];
+    if (e.stop) ends = true, result_->event = e.name;
+    sets = sets || !e.set.empty();
+  }
+  if (ends) return sets ? stop(CaseWay::simulation) : arrive();
+  if (!sets) return CaseWay::plain;
+  stepper_->leave_kernel();
+  if (!stepper_->at(stepper_->time(), *point_).ok()) return stop(CaseWay::simulation);
+  std::vector<W> state, parameters = point_->parameters();
+  point_->state(state);
+  for (const Fired<double>& f : fired) {
+    const std::optional<SetByEvent>& set = plan_->sets[f.series];
+    if (!set) continue;
+    std::vector<ChangeByEvent<W>> changes;
+    if (!set->put(*point_, state, parameters, changes).ok() ||
+        !paces_->see({f.series, stepper_->before() + W(f.where), {}, W(0)}, end_ - named_.t).ok())
+      return stop(CaseWay::simulation);
+  }
+  if (parameters != point_->parameters()) {
+    std::vector<double> narrow = narrow_parameters_;
+    for (std::size_t i = 0; i < narrow.size(); ++i)
+      if (plan_->scenario.model->parameters[i].mode) narrow[i] = to_double(parameters[i]);
+    const std::unique_ptr<Stepper<double>> before = std::move(stepper_);
+    equip(parameters, narrow);
+    stepper_->adopt(*before);
+    ready_ = false;  // for the next case
+  }
+  return stepper_->restart(state, false).ok() ? CaseWay::plain : stop(CaseWay::simulation);
 }
 
 // Keeps the rows that lie in the last step.

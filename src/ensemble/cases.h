@@ -1,9 +1,9 @@
 // The computation of the cases of an ensemble on many threads.
 //
 // A plain case is computed by tapes that were compiled before: parameters, consistent positions and velocities, the
-// stepping program, outputs. It builds no expressions, so all threads share one graph. A case that stops, or needs
-// events, completed states, redundant constraints or another elimination, is computed by `simulate` in a workspace of
-// its own, so its outcome is that of `simulate`. A case in which the equations have another structure is derived anew.
+// stepping program, events, outputs. It builds no expressions, so all threads share one graph. A case that stops other than
+// by an event, or needs completed states, redundant constraints or another elimination, is computed by `simulate` in a
+// workspace of its own, so its outcome is that of `simulate`. A case in which the equations have another structure is derived anew.
 #pragma once
 #include <deque>
 #include <mutex>
@@ -12,7 +12,8 @@
 #include "ensemble/case_scenario.h"
 #include "ensemble/columns.h"
 #include "kernel/kernel.h"
-#include "motion/code_for_long_runs.h"
+#include "motion/motion.h"
+#include "simulation/event_paces.h"
 #include "structure/start_memory.h"
 
 namespace anholon {
@@ -37,6 +38,8 @@ class EnsemblePlan {
   void compile_if_long(std::size_t next) const;
   int lanes = 1;                  // of the kernels of cases: as many as the machine has
   std::size_t first_reduced = 0;  // of the program's quadratures
+  std::vector<WatchedSeries> watched;
+  std::vector<std::optional<SetByEvent>> sets;  // of each event, if it sets something
   std::optional<Tape> outputs;
   struct Entry {
     std::uint32_t slot;
@@ -82,7 +85,10 @@ class CaseWalk {
   CaseWay step();
 
  private:
+  void equip(const std::vector<W>& parameters, const std::vector<double>& narrow);
   CaseWay after_step();
+  CaseWay arrive();
+  CaseWay take_events();
   CaseWay stopped(const Outcome& why);
   CaseWay stop(CaseWay way);
   bool rows();
@@ -99,10 +105,13 @@ class CaseWalk {
   std::vector<W> times_;                  // of rows
   std::optional<StartMemory<W>> starts_;  // for these parameters
   InitialState<W> named_;
-  std::optional<Stepper<double>> stepper_;
+  std::shared_ptr<Kernel> kernel_;
+  int lane_ = 0;
+  std::unique_ptr<Stepper<double>> stepper_;
   std::optional<Expansion<W>> point_;
   std::optional<Machine<W>> outputs_;
   std::optional<Reducer> reducer_;
+  std::optional<EventPaces<W>> paces_;
 };
 
 // The workspaces of one thread.

@@ -12,8 +12,7 @@ namespace {
 // Whether a kernel makes the motions of a model, so that one with other roundings tells of their errors.
 bool made_by_kernel(const Scenario& s) {
   const Program p = program(s.system, s.structure);
-  return s.model->events.empty() && s.model->bounds.empty() && no_plan(p).empty() &&
-         !may_have_kinks(p.tape, p.tape.main_end);
+  return s.model->bounds.empty() && no_plan(p).empty() && !may_have_kinks(p.tape, p.tape.main_end);
 }
 
 SimulationReport compared(const Scenario& of_case, const EnsembleOptions& o, const EnsembleCase& numbers,

@@ -386,8 +386,9 @@ Outcome Stepper<N>::take_over(const Stepper& other) {
 }
 
 template <Number N>
-Outcome Stepper<N>::restart(const std::vector<W>& state) {
+Outcome Stepper<N>::restart(const std::vector<W>& state, bool kernel) {
   leave_kernel();
+  if (!kernel) record().careful = true;
   before_ = time();  // the last step's polynomial is not this state's
   track_.now.state = state;
   track_.now.carry.assign(state.size(), W(0));

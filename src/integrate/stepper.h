@@ -37,8 +37,8 @@ class Stepper {
   // As take_over(), but restart() makes the expansion.
   void adopt(const Stepper& other);
   // Goes on from another state at the same time (after `adopt`, if another stepper was there): an event has changed it.
-  // It is projected on the constraints by least change.
-  Outcome restart(const std::vector<W>& state);
+  // It is projected on the constraints by least change. `kernel`: as for start().
+  Outcome restart(const std::vector<W>& state, bool kernel = true);
   // Goes on where an expansion of another stepper was begun, or of this one.
   Outcome resume(const StepperState<N>& begun);
 

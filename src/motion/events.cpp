@@ -3,24 +3,28 @@
 
 namespace anholon {
 
-template <Number N>
-std::vector<Expr> Motion<N>::with_events(Workspace& in) const {
+std::vector<Expr> watched_formulas(const Model& model) {
   std::vector<Expr> es;
-  for (Expr e : quadratures_) es.push_back(in.graph().own(e));
-  for (const Event& e : in.model->events) es.push_back(e.when);
-  for (const Bound& b : in.model->bounds) es.push_back(put_masses(*in.model, b.inside));
+  for (const Event& e : model.events) es.push_back(e.when);
+  for (const Bound& b : model.bounds) es.push_back(put_masses(model, b.inside));
   return es;
 }
 
-template <Number N>
-std::vector<WatchedSeries> Motion<N>::watched() const {
+std::vector<WatchedSeries> watched_series(const Scenario& s, std::size_t first) {
   std::vector<WatchedSeries> list;
-  const auto of_state = [&](Expr e) { return orders_needed(s_, {&e, 1}) <= 0; };
-  for (const Event& e : s_.model->events)
-    list.push_back({quadratures_.size() + list.size(), e.direction, e.ends_step(), of_state(e.when)});
-  for (const Bound& b : s_.model->bounds)
-    list.push_back({quadratures_.size() + list.size(), 0, true, of_state(b.inside)});
+  const auto of_state = [&](Expr e) { return orders_needed(s, {&e, 1}) <= 0; };
+  for (const Event& e : s.model->events)
+    list.push_back({first + list.size(), e.direction, e.ends_step(), of_state(e.when)});
+  for (const Bound& b : s.model->bounds) list.push_back({first + list.size(), 0, true, of_state(b.inside)});
   return list;
+}
+
+template <Number N>
+std::vector<Expr> Motion<N>::with_watched(Workspace& in) const {
+  std::vector<Expr> es;
+  for (Expr e : quadratures_) es.push_back(in.graph().own(e));
+  for (const Expr e : watched_formulas(*in.model)) es.push_back(e);
+  return es;
 }
 
 template <Number N>
@@ -39,43 +43,12 @@ Outcome Motion<N>::within_bounds() {
   return {};
 }
 
-// The values of one event by the state and the modes as they are now; then they are changed.
 template <Number N>
-Outcome Motion<N>::fire(const Event& event, std::vector<W>& state, std::vector<W>& parameters,
-                        Occurrence<W>& occurrence) {
-  const Graph& g = *s_.model->graph;
-  Column values;
-  for (const Assignment& a : event.set) values.push_back(a.value);
-  if (values.empty()) return {};
-  const Expansion<W>& point = leg_->point;
-  const auto entry = [&](const Node& n) -> W* {  // of the state
-    if (n.kind == Kind::parameter) return &parameters[n.index];
-    const std::size_t j = n.kind == Kind::state ? s_.system.mechanical() + n.index : n.index;
-    return static_cast<int>(n.order) < leg_->program.d[j] ? &state[point.offset(j) + n.order] : nullptr;
-  };
-  const Tape tape = compile(OutputTape<W>::put(s_, values));
-  Machine<W> machine(tape, 0, parameters);
-  bind(machine, g, [&](const Node& n, NodeId symbol) {
-    const W* own = n.kind == Kind::jet || n.kind == Kind::state ? entry(n) : nullptr;
-    return own ? *own : ValueAt<W>{s_.system, point}(n, symbol);
-  });
-  machine.evaluate();
-  for (std::size_t i = 0; i < event.set.size(); ++i) {
-    const Expr symbol = event.set[i].symbol;
-    const std::string name = print(symbol, s_.model->names, Format::text);
-    W* place = entry(g.node(symbol.id));
-    if (!place)
-      return {OutcomeKind::inconsistent,
-              "the event '" + event.name + "' sets " + name +
-                  ", which is no part of the state: it follows from the constraints",
-              "set what it follows from"};
-    if (!is_finite(machine.value(i)))
-      return {OutcomeKind::not_a_number, "the event '" + event.name + "' gives " + name + " no value",
-              "look for roots of negative numbers and divisions by zero in 'set'"};
-    occurrence.changes.push_back({name, *place, machine.value(i)});
-  }
-  for (std::size_t i = 0; i < event.set.size(); ++i) *entry(g.node(event.set[i].symbol.id)) = machine.value(i);
-  return {};
+const SetByEvent& Motion<N>::set_by(std::size_t event) {
+  sets_.resize(s_.model->events.size());
+  std::optional<SetByEvent>& set = sets_[event];
+  if (!set) set.emplace(s_, s_.model->events[event]);
+  return *set;
 }
 
 template <Number N>
@@ -96,8 +69,10 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
     }
     const Event& event = s_.model->events[f.series];
     Occurrence<W> occurrence{f.series, start + convert<W>(f.where), {}, W(0)};
-    if (Outcome o = fire(event, state, parameters, occurrence); !o.ok()) return o;
-    set = set || !event.set.empty();
+    if (!event.set.empty()) {
+      set = true;
+      if (Outcome o = set_by(f.series).put(leg_->point, state, parameters, occurrence.changes); !o.ok()) return o;
+    }
     if (event.stop) goes_on = false;
     occurrences.push_back(std::move(occurrence));
   }
@@ -128,12 +103,10 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
 }
 
 #define INSTANTIATE(N)                                                                                                 \
-  template std::vector<Expr> Motion<N>::with_events(Workspace&) const;                                                 \
-  template std::vector<WatchedSeries> Motion<N>::watched() const;                                                      \
+  template std::vector<Expr> Motion<N>::with_watched(Workspace&) const;                                                \
   template void Motion<N>::set_modes(const std::vector<Wider<N>>&);                                                    \
   template Outcome Motion<N>::within_bounds();                                                                         \
-  template Outcome Motion<N>::fire(const Event&, std::vector<Wider<N>>&, std::vector<Wider<N>>&,                       \
-                                   Occurrence<Wider<N>>&);                                                             \
+  template const SetByEvent& Motion<N>::set_by(std::size_t);                                                           \
   template Outcome Motion<N>::settle(std::vector<Occurrence<Wider<N>>>&, bool&);
 INSTANTIATE(double)
 INSTANTIATE(long double)

@@ -13,11 +13,11 @@ namespace anholon {
 template <Number N>
 Motion<N>::Leg::Leg(const Motion& m, std::shared_ptr<Workspace> of_leg, Elimination by, System of, Structure structured)
     : own(std::move(of_leg)), elimination(std::move(by)), system(std::move(of)), structure(std::move(structured)),
-      quadratures(m.with_events(m.workspace(*this))),
+      quadratures(m.with_watched(m.workspace(*this))),
       program(anholon::program(system, structure, quadratures, !std::same_as<N, double>)),
       stepper(program, m.narrow_parameters_, m.parameters_, m.settings_),
       point(program, m.parameters_, std::max(1, m.stages_)), present(program, m.parameters_, 1) {
-  stepper.watch(m.watched());
+  stepper.watch(watched_series(m.s_, m.quadratures_.size()));
   m.watch_pivots(*this);
 }
 
@@ -395,7 +395,8 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   least_regular.unknown = static_cast<std::size_t>(counts[1]);
   careful = counts[2] != 0;
   direction = from.numbers<N>("direction");
-  for (const W& side : from.numbers<W>("sides", watched().size())) sides.push_back(static_cast<int>(to_double(side)));
+  for (const W& side : from.numbers<W>("sides", watched_formulas(*s_.model).size()))
+    sides.push_back(static_cast<int>(to_double(side)));
   if (least_regular.unknown >= p.unknowns() || (!direction.empty() && direction.size() != p.unknowns()))
     SavedRun::unfit("direction");
   if (!leg_->pivots) effort_ = effort_after(steps);

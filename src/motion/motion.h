@@ -14,6 +14,7 @@
 #include "motion/code_for_long_runs.h"
 #include "motion/representation.h"
 #include "motion/saved.h"
+#include "motion/set_by_event.h"
 #include "setup/scenario.h"
 
 namespace anholon {
@@ -23,12 +24,8 @@ template <Number W>
 struct Occurrence {
   std::size_t event = 0;  // of the model
   W t{0};
-  struct Change {
-    std::string name;
-    W before{0}, after{0};
-  };
-  std::vector<Change> changes;  // what was set
-  W correction{0};              // by which constraints made what was set consistent, the largest
+  std::vector<ChangeByEvent<W>> changes;
+  W correction{0};  // by which constraints made what was set consistent, the largest
 };
 
 // The solution at a place that was foretold (integrate/stepper.h), in `point`; `beyond`: with its orders beyond the
@@ -102,6 +99,7 @@ class Motion {
   const Stepper<N>& stepper() const { return leg_->stepper; }
   const Program& program() const { return leg_->program; }
   const std::vector<W>& parameters() const { return parameters_; }
+  const std::vector<W>& start_parameters() const { return start_parameters_; }
   std::size_t eliminations() const { return eliminations_; }  // how often other coordinates were eliminated on the way
   // For another method (motion/course.h): the plan of the kernel, if there is one; whether other coordinates should be
   // eliminated at a point; Taylor steps from where it has come to.
@@ -167,15 +165,15 @@ class Motion {
   std::unique_ptr<const Workspace> base_;  // as `s_` was when the motion was made, where legs may be derived from it
   StepSettings settings_;
   void set_modes(const std::vector<W>& parameters);
-  Outcome fire(const Event& event, std::vector<W>& state, std::vector<W>& parameters, Occurrence<W>& occurrence);
-  std::vector<Expr> with_events(Workspace& in) const;
-  std::vector<WatchedSeries> watched() const;
+  const SetByEvent& set_by(std::size_t event);
+  std::vector<Expr> with_watched(Workspace& in) const;
   bool watches() const { return !s_.model->events.empty() || !s_.model->bounds.empty(); }
 
   std::vector<Expr> quadratures_;
   int stages_;
   std::vector<W> start_parameters_, parameters_;  // modes differ
   std::vector<N> narrow_parameters_;
+  std::vector<std::optional<SetByEvent>> sets_;  // of the events that have fired
   Start<W> start_;
   std::vector<W> begun_parameters_;  // where the last expansion was made
   std::unique_ptr<Leg> leg_;
@@ -193,6 +191,11 @@ extern template class Motion<double>;
 extern template class Motion<long double>;
 extern template class Motion<Quad>;
 extern template class Motion<Multi>;
+
+// The formulas that a motion watches: those of events, then of bounds. How it does, where they are the quadratures of its
+// program from `first` on.
+std::vector<Expr> watched_formulas(const Model& model);
+std::vector<WatchedSeries> watched_series(const Scenario& scenario, std::size_t first);
 
 // Says what the motion ran into: a mass that vanishes, two solutions that meet, a multiplier that grows without bound.
 template <Number N>

@@ -47,6 +47,7 @@ class SharperRun {
           waiting_.own = WaitingRows::make(s_, {}, orders_of_rows(s_), motion_.parameters(), motion_.start_state(),
                                            to_double(end_));
         if (!waiting_.rows) waiting_.rows = waiting_.own.get();
+        if (waiting_.rows) waiting_.rows->set_parameters(motion_.parameters());
         if (waiting_.rows) waiting_.block.emplace(waiting_.rows->lanes());
       }
     const Outcome o = follow();
@@ -150,6 +151,7 @@ class SharperRun {
            from_now(next_) < within;
          ++next_)
       if (Outcome o = compare(next_); !o.ok()) return o;
+    if (Outcome o = compare_waiting(); !o.ok()) return o;
     const Outcome o = motion_.settle(occurrences, goes_on);
     bool set = false;
     const bool counted = !run_.since || (forward_ ? motion_.stepper().time() > convert<W>(*run_.since)
@@ -163,6 +165,8 @@ class SharperRun {
       ++resets_;
       if (!counted) ++uncounted_;
       outputs_.set_parameters(motion_.parameters());
+      if constexpr (std::same_as<M, double>)
+        if (waiting_.rows) waiting_.rows->set_parameters(motion_.parameters());
       kink_ = {};
       for (; next_ < rows_.size() && resets_before(next_) < resets_; ++next_) lose(next_);
     }

@@ -20,17 +20,9 @@ constexpr std::size_t kSteps = 4096;
 
 }  // namespace
 
-std::unique_ptr<KernelRows> KernelRows::make(Workspace& s, const SimulationOptions& o, const Motion<double>& motion,
-                                             int stages, double end, const RowTakers& takers) {
-  if (!motion.stepper().accelerated()) return nullptr;
-  auto waiting = WaitingRows::make(s, o.conserved, stages, motion.parameters(), motion.start_state(), end);
-  if (!waiting) return nullptr;
-  return std::make_unique<KernelRows>(s, o, motion, stages, std::move(waiting), takers);
-}
-
 // The program of the motion is copied, as the motion may write its equations anew on the way.
 KernelRows::KernelRows(Workspace& s, const SimulationOptions& o, const Motion<double>& motion, int stages,
-                       std::unique_ptr<WaitingRows> waiting, const RowTakers& takers)
+                       std::shared_ptr<WaitingRows> waiting, const RowTakers& takers)
     : s_(s), o_(o), takers_(takers), waiting_(std::move(waiting)), stages_(stages), program_(motion.program()),
       point_(program_, motion.parameters(), std::max(1, stages)),
       check_(columns_after_time(s, largest_order(s, program_.d))),
@@ -57,6 +49,12 @@ Outcome KernelRows::settle() {
   work_.settle();
   failed_ = false;
   return std::exchange(trouble_, {});
+}
+
+void KernelRows::set_parameters(const std::vector<long double>& parameters) {
+  if (parameters == point_.parameters()) return;
+  waiting_->set_parameters(parameters);
+  point_ = Expansion<long double>(program_, parameters, std::max(1, stages_));
 }
 
 std::optional<Warning> KernelRows::warning() const {

@@ -27,14 +27,10 @@ struct RowTakers {
 
 class KernelRows {
  public:
-  // `stages`: orders beyond the leading derivatives that rows show; `end`: of the motion. Returns nullptr if rows need
-  // the reference.
-  static std::unique_ptr<KernelRows> make(Workspace& scenario, const SimulationOptions& options,
-                                          const Motion<double>& motion, int stages, double end,
-                                          const RowTakers& takers);
-  // As above, with the kernel of the rows.
+  // `stages`: orders beyond the leading derivatives that rows show; `waiting`: what computes them, for the parameters of
+  // the motion.
   KernelRows(Workspace& scenario, const SimulationOptions& options, const Motion<double>& motion, int stages,
-             std::unique_ptr<WaitingRows> waiting, const RowTakers& takers);
+             std::shared_ptr<WaitingRows> waiting, const RowTakers& takers);
 
   // Notes a row in the last step. `judged`: it may count for the estimate of the error.
   void add(const Motion<double>& motion, long double t, const std::string& label, bool judged);
@@ -48,6 +44,8 @@ class KernelRows {
   bool failed() const { return failed_; }
   // Waits until all rows are written that were noted. Returns why a row has no solution, once.
   Outcome settle();
+  // The rows that follow are of a motion with these parameters. Call it after settle().
+  void set_parameters(const std::vector<long double>& parameters);
   // For the estimate of the error, after settle().
   WaitingRows& waiting() { return *waiting_; }
   // Returns a warning if numbers of the kernel are not those of the reference. Call it after settle().
@@ -74,7 +72,7 @@ class KernelRows {
   const Scenario& s_;
   const SimulationOptions& o_;
   RowTakers takers_;
-  std::unique_ptr<WaitingRows> waiting_;
+  std::shared_ptr<WaitingRows> waiting_;
   int stages_;
   Program program_;                // of the reference
   Expansion<long double> point_;   // where the reference looks

@@ -65,8 +65,11 @@ class Run {
     report_.looks_for_events = !s.model->events.empty();
   }
 
-  void use(const MotionPlans& plans) { motion().use(plans); }
-  MotionPlans plans() const { return motion().plans(); }
+  void use(const SimulationPlans& plans) {
+    if (plans.motion.plan) motion().use(plans.motion);
+    plans_ = plans;
+  }
+  SimulationPlans plans() const { return {motion().plans(), plans_.known_rows, plans_.rows}; }
 
   SimulationReport go() {
     report_.outcome = o_.resume ? resume(*o_.resume) : begin();
@@ -256,6 +259,8 @@ class Run {
 
   // Takes the events that fired in the last step; returns false if they end the motion.
   bool events() {
+    settle_rows();
+    if (!report_.outcome.ok()) return false;
     if (Outcome o = motion().at(motion().stepper().time()); o.ok()) watch_.leave(motion().point());
     std::vector<Occurrence<W>> occurrences;
     bool goes_on = true;
@@ -274,6 +279,8 @@ class Run {
       return false;
     }
     angles_.set_parameters(doubles(motion().parameters()));
+    if constexpr (std::same_as<N, double>)
+      if (kernel_rows_) kernel_rows_->set_parameters(motion().parameters());
     if (motion().at(motion().stepper().time()).ok()) watch_.enter(motion().point(), motion().parameters());
     if (!goes_on) ended();
     return goes_on && report_.outcome.ok();
@@ -328,9 +335,18 @@ class Run {
 
   // Rows of Taylor's steps may be computed side by side.
   void prepare_rows() {
-    if constexpr (std::same_as<N, double>)
-      kernel_rows_ = KernelRows::make(s_, o_, motion(), stages_, to_double(schedule_.end()),
-                                      {watch_, judge_, floors_, rows_, report_});
+    if constexpr (std::same_as<N, double>) {
+      if (!motion().stepper().accelerated()) return;
+      const double end = to_double(schedule_.end());
+      if (!std::exchange(plans_.known_rows, true))
+        plans_.rows =
+            WaitingRows::make(s_, o_.conserved, stages_, motion().start_parameters(), motion().start_state(), end);
+      if (!plans_.rows) return;
+      plans_.rows->set_parameters(motion().parameters());
+      plans_.rows->set_end(end);
+      kernel_rows_ = std::make_unique<KernelRows>(s_, o_, motion(), stages_, plans_.rows,
+                                                  RowTakers{watch_, judge_, floors_, rows_, report_});
+    }
   }
 
   void row_in_step(const W& t, const std::string& label) {
@@ -466,12 +482,13 @@ class Run {
   std::optional<W> reached_;  // the time at which the motion ended before its end
   W work_{0};                 // the greatest so far, where a step began
   SimulationReport report_;
+  SimulationPlans plans_;                    // those of the motion are in the motion
   std::unique_ptr<KernelRows> kernel_rows_;  // null if rows are made by the reference; the last: uses the others
 };
 
-SimulationReport in_doubles(Workspace& s, const SimulationOptions& o, RowSink& sink, MotionPlans* plans) {
+SimulationReport in_doubles(Workspace& s, const SimulationOptions& o, RowSink& sink, SimulationPlans* plans) {
   Run<double> run(s, o, sink);
-  if (plans && plans->plan) run.use(*plans);
+  if (plans) run.use(*plans);
   SimulationReport r = run.go();
   if (plans) *plans = run.plans();
   return r;
@@ -484,7 +501,7 @@ SimulationReport simulate(const Scenario& scenario, const SimulationOptions& opt
   return simulate_in(own, options, sink);
 }
 
-SimulationReport simulate_in(Workspace& s, const SimulationOptions& options, RowSink& sink, MotionPlans* plans) {
+SimulationReport simulate_in(Workspace& s, const SimulationOptions& options, RowSink& sink, SimulationPlans* plans) {
   const auto start = std::chrono::steady_clock::now();
   SimulationOptions o = options;
   for (Conserved& c : o.conserved) for_each_expression(c, [&](Expr& e) { e = s.graph().own(e); });

@@ -7,10 +7,19 @@
 
 namespace anholon {
 
+class WaitingRows;
+
+// What one motion in doubles leaves to the next one in the same workspace.
+struct SimulationPlans {
+  MotionPlans motion;
+  bool known_rows = false;            // whether `rows` is known
+  std::shared_ptr<WaitingRows> rows;  // null if rows need the reference
+};
+
 SimulationReport simulate(const Scenario& scenario, const SimulationOptions& options, RowSink& sink);
-// As above, in a workspace of the caller, in whose graph expressions are added. plans: those of the motion in doubles before
-// this one, in the same workspace with the same tolerance and order, and then those of this one; empty ones are made.
+// As above, in a workspace of the caller, in whose graph expressions are added. `plans`: what the motion in doubles before
+// this one left, in the same workspace, with the same tolerance, order and conserved quantities; then what this one leaves.
 SimulationReport simulate_in(Workspace& scenario, const SimulationOptions& options, RowSink& sink,
-                             MotionPlans* plans = nullptr);
+                             SimulationPlans* plans = nullptr);
 
 }  // namespace anholon

@@ -9,9 +9,7 @@ std::unique_ptr<RowKernel> RowKernel::make(Workspace& s, const Column& outputs, 
                                            const std::vector<long double>& parameters, const RowPlace& here,
                                            double end) {
   const Column put = OutputTape<long double>::put(s, outputs);
-  if (!s.elimination.pivots().empty() || !s.redundant.empty() || s.routh || !s.model->events.empty() ||
-      orders_needed(s, put) > 0)
-    return nullptr;
+  if (!s.elimination.pivots().empty() || !s.redundant.empty() || s.routh || orders_needed(s, put) > 0) return nullptr;
   auto program = std::make_shared<const Program>(anholon::program(s.system, s.structure, put));
   if (!no_plan(*program).empty()) return nullptr;
   const std::vector<double> state(here.state.begin(), here.state.end());
@@ -23,6 +21,10 @@ std::unique_ptr<RowKernel> RowKernel::make(Workspace& s, const Column& outputs, 
 RowKernel::RowKernel(std::shared_ptr<const KernelPlan> plan, bool with_series,
                      const std::vector<long double>& parameters, double end)
     : with_series_(with_series), plan_(std::move(plan)), kernel_(plan_, tiers().back().lanes), end_(end) {
+  set_parameters(parameters);
+}
+
+void RowKernel::set_parameters(const std::vector<long double>& parameters) {
   for (int lane = 0; lane < kernel_.lanes(); ++lane) kernel_.set_parameters(lane, parameters);
 }
 

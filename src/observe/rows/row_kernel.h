@@ -18,10 +18,14 @@ class RowKernel {
  public:
   // `outputs`: expressions whose values the rows need. `stages`: how many orders beyond the leading derivatives. `here`:
   // the start of the motion; `end`: its end.
-  // Returns null if rows need the reference: the form eliminates coordinates, constraints are redundant, events change
-  // the parameters, an expression holds derivatives that are not solved for, or there is no kernel for the equations.
+  // Returns null if rows need the reference: the form eliminates coordinates, constraints are redundant, an expression
+  // holds derivatives that are not solved for, or there is no kernel for the equations.
   static std::unique_ptr<RowKernel> make(Workspace& scenario, const Column& outputs, int stages,
                                          const std::vector<long double>& parameters, const RowPlace& here, double end);
+
+  // The rows that follow are of a motion with these parameters, and of one that ends there.
+  void set_parameters(const std::vector<long double>& parameters);
+  void set_end(double end) { end_ = end; }
 
   std::size_t lanes() const { return static_cast<std::size_t>(kernel_.lanes()); }
   // Puts a place into a lane; every lane needs one before compute().

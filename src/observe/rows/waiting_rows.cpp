@@ -52,6 +52,13 @@ WaitingRows::WaitingRows(const Scenario& s, RowExpressions expressions, std::uni
   for (const double q : questions) sources_.push_back(asked.sources[static_cast<std::size_t>(q)]);
 }
 
+void WaitingRows::set_parameters(const std::vector<long double>& parameters) {
+  if (parameters == parameters_) return;
+  parameters_ = parameters;
+  kernel_->set_parameters(parameters);
+  mapped_.reset();
+}
+
 // States in unknowns of the motion's kernel are converted first. Rows of another plan, which a motion that writes its
 // equations anew leaves behind, are converted by themselves.
 void WaitingRows::compute(WaitingBlock& block, std::size_t first, std::size_t count) {

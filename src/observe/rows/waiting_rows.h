@@ -48,6 +48,10 @@ class WaitingRows {
                                            const std::vector<long double>& parameters, const RowPlace& start,
                                            double end);
 
+  // The rows that follow are of a motion with these parameters, and of one that ends there.
+  void set_parameters(const std::vector<long double>& parameters);
+  void set_end(double end) { kernel_->set_end(end); }
+
   // A row that has been computed, in the numbers of doubles; for row_values() a point and its outputs.
   class Computed {
    public:

@@ -128,23 +128,29 @@ TEST(RowKernel, SaysWhereItIsNotToBeTrusted) {
   EXPECT_FALSE(rows.kernel->good(0));
 }
 
-// Rows of motions whose parameters events may change are the reference's.
-TEST(RowKernel, LeavesEventsToTheReference) {
-  const std::string falls = R"(coordinates = ["x"]
+// Events change modes, which are parameters.
+TEST(RowKernel, HasTheParametersThatItIsGiven) {
+  const char* const text = R"(coordinates = ["x"]
+mode.push = 1
 particle = [{name = "p", mass = 1, position = "x*ex"}]
+force = [{on = "p", vector = "2*push*ex"}]
+event = [{name = "turn", when = "x - 1", set = {push = "-push"}}]
 )";
-  for (const bool event : {false, true}) {
-    Scenario prepared;
-    const std::string more = event ? "[[event]]\nname = \"floor\"\nwhen = \"x\"\nstop = true\n" : "";
-    ASSERT_TRUE(make_scenario(test::model_of(falls + "[initial]\nx = 1\n\"x'\" = 1\n" + more),
-                              *find_formulation("routh"), {}, prepared)
-                    .ok());
-    Workspace s(prepared);
-    Start<long double> start;
-    ASSERT_TRUE(initial_state(s, {}, start).ok());
-    const auto kernel =
-        RowKernel::make(s, RowExpressions(s, {}).all, 0, parameter_values<long double>(*s.model), start, 1);
-    EXPECT_EQ(kernel == nullptr, event);
+  Scenario prepared;
+  ASSERT_TRUE(make_scenario(test::model_of(text), *find_formulation("routh"), {}, prepared).ok());
+  Workspace s(prepared);
+  RowPlace start;
+  ASSERT_TRUE(initial_state(s, {}, start).ok());
+  std::vector<long double> parameters = parameter_values<long double>(*s.model);
+  const auto kernel = RowKernel::make(s, RowExpressions(s, {}).all, 0, parameters, start, 1);
+  ASSERT_TRUE(kernel);
+  for (const long double push : {1.0L, -1.0L}) {
+    parameters.at(0) = push;
+    kernel->set_parameters(parameters);
+    for (std::size_t lane = 0; lane < kernel->lanes(); ++lane) kernel->place(lane, start);
+    kernel->compute();
+    for (std::size_t lane = 0; lane < kernel->lanes(); ++lane)
+      EXPECT_EQ(kernel->derivative(0, 2, lane), 2 * static_cast<double>(push));
   }
 }
 

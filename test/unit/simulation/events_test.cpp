@@ -208,6 +208,31 @@ TEST(Events, AreThoseOfTheReferenceIfAKernelMakesTheSteps) {
   }
 }
 
+// x'' = 2 to t = 1, -2 to t = 3, then 2: a kernel makes the rows of all three modes.
+TEST(Events, SetModesThatTheRowsAfterThemHave) {
+  const Result r =
+      run(mass_on_a_line("2*push", "mode.push = 1\nevent = [{name = \"turn\", when = \"x - 1\", set = {push "
+                                   "= \"-push\"}}]\n"),
+          4, "1/1000000000000", [](SimulationOptions& o) {
+            o.every = Rational(1, 128);
+            o.estimate = ErrorEstimate::always;
+          });
+  ASSERT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
+  ASSERT_EQ(r.report.events.size(), 2U);
+  ASSERT_EQ(r.rows.rows().size(), 513U);
+  EXPECT_LT(r.report.rows_looked_at, 400U) << "the reference makes all rows";
+  EXPECT_TRUE(r.report.warnings.empty()) << r.report.warnings.front().message;
+  for (const std::vector<std::string>& row : r.rows.rows()) {
+    const double t = std::stod(row[0]), x = std::stod(row[1]), acceleration = std::stod(row[3]);
+    if (std::abs(t - 1) < 1e-9 || std::abs(t - 3) < 1e-9) continue;  // the moments of the events, to round-off
+    EXPECT_NEAR(acceleration, t < 1 || t > 3 ? 2 : -2, 1e-14) << t;
+    const double since = t < 1 ? t : t < 3 ? t - 2 : t - 4;
+    EXPECT_NEAR(x, t < 1 || t > 3 ? since * since : 2 - since * since, 1e-14) << t;
+  }
+  ASSERT_TRUE(r.report.error) << r.report.no_error;
+  EXPECT_GE(r.report.error->worst().digits, 14);
+}
+
 // With modes, each of which begins with a stepper of its own.
 TEST(Events, LeaveTheStepsToTheKernel) {
   std::string counted = kSwings;
