@@ -2,7 +2,6 @@
 
 #include "ensemble/case_scenario.h"
 #include "ensemble/columns.h"
-#include "integrate/series/kinks.h"
 #include "observe/estimate.h"
 
 namespace anholon {
@@ -12,7 +11,7 @@ namespace {
 // Whether a kernel makes the motions of a model, so that one with other roundings tells of their errors.
 bool made_by_kernel(const Scenario& s) {
   const Program p = program(s.system, s.structure);
-  return s.model->bounds.empty() && no_plan(p).empty() && !may_have_kinks(p.tape, p.tape.main_end);
+  return s.model->bounds.empty() && no_plan(p).empty();
 }
 
 SimulationReport compared(const Scenario& of_case, const EnsembleOptions& o, const EnsembleCase& numbers,

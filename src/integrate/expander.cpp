@@ -73,14 +73,24 @@ template class ReferenceExpander<Multi>;
 
 GuardedExpander::GuardedExpander(const Program& program, const std::vector<double>& parameters,
                                  const std::vector<W>& wide_parameters, const StepSettings& settings, int order)
-    : measure_(settings.measure), shrink_(step_shrink(settings.log_tolerance, order)),
-      reference_(program, parameters, order), point_{{program, wide_parameters, 1}, Point::Known::values} {}
+    : program_(&program), parameters_(parameters), wide_parameters_(wide_parameters), order_(order),
+      measure_(settings.measure), shrink_(step_shrink(settings.log_tolerance, order)) {}
+
+ReferenceExpansion<double>& GuardedExpander::reference() const {
+  if (!reference_) reference_ = std::make_unique<ReferenceExpansion<double>>(*program_, parameters_, order_);
+  return *reference_;
+}
+
+Expansion<GuardedExpander::W>& GuardedExpander::solution() const {
+  if (!solution_) solution_ = std::make_unique<Expansion<W>>(*program_, wide_parameters_, 1);
+  return *solution_;
+}
 
 // The motion is another one.
 void GuardedExpander::restart() {
   if (kernel_) kernel_->drop();
   maker_ = Maker::reference;
-  point_.known = Point::Known::values;
+  known_ = Known::values;
   awaits_kernel_ = false;
 }
 
@@ -116,7 +126,7 @@ bool GuardedExpander::end_by_kernel(MotionTrack<double>& track) {
     return false;
   }
   maker_ = Maker::kernel;
-  point_.known = Point::Known::nothing;
+  known_ = Known::nothing;
   ++by_kernel_;
   return true;
 }
@@ -124,7 +134,7 @@ bool GuardedExpander::end_by_kernel(MotionTrack<double>& track) {
 bool GuardedExpander::end_at_once(MotionTrack<double>& track) {
   if (!kernel_->serves_at_once(track.now.record, measure_)) return false;
   awaits_kernel_ = false;
-  point_.known = Point::Known::nothing;
+  known_ = Known::nothing;
   ++by_kernel_;
   return true;
 }
@@ -132,8 +142,8 @@ bool GuardedExpander::end_at_once(MotionTrack<double>& track) {
 Outcome GuardedExpander::prepare(MotionTrack<double>& track, const std::vector<W>& guess) {
   note_reference(track, series());
   maker_ = Maker::reference;
-  point_.known = Point::Known::values;
-  return reference_.prepare(track.now, guess);
+  known_ = Known::values;
+  return reference().prepare(track.now, guess);
 }
 
 MotionState<double> GuardedExpander::motion(const MotionTrack<double>& track, bool expanded) const {
@@ -148,30 +158,29 @@ StepperState<double> GuardedExpander::begun(const MotionTrack<double>& track) co
   if (!kernel_) return track.begun().at;
   MotionTrack<double> all = track;
   kernel_->read_begun(all);
-  if (kernel()) all.begun().at.direction = series().weakest_direction();
+  if (kernel() && reference_) all.begun().at.direction = series().weakest_direction();
   return all.begun().at;
 }
 
 const Expansion<GuardedExpander::W>& GuardedExpander::point(const MotionTrack<double>& track, bool values) const {
-  using Known = Point::Known;
-  if (point_.known == Known::nothing) {
+  if (known_ == Known::nothing) {
     const W& begun = track.begun().at.motion.t;
-    point_.solution.load(begun, kernel()->base(begun), kernel()->leading());
-    point_.known = Known::solution;
+    solution().load(begun, kernel()->base(begun), kernel()->leading());
+    known_ = Known::solution;
     // The kernel knows no multipliers.
-    if (kernel()->mapped() && point_.solution.prepare().ok()) point_.solution.solve();
+    if (kernel()->mapped() && solution().prepare().ok()) solution().solve();
   }
-  if (values && point_.known == Known::solution) {
-    point_.solution.evaluate();
-    point_.known = Known::values;
+  if (values && known_ == Known::solution) {
+    solution().evaluate();
+    known_ = Known::values;
   }
-  return point_.solution;
+  return solution();
 }
 
 void GuardedExpander::state_at(const MotionTrack<double>& track, const W& h, std::vector<W>& state,
                                std::vector<W>& leading) const {
   if (kernel()) return kernel()->state_at(track.begun().at.motion.t, h, state, leading);
-  reference_state_at(reference_, point_.solution, h, state, leading);
+  reference_state_at(reference(), solution(), h, state, leading);
 }
 
 void GuardedExpander::own_state_at(const MotionTrack<double>& track, const W& h, std::vector<W>& state,

@@ -40,8 +40,11 @@ class ReferenceExpander {
   Outcome extend() { return reference_.extend(); }
   void cut_to(const MotionState<N>& m, const std::vector<W>& leading) { reference_.cut_to(m, leading, point_); }
   N reach() const { return reference_.reach(shrink_); }
-  // The present expansion is used up to there.
-  static constexpr void set_horizon(const N&) {}
+
+  // What decides which functions hold in the present expansion goes into series(), where kinks are looked for, and
+  // whether it may decide otherwise within the horizon is found out.
+  static constexpr void show_deciding() {}
+  static constexpr void look_for_turns(const N&) {}
 
   bool advance(MotionTrack<N>& track, const W& h) { return reference_.advance(track.now, h, point_); }
 
@@ -51,6 +54,8 @@ class ReferenceExpander {
   void take_back(MotionTrack<N>&, bool) {}
   static constexpr void round_state() {}
 
+  // The next iteration for the singular value of J starts anew.
+  void forget_direction() { series().set_weakest_direction({}); }
   // The expansion of the reference: that of the present step if no kernel has made that.
   Expansion<N>& series() { return reference_.series(); }
   const Expansion<N>& series() const { return reference_.series(); }
@@ -79,7 +84,7 @@ class GuardedExpander {
                   const StepSettings& settings, int order);
 
   void accelerate(KernelExpansion kernel) { kernel_ = std::move(kernel); }
-  const std::vector<W>& wide_parameters() const { return point_.solution.parameters(); }
+  const std::vector<W>& wide_parameters() const { return wide_parameters_; }
 
   KernelExpansion* kernel() { return maker_ == Maker::kernel ? &*kernel_ : nullptr; }
   const KernelExpansion* kernel() const { return maker_ == Maker::kernel ? &*kernel_ : nullptr; }
@@ -110,19 +115,23 @@ class GuardedExpander {
   bool end_at_once(MotionTrack<double>& track);
   Outcome prepare(MotionTrack<double>& track, const std::vector<W>& guess);
   Outcome solve(MotionTrack<double>& track, const std::vector<W>& guess) {
-    return reference_.solve(track.now, guess, point_.solution);
+    return reference().solve(track.now, guess, solution());
   }
-  Outcome extend() { return reference_.extend(); }
+  Outcome extend() { return reference().extend(); }
   void cut_to(const MotionState<double>& m, const std::vector<W>& leading) {
-    reference_.cut_to(m, leading, point_.solution);
+    reference().cut_to(m, leading, solution());
   }
-  double reach() const { return kernel() ? kernel()->reach() : reference_.reach(shrink_); }
-  void set_horizon(double horizon) {
-    if (kernel()) kernel()->show_roots(horizon, series());
+  double reach() const { return kernel() ? kernel()->reach() : reference().reach(shrink_); }
+
+  void show_deciding() {
+    if (kernel()) kernel()->show_deciding(series());
+  }
+  void look_for_turns(double horizon) {
+    if (kernel()) kernel()->look_for_turns(horizon);
   }
 
   bool advance(MotionTrack<double>& track, const W& h) {
-    return kernel() ? kernel()->follow(track, h) : reference_.advance(track.now, h, point_.solution);
+    return kernel() ? kernel()->follow(track, h) : reference().advance(track.now, h, solution());
   }
 
   MotionState<double> motion(const MotionTrack<double>& track, bool expanded) const;
@@ -134,8 +143,12 @@ class GuardedExpander {
     if (kernel_) kernel_->round_state();
   }
 
-  Expansion<double>& series() { return reference_.series(); }
-  const Expansion<double>& series() const { return reference_.series(); }
+  // The next iteration for the singular value of J starts anew.
+  void forget_direction() {
+    if (reference_) reference_->series().set_weakest_direction({});
+  }
+  Expansion<double>& series() { return reference().series(); }
+  const Expansion<double>& series() const { return reference().series(); }
   double coefficient(std::size_t j, int k) const {
     return kernel() ? kernel()->coefficient(j, k) : series().coefficient(j, k);
   }
@@ -144,7 +157,7 @@ class GuardedExpander {
   }
   bool constant_quadrature(std::size_t i) const { return kernel() && kernel()->constant_quadrature(i); }
   W integral(std::size_t i, const W& h) const {
-    return kernel() ? W(kernel()->integral(i)) : reference_.integral(i, h);
+    return kernel() ? W(kernel()->integral(i)) : reference().integral(i, h);
   }
   const Expansion<W>& point(const MotionTrack<double>& track, bool values) const;
   void state_at(const MotionTrack<double>& track, const W& h, std::vector<W>& state, std::vector<W>& leading) const;
@@ -155,20 +168,26 @@ class GuardedExpander {
  private:
   bool kernel_serves(const StepRecord<double>& record) const;
 
+  // Made where they are first asked for: a motion that the kernel makes alone needs neither.
+  ReferenceExpansion<double>& reference() const;
+  Expansion<W>& solution() const;
+
+  const Program* program_;
+  std::vector<double> parameters_;
+  std::vector<W> wide_parameters_;
+  int order_;
   bool measure_;
   double shrink_;
-  ReferenceExpansion<double> reference_;
+  mutable std::unique_ptr<ReferenceExpansion<double>> reference_;
   std::optional<KernelExpansion> kernel_;
   enum class Maker : std::uint8_t { reference, kernel };
   Maker maker_ = Maker::reference;  // of the present expansion
   bool awaits_kernel_ = false;      // one is begun, and the kernel has not been looked at yet
   std::size_t by_kernel_ = 0;
   // The solution where the present expansion was made. After the kernel's it is computed when it is first asked for.
-  struct Point {
-    Expansion<W> solution;
-    enum class Known : std::uint8_t { nothing, solution, values } known;
-  };
-  mutable Point point_;
+  mutable std::unique_ptr<Expansion<W>> solution_;
+  enum class Known : std::uint8_t { nothing, solution, values };
+  mutable Known known_ = Known::values;  // of it
 };
 
 namespace expander_of {

@@ -24,8 +24,7 @@ KernelExpansion::KernelExpansion(std::shared_ptr<Kernel> kernel, int lane, const
       least_health_(trusted_health(log_tolerance, mapped())) {
   kernel_->set_shrink(step_shrink(log_tolerance, order));
   // The roots of a kernel with unknowns of its own are its own, too: of what J keeps from zero.
-  if (mapped()) return;
-  for (const auto& [slot, place] : kernel_->plan().plan().roots_of_even_powers) roots_.push_back({slot, place.at});
+  if (!mapped()) deciding_ = kernel_->plan().plan().deciding;
 }
 
 bool KernelExpansion::without_positions() const {
@@ -88,17 +87,32 @@ bool KernelExpansion::hides_nothing_over(double h) const {
   });
 }
 
-void KernelExpansion::show_roots(double horizon, Expansion<double>& series) {
-  may_touch_zero_ = false;
-  std::vector<double> c;
-  for (const auto& [slot, at] : roots_) {
-    c.resize(static_cast<std::size_t>(order_));
-    for (int k = 0; k < order_; ++k) c[static_cast<std::size_t>(k)] = kernel_->series({at, true}, k, lane_);
-    may_touch_zero_ = may_touch_zero_ || !stays_positive(c.data(), order_ - 1, horizon);
-  }
-  if (!may_touch_zero_) return;
-  for (const auto& [slot, at] : roots_)
-    for (int k = 0; k < order_; ++k) series.adopt_coefficient(slot, k, kernel_->series({at, true}, k, lane_));
+std::vector<double> KernelExpansion::coefficients(const Place& place) const {
+  std::vector<double> c(static_cast<std::size_t>(order_));
+  for (int k = 0; k < order_; ++k) c[static_cast<std::size_t>(k)] = kernel_->series(place, k, lane_);
+  return c;
+}
+
+void KernelExpansion::show_deciding(Expansion<double>& series) const {
+  for (const Plan::Deciding& d : deciding_)
+    for (int k = 0; k < order_; ++k) series.adopt_coefficient(d.slot, k, kernel_->series(d.place, k, lane_));
+}
+
+void KernelExpansion::look_for_turns(double horizon) {
+  using Kind = Plan::Deciding::Kind;
+  may_turn_ = std::any_of(deciding_.begin(), deciding_.end(), [&](const Plan::Deciding& d) {
+    std::vector<double> c = coefficients(d.place);
+    if (d.kind == Kind::radicand) return !stays_positive(c.data(), order_ - 1, horizon);
+    if (d.kind == Kind::sign) return !keeps_sign(c.data(), order_ - 1, horizon);
+    const std::vector<double>& knots = kernel_->plan().tables().knots[d.index].at;
+    const auto above = std::upper_bound(knots.begin(), knots.end(), c[0]);
+    const double value = c[0];
+    const auto far_from = [&](double knot) {
+      c[0] = value - knot;
+      return keeps_sign(c.data(), order_ - 1, horizon);
+    };
+    return (above != knots.end() && !far_from(*above)) || (above != knots.begin() && !far_from(*std::prev(above)));
+  });
 }
 
 void KernelExpansion::read(MotionState<double>& m, bool expanded) const {
@@ -192,6 +206,11 @@ std::vector<double> KernelExpansion::hidden_points(double h) const {
 }
 
 void KernelExpansion::state_at(const W& begun, const W& h, std::vector<W>& state, std::vector<W>& leading) const {
+  if (h == 0) {
+    state = base(begun);
+    leading = this->leading();
+    return;
+  }
   kernel_->set_step(lane_, static_cast<double>(h));
   kernel_->change_over_step();
   std::vector<W> from;

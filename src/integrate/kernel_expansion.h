@@ -32,8 +32,8 @@ class KernelExpansion {
   // or small enough for another measure of J, or coefficients are no numbers. `follows`: the expansion before was
   // made here, too.
   bool serves(StepRecord<double>& record, bool measure, bool follows);
-  // Whether the lane holds the motion, and no root in it has to be looked at.
-  bool may_be_ordinary() const { return holds_ && roots_.empty(); }
+  // Whether the lane holds the motion, and nothing in it decides which function holds.
+  bool may_be_ordinary() const { return holds_ && deciding_.empty(); }
   // As serves(), where nothing asks for a closer look; else false, and nothing is changed.
   bool serves_at_once(StepRecord<double>& record, bool measure);
   // Whether no function hides in a step over h what its series do not show.
@@ -42,9 +42,11 @@ class KernelExpansion {
   bool suspected() const { return suspected_; }
   void forget_suspicion() { suspected_ = false; }
   double reach() const { return kernel_->reach(lane_); }
-  // Copies the series of roots into `series`, where kinks are looked for, if one may touch zero within the horizon.
-  void show_roots(double horizon, Expansion<double>& series);
-  bool may_touch_zero() const { return may_touch_zero_; }
+  // Copies the series that decide which functions hold into `series`, where kinks are looked for.
+  void show_deciding(Expansion<double>& series) const;
+  // Finds out whether one of them may pass its point within the horizon.
+  void look_for_turns(double horizon);
+  bool may_turn() const { return may_turn_; }
 
   // Puts into `m` where the lane's motion is; `expanded`: the expansion is made, and no step since. Nothing changes
   // if the motion is not in the lane.
@@ -92,17 +94,18 @@ class KernelExpansion {
 
  private:
   std::optional<std::size_t> own_unknown(std::size_t j) const;
+  std::vector<double> coefficients(const Place& place) const;
   void advanced(const W& h, const std::vector<W>& base, std::vector<W>& state, std::vector<W>& leading) const;
 
   std::shared_ptr<Kernel> kernel_;
   int lane_;
   const Program* program_;  // of the motion
   int order_;
-  double least_health_;                                         // below it the reference makes the expansion
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> roots_;  // slot of the tape, where the kernel has its argument
-  Pivots pivots_;                                               // at the last expansion
-  bool holds_ = false;                                          // the motion is in the lane
-  bool suspected_ = false, may_touch_zero_ = false;
+  double least_health_;  // below it the reference makes the expansion
+  std::vector<Plan::Deciding> deciding_;
+  Pivots pivots_;       // at the last expansion
+  bool holds_ = false;  // the motion is in the lane
+  bool suspected_ = false, may_turn_ = false;
 };
 
 }  // namespace anholon

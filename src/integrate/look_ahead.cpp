@@ -29,6 +29,11 @@ void LookAhead<N>::watch(const std::vector<std::size_t>& quadratures) {
 }
 
 template <Number N>
+void LookAhead<N>::watch_kinks(const std::vector<std::uint32_t>& slots) {
+  kinks_ = slots.empty() ? slots : precedents(program_->tape, slots);
+}
+
+template <Number N>
 void LookAhead<N>::evaluate_watched() {
   there_->evaluate(watched_);
   quadratures_known_ = true;

@@ -22,6 +22,11 @@ class LookAhead {
   Expansion<N>* prepare(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
   // What is watched where the motion was loaded last; of the quadratures these alone are known then.
   void evaluate_watched();
+  // These slots decide which functions hold, and are those of evaluate_kinks().
+  void watch_kinks(const std::vector<std::uint32_t>& slots);
+  bool has_kinks() const { return !kinks_.empty(); }
+  // What decides which functions hold, where the motion was loaded last; no other slots are known then.
+  void evaluate_kinks() { there_->evaluate(kinks_); }
   // A quadrature where the motion was loaded last, and the formulas evaluated; nullopt if it has no value there.
   std::optional<N> quadrature(std::size_t i);
   // The magnitude of the terms of this value.
@@ -34,7 +39,8 @@ class LookAhead {
 
   const Program* program_;
   std::vector<N> parameters_;
-  std::vector<std::uint32_t> watched_;   // the slots of what is watched
+  std::vector<std::uint32_t> watched_;   // the slots of what is watched, and
+  std::vector<std::uint32_t> kinks_;     // of what decides which functions hold, each with all that they are made of
   std::unique_ptr<Expansion<N>> there_;  // made when it is first asked for
   std::vector<N> state_, leading_, sizes_;
   bool quadratures_known_ = false;

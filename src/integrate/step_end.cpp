@@ -164,8 +164,7 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
       h = first;
     else
       refused = false;
-    if (!kernel || kernel->may_touch_zero())
-      kink = first_kink<N>(step.series().machine(), slots_, order_ - 1, convert<N>(h));
+    if (!kernel || kernel->may_turn()) kink = first_kink<N>(step.series().machine(), slots_, order_ - 1, convert<N>(h));
     where = kink.at_start ? W(0) : kink.ahead ? convert<W>(kink.where) : h;
     past = convert<W>(unit_roundoff<N>()) * W(kPastKink) * (abs(t) > abs(h) ? W(abs(t)) : W(abs(h))) +
            W(std::exp(log_tolerance_)) * abs(h);

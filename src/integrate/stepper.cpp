@@ -198,9 +198,10 @@ bool Stepper<N>::end_by_kernel() {
     return false;
   }
   horizon_ = expander_.reach();
+  limit_by_kinks();
   limit_by_events();
   limit_by_quadratures();
-  expander_.set_horizon(horizon_);
+  expander_.look_for_turns(horizon_);
   phase_ = Phase::expanded;
   return true;
 }
@@ -219,9 +220,7 @@ Outcome Stepper<N>::expand_regularly(const std::vector<W>& guess) {
   if (Outcome o = expander_.solve(track_, guess); !o.ok()) return o;
   if (Outcome o = expander_.extend(); !o.ok()) return o;
   horizon_ = expander_.reach();
-  const Machine<N>& machine = expander_.series().machine();
-  const double reach = kinks_log_reach<N>(machine, end_.slots(), order_ - 1, settings_.log_tolerance);
-  if (const N known(std::exp(reach)); known < horizon_) horizon_ = known;
+  limit_by_kinks();
   read_events();
   limit_by_events();
   limit_by_quadratures();
@@ -241,6 +240,22 @@ void Stepper<N>::read_events() {
   } else {
     events_.read(order_ - 1, coefficient, [&](std::size_t i) { return expander_.series().quadrature_terms(i); });
   }
+}
+
+// What decides which functions hold may change faster than the motion. Where a kernel has made the expansion, formulas are
+// evaluated for the magnitude of their terms.
+template <Number N>
+void Stepper<N>::limit_by_kinks() {
+  expander_.show_deciding();
+  if (!look_.has_kinks()) return;
+  const Machine<N>* values = &expander_.series().machine();
+  if (expander_.kernel()) {
+    values = &present().load(W(0)).machine();
+    look_.evaluate_kinks();
+  }
+  const double reach =
+      kinks_log_reach<N>(expander_.series().machine(), *values, end_.slots(), order_ - 1, settings_.log_tolerance);
+  if (const N known(std::exp(reach)); known < horizon_) horizon_ = known;
 }
 
 // What is watched may change faster than the motion, on which it has no influence: the density of thin air.
@@ -352,7 +367,7 @@ void Stepper<N>::place(const W& t, const std::vector<W>& state, const std::vecto
   phase_ = Phase::placed;
   expansions_ = 0;
   expander_.reset();
-  expander_.series().set_weakest_direction({});
+  expander_.forget_direction();
   guard_.restart();
   end_.restart();
   events_.restart();
@@ -431,7 +446,6 @@ template <Number N>
 void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane)
   requires std::same_as<N, double>
 {
-  if (may_have_kinks(program_->tape, end_.slots())) return;
   leave_kernel();
   track_.now.own.clear();
   expander_.accelerate(KernelExpansion(std::move(kernel), lane, *program_, order_, settings_.log_tolerance));
@@ -443,6 +457,7 @@ void Stepper<N>::watch_kinks() {
   const bool equations_alone = events_.empty() && settings_.known_from >= settings_.known_to;
   const std::size_t end = equations_alone ? program_->tape.main_end : program_->tape.code.size();
   end_.set_slots(static_cast<std::uint32_t>(end));
+  look_.watch_kinks(kink_arguments(program_->tape, end_.slots()));
 }
 
 template <Number N>

@@ -158,6 +158,7 @@ class Stepper {
   bool take_one_sided(const W& h);
   void limit_by_quadratures();
   void limit_by_events();
+  void limit_by_kinks();
   void read_events();
   void watch_kinks();
   void expand_again(const StepperState<N>& last);

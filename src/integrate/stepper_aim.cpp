@@ -49,7 +49,7 @@ bool Stepper<N>::aim_ordinarily(const W& end) {
 template <Number N>
 bool Stepper<N>::aim_freely(const W& end) {
   const KernelExpansion* kernel = expander_.kernel();
-  if (!kernel || kernel->suspected() || guard_.singular_ahead() || kernel->may_touch_zero() || !end_.free_of_kinks() ||
+  if (!kernel || kernel->suspected() || guard_.singular_ahead() || kernel->may_turn() || !end_.free_of_kinks() ||
       !fired_.empty() || !events_.empty() || !(to_double(horizon()) > std::abs(to_double(time())) * kShortStep))
     return false;
   const W left = end - time(), h = horizon();

@@ -59,4 +59,16 @@ class StretchPace {
   std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
 };
 
+// Stretches one after the other, of the lengths that StretchPace gives.
+template <class W>
+struct PacedStretch : Stretch<W> {
+  // The next one, up to the step that passes `until`. `each_step`: something is due after every step.
+  void begin(bool each_step, const W* next) {
+    this->restart();
+    this->most = each_step ? 1 : pace.steps();
+    this->until = next;
+  }
+  StretchPace pace;
+};
+
 }  // namespace anholon

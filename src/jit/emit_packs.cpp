@@ -93,7 +93,7 @@ void Emitter::leave_out_what_nobody_reads(const std::vector<llvm::Function*>& pa
     for (std::uint32_t k = s.first; k < s.first + s.count; ++k) read.insert(p_.terms[k].x.at);
   }
   for (const Place& x : p_.quadratures) read.insert(x.at);
-  for (const auto& [slot, x] : p_.roots_of_even_powers) read.insert(x.at);
+  for (const Plan::Deciding& d : p_.deciding) read.insert(d.place.at);
   for (const auto& [at, load] : reads_)
     if (Value* const alive = load; alive && !alive->use_empty()) read.insert(at);
   for (const auto& [at, store] : puts_)

@@ -115,12 +115,11 @@ void Writer::add(const KernelTables::Divisors& divisors) {
 }
 
 void Writer::add(const Plan& plan) {
-  // Roots of even powers and hiding functions concern only the choice of steps; the determinant is among the judged
+  // What decides which function holds, and hiding functions, concern only the choice of steps; the determinant is among the judged
   // numbers.
   [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again,
                                 entries, completions, x, time, roots, root_is_zero, sides, quadratures, beyond_double,
-                                roots_of_even_powers, hiding, rows, largest_lead, largest_d, c, d, apart, determinant] =
-      plan;
+                                deciding, hiding, rows, largest_lead, largest_d, c, d, apart, determinant] = plan;
   all(stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x,
       time, roots, root_is_zero, sides, quadratures, beyond_double, rows, largest_lead, largest_d, c, d, apart);
 }

@@ -170,8 +170,8 @@ std::optional<Representation> in_quasi_velocities(const ToRepresent& e, std::str
   return found;
 }
 
-// The stepper follows roots of even powers by the slots of the derived tape.
-bool followed_by_slots(const KernelPlan& plan) { return !plan.plan().roots_of_even_powers.empty(); }
+// The stepper follows what decides which function holds by the slots of the derived tape.
+bool followed_by_slots(const KernelPlan& plan) { return !plan.plan().deciding.empty(); }
 
 bool large(const KernelPlan& derived) { return derived.program().unknowns() > kMostUnknowns; }
 

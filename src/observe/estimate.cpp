@@ -63,9 +63,7 @@ class SharperRun {
         if (Outcome o = settle(goes_on); !o.ok()) return o;
       if (!goes_on || done()) return {};
       const std::size_t kinks = motion_.stepper().kinks();
-      stretch_.restart();
-      stretch_.most = pace_.steps();
-      stretch_.until = next_ < times_.size() ? &times_[next_] : nullptr;
+      stretch_.begin(false, next_ < times_.size() ? &times_[next_] : nullptr);
       if (Outcome o = motion_.steps(end_, stretch_); !o.ok()) return o;
       kink_.before = stretch_.times.size() == 1 && kink_.here;
       kink_.here = motion_.stepper().kinks() != kinks;
@@ -346,8 +344,7 @@ class SharperRun {
     bool here = false, before = false;
   } kink_;  // whether one has ended the last step, or the one before
   std::size_t next_ = 0, resets_ = 0, uncounted_ = 0;
-  Stretch<W> stretch_;
-  StretchPace pace_;
+  PacedStretch<W> stretch_;
   std::optional<V> lost_;
 };
 

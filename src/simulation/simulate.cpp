@@ -206,11 +206,9 @@ class Run {
 
   // Limits the stretch to the steps after which nothing is due.
   void limit_stretch() {
-    stretch_.restart();
     const bool each = schedule_.every_step() || o_.dense || defect_ || watch_.any_redundant() ||
                       masses_vary<N>(*s_.model, motion().stepper());
-    stretch_.most = each ? 1 : pace_.steps();
-    stretch_.until = schedule_.next();
+    stretch_.begin(each, schedule_.next());
     angles_.keep_in(stretch_);
   }
 
@@ -476,8 +474,7 @@ class Run {
   Judge<N> judge_;
   FloorWatch floors_;
   EventPaces<W> paces_;
-  Stretch<W> stretch_;
-  StretchPace pace_;
+  PacedStretch<W> stretch_;
   std::optional<Defect> defect_;
   std::optional<W> reached_;  // the time at which the motion ended before its end
   W work_{0};                 // the greatest so far, where a step began

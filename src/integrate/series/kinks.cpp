@@ -3,27 +3,33 @@
 #include <algorithm>
 
 #include "integrate/series/sign_change.h"
+#include "tape/operands.h"
 
 namespace anholon {
 
 static constexpr double kTouches = 1e-8;  // a step may end anywhere: at a narrow miss, too
 
 template <Number N>
-bool stays_positive(const N* c, int degree, const N& h) {
+static bool surely_less(const N* c, int degree, const N& h, const N& than) {
   const N length = abs(h);
   N most(0);
   for (int k = degree; k >= 1; --k) most = (most + abs(c[k])) * length;
-  return most < c[0] * N(1 - 2 * kTouches);
+  return most < than * N(1 - 2 * kTouches);
+}
+
+template <Number N>
+bool stays_positive(const N* c, int degree, const N& h) {
+  return surely_less(c, degree, h, c[0]);
+}
+
+template <Number N>
+bool keeps_sign(const N* c, int degree, const N& h) {
+  return surely_less(c, degree, h, N(abs(c[0])));
 }
 
 namespace {
 
 constexpr int kNoise = 64;  // values below so many round-offs of what they are made of are zero
-
-bool turns_at_zero(const Instruction& in) {
-  return in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) ||
-                                   in.index == static_cast<std::uint32_t>(Function::sign));
-}
 
 bool may_turn(const Instruction& in) {
   return !in.constant && (in.op == Op::select || in.op == Op::lookup || turns_at_zero(in));
@@ -106,25 +112,27 @@ class Search {
 
 }  // namespace
 
-bool may_have_kinks(const Tape& tape, std::uint32_t end) {
-  return std::any_of(tape.code.begin(), tape.code.begin() + end, may_turn);
-}
-
 template <Number N>
 Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h) {
   return Search<N>(machine, end, degree, h).run();
 }
 
-template <Number N>
-double kinks_log_reach(const Machine<N>& machine, std::uint32_t end, int degree, double log_tolerance) {
-  const Tape& tape = machine.tape();
-  double reach = 300;
+std::vector<std::uint32_t> kink_arguments(const Tape& tape, std::uint32_t end) {
+  std::vector<std::uint32_t> list;
   for (std::uint32_t slot = 0; slot < end; ++slot) {
     const Instruction& in = tape.code[slot];
-    if (!may_turn(in)) continue;
     const std::uint32_t argument = in.op == Op::select ? in.first : in.a;
-    if (tape.code[argument].constant) continue;
-    const N floor = unit_roundoff<N>() * N(kNoise) * machine.magnitude(argument);
+    if (may_turn(in) && !tape.code[argument].constant) list.push_back(argument);
+  }
+  return list;
+}
+
+template <Number N>
+double kinks_log_reach(const Machine<N>& machine, const Machine<N>& values, std::uint32_t end, int degree,
+                       double log_tolerance) {
+  double reach = 300;
+  for (const std::uint32_t argument : kink_arguments(machine.tape(), end)) {
+    const N floor = unit_roundoff<N>() * N(kNoise) * values.magnitude(argument);
     reach = std::min(reach, log_reach<N>(machine.series(argument), degree, floor, log_tolerance));
   }
   return reach;
@@ -134,13 +142,14 @@ template bool stays_positive(const double*, int, const double&);
 template bool stays_positive(const long double*, int, const long double&);
 template bool stays_positive(const Quad*, int, const Quad&);
 template bool stays_positive(const Multi*, int, const Multi&);
+template bool keeps_sign(const double*, int, const double&);
 template Kink<double> first_kink(const Machine<double>&, std::uint32_t, int, const double&);
 template Kink<long double> first_kink(const Machine<long double>&, std::uint32_t, int, const long double&);
 template Kink<Quad> first_kink(const Machine<Quad>&, std::uint32_t, int, const Quad&);
 template Kink<Multi> first_kink(const Machine<Multi>&, std::uint32_t, int, const Multi&);
-template double kinks_log_reach(const Machine<double>&, std::uint32_t, int, double);
-template double kinks_log_reach(const Machine<long double>&, std::uint32_t, int, double);
-template double kinks_log_reach(const Machine<Quad>&, std::uint32_t, int, double);
-template double kinks_log_reach(const Machine<Multi>&, std::uint32_t, int, double);
+template double kinks_log_reach(const Machine<double>&, const Machine<double>&, std::uint32_t, int, double);
+template double kinks_log_reach(const Machine<long double>&, const Machine<long double>&, std::uint32_t, int, double);
+template double kinks_log_reach(const Machine<Quad>&, const Machine<Quad>&, std::uint32_t, int, double);
+template double kinks_log_reach(const Machine<Multi>&, const Machine<Multi>&, std::uint32_t, int, double);
 
 }  // namespace anholon

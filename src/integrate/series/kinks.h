@@ -12,20 +12,24 @@ struct Kink {
   N where{0};  // the first one ahead, from the point of the series
 };
 
-// Whether a slot below `end` goes on as another function where its argument passes a point.
-bool may_have_kinks(const Tape& tape, std::uint32_t end);
+// The slots whose values decide which functions hold below `end`.
+std::vector<std::uint32_t> kink_arguments(const Tape& tape, std::uint32_t end);
 
 // In (0, h], h of either sign, by the series of orders 0..degree, of the slots below `end`.
 template <Number N>
 Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h);
 
 // Whether a polynomial that is positive at 0 surely stays so over [0, h], and its root the same root: by the sizes of
-// its coefficients.
+// its coefficients. Whether one that is of either sign surely keeps it.
 template <Number N>
 bool stays_positive(const N* c, int degree, const N& h);
-
-// The logarithm of how far the series are known that decide where kinks are.
 template <Number N>
-double kinks_log_reach(const Machine<N>& machine, std::uint32_t end, int degree, double log_tolerance);
+bool keeps_sign(const N* c, int degree, const N& h);
+
+// The logarithm of how far the series are known that decide where kinks are. `values`: a machine with the values at the
+// point of all that these are made of.
+template <Number N>
+double kinks_log_reach(const Machine<N>& machine, const Machine<N>& values, std::uint32_t end, int degree,
+                       double log_tolerance);
 
 }  // namespace anholon

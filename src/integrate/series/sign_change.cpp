@@ -32,6 +32,7 @@ std::optional<N> search(std::vector<N> b, const N& from, const N& to, const N& f
 
 template <Number N>
 std::optional<N> first_below(const N* c, int degree, const N& h, const N& floor) {
+  while (degree > 0 && c[degree] == N(0)) --degree;
   std::vector<N> a;
   N power(1), rest(0);
   for (int k = 0; k <= degree; ++k) {

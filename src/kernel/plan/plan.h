@@ -130,8 +130,15 @@ struct Plan {
   std::vector<std::uint32_t> sides;  // roots in the order in which a stage computes them
   std::vector<Place> quadratures;
   std::vector<Beyond> beyond_double;  // of the angles of sines
-  std::vector<std::pair<std::uint32_t, Place>>
-      roots_of_even_powers;  // slots of the tape of the radicands of roots: they may pass zero
+  // Slots of the tape whose value decides which function holds, beyond them another one: the radicand of a root of even
+  // power and the argument of abs or sign, which may pass zero, the condition of a choice, the argument of a step
+  // function `index`, which may pass a knot.
+  struct Deciding {
+    enum class Kind : std::uint8_t { radicand, sign, knots } kind;
+    std::uint32_t slot, index;
+    Place place;
+  };
+  std::vector<Deciding> deciding;
   struct HidingSlot {
     Hiding function;
     Place argument, value;

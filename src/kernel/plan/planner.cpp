@@ -4,6 +4,7 @@
 
 #include "base/assert.h"
 #include "kernel/plan/linearized_tape.h"
+#include "tape/operands.h"
 
 namespace anholon {
 
@@ -12,13 +13,22 @@ namespace {
 // The limit of the tables of a kernel (arithmetic.h: kMostRising).
 constexpr int kHighestOrder = 12;
 
-// Notes the slots that a step of the motion has to look at: the radicands of roots, which may pass zero, and functions
-// that may hide their variation.
+// Notes the slots that a step of the motion has to look at: those that decide which function holds, and functions that
+// may hide their variation.
 void note_watched(const Slots& slots, const PlanLayout& layout, Plan& plan) {
+  using Kind = Plan::Deciding::Kind;
   const Tape& tape = slots.tape;
-  for (std::uint32_t s = 0; s < tape.code.size(); ++s)
-    if (slots.varies(s) && tape.code[s].op == Op::power && tape.rationals[tape.code[s].index].has_even_denominator())
-      plan.roots_of_even_powers.push_back({tape.code[s].a, layout.place(tape.code[s].a)});
+  for (std::uint32_t s = 0; s < tape.code.size(); ++s) {
+    const Instruction& in = tape.code[s];
+    if (!slots.varies(s)) continue;
+    const auto add = [&](Kind kind, std::uint32_t by) {
+      if (!tape.code[by].constant) plan.deciding.push_back({kind, by, in.index, layout.place(slots.same_as(by))});
+    };
+    if (in.op == Op::power && tape.rationals[in.index].has_even_denominator()) add(Kind::radicand, in.a);
+    if (turns_at_zero(in)) add(Kind::sign, in.a);
+    if (in.op == Op::select) add(Kind::sign, in.first);
+    if (in.op == Op::lookup) add(Kind::knots, in.a);
+  }
   for (std::uint32_t s = 0; s < tape.main_end; ++s)
     if (const auto function = slots.varies(s) ? may_hide(tape, tape.code[s]) : std::nullopt)
       plan.hiding.push_back({*function, layout.place(hidden_argument(tape.code[s])), layout.place(s)});
