@@ -91,6 +91,8 @@ Found is_there_already(const Place& p) {
 }
 
 Found text_left_open(const Place& p) {
+  if (p.says("in string: encountered end-of-file"))
+    return Failure(p.span, "a text is not closed at the end of the file", "a text ends with the quotes it began with");
   if (!p.says("control characters other than TAB")) return {};
   return Failure(p.span, "this text is not closed in its line",
                  "a text ends with the quote it began with; one over several lines stands in three quotes");
@@ -206,6 +208,24 @@ Found formula_without_quotes(const Place& p) {
   return Failure(p.span, "a formula stands in quotes", p.key + " = \"" + p.value + "\"");
 }
 
+// A formula without quotes within a list or a table in braces, such as x in [x, "y", 0].
+Found element_without_quotes(const Place& p) {
+  if (!p.says("could not determine value type") && !p.says("in decimal integer: expected digit") &&
+      !p.says("in array: expected comma"))
+    return {};
+  const std::size_t at = p.line.size() - p.rest.size();
+  const std::size_t before = at == 0 ? std::string::npos : p.line.find_last_of("[{,=", at - 1);
+  const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+  int depth = 0;
+  std::size_t end = begin;
+  for (; end < p.line.size() && (depth > 0 || std::string_view(",]}#").find(p.line[end]) == std::string_view::npos);
+       ++end)
+    depth += (p.line[end] == '(') - (p.line[end] == ')');
+  const std::string element = trimmed(p.line.substr(begin, end - begin));
+  if (element.empty() || element.find_first_of("\"'=[]{}") != std::string::npos) return {};
+  return Failure(p.span, "a formula stands in quotes", "\"" + element + "\"");
+}
+
 }  // namespace
 
 Failure syntax_error(std::string_view description, Span span, const SourceText& source) {
@@ -214,8 +234,10 @@ Failure syntax_error(std::string_view description, Span span, const SourceText& 
   if (message.starts_with(kPrefix)) message = "in " + message.substr(kPrefix.size());
   const Place place(message, span, source);
   for (const auto rule : {is_there_already, text_left_open, unknown_escape, declaration, other_comment, sign_missing,
-                          header_left_open, list_left_open, number, formula_without_quotes})
+                          header_left_open, list_left_open, number, formula_without_quotes, element_without_quotes})
     if (Found found = rule(place)) return *found;
+  if (place.says("could not determine value type"))
+    return Failure(span, "this is no number, and no text in quotes", "a formula stands in quotes: name = \"a*b\"");
   return Failure(span, message);
 }
 
