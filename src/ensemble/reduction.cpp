@@ -17,6 +17,16 @@ namespace {
 constexpr const char* kReductionHint =
     "max(FORMULA), min(FORMULA), mean(FORMULA) or last(FORMULA), such as max(theta')";
 
+// The kind of that name in another language, or the nearest one to a misspelt name; "" if there is none.
+std::string kind_meant_by(const std::string& word) {
+  constexpr std::pair<const char*, const char*> kOthers[] = {
+      {"maximum", "max"},  {"greatest", "max"}, {"largest", "max"}, {"minimum", "min"}, {"least", "min"},
+      {"smallest", "min"}, {"average", "mean"}, {"avg", "mean"},    {"final", "last"},  {"end", "last"}};
+  for (const auto& [other, kind] : kOthers)
+    if (word == other) return kind;
+  return did_you_mean(word, {"max", "min", "mean", "last"});
+}
+
 std::optional<Reduction::Kind> kind_of(const std::string& word) {
   if (word == "max") return Reduction::Kind::greatest;
   if (word == "min") return Reduction::Kind::least;
@@ -97,14 +107,15 @@ void Reductions::add(const std::string& word, const OpenModel& model) {
   const std::size_t open = word.find('(');
   const std::string kind = word.substr(0, open);
   const std::optional<Reduction::Kind> known = kind_of(kind);
-  if (open == std::string::npos || (known && word.back() != ')'))
+  if (open == std::string::npos)
     mistake_in(word, 0, word.size(), "this is not of the form KIND(FORMULA)", kReductionHint);
   if (!known) {
-    const std::string near = did_you_mean(kind, {"max", "min", "mean", "last"});
+    const std::string near = kind_meant_by(kind);
     mistake_in(word, 0, open,
                "a motion is not summed up by '" + kind + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
                kReductionHint);
   }
+  if (word.back() != ')') mistake_in(word, word.size(), 1, "a bracket is missing here", kReductionHint);
   for (const Reduction& before : list)
     if (before.name == word) mistake_in(word, 0, word.size(), "'" + word + "' is asked for twice", "once is enough");
   const std::string text = word.substr(open + 1, word.size() - open - 2);

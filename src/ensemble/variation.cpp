@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "formula/indices.h"
 #include "modelfile/names/constant.h"
 #include "numeric/random/philox.h"
 #include "numeric/random/sobol.h"
@@ -68,6 +69,19 @@ Rational number(const std::string& word, const Part& part, GivenQuantity& of) {
   return c.value;
 }
 
+// What a name that is none of the known ones may mean: "; did you mean …"; "" if nothing is near.
+std::string meant_by(const std::string& name, std::vector<std::string> known) {
+  const bool member = name.find('[') != std::string::npos;
+  if (const std::string members = members_known(member ? name : name + "[", known); !members.empty()) return members;
+  known.emplace_back("case");  // varies the scenario
+  // A table of a sweep calls an initial value x(0).
+  constexpr std::string_view kAtStart = "(0)";
+  const std::string base = name.ends_with(kAtStart) ? name.substr(0, name.size() - kAtStart.size()) : name;
+  const std::string near =
+      std::find(known.begin(), known.end(), base) != known.end() ? base : did_you_mean(base, known);
+  return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
+
 Varied named(const std::string& word, const std::string& text, const Model& model) {
   const auto [name, primes, multiplier] = initial_name(text);
   const auto& coordinates = model.names.coordinates;
@@ -83,14 +97,13 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
   }
   std::vector<std::string> known;
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
-    if (model.parameters[i].name == name && primes == 0) return {Varied::Kind::parameter, i, 0, name};
+    if (model.parameters[i].name == name && primes > 0)
+      mistake_in(word, 0, text.size(), "'" + name + "' is a parameter, which has no velocity", "vary " + name);
+    if (model.parameters[i].name == name) return {Varied::Kind::parameter, i, 0, name};
     known.push_back(model.parameters[i].name);
   }
   known.insert(known.end(), coordinates.begin(), coordinates.end());
-  const std::string near = did_you_mean(name, known);
-  mistake_in(word, 0, text.size(),
-             "there is no parameter and no coordinate '" + name + "'" +
-                 (near.empty() ? "" : "; did you mean '" + near + "'?"),
+  mistake_in(word, 0, text.size(), "there is no parameter and no coordinate '" + name + "'" + meant_by(name, known),
              "the names in [parameters], coordinates, and velocities such as " +
                  (coordinates.empty() ? std::string("x") : coordinates[0]) + "'");
 }
@@ -103,7 +116,7 @@ Variation::Values Variation::law(const std::string& word, std::size_t sign, Give
   const std::size_t open = word.find('(', sign);
   const std::string law = word.substr(sign + 1, (open == std::string::npos ? word.size() : open) - sign - 1);
   if (law != "normal" && law != "uniform") {
-    const std::string near = did_you_mean(law, {"normal", "uniform"});
+    const std::string near = law.starts_with("gauss") ? "normal" : did_you_mean(law, {"normal", "uniform"});
     mistake_in(word, sign + 1, law.size(),
                "there is no law '" + law + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
                "normal(MEAN,DEVIATION) or uniform(FROM,TO)");

@@ -8,9 +8,11 @@
 #include "formula/indices.h"
 #include "formula/units.h"
 #include "modelfile/check/dimensions.h"
+#include "modelfile/check/doubled_gravity.h"
 #include "modelfile/check/values.h"
 #include "modelfile/contacts.h"
 #include "modelfile/implied_units.h"
+#include "modelfile/language/language.h"
 #include "modelfile/mechanical/bodies.h"
 #include "modelfile/mechanical/constraints.h"
 #include "modelfile/mechanical/control.h"
@@ -128,6 +130,7 @@ class Reader {  // its references are used only while it runs
       for (const Replaced& r : replaced_) guard([&] { must_have_unit_of(r); });
     // From here on, expressions grow in proportion to the model.
     model_.graph->allow(kWorkLater);
+    if (!diagnostics_.has_errors()) note_doubled_gravity(model_);
     if (!diagnostics_.has_errors() && model_.bodies.empty())
       diagnostics_.error(kTop, "the model has no body",
                          "add [[body]] or [[particle]] with name, mass and center or position");

@@ -13,13 +13,22 @@ std::string list_of_columns(const std::vector<std::string>& names) {
   return list + (names.size() > kMost ? " …" : "");
 }
 
+// What a name that is no column may mean: ", did you mean …"; "" if nothing is near.
+static std::string meant_by(const std::vector<std::string>& columns, const std::string& name) {
+  for (const std::string& c : columns) {
+    // The normal force of a contact is lambda.NAME in formulas.
+    if (name.starts_with("lambda.") && c == name.substr(7) + ".normal") return "; did you mean '" + c + "'?";
+    if (c.starts_with(name + "[")) return "; " + name + " has members such as '" + c + "'";
+  }
+  const std::string near = did_you_mean(name, columns);
+  return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
+
 void unknown_column(const std::vector<std::string>& columns, const std::string& name) {
   const bool pattern = name.find_first_of("*?") != std::string::npos;
-  const std::string near = pattern ? "" : did_you_mean(name, columns);
-  throw Failure(Span{},
-                pattern ? "no column fits '" + name + "'"
-                        : "there is no column '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-                "the columns are " + list_of_columns(columns));
+  throw Failure(
+      Span{}, pattern ? "no column fits '" + name + "'" : "there is no column '" + name + "'" + meant_by(columns, name),
+      "the columns are " + list_of_columns(columns));
 }
 
 bool matches(const std::string& pattern, const std::string& name) {

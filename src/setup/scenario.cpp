@@ -5,6 +5,7 @@
 #include "expr/degree.h"
 #include "expr/normal.h"
 #include "expr/table.h"
+#include "setup/large_angles.h"
 #include "structure/redundancy.h"
 
 namespace anholon {
@@ -233,6 +234,8 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
     });
   const Outcome structured = analyse(s.system, parameters, hints_at(s.state), s.structure);
   if (structured.ok()) smooth_enough(s), drop_absent(s.system, s.structure);
+  const std::string large_angles = note_of_large_angles(s.system, s.state, s.given_nodes);
+  if (!large_angles.empty()) s.notes.push_back(large_angles);
   if (!initial.ok()) return initial;
   if (!structured.ok()) return structured;
   // Masses and forces that depend on accelerations may ask for more, too.
@@ -241,6 +244,7 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
                   [](int d) { return d > 2; });
   if (beyond && numbers && !s.routh) initial = complete(problem, s);
   s.notes.insert(s.notes.end(), s.state.notes.begin(), s.state.notes.end());
+  if (!large_angles.empty()) s.state.notes.push_back(large_angles);
   return initial;
 }
 

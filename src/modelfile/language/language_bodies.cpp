@@ -174,7 +174,8 @@ gradient = true
 x = 7e6
 ```
 
-- The field acts on every mass with its current value, so it needs no `[[force]]` and no potential beside it.
+- The field acts on every mass with its current value, so it needs no `[[force]]` and no potential beside it. A note names a
+  potential that holds the same weight.
 )md"},
       {"potential",
        Form::named,

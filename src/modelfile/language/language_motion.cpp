@@ -302,6 +302,7 @@ initial = {qddot = {x = 0.2}, qdddot = {x = 0.05}}
 - Values that miss a constraint by no more than 1e-8 of its scale are taken as rounded, and corrected by the least change; by more
   it is an error that names the clash.
 - A guess also names one of several solutions: the nearest is taken. `--q` and `--qdot` take the place of values and of conditions that clash with them.
+- Angles are in radians: `theta = 0.3`. In degrees they are written `theta = "45 deg"`; a note names an initial angle of 45 rad and others that look like degrees.
 - A vector condition is one for each component.
 
 ```toml

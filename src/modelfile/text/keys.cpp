@@ -11,32 +11,47 @@ namespace anholon {
 
 namespace {
 
-// What the language has for words that textbooks and other programs use at the top of a model.
+// What the language has for words of textbooks and other programs in a section; "" is the top of a model.
 struct OtherWord {
+  const char* section;
   std::vector<std::string_view> words;
   const char* hint;
 };
 
 const std::vector<OtherWord>& other_words() {
   static const std::vector<OtherWord> list = {
-      {{"T", "kinetic", "kinetic_energy"}, "the kinetic energy is that of the masses: write [[body]] or [[particle]]"},
-      {{"L", "lagrangian", "Lagrangian"},
+      {"",
+       {"T", "kinetic", "kinetic_energy"},
+       "the kinetic energy is that of the masses: write [[body]] or [[particle]]"},
+      {"",
+       {"L", "lagrangian", "Lagrangian"},
        "write the masses as [[body]] or [[particle]], and the potential energy under [potential] as V = \"…\""},
-      {{"V", "U", "potential_energy"}, "[potential] with V = \"m*g*y\", or [gravity]"},
-      {{"q", "variables", "generalized_coordinates", "dofs"}, "coordinates = [\"x\", \"y\"]"},
-      {{"let", "var", "const", "def", "definitions"},
+      {"", {"V", "U", "potential_energy"}, "[potential] with V = \"m*g*y\", or [gravity]"},
+      {"", {"q", "variables", "generalized_coordinates", "dofs"}, "coordinates = [\"x\", \"y\"]"},
+      {"",
+       {"let", "var", "const", "def", "definitions"},
        "numbers stand under [parameters], formulas under [define], functions of t under [functions]"},
-      {{"constants", "values"}, "[parameters] with m = \"2 kg\""},
-      {{"generalized_forces", "Q"}, "[[force]] with generalized = {x = \"-k*x\"}"},
-      {{"initial_conditions", "x0", "ic"}, "[initial] with x = 1 and \"x'\" = 0"},
+      {"", {"constants", "values"}, "[parameters] with m = \"2 kg\""},
+      {"", {"generalized_forces", "Q"}, "[[force]] with generalized = {x = \"-k*x\"}"},
+      {"", {"initial_conditions", "x0", "ic"}, "[initial] with x = 1 and \"x'\" = 0"},
+      {"contact", {"distance", "penetration"}, "gap = \"P.z - R\", which is not negative"},
+      {"contact", {"bodies", "body1"}, "body = \"NAME\" for the body that touches"},
+      {"contact",
+       {"mu", "mu_k", "mu_d", "kinetic_friction", "dynamic_friction", "sliding_friction", "friction_coefficient"},
+       "friction = 0.3"},
+      {"contact", {"mu_s", "mu_0", "sticking_friction"}, "static_friction = 0.4"},
+      {"contact", {"e", "epsilon", "cor", "coefficient_of_restitution"}, "restitution = 0.5"},
+      {"contact",
+       {"stiffness", "damping", "k", "c"},
+       "contacts are rigid; a soft one is a [[force]] with vector = \"-k*min(P.z, 0)*ez\""},
   };
   return list;
 }
 
 // Empty for a word that is none of these.
-std::string hint_for_other_word(const std::string& word) {
+std::string hint_for_other_word(const std::string& section, const std::string& word) {
   for (const OtherWord& o : other_words())
-    if (std::find(o.words.begin(), o.words.end(), word) != o.words.end()) return o.hint;
+    if (section == o.section && std::find(o.words.begin(), o.words.end(), word) != o.words.end()) return o.hint;
   return "";
 }
 
@@ -52,7 +67,7 @@ void check_keys(const Item& table, const std::string& where, const std::string& 
   const std::vector<std::string> known = known_keys(language_section(section));
   for (const Item& i : table.items) {
     if (std::find(known.begin(), known.end(), i.key) != known.end()) continue;
-    const std::string other = section.empty() ? hint_for_other_word(i.key) : "",
+    const std::string other = hint_for_other_word(section, i.key),
                       near = other.empty() ? did_you_mean(i.key, known) : "";
     diagnostics.error(i.key_span,
                       "unknown key '" + i.key.substr(0, 60) + "' in " + where +

@@ -1,7 +1,6 @@
 #include "modelfile/text/toml.h"
 
 #include <algorithm>
-#include <regex>
 #include <sstream>
 #include <stdexcept>
 
@@ -18,7 +17,7 @@
 #pragma GCC diagnostic pop
 
 #include "base/utf8.h"
-#include "modelfile/language/language.h"
+#include "modelfile/text/syntax_error.h"
 
 namespace anholon {
 
@@ -164,67 +163,6 @@ void check_ascii(const SourceText& source) {
   }
 }
 
-// The name C of a line "let C = …", as other languages declare one; empty for another line.
-std::string declared_name(const std::string& line) {
-  static const std::regex declaration(
-      R"(\s*(?:let|var|const|def|set|param|parameter|parameters|define|real|double|float)\s+([A-Za-z_]\w*)\s*=.*)");
-  std::smatch found;
-  return line.size() < 1000 && std::regex_match(line, found, declaration) ? found[1].str() : std::string();
-}
-
-// The parser's message, in the words of a user.
-Failure syntax_error(const toml::parse_error& e, const SourceText& source) {
-  const Span span = span_of(e.source());
-  std::string message(e.description());
-  constexpr std::string_view prefix = "Error while parsing ";
-  if (message.rfind(prefix, 0) == 0) message = "in " + message.substr(prefix.size());
-  const std::string line = source.line(span.line), key = line.substr(0, line.find('='));
-  std::string hint;
-  constexpr std::string_view redefined = "cannot redefine existing ";
-  const std::size_t quote = message.find('\'');
-  const std::size_t first = line.find_first_not_of(" \t");
-  const bool header = first != std::string::npos && line[first] == '[';
-  if (header && quote != std::string::npos && message.find(redefined) != std::string::npos) {
-    // [body] at one place and [[body]] at another.
-    const std::string name = message.substr(quote + 1, message.find('\'', quote + 1) - quote - 1);
-    const bool of_list = std::any_of(language().begin(), language().end(), [&](const LanguageSection& s) {
-      return s.form == LanguageSection::Form::elements && name == s.name;
-    });
-    const bool in_line = message.find("existing array '") != std::string::npos &&
-                         message.find("as array-of-tables") != std::string::npos;
-    if (of_list && in_line) {
-      message = "'" + name + "' is a list in one place and [[" + name + "]] in another";
-      hint = "write all of them as [[" + name + "]], or all in the list " + name + " = […]";
-    } else if (of_list) {
-      message = "'" + name + "' stands with one bracket and with two";
-      hint = "write [[" + name + "]] with two brackets for each of them";
-    } else {
-      message = "'" + name + "' is there already";
-      hint = "a section [" + name + "] stands once: put all its lines together";
-    }
-  } else if (message.find("control characters other than TAB") != std::string::npos) {
-    message = "this text is not closed in its line";
-    hint = "a text ends with the quote it began with; one over several lines stands in three quotes";
-  } else if (const std::string of = declared_name(line); !of.empty()) {
-    hint = "a parameter stands under [parameters]: " + of +
-           " = …; a formula under [define], a function of t under [functions]";
-  } else if (key.find('\'') != std::string::npos && key.find('"') == std::string::npos) {
-    hint = "a key with ' stands in quotes: \"x'\" = …";
-  } else if (line.find('=') != std::string::npos &&
-             line.find_first_not_of(" \t", line.find('=') + 1) == std::string::npos) {
-    message = "a value is missing after '='";
-  } else if (message.find("saw ','") != std::string::npos &&
-             std::isdigit(static_cast<unsigned char>(
-                 line.size() >= span.column && span.column > 1 ? line[span.column - 2] : ' '))) {
-    message = "',' after a number";
-    hint = "a decimal has a point: 0.5; a list stands in brackets: [1, 2]";
-  } else if (message.find("could not determine value type") != std::string::npos &&
-             line.find('"') == std::string::npos) {
-    hint = "formulas stand in quotes: name = \"a*b\"";
-  }
-  return Failure(span, message, hint);
-}
-
 Item convert(const toml::node& node, const Places& places) {
   Item item;
   item.span = span_of(node.source());
@@ -287,7 +225,7 @@ static Item read_document(const SourceText& source) {
     const toml::table document = toml::parse(source.text, source.name);
     return convert(document, Places(source));
   } catch (const toml::parse_error& e) {
-    throw syntax_error(e, source);
+    throw syntax_error(e.description(), span_of(e.source()), source);
   } catch (const std::invalid_argument& e) {
     throw Failure(Span{1, 1, 1}, e.what());
   }

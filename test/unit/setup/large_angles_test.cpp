@@ -1,0 +1,81 @@
+// The note on initial angles that may have been meant in degrees.
+#include <gtest/gtest.h>
+
+#include "setup/large_angles.h"
+#include "setup/scenario.h"
+#include "support/models.h"
+
+namespace anholon::large_angles_test {
+namespace {
+
+// A pendulum with a bead that slides along a wave, and a wheel that has rolled.
+const std::string kModel = R"toml(coordinates = ["theta", "x", "s", "phi"]
+parameters = {m = 1, l = 1}
+frame.wheel = "rotz(phi)"
+[[particle]]
+name = "bob"
+mass = "m"
+position = "l*(sin(theta)*ex - cos(theta)*ey)"
+[[particle]]
+name = "bead"
+mass = "m"
+position = "x*ex + cos(x)*ey"
+[[body]]
+name = "wheel"
+mass = "m"
+inertia = 1
+center = "s*ex"
+orientation = "wheel"
+[[constraint]]
+name = "rolling"
+equation = "s' = l*phi'"
+[gravity]
+field = "-9.81*ey"
+[initial]
+theta = 0.3
+x = 45
+s = 45
+phi = 100
+)toml";
+
+std::string note(const std::string& text) {
+  Scenario s;
+  make_scenario(test::model_of(text), *find_formulation("routh"), {}, s);
+  return note_of_large_angles(s.system, s.state, s.given_nodes);
+}
+
+std::string with_theta(const std::string& value) { return test::replaced(kModel, "theta = 0.3", "theta = " + value); }
+
+TEST(LargeAngles, LengthsAndWheelsThatHaveRolledAreNotNoted) { EXPECT_EQ(note(kModel), ""); }
+
+TEST(LargeAngles, UsualDegreesOfEitherSignAreNoted) {
+  for (const std::string value : {"30", "45", "60", "90", "180", "270", "360", "-45"})
+    EXPECT_EQ(note(with_theta(value)), "theta = " + value +
+                                           " at the start: angles are in radians; in degrees write theta = \"" + value +
+                                           " deg\"");
+  EXPECT_EQ(note(test::replaced(kModel, "phi = 100", "phi = 90")),
+            "phi = 90 at the start: angles are in radians; in degrees write phi = \"90 deg\"");
+}
+
+TEST(LargeAngles, MoreThanFourTurnsAreNotedIfTheEquationsDependOnThem) {
+  EXPECT_EQ(note(with_theta("25")), "");
+  EXPECT_NE(note(with_theta("25.2")), "");
+  EXPECT_NE(note(with_theta("-120")), "");
+}
+
+TEST(LargeAngles, DegreesWithTheirUnitAreNotNoted) {
+  EXPECT_EQ(note(with_theta("\"45 deg\"")), "");
+  EXPECT_EQ(note(with_theta("0.5\n\"theta'\" = 45")), "");
+}
+
+// The state of such a start clashes with the constraints, and the note may tell the reason.
+TEST(LargeAngles, AreAmongTheNotesOfAStartThatFails) {
+  const std::string text = test::replaced(with_theta("45"), "s' = l*phi'", "theta = 1");
+  Scenario s;
+  EXPECT_FALSE(make_scenario(test::model_of(text), *find_formulation("routh"), {}, s).ok());
+  EXPECT_EQ(s.notes, std::vector<std::string>{
+                         "theta = 45 at the start: angles are in radians; in degrees write theta = \"45 deg\""});
+}
+
+}  // namespace
+}  // namespace anholon::large_angles_test
