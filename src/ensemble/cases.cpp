@@ -95,7 +95,7 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
     kernel_ = kernel, lane_ = lane;
     equip(parameters_, narrow_parameters_);
     starts_.emplace(*plan.scenario.mechanics, *plan.start, parameters_);
-    if (!plan.options.reductions.list.empty()) reducer_.emplace(plan.options.reductions);
+    if (!reducer_ && !plan.options.reductions.list.empty()) reducer_.emplace(plan.options.reductions);
     ready_ = true;
   }
   if (reducer_) reducer_->restart();
@@ -124,14 +124,18 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
   return CaseWay::plain;
 }
 
-// What computes with these parameters.
+// What computes, with these parameters.
 void CaseWalk::equip(const std::vector<W>& parameters, const std::vector<double>& narrow) {
+  if (kernel_) kernel_->set_parameters(lane_, parameters);
+  if (stepper_) {
+    stepper_->set_parameters(narrow, parameters);
+    point_->set_parameters(parameters);
+    if (outputs_) outputs_->set_parameters(parameters);
+    return;
+  }
   stepper_ = std::make_unique<Stepper<double>>(*plan_->program, narrow, parameters, plan_->settings);
   if (!plan_->watched.empty()) stepper_->watch(plan_->watched);
-  if (kernel_) {
-    kernel_->set_parameters(lane_, parameters);
-    stepper_->accelerate(kernel_, lane_);
-  }
+  if (kernel_) stepper_->accelerate(kernel_, lane_);
   point_.emplace(*plan_->program, parameters, std::max(1, plan_->stages));
   if (plan_->outputs) outputs_.emplace(*plan_->outputs, 0, parameters);
 }
@@ -217,9 +221,7 @@ CaseWay CaseWalk::take_events() {
     std::vector<double> narrow = narrow_parameters_;
     for (std::size_t i = 0; i < narrow.size(); ++i)
       if (plan_->scenario.model->parameters[i].mode) narrow[i] = to_double(parameters[i]);
-    const std::unique_ptr<Stepper<double>> before = std::move(stepper_);
     equip(parameters, narrow);
-    stepper_->adopt(*before);
     ready_ = false;  // for the next case
   }
   return stepper_->restart(state, false).ok() ? CaseWay::plain : stop(CaseWay::simulation);

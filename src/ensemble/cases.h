@@ -71,7 +71,7 @@ class CaseWalk {
   // `walking` tells whether it is plain and has steps to make.
   CaseWay begin(const EnsemblePlan& plan, CaseResult& result, const std::shared_ptr<Kernel>& kernel, int lane);
   bool walking() const { return result_ != nullptr; }
-  void abandon() { result_ = nullptr, ready_ = false; }
+  void abandon() { result_ = nullptr, ready_ = false, stepper_.reset(); }
   CaseResult& result() const { return *result_; }
   const EnsembleCase& numbers() const { return numbers_; }
   // One step, in the parts of Stepper::step; the kernel works between them. A case that is not walking after one of the

@@ -86,6 +86,13 @@ Expansion<GuardedExpander::W>& GuardedExpander::solution() const {
   return *solution_;
 }
 
+void GuardedExpander::set_parameters(const std::vector<double>& parameters, const std::vector<W>& wide_parameters) {
+  parameters_ = parameters;
+  wide_parameters_ = wide_parameters;
+  if (reference_) reference_->series().set_parameters(parameters);
+  if (solution_) solution_->set_parameters(wide_parameters);
+}
+
 // The motion is another one.
 void GuardedExpander::restart() {
   if (kernel_) kernel_->drop();

@@ -85,6 +85,8 @@ class GuardedExpander {
 
   void accelerate(KernelExpansion kernel) { kernel_ = std::move(kernel); }
   const std::vector<W>& wide_parameters() const { return wide_parameters_; }
+  // Of the reference; those of a kernel's lane are set there.
+  void set_parameters(const std::vector<double>& parameters, const std::vector<W>& wide_parameters);
 
   KernelExpansion* kernel() { return maker_ == Maker::kernel ? &*kernel_ : nullptr; }
   const KernelExpansion* kernel() const { return maker_ == Maker::kernel ? &*kernel_ : nullptr; }

@@ -13,6 +13,10 @@ class LookAhead {
   using W = Wider<N>;
   LookAhead(const Program& program, const std::vector<N>& parameters) : program_(&program), parameters_(parameters) {}
 
+  void set_parameters(const std::vector<N>& parameters) {
+    parameters_ = parameters;
+    if (there_) there_->set_parameters(parameters);
+  }
   // These quadratures are those of evaluate_watched().
   void watch(const std::vector<std::size_t>& quadratures);
   // The motion there, without any values.

@@ -51,6 +51,13 @@ class Stepper {
   void accelerate(std::shared_ptr<Kernel> kernel, int lane)
     requires std::same_as<N, double>;
   bool accelerated() const { return expander_.accelerated(); }
+  // Other parameters of the equations, before place(), start() or restart(); those of a kernel's lane are set there.
+  void set_parameters(const std::vector<N>& parameters, const std::vector<W>& wide_parameters)
+    requires std::same_as<N, double>
+  {
+    expander_.set_parameters(parameters, wide_parameters);
+    look_.set_parameters(parameters);
+  }
   // Series to be watched for changes of sign; a step ends where one does that asks for it.
   void watch(std::vector<WatchedSeries> series);
 

@@ -102,6 +102,13 @@ llvm::Value* ArenaCode::rest(Value* sum, Value* error) {
   return b_.CreateFSub(b_.CreateFAdd(error, grid), grid);
 }
 
+llvm::Value* ArenaCode::constants(const std::string& name, const std::vector<double>& numbers) {
+  llvm::GlobalVariable* known = m_.getNamedGlobal(name);
+  if (known) return known;
+  llvm::Constant* data = llvm::ConstantDataArray::get(m_.getContext(), llvm::ArrayRef<double>(numbers));
+  return new llvm::GlobalVariable(m_, data->getType(), true, llvm::GlobalValue::InternalLinkage, data, name);
+}
+
 llvm::Value* ArenaCode::call_scalar(const char* name, const std::vector<Value*>& arguments, llvm::Type* result) {
   std::vector<llvm::Type*> types;
   for (Value* v : arguments) types.push_back(v->getType());

@@ -57,6 +57,8 @@ class ArenaCode {
   Value* exp2(Value* x);
   Value* reach(Value* weight, int by, Value* margin);
   Value* rest(Value* sum, Value* error);
+  // The address of numbers that are part of the code.
+  Value* constants(const std::string& name, const std::vector<double>& numbers);
   // Calls a function of doubles, lane by lane.
   Value* call(const char* name, const std::vector<Value*>& arguments);
   Value* call_scalar(const char* name, const std::vector<Value*>& arguments, llvm::Type* result);

@@ -163,8 +163,14 @@ void Emitter::value(const Step& s) {
     put(s.out, l, b_.CreateSelect(negative, get(s.b, l), get(s.a, l)));
     break;
   }
-  case Act::lookup:
-    break;  // refused earlier
+  case Act::lookup: {
+    const KernelTables::Knots& f = k_.knots[s.index];
+    const std::string name = std::to_string(s.index);
+    put(s.out, l,
+        call("anholon_lookup",
+             {constants("knots" + name, f.at), b_.getInt64(f.at.size()), constants("steps" + name, f.values), a}));
+    break;
+  }
   }
 }
 

@@ -109,6 +109,11 @@ void Writer::add(const Findings& found) {
   all(health, determinant, drift, weight, moved, reach, unfit, largest);
 }
 
+void Writer::add(const KernelTables::Knots& knots) {
+  const auto& [at, values] = knots;
+  all(at, values);
+}
+
 void Writer::add(const KernelTables::Divisors& divisors) {
   const auto& [number, reciprocal, beyond] = divisors;
   all(number, reciprocal, beyond);
@@ -132,15 +137,14 @@ void Writer::add(const SparseLu& elimination) {
 }
 
 void Writer::add(const KernelTables& tables) {
-  // Knots are omitted: models with tables are not compiled. The places of motions to read and write are arguments of
-  // the code.
+  // The places of motions to read and write are arguments of the code.
   [[maybe_unused]] const auto& [plan, elimination, knots, lu, reciprocal, inverse, rhs, side, solution, refined,
                                 entries, step, weights, increments, sums, motions, projected, margin, inverse_pivots,
                                 found, size, state_size, judged, refine, factorial, inverse_factorial, order, rising,
                                 orders] = tables;
-  all(*plan, *elimination, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, weights, increments,
-      sums, margin, inverse_pivots, found, state_size, judged, refine, factorial, inverse_factorial, order, rising,
-      orders);
+  all(*plan, *elimination, knots, lu, reciprocal, inverse, rhs, side, solution, refined, entries, step, weights,
+      increments, sums, margin, inverse_pivots, found, state_size, judged, refine, factorial, inverse_factorial, order,
+      rising, orders);
 }
 
 }  // namespace anholon::jit

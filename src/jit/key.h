@@ -53,6 +53,7 @@ class Writer {
   void add(const SparseLu::Influence& influence);
   void add(const JudgedPivot& pivot);
   void add(const Findings& found);
+  void add(const KernelTables::Knots& knots);
   void add(const KernelTables::Divisors& divisors);
   void add(const Plan& plan);
   void add(const SparseLu& elimination);

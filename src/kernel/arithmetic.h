@@ -50,6 +50,9 @@ struct Findings {
 inline constexpr std::size_t kStepsOfPiece = 200, kHistoriesAtOnce = 4;
 inline constexpr std::uint32_t kSumsOfHistory = 2 * kBlock;
 
+// The value of a step function: values[i] between knots i - 1 and i, of which there are `count`.
+double looked_up(const double* knots, std::int64_t count, const double* values, double x);
+
 // Tables that are not changed after their construction; the kernels of all threads share them.
 struct KernelTables {
   const Plan* plan = nullptr;
@@ -99,7 +102,10 @@ struct KernelTables {
   }
   double rising(int m, int s) const { return rising_.number[rising_at(m, s)]; }
 
-  double lookup(std::uint32_t function, double x) const;
+  double lookup(std::uint32_t function, double x) const {
+    const Knots& f = knots[function];
+    return looked_up(f.at.data(), static_cast<std::int64_t>(f.at.size()), f.values.data(), x);
+  }
 };
 
 // One Taylor expansion in a number of lanes over one arena [slot][lane].

@@ -42,6 +42,7 @@ struct Code {
 struct CalledFunctions {
   decltype(&power_of) power;
   decltype(&function_of) function;
+  decltype(&looked_up) lookup;
   SinesOfLanes sines;  // for the number of lanes of the code
   SinesOfLanes several_sines;
   int several;  // number of lanes
@@ -53,6 +54,7 @@ struct CalledFunctions {
     add("anholon_several_sines", several_sines);
     add("anholon_power", power);
     add("anholon_function", function);
+    add("anholon_lookup", lookup);
     add("atan2", static_cast<double (*)(double, double)>(&std::atan2));
   }
 };
@@ -65,7 +67,7 @@ struct CompilerModule {
   void (*compile)(const KernelTables& tables, int lanes, CodeEffort effort, const CalledFunctions& called,
                   const std::string& cache, Code& code, std::string& message);
 };
-inline constexpr int kCompilerVersion = 8;
+inline constexpr int kCompilerVersion = 9;
 
 // Whether code of little effort is translated for so many lanes (jit/x86), and not compiled; a tenth to a quarter of the
 // time is then enough.

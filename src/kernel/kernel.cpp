@@ -56,9 +56,8 @@ double scattered(std::uint64_t i) {
 
 }  // namespace
 
-double KernelTables::lookup(std::uint32_t function, double x) const {
-  const Knots& f = knots[function];
-  return f.values[static_cast<std::size_t>(std::upper_bound(f.at.begin(), f.at.end(), x) - f.at.begin())];
+double looked_up(const double* knots, std::int64_t count, const double* values, double x) {
+  return values[std::upper_bound(knots, knots + count, x) - knots];
 }
 
 double power_of(double x, double exponent) {
@@ -200,7 +199,7 @@ KernelPlan::Sampled KernelPlan::choose_pivots(const std::vector<long double>& pa
     entries.push_back({e.row, e.column, {}, exact});
   }
   std::vector<double> arena(tables_.size, 0.0);
-  const std::vector<double> coefficients = coefficient_values(plan_, *program_, parameters);
+  const std::vector<double> coefficients = CoefficientValues(plan_, *program_, parameters).rounded();
   std::copy(coefficients.begin(), coefficients.end(), arena.begin());
   const std::unique_ptr<Arithmetic> arithmetic = tier_plain.make(tables_, arena.data(), 1);
   std::size_t samples = 0;
@@ -279,9 +278,6 @@ std::string KernelPlan::compile(const std::string& cache, int lanes, CodeEffort 
   if (!in_pieces &&
       (plan_.stage.size() + plan_.after.size() > kMostCompiled || e.update_list.size() + solved > kMostEliminated))
     return "it is too large to be compiled in a short time";
-  for (const std::vector<Step>* list : {&plan_.point, &plan_.after})
-    for (const Step& s : *list)
-      if (s.act == Act::lookup) return "tables are looked up";
   Compiled& made = lanes == 1 ? one_ : several_;
   const std::lock_guard lock(made.making);
   if (const Code* known = this->code(lanes); known && known->effort >= effort) return {};
@@ -291,10 +287,10 @@ std::string KernelPlan::compile(const std::string& cache, int lanes, CodeEffort 
   Code code;
   std::string message;
   const Tier& tier = tiers().back();
-  module->compile(
-      tables_, lanes, effort,
-      {power_of, function_of, lanes == 1 ? tier.sines_of_one : tier.sines_of_all, tier.sines_of_all, tier.lanes}, cache,
-      code, message);
+  module->compile(tables_, lanes, effort,
+                  {power_of, function_of, looked_up, lanes == 1 ? tier.sines_of_one : tier.sines_of_all,
+                   tier.sines_of_all, tier.lanes},
+                  cache, code, message);
   if (!code.extend) return message;
   Code& place = code.effort == CodeEffort::full ? made.full : made.quick;
   place = std::move(code);
@@ -367,7 +363,11 @@ void Kernel::set_shrink(double shrink) {
 }
 
 void Kernel::set_coefficients(int lane, const std::vector<long double>& parameters, Rounding rounding) {
-  const std::vector<double> values = coefficient_values(plan_->plan(), plan_->program(), parameters, rounding);
+  if (coefficients_)
+    coefficients_->set_parameters(parameters);
+  else
+    coefficients_.emplace(plan_->plan(), plan_->program(), parameters);
+  const std::vector<double> values = coefficients_->rounded(rounding);
   for (std::size_t i = 0; i < values.size(); ++i) number(static_cast<std::uint32_t>(i), lane) = values[i];
 }
 
@@ -375,7 +375,7 @@ void Kernel::set_parameters(int lane, const std::vector<long double>& parameters
   set_coefficients(lane, parameters, rounding);
   if (!plan_->map()) return;
   while (readers_.size() < static_cast<std::size_t>(lanes_)) readers_.emplace_back(*plan_->map(), parameters);
-  readers_[static_cast<std::size_t>(lane)] = StateReader(*plan_->map(), parameters);
+  reader(lane).set_parameters(parameters);
 }
 
 bool Kernel::expand(const Code* code, bool projected) {

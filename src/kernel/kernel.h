@@ -273,6 +273,7 @@ class Kernel {
   std::unique_ptr<double[], Free> memory_;
   double* arena_;
   std::unique_ptr<Arithmetic> arithmetic_;
+  std::optional<CoefficientValues> coefficients_;
   std::vector<StateReader> readers_;
   // Places of motions (KernelTables): the start of the next expansion, of the present one, of the one before; the state
   // of that expansion.

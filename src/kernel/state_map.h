@@ -45,6 +45,10 @@ class StateReader {
   using Numbers = std::vector<long double>;
   StateReader(const StateMap& map, const Numbers& parameters)
       : map_(&map), to_own_(map.to_own_, 0, parameters), to_motion_(map.to_motion_, 0, parameters) {}
+  void set_parameters(const Numbers& parameters) {
+    to_own_.set_parameters(parameters);
+    to_motion_.set_parameters(parameters);
+  }
   // Converts the state of the motion (q_a, q_a', one after the other, then z) to that of the kernel (q, z, p).
   void own(long double t, const Numbers& state, Numbers& own);
   void motion(long double t, const Numbers& own, Numbers& state);

@@ -42,6 +42,11 @@ class Expansion {
   // stages: the number of orders beyond the leading derivatives that are computed.
   Expansion(const Program& program, const std::vector<N>& parameters, int stages);
 
+  void set_parameters(const std::vector<N>& parameters) {
+    parameters_ = parameters;
+    machine_.set_parameters(parameters);
+  }
+
   std::size_t state_size() const { return x_.state_size(); }
   std::size_t offset(std::size_t variable) const { return x_.offset(variable); }
   int stages() const { return stages_; }

@@ -174,7 +174,10 @@ class OutputTape {
     return sizes_[tape_.roots[i]];
   }
   // Modes have changed.
-  void set_parameters(const std::vector<N>& parameters) { machine_ = Machine<N>(tape_, 0, parameters); }
+  void set_parameters(const std::vector<N>& parameters) {
+    machine_.set_parameters(parameters);
+    sizes_.clear();
+  }
   // Multipliers of redundant constraints are zero.
   static Column put(Workspace& s, const Column& es) {
     Graph& g = *s.model->graph;

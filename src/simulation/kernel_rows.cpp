@@ -54,7 +54,7 @@ Outcome KernelRows::settle() {
 void KernelRows::set_parameters(const std::vector<long double>& parameters) {
   if (parameters == point_.parameters()) return;
   waiting_->set_parameters(parameters);
-  point_ = Expansion<long double>(program_, parameters, std::max(1, stages_));
+  point_.set_parameters(parameters);
 }
 
 std::optional<Warning> KernelRows::warning() const {

@@ -152,13 +152,17 @@ Machine<N>::Machine(const Tape& tape, std::size_t orders, const std::vector<N>& 
     for (const Rational& r : f.values) s.values.push_back(constant_value<N>(r));
     steps_.push_back(std::move(s));
   }
-  for (std::uint32_t s = 0; s < tape.code.size(); ++s) {
-    const Instruction& in = tape.code[s];
-    if (in.op == Op::parameter) series(s)[0] = parameters[in.index];
-  }
+  set_parameters(parameters);
+}
+
+template <Scalar N>
+void Machine<N>::set_parameters(const std::vector<N>& parameters) {
+  const std::vector<Instruction>& code = tape_->code;
+  for (std::uint32_t s = 0; s < code.size(); ++s)
+    if (code[s].op == Op::parameter) series(s)[0] = parameters[code[s].index];
   // Constant slots are computed once; derivatives of constants may come later in the tape and are not needed.
-  for (std::uint32_t s = 0; s < tape.code.size(); ++s)
-    if (tape.code[s].constant) step(tape.code[s], s, 0);
+  for (std::uint32_t s = 0; s < code.size(); ++s)
+    if (code[s].constant) step(code[s], s, 0);
 }
 
 template <Scalar N>

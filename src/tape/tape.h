@@ -102,6 +102,8 @@ class Machine {
  public:
   // Series of up to `orders` coefficients beyond the lead.
   Machine(const Tape& tape, std::size_t orders, const std::vector<N>& parameters);
+  // Other values of the parameters: what is constant in time is computed anew.
+  void set_parameters(const std::vector<N>& parameters);
 
   N* series(std::uint32_t slot) { return &data_[slot * stride_]; }
   const N* series(std::uint32_t slot) const { return &data_[slot * stride_]; }

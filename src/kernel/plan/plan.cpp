@@ -9,14 +9,18 @@ static double other_side(long double x) {
   return rest == 0 || !std::isfinite(nearest) ? nearest : std::nextafter(nearest, rest > 0 ? HUGE_VAL : -HUGE_VAL);
 }
 
-std::vector<double> coefficient_values(const Plan& plan, const Program& program,
-                                       const std::vector<long double>& parameters, Rounding rounding) {
-  const Machine<long double> machine(program.tape, 0, parameters);
+CoefficientValues::CoefficientValues(const Plan& plan, const Program& program,
+                                     const std::vector<long double>& parameters)
+    : plan_(&plan), slots_(program.tape, 0, parameters) {
+  for (const Coefficient& c : plan.coefficients) rationals_.push_back(from_rational<long double>(c.rational));
+}
+
+std::vector<double> CoefficientValues::rounded(Rounding rounding) const {
   std::vector<double> values;
-  for (const Coefficient& c : plan.coefficients) {
-    long double v = from_rational<long double>(c.rational);
-    for (std::uint32_t s : c.slots) {
-      const long double x = machine.series(s & ~Coefficient::kReciprocal)[0];
+  for (std::size_t i = 0; i < rationals_.size(); ++i) {
+    long double v = rationals_[i];
+    for (std::uint32_t s : plan_->coefficients[i].slots) {
+      const long double x = slots_.series(s & ~Coefficient::kReciprocal)[0];
       v = s & Coefficient::kReciprocal ? v / x : v * x;
     }
     values.push_back(rounding == Rounding::nearest ? static_cast<double>(v) : other_side(v));

@@ -158,9 +158,19 @@ struct Plan {
 // How numbers that no double holds are rounded: to the nearest double, or to the other one of the two doubles between
 // which they lie. What two motions with different roundings have in common does not come from them.
 enum class Rounding : std::uint8_t { nearest, other };
-// The values of the coefficients; the values of slots are given in long double and rounded once.
-std::vector<double> coefficient_values(const Plan& plan, const Program& program,
-                                       const std::vector<long double>& parameters,
-                                       Rounding rounding = Rounding::nearest);
+// The values of the coefficients of a plan, for one set of parameters after the other.
+class CoefficientValues {
+ public:
+  // REQUIRES: the plan and the program outlive the values.
+  CoefficientValues(const Plan& plan, const Program& program, const std::vector<long double>& parameters);
+  void set_parameters(const std::vector<long double>& parameters) { slots_.set_parameters(parameters); }
+  // Each is computed in long double and rounded once.
+  std::vector<double> rounded(Rounding rounding = Rounding::nearest) const;
+
+ private:
+  const Plan* plan_;
+  std::vector<long double> rationals_;  // of each coefficient
+  Machine<long double> slots_;          // those that are constant in time
+};
 
 }  // namespace anholon

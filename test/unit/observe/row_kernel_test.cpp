@@ -175,8 +175,8 @@ TEST(Rounding, TheOtherOneIsOnTheOtherSide) {
   const auto plan =
       KernelPlan::make(program, 8, rows.parameters, 0, {rows.start.state.begin(), rows.start.state.end()});
   ASSERT_TRUE(plan);
-  const std::vector<double> nearest = coefficient_values(plan->plan(), *program, rows.parameters),
-                            other = coefficient_values(plan->plan(), *program, rows.parameters, Rounding::other);
+  const CoefficientValues values(plan->plan(), *program, rows.parameters);
+  const std::vector<double> nearest = values.rounded(), other = values.rounded(Rounding::other);
   ASSERT_EQ(nearest.size(), other.size());
   std::size_t differ = 0;
   for (std::size_t i = 0; i < nearest.size(); ++i) {

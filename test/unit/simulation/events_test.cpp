@@ -297,6 +297,57 @@ TEST(Kinks, TheErrorFollowsTheTolerance) {
 }
 
 // A tether that is reeled out: the pull along it is an ideal reaction, a thrust sideways is none.
+// A pendulum with drag, driven by forces that have kinks on the way: its own ones, and those of time.
+std::string driven(const std::string& force) {
+  return R"(coordinates = ["a"]
+table = [
+  {name = "steps", x = [0, 1, 2, 3, 4], y = [0, 2, -1, 3, 0], fit = "hold"},
+  {name = "lines", x = [0, 1, 2, 3, 4], y = [0, 2, -1, 3, 0]},
+  {name = "curves", x = [0, 1, 2, 3, 4], y = [0, 2, -1, 3, 0], fit = "spline"},
+]
+particle = [{name = "p", mass = 1, position = "sin(a)*ex - cos(a)*ez"}]
+gravity.field = "-9*ez"
+force = [{on = "p", vector = "-vel(p)*norm(vel(p))/8"}, {generalized = {a = ")" +
+         force + R"("}}]
+initial = {a = 1}
+)";
+}
+
+TEST(Kinks, AreThoseOfTheReferenceIfAKernelMakesTheSteps) {
+  for (const char* force : {"0", "-abs(a)", "piecewise(a' > 1, 2, sin(t))", "max(a, max(a', -1/2))", "sign(cos(3*t))",
+                            "steps(t)", "lines(t)", "curves(t)", "lines(2 + a')"}) {
+    const std::string text = driven(force);
+    const auto by = [&](bool kernel) {
+      return run(text, 5, "1/1000000000000000", [&](SimulationOptions& o) {
+        o.kernel = kernel;
+        o.method = Method::taylor;
+        o.at = {1, 2, 3, 4, 5};
+      });
+    };
+    const Result one = by(true), other = by(false);
+    ASSERT_TRUE(one.report.outcome.ok()) << force << ": " << one.report.outcome.message;
+    ASSERT_EQ(one.rows.rows().size(), 5U) << force;
+    for (std::size_t i = 0; i < 5; ++i)
+      for (const std::size_t j : {1U, 2U})
+        EXPECT_NEAR(std::stod(one.rows.rows()[i][j]), std::stod(other.rows.rows()[i][j]), 2e-13) << force << " " << i;
+  }
+}
+
+TEST(Kinks, LeaveTheStepsToTheKernel) {
+  for (const char* force :
+       {"-abs(a)", "piecewise(a' > 1, 2, sin(t))", "sign(cos(3*t))", "curves(t)", "lines(2 + a')"}) {
+    Scenario s;
+    ASSERT_TRUE(make_scenario(test::model_of(driven(force)), *find_formulation("routh"), {}, s).ok());
+    Workspace own(s);
+    Motion<double> motion(own, {}, {}, 0);
+    ASSERT_TRUE(motion.start({}).ok());
+    while (motion.stepper().time() < 20) ASSERT_TRUE(motion.step(20).ok()) << force;
+    const std::size_t all = motion.stepper().expansions(), by_kernel = motion.stepper().expansions_by_kernel();
+    EXPECT_GT(4 * by_kernel, 3 * all) << force << ": " << by_kernel << " of " << all;
+    EXPECT_GE(motion.stepper().kinks(), 3U) << force;
+  }
+}
+
 TEST(Servo, IsTheIdealReactionWhereItActsAlongIt) {
   const auto tether = [](const std::string& force, const std::string& by) {
     return run(R"(coordinates = ["x", "y"]
