@@ -46,7 +46,7 @@ void EnsemblePlan::make() {
                                               Company::in_lanes)) {
       const std::vector<Representation> list = representations(
           {derived, s.structure, quadratures, numbers, t, state, s.mechanics.get()}, WritingEffort::long_motion);
-      kernel = (watched.empty() ? cheapest(list) : cheapest_unmapped(list)).plan;
+      kernel = (watches_multipliers(model) ? cheapest_unmapped(list) : cheapest(list)).plan;
     }
   }
   constexpr std::size_t kMany = 32;

@@ -26,6 +26,7 @@ class ReferenceExpander {
   static constexpr bool alone() { return true; }
   static constexpr bool suspected() { return false; }
   static constexpr std::size_t expansions_by_kernel() { return 0; }
+  int order() const { return reference_.order(); }
   void restart() {}  // no expansion is made
   void reset() {}    // nor counted
 
@@ -97,6 +98,7 @@ class GuardedExpander {
   bool alone() const { return !kernel_ || kernel_->alone(); }
   bool suspected() const { return kernel_ && kernel_->suspected(); }
   std::size_t expansions_by_kernel() const { return by_kernel_; }
+  int order() const { return order_; }
   void restart();
   void reset();
 

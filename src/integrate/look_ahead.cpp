@@ -6,11 +6,16 @@ namespace anholon {
 
 template <Number N>
 Expansion<N>& LookAhead<N>::load(const W& t, const std::vector<W>& state, const std::vector<W>& leading) {
-  if (!there_) there_ = std::make_unique<Expansion<N>>(*program_, parameters_, 1);
-  quadratures_known_ = false;
   convert_all(state, state_);
   convert_all(leading, leading_);
-  there_->load(convert<N>(t), state_, leading_);
+  return load(convert<N>(t));
+}
+
+template <Number N>
+Expansion<N>& LookAhead<N>::load(const N& t) {
+  if (!there_) there_ = std::make_unique<Expansion<N>>(*program_, parameters_, 1);
+  quadratures_known_ = false;
+  there_->load(t, state_, leading_);
   return *there_;
 }
 

@@ -26,6 +26,7 @@ class ReferenceExpansion {
   // In place of extend(), where formulas have no derivatives: the polynomials end with these leading derivatives.
   void cut_to(const MotionState<N>& m, const std::vector<W>& leading, Expansion<W>& point);
 
+  int order() const { return order_; }
   // The length of a step by the radius of convergence.
   N reach(double shrink) const { return step_size<N>(unknowns_, order_, shrink); }
   Expansion<N>& series() { return expansion_; }

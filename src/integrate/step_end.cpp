@@ -139,7 +139,7 @@ bool StepEnd<N>::as_foretold(PresentStep<N>& step, const EventWatch<N>& events, 
 template <Number N>
 bool StepEnd<N>::shows_events(PresentStep<N>& step, const EventWatch<N>& events, const W& h) {
   if (events.empty()) return true;
-  step.load(h);
+  step.load_series(h);
   step.look.evaluate_watched();
   return as_foretold(step, events, convert<N>(h));
 }

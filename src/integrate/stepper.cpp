@@ -234,7 +234,7 @@ void Stepper<N>::read_events() {
   if (events_.empty()) return;
   const auto coefficient = [&](std::size_t i, int k) { return expander_.quadrature(i, k); };
   if (expander_.kernel()) {
-    present().load(W(0));
+    present().load_series(W(0));
     look_.evaluate_watched();
     events_.read(order_ - 1, coefficient, [&](std::size_t i) { return look_.quadrature_terms(i); });
   } else {
@@ -250,7 +250,7 @@ void Stepper<N>::limit_by_kinks() {
   if (!look_.has_kinks()) return;
   const Machine<N>* values = &expander_.series().machine();
   if (expander_.kernel()) {
-    values = &present().load(W(0)).machine();
+    values = &present().load_series(W(0)).machine();
     look_.evaluate_kinks();
   }
   const double reach =

@@ -42,8 +42,8 @@ class Stepper {
   // Goes on where an expansion of another stepper was begun, or of this one.
   Outcome resume(const StepperState<N>& begun);
 
-  // Makes the expansions by a kernel wherever that serves: not where its pivots have become small, nor for motions with
-  // kinks. If events are watched, the kernel has the unknowns of the motion: others know no multipliers. Before the start.
+  // Makes the expansions by a kernel wherever that serves: not where its pivots have become small. If multipliers are
+  // watched, the kernel has the unknowns of the motion: others know none. Before the start.
   void accelerate(std::shared_ptr<const KernelPlan> plan)
     requires std::same_as<N, double>;
   // As above, by one lane of a kernel that others use, too; its parameters are those of this motion. Steps are then

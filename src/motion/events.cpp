@@ -10,6 +10,11 @@ std::vector<Expr> watched_formulas(const Model& model) {
   return es;
 }
 
+bool watches_multipliers(const Model& model) {
+  const std::vector<NodeId> ids = symbols(watched_formulas(model));
+  return std::any_of(ids.begin(), ids.end(), [&](NodeId id) { return model.graph->node(id).kind == Kind::multiplier; });
+}
+
 std::vector<WatchedSeries> watched_series(const Scenario& s, std::size_t first) {
   std::vector<WatchedSeries> list;
   const auto of_state = [&](Expr e) { return orders_needed(s, {&e, 1}) <= 0; };

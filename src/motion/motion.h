@@ -48,6 +48,13 @@ struct MotionPlans {
   WritingEffort effort = WritingEffort::at_once;
 };
 
+// The formulas that a motion watches: those of events, then of bounds. How it does, where they are the quadratures of its
+// program from `first` on.
+std::vector<Expr> watched_formulas(const Model& model);
+std::vector<WatchedSeries> watched_series(const Scenario& scenario, std::size_t first);
+// Whether multipliers stand in them: a kernel in unknowns of its own knows none.
+bool watches_multipliers(const Model& model);
+
 // N: the numbers of the Taylor coefficients; W: those of the state and of everything written.
 template <Number N>
 class Motion {
@@ -149,7 +156,7 @@ class Motion {
   static void take(const MotionPlans& plans, Leg& leg);
   ToRepresent to_represent(const Leg& leg, std::shared_ptr<const KernelPlan> derived) const;
   const Representation& best(const std::vector<Representation>& list) const {
-    return settings_.multipliers || watches() ? cheapest_unmapped(list) : cheapest(list);
+    return settings_.multipliers || watches_multipliers(*s_.model) ? cheapest_unmapped(list) : cheapest(list);
   }
   void write_anew();
   std::unique_ptr<Leg> same_leg() const;
@@ -191,11 +198,6 @@ extern template class Motion<double>;
 extern template class Motion<long double>;
 extern template class Motion<Quad>;
 extern template class Motion<Multi>;
-
-// The formulas that a motion watches: those of events, then of bounds. How it does, where they are the quadratures of its
-// program from `first` on.
-std::vector<Expr> watched_formulas(const Model& model);
-std::vector<WatchedSeries> watched_series(const Scenario& scenario, std::size_t first);
 
 // Says what the motion ran into: a mass that vanishes, two solutions that meet, a multiplier that grows without bound.
 template <Number N>
