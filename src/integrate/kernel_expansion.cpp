@@ -99,11 +99,11 @@ void KernelExpansion::show_deciding(Expansion<double>& series) const {
 }
 
 void KernelExpansion::look_for_turns(double horizon) {
-  using Kind = Plan::Deciding::Kind;
+  using K = Plan::Deciding::Kind;
   may_turn_ = std::any_of(deciding_.begin(), deciding_.end(), [&](const Plan::Deciding& d) {
     std::vector<double> c = coefficients(d.place);
-    if (d.kind == Kind::radicand) return !stays_positive(c.data(), order_ - 1, horizon);
-    if (d.kind == Kind::sign) return !keeps_sign(c.data(), order_ - 1, horizon);
+    if (d.kind == K::radicand) return !stays_positive(c.data(), order_ - 1, horizon);
+    if (d.kind == K::sign) return !keeps_sign(c.data(), order_ - 1, horizon);
     const std::vector<double>& knots = kernel_->plan().tables().knots[d.index].at;
     const auto above = std::upper_bound(knots.begin(), knots.end(), c[0]);
     const double value = c[0];

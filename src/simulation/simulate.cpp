@@ -69,7 +69,7 @@ class Run {
     if (plans.motion.plan) motion().use(plans.motion);
     plans_ = plans;
   }
-  SimulationPlans plans() const { return {motion().plans(), plans_.known_rows, plans_.rows}; }
+  SimulationPlans plans() const { return {motion().plans(), plans_.rows}; }
 
   SimulationReport go() {
     report_.outcome = o_.resume ? resume(*o_.resume) : begin();
@@ -336,13 +336,14 @@ class Run {
     if constexpr (std::same_as<N, double>) {
       if (!motion().stepper().accelerated()) return;
       const double end = to_double(schedule_.end());
-      if (!std::exchange(plans_.known_rows, true))
+      if (!plans_.rows)
         plans_.rows =
             WaitingRows::make(s_, o_.conserved, stages_, motion().start_parameters(), motion().start_state(), end);
-      if (!plans_.rows) return;
-      plans_.rows->set_parameters(motion().parameters());
-      plans_.rows->set_end(end);
-      kernel_rows_ = std::make_unique<KernelRows>(s_, o_, motion(), stages_, plans_.rows,
+      const std::shared_ptr<WaitingRows>& rows = *plans_.rows;
+      if (!rows) return;
+      rows->set_parameters(motion().parameters());
+      rows->set_end(end);
+      kernel_rows_ = std::make_unique<KernelRows>(s_, o_, motion(), stages_, rows,
                                                   RowTakers{watch_, judge_, floors_, rows_, report_});
     }
   }

@@ -12,8 +12,7 @@ class WaitingRows;
 // What one motion in doubles leaves to the next one in the same workspace.
 struct SimulationPlans {
   MotionPlans motion;
-  bool known_rows = false;            // whether `rows` is known
-  std::shared_ptr<WaitingRows> rows;  // null if rows need the reference
+  std::optional<std::shared_ptr<WaitingRows>> rows;  // null if rows need the reference
 };
 
 SimulationReport simulate(const Scenario& scenario, const SimulationOptions& options, RowSink& sink);

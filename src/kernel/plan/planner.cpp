@@ -16,18 +16,18 @@ constexpr int kHighestOrder = 12;
 // Notes the slots that a step of the motion has to look at: those that decide which function holds, and functions that
 // may hide their variation.
 void note_watched(const Slots& slots, const PlanLayout& layout, Plan& plan) {
-  using Kind = Plan::Deciding::Kind;
+  using K = Plan::Deciding::Kind;
   const Tape& tape = slots.tape;
   for (std::uint32_t s = 0; s < tape.code.size(); ++s) {
     const Instruction& in = tape.code[s];
     if (!slots.varies(s)) continue;
-    const auto add = [&](Kind kind, std::uint32_t by) {
+    const auto add = [&](K kind, std::uint32_t by) {
       if (!tape.code[by].constant) plan.deciding.push_back({kind, by, in.index, layout.place(slots.same_as(by))});
     };
-    if (in.op == Op::power && tape.rationals[in.index].has_even_denominator()) add(Kind::radicand, in.a);
-    if (turns_at_zero(in)) add(Kind::sign, in.a);
-    if (in.op == Op::select) add(Kind::sign, in.first);
-    if (in.op == Op::lookup) add(Kind::knots, in.a);
+    if (in.op == Op::power && tape.rationals[in.index].has_even_denominator()) add(K::radicand, in.a);
+    if (turns_at_zero(in)) add(K::sign, in.a);
+    if (in.op == Op::select) add(K::sign, in.first);
+    if (in.op == Op::lookup) add(K::knots, in.a);
   }
   for (std::uint32_t s = 0; s < tape.main_end; ++s)
     if (const auto function = slots.varies(s) ? may_hide(tape, tape.code[s]) : std::nullopt)
