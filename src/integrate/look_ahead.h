@@ -55,7 +55,6 @@ class LookAhead {
   void evaluate_watched();
   // These slots decide which functions hold, and are those of evaluate_kinks().
   void watch_kinks(const std::vector<std::uint32_t>& slots);
-  bool has_kinks() const { return !kinks_.empty(); }
   // What decides which functions hold, where the motion was loaded last; no other slots are known then.
   void evaluate_kinks() { there_->evaluate(kinks_); }
   // A quadrature where the motion was loaded last, and the formulas evaluated; nullopt if it has no value there.

@@ -247,14 +247,14 @@ void Stepper<N>::read_events() {
 template <Number N>
 void Stepper<N>::limit_by_kinks() {
   expander_.show_deciding();
-  if (!look_.has_kinks()) return;
-  const Machine<N>* values = &expander_.series().machine();
+  if (kink_arguments_.empty()) return;
+  const Machine<N>& series = expander_.series().machine();
+  const Machine<N>* values = &series;
   if (expander_.kernel()) {
     values = &present().load_series(W(0)).machine();
     look_.evaluate_kinks();
   }
-  const double reach =
-      kinks_log_reach<N>(expander_.series().machine(), *values, end_.slots(), order_ - 1, settings_.log_tolerance);
+  const double reach = kinks_log_reach<N>(kink_arguments_, series, *values, order_ - 1, settings_.log_tolerance);
   if (const N known(std::exp(reach)); known < horizon_) horizon_ = known;
 }
 
@@ -457,7 +457,8 @@ void Stepper<N>::watch_kinks() {
   const bool equations_alone = events_.empty() && settings_.known_from >= settings_.known_to;
   const std::size_t end = equations_alone ? program_->tape.main_end : program_->tape.code.size();
   end_.set_slots(static_cast<std::uint32_t>(end));
-  look_.watch_kinks(kink_arguments(program_->tape, end_.slots()));
+  kink_arguments_ = kink_arguments(program_->tape, end_.slots());
+  look_.watch_kinks(kink_arguments_);
 }
 
 template <Number N>

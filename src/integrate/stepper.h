@@ -206,6 +206,7 @@ class Stepper {
   std::size_t expansions_ = 0;
   N horizon_{0};  // of the present expansion
   LookAhead<N> look_;
+  std::vector<std::uint32_t> kink_arguments_;  // slots that decide which functions hold
   JacobianGuard<N> guard_;
   StepEnd<N> end_;
   EventWatch<N> events_{{}};

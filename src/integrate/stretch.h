@@ -60,13 +60,13 @@ class StretchPace {
 };
 
 // Stretches one after the other, of the lengths that StretchPace gives.
-template <class W>
+template <Number W>
 struct PacedStretch : Stretch<W> {
-  // The next one, up to the step that passes `until`. `each_step`: something is due after every step.
-  void begin(bool each_step, const W* next) {
+  // The next one, which ends with the first step that comes to `time`. `each_step`: something is due after every step.
+  void begin(bool each_step, const W* time) {
     this->restart();
     this->most = each_step ? 1 : pace.steps();
-    this->until = next;
+    this->until = time;
   }
   StretchPace pace;
 };

@@ -128,10 +128,10 @@ std::vector<std::uint32_t> kink_arguments(const Tape& tape, std::uint32_t end) {
 }
 
 template <Number N>
-double kinks_log_reach(const Machine<N>& machine, const Machine<N>& values, std::uint32_t end, int degree,
-                       double log_tolerance) {
+double kinks_log_reach(const std::vector<std::uint32_t>& arguments, const Machine<N>& machine, const Machine<N>& values,
+                       int degree, double log_tolerance) {
   double reach = 300;
-  for (const std::uint32_t argument : kink_arguments(machine.tape(), end)) {
+  for (const std::uint32_t argument : arguments) {
     const N floor = unit_roundoff<N>() * N(kNoise) * values.magnitude(argument);
     reach = std::min(reach, log_reach<N>(machine.series(argument), degree, floor, log_tolerance));
   }
@@ -147,9 +147,13 @@ template Kink<double> first_kink(const Machine<double>&, std::uint32_t, int, con
 template Kink<long double> first_kink(const Machine<long double>&, std::uint32_t, int, const long double&);
 template Kink<Quad> first_kink(const Machine<Quad>&, std::uint32_t, int, const Quad&);
 template Kink<Multi> first_kink(const Machine<Multi>&, std::uint32_t, int, const Multi&);
-template double kinks_log_reach(const Machine<double>&, const Machine<double>&, std::uint32_t, int, double);
-template double kinks_log_reach(const Machine<long double>&, const Machine<long double>&, std::uint32_t, int, double);
-template double kinks_log_reach(const Machine<Quad>&, const Machine<Quad>&, std::uint32_t, int, double);
-template double kinks_log_reach(const Machine<Multi>&, const Machine<Multi>&, std::uint32_t, int, double);
+template double kinks_log_reach(const std::vector<std::uint32_t>&, const Machine<double>&, const Machine<double>&, int,
+                                double);
+template double kinks_log_reach(const std::vector<std::uint32_t>&, const Machine<long double>&,
+                                const Machine<long double>&, int, double);
+template double kinks_log_reach(const std::vector<std::uint32_t>&, const Machine<Quad>&, const Machine<Quad>&, int,
+                                double);
+template double kinks_log_reach(const std::vector<std::uint32_t>&, const Machine<Multi>&, const Machine<Multi>&, int,
+                                double);
 
 }  // namespace anholon

@@ -26,10 +26,10 @@ bool stays_positive(const N* c, int degree, const N& h);
 template <Number N>
 bool keeps_sign(const N* c, int degree, const N& h);
 
-// The logarithm of how far the series are known that decide where kinks are. `values`: a machine with the values at the
-// point of all that these are made of.
+// The logarithm of how far the series of these slots are known, which decide where kinks are (kink_arguments). `values`: a
+// machine with the values at the point of all that they are made of.
 template <Number N>
-double kinks_log_reach(const Machine<N>& machine, const Machine<N>& values, std::uint32_t end, int degree,
-                       double log_tolerance);
+double kinks_log_reach(const std::vector<std::uint32_t>& arguments, const Machine<N>& machine, const Machine<N>& values,
+                       int degree, double log_tolerance);
 
 }  // namespace anholon
