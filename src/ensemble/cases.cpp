@@ -165,6 +165,12 @@ CaseWay CaseWalk::look_at_end() {
 
 CaseWay CaseWalk::finish_step() { return stepper_->finish_step() ? after_step() : stopped(stepper_->trouble()); }
 
+OrdinarySteps::Motion CaseWalk::motion() const {
+  if (!walking()) return {};
+  const std::size_t row = result_->rows.size();
+  return {stepper_.get(), end_, row < times_.size() ? times_[row] : end_};
+}
+
 CaseWay CaseWalk::step() {
   if (const Outcome o = stepper_->step(end_); !o.ok()) return stopped(o);
   return after_step();
@@ -275,8 +281,12 @@ static bool contained(CaseResult& r, const Work& work) {
 // A lane takes the next case when it has done one. Its bits do not depend on the other lanes.
 void CaseWorker::integrate(std::span<CaseResult> results) {
   if (!results.empty()) plan_.compile_if_long(results.front().number);
-  if (plan_.kernel && !kernel_) kernel_ = std::make_shared<Kernel>(plan_.kernel, plan_.lanes);
+  if (plan_.kernel && !kernel_) {
+    kernel_ = std::make_shared<Kernel>(plan_.kernel, plan_.lanes);
+    if (plan_.lanes > 1) ordinary_.emplace(kernel_, plan_.settings);
+  }
   while (walks_.size() < static_cast<std::size_t>(plan_.lanes)) walks_.emplace_back();
+  std::vector<OrdinarySteps::Motion> motions;
   std::size_t next = 0, walking = 0;
   const auto go = [&](CaseWalk& walk, CaseWay (CaseWalk::*part)()) {
     if (!walk.walking()) return;
@@ -307,10 +317,19 @@ void CaseWorker::integrate(std::span<CaseResult> results) {
     }
     for (CaseWalk& w : walks_) go(w, &CaseWalk::begin_step);
     if (kernel_) kernel_->begin();
-    for (CaseWalk& w : walks_) go(w, &CaseWalk::aim);
-    for (bool again = kernel_ != nullptr; again;) {
-      kernel_->advance();
-      kernel_->start_next();
+    bool aimed = false;
+    if (ordinary_) {
+      motions.clear();
+      for (const CaseWalk& w : walks_) motions.push_back(w.motion());
+      aimed = ordinary_->run(motions);
+    }
+    if (!aimed)
+      for (CaseWalk& w : walks_) go(w, &CaseWalk::aim);
+    for (bool again = kernel_ != nullptr; again; aimed = false) {
+      if (!aimed) {
+        kernel_->advance();
+        kernel_->start_next();
+      }
       again = false;
       for (CaseWalk& w : walks_) {
         go(w, &CaseWalk::look_at_end);

@@ -11,6 +11,7 @@
 #include "ensemble/case_parameters.h"
 #include "ensemble/case_scenario.h"
 #include "ensemble/columns.h"
+#include "integrate/lanes/ordinary_steps.h"
 #include "kernel/kernel.h"
 #include "motion/motion.h"
 #include "simulation/event_paces.h"
@@ -83,6 +84,8 @@ class CaseWalk {
   CaseWay finish_step();
   // The whole step, alone in its kernel.
   CaseWay step();
+  // As long as its steps are ordinary, the motion needs none of these parts.
+  OrdinarySteps::Motion motion() const;
 
  private:
   void equip(const std::vector<W>& parameters, const std::vector<double>& narrow);
@@ -133,6 +136,7 @@ class CaseWorker {
 
   const EnsemblePlan& plan_;
   std::shared_ptr<Kernel> kernel_;
+  std::optional<OrdinarySteps> ordinary_;
   std::deque<CaseWalk> walks_;  // one for each lane
   std::size_t in_workspaces_ = 0;
 };

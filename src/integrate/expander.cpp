@@ -1,5 +1,7 @@
 #include "integrate/expander.h"
 
+#include <cmath>
+
 #include "integrate/sigma_schedule.h"
 
 namespace anholon {
@@ -144,6 +146,36 @@ bool GuardedExpander::end_at_once(MotionTrack<double>& track) {
   known_ = Known::nothing;
   ++by_kernel_;
   return true;
+}
+
+void GuardedExpander::follow(MotionTrack<double>& track, const OrdinaryCourse& course) {
+  MotionState<double>& now = track.now;
+  const auto note = [&] {
+    track.begin_next();
+    note_begun(track, now.leading, true, kernel_->mapped());
+  };
+  const auto step = [&](const OrdinaryCourse::Step& s) {
+    now.t = s.to;
+    now.record.last_step = std::abs(s.length);
+    if (now.record.worst_constraint < W(s.drift)) now.record.worst_constraint = s.drift;
+    ++now.record.steps;
+    note();
+  };
+  if (course.steps > 1) {
+    // Only the last two expansions are still asked for.
+    now.record.steps += course.steps - 2;
+    step(course.before);
+  }
+  if (course.steps > 0) step(course.last);
+  by_kernel_ += course.steps;
+  if (course.steps > 0 || course.aimed) {
+    known_ = Known::nothing;
+    kernel_->follow_pivots(course.pivots);
+  }
+  if (!course.aimed) return;
+  if (now.record.worst_constraint < W(course.drift)) now.record.worst_constraint = course.drift;
+  awaits_kernel_ = false;
+  ++by_kernel_;
 }
 
 Outcome GuardedExpander::prepare(MotionTrack<double>& track, const std::vector<W>& guess) {

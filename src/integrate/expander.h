@@ -117,6 +117,8 @@ class GuardedExpander {
   // asks for a closer look; else false, and nothing is changed.
   bool goes_on_with_kernel() const { return awaits_kernel_ && kernel() && kernel()->may_be_ordinary(); }
   bool end_at_once(MotionTrack<double>& track);
+  // Ordinary steps were made in the kernel: the track follows, up to the expansion that is awaited, or past it.
+  void follow(MotionTrack<double>& track, const OrdinaryCourse& course);
   Outcome prepare(MotionTrack<double>& track, const std::vector<W>& guess);
   Outcome solve(MotionTrack<double>& track, const std::vector<W>& guess) {
     return reference().solve(track.now, guess, solution());

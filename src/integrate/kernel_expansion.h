@@ -36,6 +36,14 @@ class KernelExpansion {
   bool may_be_ordinary() const { return holds_ && deciding_.empty(); }
   // As serves(), where nothing asks for a closer look; else false, and nothing is changed.
   bool serves_at_once(StepRecord<double>& record, bool measure);
+  // An expansion with these pivots has served at once.
+  void follow_pivots(const Pivots& last) {
+    suspected_ = false;
+    pivots_ = last;
+  }
+  const Pivots& last_pivots() const { return pivots_; }
+  // Pivots of smaller health are not trusted.
+  double least_health() const { return least_health_; }
   // Whether no function hides in a step over h what its series do not show.
   bool hides_nothing_over(double h) const;
   // Whether J may have been singular since the last expansion, by the pivots.

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "kernel/pivots.h"
 #include "numeric/number.h"
 
 namespace anholon {
@@ -87,6 +88,26 @@ struct MotionTrack {
 
   std::array<Begun, 2> expansions;
   std::size_t present = 0;
+};
+
+// A step that is no longer than this, in relation to the time, is no ordinary one: it is near to a collapse of steps.
+inline constexpr double kShortStep = 32 * 0x1p-53;
+
+// What ordinary steps that are made in the lanes of a kernel tell the stepper of a motion (lanes/ordinary_steps.h).
+struct OrdinaryCourse {
+  struct Step {
+    double to = 0, length = 0;
+    double drift = 0;  // the largest of all steps so far, relative distances from the hidden constraints
+  };
+  Step before, last;  // the last two steps; before the first one `last.to` is where the motion is
+  Pivots pivots;      // of the last expansion that has served
+  double least_health = 0;
+  std::size_t steps = 0;  // made
+  // The steps that may be made without a look at budget and pace, and how many the budget has beyond them.
+  std::size_t most = 0, most_ahead = 0;
+  // The step after them: it is aimed, and the kernel is at its end.
+  bool aimed = false;
+  double end = 0, horizon = 0, drift = 0;
 };
 
 // A motion whose state grows beyond this is called a blow-up.

@@ -35,6 +35,13 @@ class StepPaces {
     first_ = steps;
   }
 
+  // The number of steps after so many for which out_of_reach() needs not be asked, if the end is not further away than
+  // the steps that are left.
+  std::size_t steps_unjudged(std::size_t steps) const {
+    const std::size_t made = steps - now_.steps;
+    return made < kWindow ? kWindow - made : 0;
+  }
+
   // Asked before each step from the time t, whose length would be `step`; `left` is the span to the end.
   bool out_of_reach(const StepSettings& settings, std::size_t steps, long double t, double step, double left) {
     const double passed = std::abs(static_cast<double>(t - started_));

@@ -74,6 +74,12 @@ class Stepper {
   [[nodiscard]] bool aim(const W& end);
   [[nodiscard]] EndOfStep look_at_end(const W& end);
   [[nodiscard]] bool finish_step();
+  // After `begin_step`: the motion from which ordinary steps can be made in the lanes of the kernel
+  // (lanes/ordinary_steps.h); nullopt if the next step may be none. Whoever makes them says so to `follow`.
+  std::optional<OrdinaryCourse> ordinary_course() const
+    requires std::same_as<N, double>;
+  void follow(const OrdinaryCourse& course)
+    requires std::same_as<N, double>;
   // Whether the last of these steps ended where the caller has set the end. The motion is still in its lane, where the
   // others carry it on with the next expansion: until then it can be read by `at`, or taken out.
   bool arrived() const { return phase_ == Phase::advanced && !ordinary_ && end_.arrives(); }
@@ -174,6 +180,8 @@ class Stepper {
   void note_length(const W& to);
   void finish_at(const W& to);
 
+  bool may_be_ordinary() const
+    requires std::same_as<N, double>;
   bool aim_ordinarily(const W& end);
   bool aim_freely(const W& end);
   void aim_at(const W& to);

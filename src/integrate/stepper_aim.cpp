@@ -1,6 +1,7 @@
 // Where a step of the stepper is to end.
 #include <cmath>
 
+#include "base/assert.h"
 #include "integrate/step_budget.h"
 #include "integrate/stepper.h"
 
@@ -10,10 +11,17 @@ namespace {
 
 // Steps smaller than this many round-offs of the time are a collapse.
 constexpr int kCollapsedRoundoffs = 16;
-// Nearer to that, in relation to the time, no step is an ordinary one.
-constexpr double kShortStep = 2 * kCollapsedRoundoffs * 0x1p-53;
+static_assert(kShortStep == 2 * kCollapsedRoundoffs * 0x1p-53);
 
 }  // namespace
+
+template <Number N>
+bool Stepper<N>::may_be_ordinary() const
+  requires std::same_as<N, double>
+{
+  return phase_ == Phase::begun && settings_.ordinary_steps && expander_.goes_on_with_kernel() &&
+         !guard_.singular_ahead() && end_.idle() && fired_.empty() && events_.empty();
+}
 
 // A step as most are, after one of the same kernel: nothing asks for a closer look at the expansion, at the way to where
 // its series reach, nor (look_at_end) there. Then nothing else is asked, and all else is as it was; whatever asks gets
@@ -21,10 +29,7 @@ constexpr double kShortStep = 2 * kCollapsedRoundoffs * 0x1p-53;
 template <Number N>
 bool Stepper<N>::aim_ordinarily(const W& end) {
   if constexpr (std::same_as<N, double>) {
-    if (phase_ != Phase::begun || !settings_.ordinary_steps || !expander_.goes_on_with_kernel() ||
-        guard_.singular_ahead() || !end_.idle() || !fired_.empty() || !events_.empty() ||
-        !expander_.end_at_once(track_))
-      return false;
+    if (!may_be_ordinary() || !expander_.end_at_once(track_)) return false;
     ++expansions_;
     phase_ = Phase::expanded;
     KernelExpansion& kernel = *expander_.kernel();
@@ -145,6 +150,40 @@ bool Stepper<N>::out_of_reach(const W& h, const W& left) {
   return paces_.out_of_reach(settings_, record().steps, to_double(time()), to_double(h), to_double(left));
 }
 
+template <Number N>
+std::optional<OrdinaryCourse> Stepper<N>::ordinary_course() const
+  requires std::same_as<N, double>
+{
+  const double t = to_double(time());
+  if (!may_be_ordinary() || settings_.measure || !integrals().empty() || W(t) != time()) return std::nullopt;
+  OrdinaryCourse c;
+  c.last.to = t;
+  c.pivots = expander_.kernel()->last_pivots();
+  c.least_health = expander_.kernel()->least_health();
+  c.most = std::min(settings_.most_steps - record().steps, paces_.steps_unjudged(record().steps));
+  c.most_ahead = settings_.most_steps - record().steps - c.most;
+  return c;
+}
+
+template <Number N>
+void Stepper<N>::follow(const OrdinaryCourse& course)
+  requires std::same_as<N, double>
+{
+  ANHOLON_ASSERT(may_be_ordinary());
+  if (course.steps > 0) {
+    before_ = course.steps > 1 ? W(course.before.to) : time();
+    record().sigma_before = guard_.sigma();
+  }
+  expansions_ += course.steps;
+  expander_.follow(track_, course);
+  if (!course.aimed) return;
+  ++expansions_;
+  horizon_ = course.horizon;
+  ordinary_ = true;
+  ordinary_end_ = course.end;
+  phase_ = Phase::aimed;
+}
+
 #define INSTANTIATE(N)                                                                                                 \
   template bool Stepper<N>::aim_ordinarily(const Wider<N>&);                                                           \
   template bool Stepper<N>::aim_freely(const Wider<N>&);                                                               \
@@ -154,6 +193,9 @@ bool Stepper<N>::out_of_reach(const W& h, const W& left) {
   template bool Stepper<N>::shorten_at_singular_point(Wider<N>&, const Wider<N>&);                                     \
   template void Stepper<N>::shorten_at_event(Wider<N>&, const std::optional<N>&);                                      \
   template bool Stepper<N>::out_of_reach(const Wider<N>&, const Wider<N>&);
+template std::optional<OrdinaryCourse> Stepper<double>::ordinary_course() const;
+template void Stepper<double>::follow(const OrdinaryCourse&);
+template bool Stepper<double>::may_be_ordinary() const;
 INSTANTIATE(double)
 INSTANTIATE(long double)
 INSTANTIATE(Quad)

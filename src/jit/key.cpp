@@ -104,8 +104,9 @@ void Writer::add(const JudgedPivot& pivot) {
 }
 
 void Writer::add(const Findings& found) {
-  // Only the tables compute the defect.
-  [[maybe_unused]] const auto& [health, determinant, drift, weight, moved, reach, unfit, largest, defect] = found;
+  // Only the tables compute the defect and what hides.
+  [[maybe_unused]] const auto& [health, determinant, drift, weight, moved, reach, unfit, largest, defect, hidden] =
+      found;
   all(health, determinant, drift, weight, moved, reach, unfit, largest);
 }
 

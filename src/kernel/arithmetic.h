@@ -40,8 +40,9 @@ struct Findings {
   std::uint32_t largest = 0;  // largest absolute value in the state after a step; NaN if it contains one
   // difference of the leading derivatives from their first guess, relative to the derivatives below them
   std::uint32_t defect = 0;
-  // derivatives below them
-  static constexpr std::uint32_t kCount = 9;
+  // how much the arguments of functions that may hide their variation change over a step, at most, relative to the
+  // change that hides nothing
+  std::uint32_t hidden = 0;
 };
 
 // Machine code of a long plan is in pieces of at most this many steps of a stage; histories (sweep.h: convolution) are
@@ -139,6 +140,8 @@ class Arithmetic {
   virtual void adopt(const double* from) = 0;
   // Computes the reach of the series and whether they are finite.
   virtual void measure() = 0;
+  // Computes by how much the arguments of functions that may hide their variation change over `step`, at most.
+  virtual void look_for_hidden() = 0;
   // Adds the increments to the states.
   virtual void go_on(const double* base, double* to) = 0;
   // Computes the difference of the leading derivatives, once solved for, from their first guess.

@@ -141,7 +141,7 @@ void KernelPlan::lay_out() {
   tables_.inverse_pivots = take(static_cast<std::uint32_t>(elimination_.pivots.size()) + (plan_.determinant ? 1 : 0));
   Findings& f = tables_.found;
   for (std::uint32_t* place :
-       {&f.health, &f.determinant, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest, &f.defect})
+       {&f.health, &f.determinant, &f.drift, &f.weight, &f.moved, &f.reach, &f.unfit, &f.largest, &f.defect, &f.hidden})
     *place = take(1);
   at = even(at);
   tables_.sums = is_long() ? take(kSumsOfHistory * histories_in_pieces(plan_)) : 0;

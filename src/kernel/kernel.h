@@ -193,6 +193,13 @@ class Kernel {
     if (!shows_last_) swap_low_orders();
   }
   void set_step(int lane, double h) { number(plan_->tables().step, lane) = h; }
+  // A finding in all lanes, one number for each.
+  const double* finding(std::uint32_t Findings::* which) const {
+    return arena_ + found().*which * static_cast<std::size_t>(lanes_);
+  }
+  // After `begin`: how much the arguments of functions that may hide their variation change over the set steps, at most
+  // (Findings::hidden).
+  void look_for_hidden() { arithmetic_->look_for_hidden(); }
   void advance();
   // e^-shrink of the radius of convergence is a step (integrate/step_control.h).
   void set_shrink(double shrink);

@@ -12,13 +12,9 @@ namespace {
 
 // A step is looked at in so many parts; extrema and zeros are found by so many halvings.
 constexpr int kParts = 8, kHalvings = 40;
-// A function whose argument changes by less, in relation to what it takes to change the function, hides nothing.
-constexpr double kMoves = 0.5;
 // In relation to the greatest of the function and 1: what a function is that ramps lies there. The equations decide,
 // not this.
 constexpr double kDiffers = 1e-3;
-// A divisor this small, in relation to what it is at the start, makes a wall or a pole.
-constexpr double kNearZero = 1e-3;
 // Values below so many round-offs of what they are made of are zero; the stretch where they are is looked at in so many
 // points.
 constexpr int kNoise = 64, kAcross = 16;
@@ -48,8 +44,8 @@ bool hides_nothing(const Hiding& function, const N* argument, std::size_t stride
     d = d * fourth + abs(at[3 * stride]);
   }
   const N moves = a + b * length + (c + d * length) * square;
-  const bool quotient = !function.function && function.exponent == -1;
-  return moves < (function.function ? N(kMoves) : N(N(quotient ? 1 - kNearZero : kMoves) * abs(argument[0])));
+  const N most(function.hides_beyond());
+  return moves < (function.function ? most : N(most * abs(argument[0])));
 }
 
 template <Number N>
@@ -59,11 +55,11 @@ void add_hidden_points(const Hiding& function, const N* argument, const N* value
   const N length = abs(h);
   N moves(0);
   for (int k = degree; k >= 1; --k) moves = (moves + abs(argument[k])) * length;
-  const bool quotient = !function.function && function.exponent == -1;
+  const bool quotient = function.quotient();
   const auto u = [&](const N& x) { return value_at(argument, degree, x); };
   const auto ask = [&](const N& x) {
     if (quotient) {
-      if (abs(u(x)) < abs(argument[0]) * N(kNearZero)) points.push_back(x);
+      if (abs(u(x)) < abs(argument[0]) * N(Hiding::kNearZero)) points.push_back(x);
       return;
     }
     const N is = value_of(function, u(x)), foretold = value_at(value, degree, x);

@@ -105,6 +105,12 @@ struct Beyond {
 struct Hiding {
   std::optional<Function> function;  // nullopt: a power
   double exponent = 0;
+
+  bool quotient() const { return !function && exponent == -1; }
+  // A function whose argument changes by less than this hides nothing; for powers in relation to the argument.
+  double hides_beyond() const { return quotient() ? 1 - kNearZero : 0.5; }
+  // A divisor this small, in relation to what it is at the start, makes a wall or a pole.
+  static constexpr double kNearZero = 1e-3;
 };
 // The function or power that an instruction computes if it may hide its variation, and its argument; for a quotient, a
 // power of -1 of the divisor.

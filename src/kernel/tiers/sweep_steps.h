@@ -98,6 +98,27 @@ class SweepSteps : public Arithmetic {
     w_[k_.found.unfit] = unfit;
   }
 
+  // The bound is a sum of absolute terms; four partial sums do not wait for one another.
+  void look_for_hidden() override {
+    const V length = abs(w_[k_.step]), square = length * length, fourth = square * square, zero = T::broadcast(0);
+    V worst = zero;
+    for (const Plan::HidingSlot& slot : p_.hiding) {
+      const V* a = w_ + slot.argument.at;
+      V s[kBlock] = {zero, zero, zero, zero};
+      for (int k = p_.stages / kBlock * kBlock; k >= 0; k -= kBlock)
+        for (int i = 0; i < kBlock; ++i) {
+          const bool is_term = k + i > 0 && k + i <= p_.stages;
+          s[i] = T::fma(s[i], fourth, is_term ? abs(a[k + i]) : zero);
+        }
+      const V change = (s[0] + s[1] * length) + (s[2] + s[3] * length) * square;
+      const V most =
+          T::broadcast(slot.function.hides_beyond()) * (slot.function.function ? T::broadcast(1) : abs(a[0]));
+      const V relative = change / most;
+      worst = larger(worst, relative) + (relative - relative);
+    }
+    w_[k_.found.hidden] = worst;
+  }
+
   void go_on(const double* base, double* next) override {
     const std::size_t n = k_.state_size;
     const V *high = reinterpret_cast<const V*>(base), *low = high + n, *change = w_ + k_.increments;

@@ -95,6 +95,17 @@ force = [{on = "p", vector = "-vel(p)*norm(vel(p))/8"}, {generalized = {a = "tor
 a = 0.4
 )toml";
 
+// A pendulum that is pushed for short times, each within one step.
+const char* const kPulses = R"toml(
+coordinates = ["a"]
+parameters = {l = 1, g = 9.81}
+particle = [{name = "p", mass = 1, position = "l*sin(a)*ex - l*cos(a)*ez"}]
+gravity.field = "-g*ez"
+force = [{generalized = {a = "800*(1 - tanh((t - 3)*900)^2) - 800*(1 - tanh((t + 4)*900)^2) - a'/4"}}]
+[initial]
+a = 0.4
+)toml";
+
 class Results final : public CaseSink {
  public:
   void result(const CaseResult& r) override { list.push_back(r); }
@@ -212,23 +223,12 @@ TEST(Ensemble, KernelsAreSeenInTheLastDigits) {
   }
 }
 
-// Many cases share the lanes of a kernel, few do not: no bit of a case depends on that, nor on its neighbours,
-// parameters or end.
-TEST(Ensemble, LanesHaveTheBitsOfACaseAlone) {
-  Sweep many(test::shipped_text("zoo/disc"));
-  many.options.varied = {parameter(many.model(), "m"), initial(3, 0)};
-  many.options.at = {Rational(1, 2)};
-  std::vector<std::vector<Rational>> values;
-  for (int k = 0; k < 40; ++k) values.push_back({Rational(1) + Rational(k % 5, 8), Rational(1, 4) + Rational(k, 64)});
-  many.cases(values);
-  // One of them has no motion.
-  many.options.numbers = [values](std::size_t k) {
-    return EnsembleCase{values[k], k == 13 ? Rational(0) : Rational(1) + Rational(static_cast<int>(k % 3), 4)};
-  };
+// Each of some cases of a sweep, alone in a sweep of its own.
+void expect_the_bits_of_a_case_alone(const std::string& text, Sweep& many, std::initializer_list<std::size_t> cases) {
   const std::vector<CaseResult> together = many.go(1);
-  ASSERT_EQ(together.size(), values.size());
-  for (const std::size_t k : {0UL, 7UL, 8UL, 13UL, 23UL, 39UL}) {
-    Sweep one(test::shipped_text("zoo/disc"));
+  ASSERT_EQ(together.size(), many.options.cases);
+  for (const std::size_t k : cases) {
+    Sweep one(text);
     one.options.varied = many.options.varied;
     one.options.at = many.options.at;
     one.options.cases = 1;
@@ -240,6 +240,37 @@ TEST(Ensemble, LanesHaveTheBitsOfACaseAlone) {
     EXPECT_EQ(alone[0].rows, together[k].rows) << k;
   }
   EXPECT_NE(together[0].last, together[1].last);
+}
+
+// Many cases share the lanes of a kernel, few do not: no bit of a case depends on that, nor on its neighbours,
+// parameters or end.
+TEST(Ensemble, LanesHaveTheBitsOfACaseAlone) {
+  const std::string text = test::shipped_text("zoo/disc");
+  Sweep many(text);
+  many.options.varied = {parameter(many.model(), "m"), initial(3, 0)};
+  many.options.at = {Rational(1, 2)};
+  std::vector<std::vector<Rational>> values;
+  for (int k = 0; k < 40; ++k) values.push_back({Rational(1) + Rational(k % 5, 8), Rational(1, 4) + Rational(k, 64)});
+  many.cases(values);
+  // One of them has no motion.
+  many.options.numbers = [values](std::size_t k) {
+    return EnsembleCase{values[k], k == 13 ? Rational(0) : Rational(1) + Rational(static_cast<int>(k % 3), 4)};
+  };
+  expect_the_bits_of_a_case_alone(text, many, {0, 7, 8, 13, 23, 39});
+}
+
+// Steps of all lanes are made together until one of them meets its end, a row, or a pulse that its series do not show.
+TEST(Ensemble, StepsTogetherAreThoseOfACaseAlone) {
+  const std::string text = kPulses;
+  Sweep many(text);
+  many.options.varied = {initial(0, 0), initial(0, 1)};
+  many.options.at = {Rational(5), Rational(31, 4)};
+  many.options.cases = 40;
+  many.options.numbers = [](std::size_t k) {
+    const auto i = static_cast<int>(k);
+    return EnsembleCase{{Rational(i, 80), Rational(i % 7, 9)}, Rational(i % 4 == 3 ? -9 : 9) + Rational(i, 31)};
+  };
+  expect_the_bits_of_a_case_alone(text, many, {0, 1, 3, 7, 8, 13, 23, 39});
 }
 
 // By Runge-Kutta and BDF cases go one by one, as `simulate` makes them.

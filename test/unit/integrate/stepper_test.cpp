@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "integrate/lanes/ordinary_steps.h"
 #include "integrate/stepper.h"
 #include "kernel/kernel.h"
 #include "structure/consistent.h"
@@ -370,6 +371,98 @@ TEST(ByKernel, AStretchHasTheBitsOfItsSteps) {
     }
     EXPECT_GT(longest, 1U) << name;
   }
+}
+
+// A motion that grows without bound, which no step ahead of that end shows.
+const char* const kGrows =
+    "coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = 1\nposition = \"x*ex\"\n[[force]]\nname = "
+    "\"f\"\non = \"p\"\nvector = \"100*x*ex\"\n[initial]\nx = 1\n\"x'\" = 0\n";
+
+// The same motion in all lanes of a kernel, to a different end in each.
+struct InLanes {
+  explicit InLanes(const Motion& motion) {
+    const State start = motion.start<long double>();
+    const StepSettings settings = Accelerated::settings(0, true);
+    const std::vector<long double> parameters = motion.parameters_in<long double>();
+    kernel = std::make_shared<Kernel>(KernelPlan::make(std::make_shared<const Program>(motion.stepping),
+                                                       taylor_order(settings.log_tolerance) - 1, parameters, 0,
+                                                       {start.begin(), start.end()}, Company::in_lanes),
+                                      tiers().back().lanes);
+    ordinary.emplace(kernel, settings);
+    for (int lane = 0; lane < kernel->lanes(); ++lane) {
+      kernel->set_parameters(lane, parameters);
+      ends.push_back(20 + 3 * lane);
+      failed.push_back(false);
+      steppers.push_back(
+          std::make_unique<Stepper<double>>(motion.stepping, motion.parameters_in<double>(), parameters, settings));
+      steppers.back()->accelerate(kernel, lane);
+      steppers.back()->place(0, start);
+    }
+  }
+  bool walking(std::size_t i) const { return steppers[i]->time() != ends[i] && !failed[i]; }
+  // One step at least in each lane; on request as many together as are ordinary.
+  void go(bool together) {
+    const auto each = [&](const auto& act) {
+      for (std::size_t i = 0; i < steppers.size(); ++i)
+        if (walking(i)) failed[i] = !act(*steppers[i], ends[i]);
+    };
+    each([](Stepper<double>& s, long double) { return s.begin_step(); });
+    kernel->begin();
+    std::vector<OrdinarySteps::Motion> motions;
+    for (std::size_t i = 0; i < steppers.size(); ++i)
+      motions.push_back({walking(i) ? steppers[i].get() : nullptr, ends[i], ends[i]});
+    bool aimed = together && ordinary->run(motions);
+    aimed_together += aimed;
+    if (!aimed) each([](Stepper<double>& s, long double end) { return s.aim(end); });
+    for (bool again = true; again; aimed = false) {
+      if (!aimed) kernel->advance(), kernel->start_next();
+      again = false;
+      each([&](Stepper<double>& s, long double end) {
+        const EndOfStep there = s.look_at_end(end);
+        again = again || there == EndOfStep::elsewhere;
+        return there != EndOfStep::failed;
+      });
+    }
+    each([](Stepper<double>& s, long double) {
+      const bool made = s.finish_step();
+      if (made && s.arrived()) s.leave_kernel();
+      return made;
+    });
+  }
+  std::shared_ptr<Kernel> kernel;
+  std::optional<OrdinarySteps> ordinary;
+  std::vector<std::unique_ptr<Stepper<double>>> steppers;
+  std::vector<long double> ends;
+  std::vector<bool> failed;
+  int aimed_together = 0;
+};
+
+TEST(ByKernel, StepsOfLanesTogetherHaveTheBitsOfTheirSteppers) {
+  if (tiers().back().lanes == 1) GTEST_SKIP() << "kernels have no lanes on this machine";
+  std::vector<std::string> texts = {kWall, kGrows};
+  for (const char* name : kModels) texts.push_back(test::shipped_text(name));
+  int aimed_together = 0;
+  for (const std::string& text : texts) {
+    const Motion motion(text);
+    InLanes together(motion), apart(motion);
+    std::size_t rounds = 0;
+    for (; together.walking(together.steppers.size() - 1); ++rounds) {
+      together.go(true);
+      for (std::size_t i = 0; i < together.steppers.size(); ++i) {
+        while (apart.steppers[i]->steps() < together.steppers[i]->steps()) apart.go(false);
+        if (apart.steppers[i]->steps() == together.steppers[i]->steps() && !together.failed[i])
+          expect_equal(*together.steppers[i], *apart.steppers[i], text);
+      }
+    }
+    while (apart.walking(apart.steppers.size() - 1)) apart.go(false);
+    for (std::size_t i = 0; i < together.steppers.size(); ++i) {
+      expect_equal(*together.steppers[i], *apart.steppers[i], text);
+      EXPECT_EQ(together.steppers[i]->trouble().message, apart.steppers[i]->trouble().message);
+    }
+    EXPECT_LT(rounds, together.steppers.back()->steps()) << text << ": steps are made together";
+    aimed_together += together.aimed_together;
+  }
+  EXPECT_GT(aimed_together, 0) << "one has grown beyond all bounds after steps together";
 }
 
 // x = -cos t: a stretch ends with the first step that begins where x has left its value.
