@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "motion/course.h"
 #include "motion/representation.h"
 #include "observe/watch.h"
 
@@ -47,6 +48,8 @@ void EnsemblePlan::make() {
       const std::vector<Representation> list = representations(
           {derived, s.structure, quadratures, numbers, t, state, s.mechanics.get()}, WritingEffort::long_motion);
       kernel = (watches_multipliers(model) ? cheapest_unmapped(list) : cheapest(list)).plan;
+      if (o.method == Method::automatic && o.order == 0 && only_taylor(model, *program).empty())
+        rates.emplace(std::make_shared<const Program>(*program), numbers, t, state);
     }
   }
   constexpr std::size_t kMany = 32;
@@ -58,12 +61,12 @@ void EnsemblePlan::make() {
                                       s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates),
                                       [](int d) { return d < 2; });
   if (monitors.empty()) return;
-  outputs = compile(OutputTape<Wider<double>>::put(s, monitors));
-  for (const Input& in : outputs->inputs) {
+  outputs.emplace(Outputs{compile(OutputTape<Wider<double>>::put(s, monitors)), {}});
+  for (const Input& in : outputs->tape.inputs) {
     const Node& n = g.node(in.symbol);
-    output_inputs.push_back({in.slot, s.system.variable(in.symbol), n.kind == Kind::time ? 0 : n.order});
-    leading = leading || (output_inputs.back().variable &&
-                          output_inputs.back().order >= s.structure.d[*output_inputs.back().variable]);
+    const Outputs::Entry e{in.slot, s.system.variable(in.symbol), n.kind == Kind::time ? 0 : n.order};
+    outputs->inputs.push_back(e);
+    leading = leading || (e.variable && e.order >= s.structure.d[*e.variable]);
   }
 }
 
@@ -121,6 +124,7 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
   if (end_ == named_.t)
     return stepper_->start(named_.t, state, {}, false).ok() ? after_step() : stop(CaseWay::derivation);
   stepper_->place(named_.t, state);
+  if (watch_) watch_->begin(*stepper_);
   return CaseWay::plain;
 }
 
@@ -136,8 +140,9 @@ void CaseWalk::equip(const std::vector<W>& parameters, const std::vector<double>
   stepper_ = std::make_unique<Stepper<double>>(*plan_->program, narrow, parameters, plan_->settings);
   if (!plan_->watched.empty()) stepper_->watch(plan_->watched);
   if (kernel_) stepper_->accelerate(kernel_, lane_);
+  if (plan_->rates) watch_.emplace(plan_->settings.log_tolerance);
   point_.emplace(*plan_->program, parameters, std::max(1, plan_->stages));
-  if (plan_->outputs) outputs_.emplace(*plan_->outputs, 0, parameters);
+  if (plan_->outputs) outputs_.emplace(plan_->outputs->tape, 0, parameters);
 }
 
 CaseWay CaseWalk::stop(CaseWay way) {
@@ -168,7 +173,8 @@ CaseWay CaseWalk::finish_step() { return stepper_->finish_step() ? after_step() 
 OrdinarySteps::Motion CaseWalk::motion() const {
   if (!walking()) return {};
   const std::size_t row = result_->rows.size();
-  return {stepper_.get(), end_, row < times_.size() ? times_[row] : end_};
+  return {stepper_.get(), end_, row < times_.size() ? times_[row] : end_,
+          watch_ ? watch_->steps_to_look(stepper_->steps()) : std::numeric_limits<std::size_t>::max()};
 }
 
 CaseWay CaseWalk::step() {
@@ -190,7 +196,16 @@ CaseWay CaseWalk::after_step() {
     reducer_->values(result_->reduced);
   }
   if (!stepper_->fired().empty()) return take_events();
-  return stepper_->time() == end_ ? arrive() : CaseWay::plain;
+  if (stepper_->time() == end_) return arrive();
+  return another_method_pays() ? stop(CaseWay::simulation) : CaseWay::plain;
+}
+
+// `simulate`, which then makes the case, comes to the same conclusion.
+bool CaseWalk::another_method_pays() {
+  if (!watch_ || (stepper_->kinks() == 0 && watch_->steps_to_look(stepper_->steps() - 1) > 1)) return false;
+  if (!plan_->rates->plan()) return false;
+  return watch_->another_pays(
+      *stepper_, {&*plan_->program, plan_->kernel, plan_->rates->plan(), &narrow_parameters_, &parameters_}, end_);
 }
 
 CaseWay CaseWalk::arrive() {
@@ -257,10 +272,10 @@ bool CaseWalk::keep(const W& t, std::vector<double>& values) {
   for (std::size_t j = system.mechanical(); j < system.size(); ++j)
     values.push_back(to_double(point_->derivative(j, 0)));
   if (!outputs_) return true;
-  for (const EnsemblePlan::Entry& e : plan_->output_inputs)
+  for (const EnsemblePlan::Outputs::Entry& e : plan_->outputs->inputs)
     outputs_->series(e.slot)[0] = e.variable ? point_->derivative(*e.variable, e.order) : point_->time();
   outputs_->evaluate();
-  for (std::size_t i = 0; i < plan_->outputs->roots.size(); ++i) values.push_back(to_double(outputs_->value(i)));
+  for (std::size_t i = 0; i < plan_->outputs->tape.roots.size(); ++i) values.push_back(to_double(outputs_->value(i)));
   return true;
 }
 

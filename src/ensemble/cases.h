@@ -13,6 +13,7 @@
 #include "ensemble/columns.h"
 #include "integrate/lanes/ordinary_steps.h"
 #include "kernel/kernel.h"
+#include "motion/method_choice.h"
 #include "motion/motion.h"
 #include "simulation/event_paces.h"
 #include "structure/start_memory.h"
@@ -41,13 +42,17 @@ class EnsemblePlan {
   std::size_t first_reduced = 0;  // of the program's quadratures
   std::vector<WatchedSeries> watched;
   std::vector<std::optional<SetByEvent>> sets;  // of each event, if it sets something
-  std::optional<Tape> outputs;
-  struct Entry {
-    std::uint32_t slot;
-    std::optional<std::size_t> variable;  // nullopt: t
-    int order;
+  struct Outputs {
+    Tape tape;
+    struct Entry {
+      std::uint32_t slot;
+      std::optional<std::size_t> variable;  // nullopt: t
+      int order;
+    };
+    std::vector<Entry> inputs;
   };
-  std::vector<Entry> output_inputs;
+  std::optional<Outputs> outputs;
+  std::optional<RatesOnDemand> rates;  // if a method other than Taylor's may make a case
   int stages = 0;
   bool leading = false;  // whether the results of a case need more than its state
   StepSettings settings;
@@ -94,6 +99,7 @@ class CaseWalk {
   CaseWay take_events();
   CaseWay stopped(const Outcome& why);
   CaseWay stop(CaseWay way);
+  bool another_method_pays();
   bool rows();
   bool keep(const W& t, std::vector<double>& values);
 
@@ -115,6 +121,7 @@ class CaseWalk {
   std::optional<Machine<W>> outputs_;
   std::optional<Reducer> reducer_;
   std::optional<EventPaces<W>> paces_;
+  std::optional<TaylorWatch> watch_;
 };
 
 // The workspaces of one thread.

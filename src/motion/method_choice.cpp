@@ -1,6 +1,8 @@
 #include "motion/method_choice.h"
 
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "kernel/kernel.h"
 #include "motion/stiff_method.h"
@@ -20,6 +22,19 @@ constexpr std::size_t kFewSteps = 48, kManySteps = 256;
 constexpr std::size_t kOftener = 8;
 // A trial that has spent this part of what it may spend has come this far, or is given up.
 constexpr double kEarly = 0.25, kFar = 0.05;
+// The same of a motion in the lanes of a kernel, whose operations are so many times cheaper than those of a trial.
+constexpr double kMuchCheaperThanLanes = 16;
+
+// Whether a stepper comes from a point to a time with at most so many operations.
+bool comes_to(StateStepper& stepper, const MotionPoint& from, long double to, double most) {
+  bool good = stepper.start(from, to).ok();
+  while (good && !(stepper.now().t == to)) {
+    good = stepper.step(to).ok() && !(work_of(stepper) > most);
+    const double progress = std::abs(static_cast<double>((stepper.now().t - from.t) / (to - from.t)));
+    if (work_of(stepper) > kEarly * most && progress < kFar) good = false;
+  }
+  return good;
+}
 
 }  // namespace
 
@@ -89,15 +104,64 @@ bool MethodChoice::pays(Method method, std::size_t steps, double factor, long do
   const double costs = all * part, most = costs / factor;
   taylor_pace_ = all / std::abs(static_cast<double>(span));
   ++trials_.count;
-  bool good = trial->start(from, to).ok();
-  while (good && !(trial->now().t == to)) {
-    good = trial->step(to).ok() && !(work_of(*trial) > most);
-    const double progress = std::abs(static_cast<double>((trial->now().t - from.t) / (to - from.t)));
-    if (work_of(*trial) > kEarly * most && progress < kFar) good = false;
-  }
+  const bool good = comes_to(*trial, from, to, most);
   trials_.evaluations += trial->rate().evaluations();
   ratio_ = work_of(*trial) / costs;
   return good;
+}
+
+void TaylorWatch::begin(const Stepper<double>& stepper) {
+  kinks_before_ = stepper.kinks();
+  next_kinks_ = kFirstKinks;
+  next_stiff_ = kFirstStiff;
+  stiff_ = {}, kinky_ = {};
+}
+
+std::size_t TaylorWatch::steps_to_look(std::size_t steps) const {
+  if (log_tolerance_ < kBdf) return std::numeric_limits<std::size_t>::max();
+  const std::size_t mark = next_stiff_ - kManySteps;
+  return steps < mark ? mark - steps : next_stiff_ - steps;
+}
+
+bool TaylorWatch::another_pays(Stepper<double>& taylor, const Equations& equations, long double end) {
+  const std::size_t steps = taylor.steps(), kinks = taylor.kinks() - kinks_before_;
+  const Mark now{taylor.time(), steps};
+  if (kinks >= next_kinks_) {
+    if (!kinky_) kinky_ = now;
+    if (steps - kinky_->steps >= kFewSteps) {
+      next_kinks_ = kOftener * kinks;
+      if (pays(Method::runge_kutta, *std::exchange(kinky_, std::nullopt), taylor, equations, end)) return true;
+    }
+  }
+  if (log_tolerance_ < kBdf) return false;
+  if (steps + kManySteps == next_stiff_) stiff_ = now;
+  if (steps < next_stiff_) return false;
+  next_stiff_ *= 2;
+  const std::optional<Mark> since = std::exchange(stiff_, std::nullopt);
+  if (!since) return false;
+  const long double pace = std::abs(now.t - since->t) / static_cast<long double>(static_cast<double>(kManySteps));
+  return std::abs(end - now.t) > pace * static_cast<long double>(static_cast<double>(steps)) &&
+         pays(Method::bdf, *since, taylor, equations, end);
+}
+
+bool TaylorWatch::pays(Method method, const Mark& since, Stepper<double>& taylor, const Equations& equations,
+                       long double end) const {
+  taylor.leave_kernel();
+  MotionPoint from;
+  from.t = taylor.time();
+  from.state = taylor.state();
+  from.integrals = taylor.integrals();
+  for (const long double x : taylor.leading()) from.leading.push_back(static_cast<double>(x));
+  const long double span = from.t - since.t, left = end - from.t;
+  const bool whole = std::abs(span) < std::abs(left);
+  const double costs = work_of_expansion(*equations.expansions) * static_cast<double>(taylor.steps() - since.steps) *
+                       (whole ? 1.0 : std::abs(static_cast<double>(left / span)));
+  StepSettings settings;
+  settings.log_tolerance = log_tolerance_;
+  const auto trial = make_state_stepper(
+      method, {*equations.program, *equations.parameters, *equations.wide_parameters, equations.rates}, settings);
+  return comes_to(*trial, from, whole ? from.t + span : end, costs / kMuchCheaper) &&
+         work_of(*trial) * kMuchCheaperThanLanes < costs;
 }
 
 std::string MethodChoice::percent() const {

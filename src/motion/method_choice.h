@@ -5,6 +5,9 @@
 
 namespace anholon {
 
+// A first trial is made after so many kinks, or steps of Taylor's.
+inline constexpr std::size_t kFirstKinks = 128, kFirstStiff = 2048;
+
 class MethodChoice {
  public:
   struct Turn {
@@ -40,10 +43,10 @@ class MethodChoice {
   StateSteppers& steppers_;
   const Motion<double>& motion_;
   double log_tolerance_;
-  std::vector<long double> times_;                    // the ends of Taylor's last steps
-  std::size_t next_kinks_ = 128, next_stiff_ = 2048;  // kinks, steps of Taylor's after which a trial is made again
-  double taylor_pace_ = 0;                            // operations for a unit of time by Taylor where it was left
-  double ratio_ = 0;                                  // operations of the last trial, relative to Taylor's
+  std::vector<long double> times_;                                   // the ends of Taylor's last steps
+  std::size_t next_kinks_ = kFirstKinks, next_stiff_ = kFirstStiff;  // after which a trial is made again
+  double taylor_pace_ = 0;  // operations for a unit of time by Taylor where it was left
+  double ratio_ = 0;        // operations of the last trial, relative to Taylor's
   // Where the present stretch of the other method began.
   struct Stretch {
     double t = 0, work = 0;
@@ -51,6 +54,40 @@ class MethodChoice {
   };
   Stretch stretch_;
   Trials trials_;
+};
+
+// Whether a motion that many others accompany in the lanes of a kernel had better be made alone, by a method that is by far
+// cheaper. Its steps are the stepper's, and trials begin after fixed numbers of them, so that every motion is judged
+// alike in any company.
+class TaylorWatch {
+ public:
+  // The equations of the motion, with its parameters, and the kernels of Taylor's expansions and of the rates.
+  struct Equations {
+    const Program* program = nullptr;
+    std::shared_ptr<const KernelPlan> expansions, rates;
+    const std::vector<double>* parameters = nullptr;
+    const std::vector<long double>* wide_parameters = nullptr;
+  };
+
+  explicit TaylorWatch(double log_tolerance) : log_tolerance_(log_tolerance) {}
+  // Another motion, whose first step the stepper has not made.
+  void begin(const Stepper<double>& stepper);
+  // For how many steps another_pays() needs not be asked, if they meet no kink.
+  std::size_t steps_to_look(std::size_t steps) const;
+  // Asked after a step.
+  bool another_pays(Stepper<double>& taylor, const Equations& equations, long double end);
+
+ private:
+  struct Mark {
+    long double t = 0;
+    std::size_t steps = 0;
+  };
+  bool pays(Method method, const Mark& since, Stepper<double>& taylor, const Equations& equations,
+            long double end) const;
+
+  double log_tolerance_;
+  std::size_t kinks_before_ = 0, next_kinks_ = kFirstKinks, next_stiff_ = kFirstStiff;
+  std::optional<Mark> stiff_, kinky_;  // where the stretch begins on which the next trial is made
 };
 
 }  // namespace anholon

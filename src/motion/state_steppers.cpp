@@ -14,15 +14,8 @@ namespace {
 // The reference takes so many times the operations of a kernel.
 constexpr double kReference = 6;
 
-// Operations of an expansion by a plan. What it takes to come to a step, and to an expansion, weighs as much as so many
-// of them.
+// What it takes to come to an expansion weighs as much as so many operations.
 constexpr double kExpansion = 300;
-double work(const KernelPlan& plan) {
-  constexpr double kStep = 16;
-  const double steps = static_cast<double>(plan.plan().stage.size() + plan.plan().after.size());
-  return plan.work() + kStep * steps * (plan.plan().stages + 1) + kExpansion;
-}
-
 // Of the rates alone: values are quicker than series, and all that is known of J is asked for at every point.
 double work_of_rates(const KernelPlan& plan) {
   constexpr double kStep = 11, kEntry = 6;
@@ -39,6 +32,13 @@ std::shared_ptr<const Program> program_of(const std::shared_ptr<const KernelPlan
 }
 
 }  // namespace
+
+// What it takes to come to a step of a stage weighs as much as so many operations.
+double work_of_expansion(const KernelPlan& plan) {
+  constexpr double kStep = 16;
+  const double steps = static_cast<double>(plan.plan().stage.size() + plan.plan().after.size());
+  return plan.work() + kStep * steps * (plan.plan().stages + 1) + kExpansion;
+}
 
 MotionPoint present_point(const Motion<double>& motion) {
   const Stepper<double>& taylor = motion.stepper();
@@ -69,15 +69,18 @@ void StateSteppers::make_plans() {
   expansion_work_ = std::numeric_limits<double>::infinity();
   if (!counts_) return;
   if (motion_.plan())
-    expansion_work_ = work(*motion_.plan());
+    expansion_work_ = anholon::work_of_expansion(*motion_.plan());
   else if (const auto all = plan(motion_.stepper().order() - 1))
-    expansion_work_ = kReference * work(*all);
+    expansion_work_ = kReference * anholon::work_of_expansion(*all);
 }
 
 std::unique_ptr<StateStepper> StateSteppers::make(Method method) {
   make_plans();
-  StateRate rate(motion_.program(), parameter_values<double>(model_), motion_.parameters(), plan_, guards_);
-  StepSettings settings = settings_;
+  return make_state_stepper(
+      method, {motion_.program(), parameter_values<double>(model_), motion_.parameters(), plan_, guards_}, settings_);
+}
+
+std::unique_ptr<StateStepper> make_state_stepper(Method method, StateRate rate, StepSettings settings) {
   if (info(method).raises_tolerance)
     settings.log_tolerance = std::max(settings.log_tolerance, std::log(info(method).least_tolerance));
   if (method == Method::bdf) return std::make_unique<Bdf>(std::move(rate), settings);

@@ -2,6 +2,8 @@
 //
 // Operations are counted on the plans, never measured in time: the same motion has the same counts on every machine.
 #pragma once
+#include <mutex>
+
 #include "integrate/states/state_rate.h"
 #include "model/methods.h"
 #include "motion/motion.h"
@@ -37,6 +39,32 @@ class StateSteppers {
   double expansion_work_ = 0;
 };
 
+// The kernel plan of the rates of a program, made when it is first asked for, from any thread.
+class RatesOnDemand {
+ public:
+  // `state`: the state at and around which its pivots are chosen.
+  RatesOnDemand(std::shared_ptr<const Program> program, std::vector<long double> parameters, double t,
+                std::vector<double> state)
+      : program_(std::move(program)), parameters_(std::move(parameters)), t_(t), state_(std::move(state)) {}
+  // Null if there is none.
+  const std::shared_ptr<const KernelPlan>& plan() const {
+    std::call_once(made_, [&] { plan_ = KernelPlan::make(program_, 0, parameters_, t_, state_); });
+    return plan_;
+  }
+
+ private:
+  std::shared_ptr<const Program> program_;
+  std::vector<long double> parameters_;
+  double t_;
+  std::vector<double> state_;
+  mutable std::once_flag made_;
+  mutable std::shared_ptr<const KernelPlan> plan_;
+};
+
+// A stepper of runge_kutta or bdf.
+std::unique_ptr<StateStepper> make_state_stepper(Method method, StateRate rate, StepSettings settings);
+// Operations of one of Taylor's expansions by a kernel.
+double work_of_expansion(const KernelPlan& plan);
 // Operations that a stepper has taken; infinity without a kernel.
 double work_of(StateStepper& stepper);
 

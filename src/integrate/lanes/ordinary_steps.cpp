@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace anholon {
 
@@ -59,7 +58,7 @@ bool OrdinarySteps::take(std::span<const Motion> motions) {
     // The double nearest to the end, and one before it.
     lane.until = std::nextafter(to_double(m.until), -lane.sign * std::numeric_limits<double>::infinity());
     lane.left = std::abs(to_double(m.end) - course->last.to) * (1 + 0x1p-50);
-    most_ = std::min(most_, course->most);
+    most_ = std::min({most_, course->most, m.most - 1});
   }
   return most_ > 0;
 }

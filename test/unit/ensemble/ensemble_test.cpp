@@ -231,6 +231,8 @@ void expect_the_bits_of_a_case_alone(const std::string& text, Sweep& many, std::
     Sweep one(text);
     one.options.varied = many.options.varied;
     one.options.at = many.options.at;
+    one.options.to = many.options.to;
+    one.options.tolerance = many.options.tolerance;
     one.options.cases = 1;
     one.options.numbers = [&](std::size_t) { return many.options.numbers(k); };
     const std::vector<CaseResult> alone = one.go(1);
@@ -271,6 +273,34 @@ TEST(Ensemble, StepsTogetherAreThoseOfACaseAlone) {
     return EnsembleCase{{Rational(i, 80), Rational(i % 7, 9)}, Rational(i % 4 == 3 ? -9 : 9) + Rational(i, 31)};
   };
   expect_the_bits_of_a_case_alone(text, many, {0, 1, 3, 7, 8, 13, 23, 39});
+}
+
+// A pendulum that drags a light body through something viscous.
+const char* const kStiff = R"toml(
+coordinates = ["a", "b"]
+parameters = {c = 2000}
+particle = [{name = "p", mass = 1, position = "sin(a)*ex - cos(a)*ez"}, {name = "q", mass = "1/100", position = "b*ey"}]
+gravity.field = "-10*ez"
+force = [{generalized = {b = "-c*(b' - a')"}}]
+[initial]
+a = 0.4
+b = 0.1
+)toml";
+
+// Lanes leave a motion to `simulate` if another method is by far cheaper, and keep the others.
+TEST(Ensemble, StiffCasesGoByTheMethodOfSimulate) {
+  const std::string text = kStiff;
+  Sweep many(text);
+  many.options.tolerance = Rational(1, 1'000'000);
+  many.options.to = 2;
+  many.options.varied = {parameter(many.model(), "c")};
+  many.options.cases = 33;
+  many.options.numbers = [](std::size_t k) {
+    return EnsembleCase{{k % 16 == 0 ? Rational(2000) : Rational(static_cast<int>(k), 100)}, {}};
+  };
+  expect_the_bits_of_a_case_alone(text, many, {0, 1, 16, 17});
+  EXPECT_EQ(many.report.in_workspaces, 3U);
+  for (const CaseResult& r : many.go(1)) EXPECT_LT(r.steps, 3000U) << r.number;
 }
 
 // By Runge-Kutta and BDF cases go one by one, as `simulate` makes them.
