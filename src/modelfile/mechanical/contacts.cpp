@@ -14,6 +14,23 @@ namespace anholon {
 
 bool Contact::rough() const { return !slip.empty() && !(is_zero(friction) && is_zero(static_friction)); }
 
+std::map<std::string, std::string> column_units(const std::vector<Contact>& contacts) {
+  std::map<std::string, std::string> units;
+  const auto add = [&](const std::string& column, const std::string& unit) {
+    if (!unit.empty()) units[column] = unit;
+  };
+  for (const Contact& c : contacts) {
+    if (c.under) {
+      add(c.name + ".moment", c.units.friction);
+      continue;
+    }
+    add(c.name + ".gap", c.units.gap);
+    add(c.name + ".normal", c.units.normal);
+    add(c.name + ".friction", c.units.friction);
+  }
+  return units;
+}
+
 namespace {
 
 class ContactReader {
