@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from . import _arrow, _core, _display
@@ -328,11 +329,8 @@ class Sweep(Mapping[str, "Array"]):
             >>> sweep = an.load("disc").sweep({"phi'": an.grid(5, 7, 5), "m": [1, 2]}, to=1)
             >>> axes = sweep.plot("theta")
         """
-        if ax is None:
-            try:
-                import matplotlib.pyplot as plt
-            except ImportError:
-                return self.figure(*names, x=x, y=y)
+        if ax is None and find_spec("matplotlib") is None:
+            return self.figure(*names, x=x, y=y)
         import numpy as np
 
         from . import _sweep_plot
@@ -351,6 +349,8 @@ class Sweep(Mapping[str, "Array"]):
         if len(axes) > 1 and len(shown) > 1:
             raise ModelError(f"a map over two variations shows one column, and there are {len(shown)}\nhint: one name, or none for the outcomes")
         if ax is None:
+            import matplotlib.pyplot as plt
+
             _, ax = plt.subplots()
         if len(axes) == 1:
             _sweep_plot.curves(ax, table, axes[0], shown, self.units)
