@@ -63,6 +63,13 @@ def test_files_of_other_formats(measured: an.Model, tmp_path: pathlib.Path) -> N
     assert told["cases"] == 2 and told["finished"] == sweep.finished and told["error_estimate"]["reason"] == "not asked for"
 
 
+def test_cases_that_were_not_computed_are_left_out_of_a_file(disc: an.Model, tmp_path: pathlib.Path) -> None:
+    sweep = disc.sweep({"phi'": an.grid(5, 7, 100_000)}, to=50, stop=lambda: True, columns=["theta"])
+    assert not sweep.outcome.ok and sweep.finished < sweep.cases
+    lines = pathlib.Path(sweep.save(tmp_path / "a.csv")).read_text().splitlines()
+    assert len(lines) == 1 + sweep.outcomes.count("finished") and all(",finished," in line for line in lines[1:])
+
+
 def test_names_that_are_no_files(measured: an.Model, tmp_path: pathlib.Path) -> None:
     sweep = measured.sweep({"m": [1, 2]})
     with pytest.raises(an.ModelError, match=r"names no format that holds sweeps\nhint: end it in .*\.parquet"):
