@@ -407,6 +407,13 @@ def help_readers(site):
     return counts
 
 
+def remove_empty_folders(site):
+    """Sphinx makes a folder of sources, into which these pages put nothing."""
+    for folder in sorted((path for path in site.rglob("*") if path.is_dir()), reverse=True):
+        if not any(folder.iterdir()):
+            folder.rmdir()
+
+
 def check_built(site):
     """-> problems of the built pages: dead links, dead anchors, what is loaded from the network, pictures without a text."""
     pages, problems = {}, []
@@ -501,6 +508,7 @@ def build(program, out, jobs, only_pages):
         return 1
     for svg in (copy / "gallery").glob("*.svg"):
         shutil.copy(svg, out / "gallery")
+    remove_empty_folders(out)
     unused = [what.pattern for (what, _), n in zip(FOR_READERS, help_readers(out)) if n == 0]
     problems = check_built(out) + [f"no page holds {pattern}: has the theme changed?" for pattern in unused]
     for problem in problems:
@@ -578,6 +586,14 @@ def self_test():
         wanted = '# A\n[b](doc/b.md#x) `[c](d.md)` folder [code](files/src/x.cpp) ![p](files/doc/p.svg)\n<p class="file-name">a.toml</p>\n\n```toml\n[no](b.md)\n```\n'
         if stage.written("index.md") != wanted:
             print(stage.written("index.md"))
+            failures += 1
+    with tempfile.TemporaryDirectory() as scratch:
+        root = pathlib.Path(scratch)
+        lay(root, {"static/a.css": ""})
+        (root / "sources" / "doc").mkdir(parents=True)
+        remove_empty_folders(root)
+        if [path.name for path in root.iterdir()] != ["static"]:
+            print("an empty folder stays")
             failures += 1
     python = ROOT / "build/docs-env/bin/python"
     if python.exists():  # the tools of the site are there

@@ -1,7 +1,8 @@
-// Pictures of a motion, which stand by themselves: no network, no other files. A page of HTML with equations, proof, plots,
+// Pictures of a motion or a sweep, which stand by themselves: no network, no other files. A page of HTML with equations, proof, plots,
 // animation, trust; the data of its animation and plots; a figure of columns.
 #pragma once
 #include "anholon/motion.h"
+#include "anholon/sweep.h"
 
 namespace anholon::v1 {
 
@@ -26,5 +27,16 @@ struct FigureOptions {
 
 // The text of an SVG. Errors: columns that do not exist; a run without rows (diagnostics).
 ANHOLON_API Result<std::string> figure(const Run& run, const FigureOptions& options = {});
+
+struct SweepFigureOptions {
+  std::vector<std::string> columns = {};  // names or patterns; empty: the coordinates, or the outcome in a map
+  // Columns along the axes; empty: the first two that vary. An initial value that varies is called "theta(0)".
+  std::string x = {}, y = {};
+};
+
+// The text of an SVG, which shows what `anholon plot` shows of a sweep: where one number varies, the columns at the end of
+// the motions as curves over it, or their quantiles of 10, 50 and 90 % if several cases have the same value; where two vary,
+// a map of one column. Errors: columns that do not exist; several columns in a map; no number varies (diagnostics).
+ANHOLON_API Result<std::string> figure(const Sweep& sweep, const SweepFigureOptions& options = {});
 
 }  // namespace anholon::v1

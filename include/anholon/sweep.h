@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 
@@ -70,9 +71,16 @@ class ANHOLON_API Sweep {
   std::size_t steps(std::size_t number) const;
   // finished, or interrupted.
   const Outcome& outcome() const;
+  // The units of columns and of what varies, as far as the model tells them.
+  const std::map<std::string, std::string>& units() const;
+  // Writes FILE.h5, FILE.csv, FILE.json or FILE.parquet, with the columns of `anholon sweep -o`: what varies and how each
+  // case ended stand before the columns of the sweep. Cases that were not computed are left out. Returns the path.
+  // Errors: another ending, a file that cannot be written (diagnostics).
+  Result<std::string> write(const std::string& path) const;
 
   struct Data;
   explicit Sweep(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+  const Data& data() const { return *data_; }
 
  private:
   std::shared_ptr<const Data> data_;

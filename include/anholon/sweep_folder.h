@@ -77,12 +77,13 @@ class ANHOLON_API SweepFolder {
   // scenarios vary. Errors: there is no such case, or as `fill`.
   Result<std::vector<std::pair<std::string, std::string>>> numbers(std::size_t number) const;
   // The options of `anholon simulate` for the motion of a case, with their words: {"qdot", "phi=5"} for --qdot phi=5,
-  // {"case", "wet"}, {"to", "3"}. Errors: there is no such case, its part is missing or damaged, or the folder does not
-  // keep all that varies.
+  // {"case", "wet"}, {"to", "3"}. Values of the case are exact if the folder was opened for a computation. If it was opened
+  // by its name alone, they are those that the folder keeps, in double. Errors: there is no such case; of a folder that was
+  // opened by its name alone its part is missing or damaged, or the folder does not keep all that varies.
   Result<std::vector<std::pair<std::string, std::string>>> words(std::size_t number) const;
   // The whole motion of a case, computed anew with its parameters, initial values and scenario, and with the form, the
   // method, the tolerance and the end of the sweep where the options do not say otherwise. Values of the case are those
-  // that the folder keeps, in double. Errors: as `words`, `prepare` and `simulate`.
+  // of `words`. Errors: as `words`, `prepare` and `simulate`.
   Result<Run> run(std::size_t number, const MotionOptions& options = {}) const;
   // How far the cases can be trusted, as JSON: digits to trust and residuals of some of them, and sentences that tell
   // these. The folder keeps it; the first call computes the cases once more. Errors: parts are missing, the folder cannot

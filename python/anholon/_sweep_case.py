@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _core
@@ -14,54 +14,14 @@ if TYPE_CHECKING:
     from .run import Run
 
 
-def run_of(core: _core.SweepFolder, computing: Any, number: int, options: dict[str, Any]) -> Run:
-    """Computes the motion. `computing` opens the folder for a computation."""
-    if not core.recipe:
-        model, given = _of_command_line(core, number)
-        return model.simulate(**{**given, **options})
-    recipe = json.loads(core.recipe)
-    words, initial, form = recipe["words"], dict(recipe["initial"]), recipe["form"]
-    numbers = dict(computing().numbers(number))
-    model = model_of(core, recipe)
-    if runs_through_scenarios(model, [name for name, _ in words[0]]):
-        model = model.with_(case=numbers.pop("case"))
-    given = {"to": words[6] or (words[8] or [None])[-1], "tolerance": words[7]}
-    parameters = {name: value for name, value in numbers.items() if name in model.parameters}
-    initial.update({name: value for name, value in numbers.items() if name not in model.parameters})
-    chosen = {"form": form, "initial": initial, **{name: value for name, value in given.items() if value}, **options}
-    return (model.with_(**parameters) if parameters else model).simulate(**chosen)
-
-
-def runs_through_scenarios(model: Model, vary: Iterable[str]) -> bool:
-    """Whether the name "case" stands for scenarios of the file; a parameter or a coordinate may have that name."""
-    return "case" in vary and "case" not in model.parameters and all(coordinate.name != "case" for coordinate in model.coordinates)
-
-
-def model_of(core: _core.SweepFolder, recipe: dict[str, Any]) -> Model:
-    """The model of a folder that Python made."""
-    from .reading import load, loads
-
-    given = {"set": recipe["set"], "case": recipe["case"]}
-    model = load(recipe["path"], **given) if recipe["path"] else loads(core.asked("model"), **given)
-    return model.in_mode(*recipe["mode"]) if recipe.get("mode") else model
-
-
-_ORDERS = {"q": "", "qdot": "'", "qddot": "''", "qdddot": "'''"}
-_MULTIPLIERS = {"lambda": "", "lambdadot": "'"}
-
-
-def _of_command_line(core: _core.SweepFolder, number: int) -> tuple[Model, dict[str, Any]]:
-    """The model of a case, and the options of its motion."""
-    from .reading import loads
-
-    if core.asked("base file 1"):
-        raise ModelError(f"the model of {core.path} refers to other files\nhint: anholon simulate with the numbers of the case")
+def run_of(core: _core.SweepFolder, computing: Callable[[], _core.SweepFolder], number: int, options: dict[str, Any]) -> Run:
+    """Computes the motion from the words of a command, which tell that of a folder of Python, too. `computing` opens the folder for a computation."""
     parameters: dict[str, str] = {}
     scenarios: list[str] = []
     initial: dict[str, str] = {}
     eliminate: list[str] = []
     given: dict[str, Any] = {}
-    for option, word in core.words(number):
+    for option, word in _words(core, computing, number):
         name, _, value = word.partition("=")
         if option == "set":
             parameters[name] = value
@@ -78,7 +38,43 @@ def _of_command_line(core: _core.SweepFolder, number: int) -> tuple[Model, dict[
             eliminate.append(word)
         else:
             given[option.replace("-", "_")] = int(word) if option in ("order", "most-steps", "digits") else word
-    model = loads(core.asked("model"), set=parameters, case=scenarios)
-    if core.asked("mode"):
-        model = model.in_mode(*core.asked("mode").split())
-    return model, {**given, "initial": initial, "eliminate": eliminate}
+    if "at" in options:
+        given.pop("every", None)
+    return _model(core, parameters, scenarios).simulate(**{**given, "initial": initial, "eliminate": eliminate, **options})
+
+
+def _words(core: _core.SweepFolder, computing: Callable[[], _core.SweepFolder], number: int) -> list[tuple[str, str]]:
+    """The options of a case. Where the folder does not keep its numbers, the sweep that Python asked for tells them."""
+    try:
+        return core.words(number)
+    except ModelError:
+        if not core.recipe:
+            raise
+        return computing().words(number)
+
+
+def runs_through_scenarios(model: Model, vary: Iterable[str]) -> bool:
+    """Whether the name "case" stands for scenarios of the file; a parameter or a coordinate may have that name."""
+    return "case" in vary and "case" not in model.parameters and all(coordinate.name != "case" for coordinate in model.coordinates)
+
+
+def model_of(core: _core.SweepFolder, recipe: dict[str, Any]) -> Model:
+    """The model of a folder that Python made."""
+    return _model(core, recipe["set"], recipe["case"])
+
+
+def _model(core: _core.SweepFolder, parameters: Mapping[str, str], scenarios: Sequence[str]) -> Model:
+    """The model of a folder. Its text is there; a text that refers to further files is read where Python found it."""
+    from .reading import load, loads
+
+    path = json.loads(core.recipe)["path"] if core.recipe else ""
+    if not path and core.asked("base file 1"):
+        raise ModelError(f"the model of {core.path} refers to other files\nhint: anholon simulate with the numbers of the case")
+    given: Any = {"set": parameters, "case": scenarios}
+    model = load(path, **given) if path else loads(core.asked("model"), **given)
+    mode = core.asked("mode").split()
+    return model.in_mode(*mode) if mode else model
+
+
+_ORDERS = {"q": "", "qdot": "'", "qddot": "''", "qdddot": "'''"}
+_MULTIPLIERS = {"lambda": "", "lambdadot": "'"}

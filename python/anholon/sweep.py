@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from . import _arrow, _core, _display
+from ._errors import ModelError
 from ._numbers import Number, text_of
+from .run import Figure
 
 if TYPE_CHECKING:
+    import os
+
     import numpy as np
     import numpy.typing as npt
     import pandas
@@ -115,6 +120,11 @@ class Sweep(Mapping[str, "Array"]):
         return self._core.column(name)
 
     @property
+    def units(self) -> dict[str, str]:
+        """The units of the columns and of what varies, as far as the model tells them."""
+        return dict(self._core.units)
+
+    @property
     def times(self) -> Array:
         """The times of ``rows``, s."""
         return self._core.times
@@ -196,10 +206,7 @@ class Sweep(Mapping[str, "Array"]):
         A scenario is in ``case_name``, an array of texts. With times (``at``) it is a long table: a row for each case and
         time, and the columns ``case`` and ``t`` say which.
         """
-        coordinates = {coordinate.name for coordinate in self.model.coordinates}
-        table = {f"{name}(0)" if name.rstrip("'") in coordinates else name: values for name, values in self.varied.items()}
-        if self._core.scenarios:
-            table = {"case_name": table.pop("case"), **table}
+        table = self._varied_columns()
         times = self.times.size
         if times == 0:
             table["t"] = self.t
@@ -213,6 +220,11 @@ class Sweep(Mapping[str, "Array"]):
         for name in self:
             long[name] = np.repeat(self[name], times) if name in self._reduced else self._core.rows(name)
         return long
+
+    def _varied_columns(self) -> dict[str, npt.NDArray[Any]]:
+        coordinates = {coordinate.name for coordinate in self.model.coordinates}
+        table = {f"{name}(0)" if name.rstrip("'") in coordinates else name: values for name, values in self.varied.items()}
+        return {"case_name": table.pop("case"), **table} if self._core.scenarios else table
 
     def _outcomes(self) -> tuple[int, list[str]]:
         """The place and the words of the column of outcomes in a table."""
@@ -240,8 +252,111 @@ class Sweep(Mapping[str, "Array"]):
         return polars.DataFrame(self.to_dict()).insert_column(place, polars.Series("outcome", outcomes))
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
-        """The columns as an Arrow stream of one batch; numbers are read where they are, scenarios are texts."""
-        return _arrow.stream(self.to_dict(), {})
+        """The columns of :meth:`to_pandas` as an Arrow stream of one batch; numbers are read where they are, words are texts."""
+        import numpy as np
+
+        place, outcomes = self._outcomes()
+        columns = list(self.to_dict().items())
+        columns.insert(place, ("outcome", np.array(outcomes, dtype=object)))
+        units = self.units
+        return _arrow.stream(dict(columns), {name: units.get(name.removesuffix("(0)"), "") for name, _ in columns})
+
+    # ---- files, pictures ----
+
+    def save(self, path: str | os.PathLike[str]) -> str:
+        """Writes .h5, .csv, .json or .parquet, by the end of the name, with the columns and numbers of ``anholon sweep -o``.
+
+        Cases that Ctrl-C left out are not written. A folder is written while a sweep is computed: ``model.sweep(..., out="falls/")``.
+
+        Returns:
+            The name of the file.
+
+        Raises:
+            ModelError: the name has another ending, or the file cannot be written.
+
+        Example:
+            >>> import anholon as an, pandas, tempfile
+            >>> sweep = an.load("disc").sweep({"phi'": [5, 6, 7]}, to=1)
+            >>> file = sweep.save(tempfile.mkdtemp() + "/cases.csv")
+            >>> list(pandas.read_csv(file))[:5]
+            ['case', "phi'(0)", 'outcome', 't', 'x']
+        """
+        import os
+
+        name = os.fspath(path)
+        if name.endswith("/") or os.path.isdir(name):
+            raise ModelError(f'{name} is a folder, which takes the cases while they are computed\nhint: model.sweep(..., out="{name}")')
+        return self._core.write(name)
+
+    def figure(self, *names: str, x: str | None = None, y: str | None = None) -> Figure:
+        """The cases as SVG, by the program's own hand: what ``anholon plot`` shows of a sweep.
+
+        Where one number varies, columns at the end of the motions are curves over it; if several cases have the same value of
+        it, the curves are the quantiles of 10, 50 and 90 %. Where two vary, one column is a map over them.
+
+        Args:
+            names: columns to draw, or patterns with * and ?; the coordinates if there are none, in a map the outcomes.
+            x: the column along the horizontal axis; the first that varies if it is None. An initial value is ``"phi'(0)"``.
+            y: the column along the vertical axis of a map; the second that varies if it is None.
+
+        Raises:
+            ModelError: there is no such column; several columns in a map; no number varies.
+
+        Example:
+            >>> import anholon as an
+            >>> an.load("disc").sweep({"phi'": [5, 6, 7]}, to=1).figure("theta").svg[:4]
+            '<svg'
+        """
+        return Figure(self._core.figure(list(names), x or "", y or ""))
+
+    def plot(self, *names: str, x: str | None = None, y: str | None = None, ax: Any = None) -> Any:
+        """Draws what :meth:`figure` shows: Matplotlib's axes, or a :class:`Figure` without Matplotlib.
+
+        If several cases have the same x, a curve is their median, in a band from 10 to 90 %.
+
+        Args:
+            names: columns to draw; the coordinates if there are none, in a map the outcomes.
+            x: the column along the horizontal axis; the first that varies if it is None.
+            y: the column along the vertical axis of a map; the second that varies if it is None.
+            ax: axes of Matplotlib; new ones if it is None.
+
+        Raises:
+            KeyError: there is no such column.
+            ModelError: several columns in a map; no number varies.
+
+        Example:
+            >>> import anholon as an
+            >>> sweep = an.load("disc").sweep({"phi'": an.grid(5, 7, 5), "m": [1, 2]}, to=1)
+            >>> axes = sweep.plot("theta")
+        """
+        if ax is None and find_spec("matplotlib") is None:
+            return self.figure(*names, x=x, y=y)
+        import numpy as np
+
+        from . import _sweep_plot
+
+        varied = self._varied_columns()
+        varied.pop("case_name", None)
+        table = {**varied, "outcome": np.array(self.outcomes, dtype=object), "t": self.t, "steps": self.steps, **{name: self[name] for name in self}}
+        axes = _sweep_plot.axes_of(list(varied), x, y)
+        usual = [c.name for c in self.model.coordinates if c.name in self] or list(self)
+        shown = list(names) or (usual if len(axes) == 1 else ["outcome"])
+        for name in (*axes, *shown):
+            if name not in table:
+                raise KeyError(f"there is no column {name!r}; there are {', '.join(table)}")
+        if "outcome" in axes:
+            raise ModelError("an axis shows numbers, and 'outcome' holds words\nhint: x=\"t\"")
+        if len(axes) > 1 and len(shown) > 1:
+            raise ModelError(f"a map over two variations shows one column, and there are {len(shown)}\nhint: one name, or none for the outcomes")
+        if ax is None:
+            import matplotlib.pyplot as plt
+
+            _, ax = plt.subplots()
+        if len(axes) == 1:
+            _sweep_plot.curves(ax, table, axes[0], shown, self.units)
+        else:
+            _sweep_plot.map_over(ax, table, axes, shown[0], self.units)
+        return ax
 
     def _repr_html_(self) -> str:
         return _display.sweep(self, f"sweep of {self.model.title}", self.outcomes)

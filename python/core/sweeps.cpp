@@ -59,6 +59,19 @@ void bind_sweeps(nb::module_& m) {
       .def_prop_ro("t", [](nb::handle self) { return view(nb::cast<const Sweep&>(self).t(), self); })
       .def("outcome_of", nb::overload_cast<std::size_t>(&Sweep::outcome, nb::const_), "number"_a)
       .def_prop_ro("outcome", nb::overload_cast<>(&Sweep::outcome, nb::const_))
+      .def_prop_ro("units", &Sweep::units)
+      .def(
+          "write",
+          [](const Sweep& sweep, const std::string& path) {
+            return value_of(unlocked([&] { return sweep.write(path); }));
+          },
+          "path"_a)
+      .def(
+          "figure",
+          [](const Sweep& sweep, const std::vector<std::string>& columns, const std::string& x, const std::string& y) {
+            return value_of(unlocked([&] { return figure(sweep, SweepFigureOptions{columns, x, y}); }));
+          },
+          "columns"_a, "x"_a, "y"_a)
       .def_prop_ro("scenarios", &Sweep::scenarios)
       .def("scenario", &Sweep::scenario, "number"_a);
   m.def(

@@ -215,6 +215,29 @@ def test_chosen_cases_and_their_motions(tmp_path: pathlib.Path, disc: an.Model) 
         folder.where({"lean": 1})
 
 
+def test_a_motion_follows_from_what_the_folder_keeps(tmp_path: pathlib.Path, disc: an.Model, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = disc.sweep({"phi'": ["16/3", 6]}, to=1, initial={"t": "1/4", "psi'": "0.1"}, out=tmp_path / "f")
+
+    def computing(path: str) -> Any:
+        raise AssertionError("the equations of the sweep are not needed")
+
+    with monkeypatch.context() as patched:
+        patched.setattr("anholon._sweep_filling.computing", computing)
+        for opened in (folder, an.open_sweep(folder.path)):
+            run = opened.run(0)
+            assert (run.t[0], run.t[-1], run["phi'"][0], run["psi'"][0]) == (0.25, 1, 16 / 3, 0.1)
+            assert np.isclose(run["theta"][-1], folder["theta"][0], rtol=1e-9)
+            assert opened.run(1, at=["1/2", 1]).t.tolist() == [0.5, 1]
+
+
+def test_a_motion_of_a_case_whose_numbers_are_not_kept(tmp_path: pathlib.Path, disc: an.Model) -> None:
+    lean = disc.sweep({"phi'": ["16/3", 6]}, to=1, columns=["theta"], out=tmp_path / "lean")
+    assert "phi'(0)" not in lean and an.open_sweep(lean.path).run(0)["phi'"][0] == 16 / 3
+    folder = disc.sweep({"phi'": ["16/3", 6]}, to=1, out=tmp_path / "f")
+    (tmp_path / "f" / "part-000000.parquet").unlink()
+    assert an.open_sweep(folder.path).run(0)["phi'"][0] == folder.run(0)["phi'"][0] == 16 / 3
+
+
 def test_motions_of_a_folder_of_the_command_line(tmp_path: pathlib.Path) -> None:
     import os
 

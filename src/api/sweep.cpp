@@ -3,25 +3,13 @@
 #include <algorithm>
 #include <limits>
 
+#include "api/sweep_data.h"
 #include "api/sweep_request.h"
+#include "ensemble/parts/judgement.h"
 #include "ensemble/parts/scenarios.h"
+#include "observe/rows/row_values.h"
 
 namespace anholon::v1 {
-
-struct Sweep::Data {
-  std::vector<std::string> names, columns;          // of what is varied; of the final state, then the reductions
-  std::vector<std::string> scenarios;               // that vary; each has as many cases
-  std::vector<std::vector<double>> varied, values;  // by name, by column
-  std::size_t of_state = 0;                         // how many columns are no reductions
-  std::vector<double> times;
-  std::vector<std::vector<double>> rows;  // by column of the state: case by case, at the times
-  std::vector<double> t;
-  std::vector<Outcome> outcomes;
-  std::vector<std::string> events;  // empty if none has ended a motion
-  std::vector<std::size_t> steps;
-  Outcome outcome;
-  std::size_t finished = 0;
-};
 
 namespace {
 
@@ -84,6 +72,7 @@ class CaseKeeper final : public inner::CaseSink {
     data_.t[number] = r.t;
     data_.steps[number] = r.steps;
     data_.outcomes[number] = to_public(r.outcome);
+    inner::count_stopped(data_.stopped, number, r.outcome);
     if (!r.event.empty()) {
       data_.events.resize(data_.t.size());
       data_.events[number] = r.event;
@@ -96,6 +85,40 @@ class CaseKeeper final : public inner::CaseSink {
   const KeptColumns* columns_ = nullptr;
   std::size_t before_ = 0;
 };
+
+// The table in which the command line writes the cases.
+inner::SweepTable table_of(const PreparedPiece& piece, const KeptColumns& columns, bool chosen) {
+  inner::SweepTable table(*piece.scenario->model, piece.options);
+  if (chosen) {
+    // Before the state stand the case, what varies, the outcome, the event, t and the steps.
+    const std::size_t outcome = 1 + piece.options.varied.size();
+    const bool ends = table.columns().at(outcome + 1).name == "event";
+    std::vector<std::size_t> list;
+    for (std::size_t k = 1; k <= outcome; ++k) list.push_back(k);
+    if (ends) list.push_back(outcome + 1);
+    list.push_back(outcome + 2);
+    for (const std::size_t place : columns.places) list.push_back(outcome + 4 + place);
+    table.choose(list);
+  }
+  if (!piece.word.empty()) table.add_word("case_name");
+  return table;
+}
+
+// The units of the time, of columns and of what is varied, as far as the model tells them.
+std::map<std::string, std::string> units_of(const Model::Data& model, const Sweep::Data& d) {
+  std::map<std::string, std::string> units = inner::column_units(*model.model);
+  units.merge(inner::column_units(model.contacts));
+  for (std::size_t k = 0; k < model.model->parameter_units.size(); ++k)
+    if (!model.model->parameter_units[k].empty())
+      units.emplace(model.model->parameters[k].name, model.model->parameter_units[k]);
+  const auto is_in = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  std::erase_if(units, [&](const auto& unit) {
+    return unit.first != "t" && !is_in(d.columns, unit.first) && !is_in(d.names, unit.first);
+  });
+  return units;
+}
 
 // Computes the cases of all pieces, one piece after the other.
 Result<Sweep> computed(const PreparedSweep& p) {
@@ -113,7 +136,12 @@ Result<Sweep> computed(const PreparedSweep& p) {
     if (columns.back().names != columns.front().names)
       inner::has_other_columns(piece.word, p.pieces.front().word, "choose columns that both have");
   }
+  const PreparedPiece& first = p.pieces.front();
   data->columns = columns.front().names, data->of_state = columns.front().of_state;
+  data->model = p.model, data->form = first.scenario->system.form->name, data->units = units_of(*p.model, *data);
+  data->table = table_of(first, columns.front(), !p.asked.columns.empty());
+  data->places = columns.front().places;
+  data->all_of_state = columns.front().in_state, data->all_reductions = first.options.reductions.list.size();
   CaseKeeper cases(*data);
   cases.hold(p.cases);
   std::size_t before = 0;
@@ -123,7 +151,9 @@ Result<Sweep> computed(const PreparedSweep& p) {
     o.cancelled = p.asked.cancelled;
     if (p.asked.progress) o.progress = [&](std::size_t done) { p.asked.progress(before + done); };
     cases.turn_to(columns[k], before);
-    data->outcome = to_public(inner::ensemble(*piece.scenario, o, cases).outcome);
+    const inner::EnsembleReport report = inner::ensemble(*piece.scenario, o, cases);
+    inner::add_report(data->report, report);
+    data->outcome = to_public(report.outcome);
     before += piece.options.cases;
   }
   return Sweep(std::move(data));
@@ -167,6 +197,7 @@ const std::string& Sweep::event(std::size_t number) const {
 std::size_t Sweep::steps(std::size_t number) const { return data_->steps.at(number); }
 const std::vector<double>& Sweep::times() const { return data_->times; }
 const Outcome& Sweep::outcome() const { return data_->outcome; }
+const std::map<std::string, std::string>& Sweep::units() const { return data_->units; }
 
 static std::span<const double> named(const std::string& name, const std::vector<std::string>& names,
                                      const std::vector<std::vector<double>>& values) {

@@ -262,10 +262,19 @@ std::vector<AskedWord> words_of_case(const SweepStore& store, std::size_t number
   return list;
 }
 
-std::vector<AskedWord> all_words_of_case(const SweepStore& store, std::size_t number) {
-  std::vector<AskedWord> words = words_of_sweep(store);
-  for (AskedWord& w : words_of_case(store, number)) words.push_back(std::move(w));
-  return words;
+std::vector<AskedWord> words_of_numbers(const inner::Model& model,
+                                        const std::vector<std::pair<std::string, std::string>>& numbers,
+                                        bool of_scenarios) {
+  std::vector<AskedWord> list;
+  for (const auto& [name, value] : numbers) {
+    const bool parameter = std::any_of(model.parameters.begin(), model.parameters.end(),
+                                       [&name = name](const inner::Parameter& p) { return p.name == name; });
+    if (of_scenarios && name == "case" && list.empty())
+      list.push_back({name, value});
+    else
+      list.push_back(parameter ? AskedWord{"set", name + "=" + value} : initial_word(name, value));
+  }
+  return list;
 }
 
 std::string command_of_sweep(const SweepStore& store) {
@@ -282,9 +291,14 @@ std::string command_of_case(const SweepStore& store, std::size_t number) {
 }
 
 Result<System> system_of_case(const SweepStore& store, std::size_t number) {
+  return guarded(source_of(store), [&] { return system_of_words(store, words_of_case(store, number)); });
+}
+
+Result<System> system_of_words(const SweepStore& store, const std::vector<AskedWord>& of_case) {
   const inner::SourceText source = source_of(store);
   return guarded(source, [&]() -> Result<System> {
-    const std::vector<AskedWord> words = all_words_of_case(store, number);
+    std::vector<AskedWord> words = words_of_sweep(store);
+    words.insert(words.end(), of_case.begin(), of_case.end());
     ReadOptions reading;
     PrepareOptions options;
     for (const AskedWord& w : words) {

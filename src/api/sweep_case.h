@@ -20,16 +20,20 @@ std::vector<AskedWord> words_of_sweep(const inner::SweepStore& store);
 // case, its part is missing or damaged, or the folder does not keep all that varies.
 std::vector<AskedWord> words_of_case(const inner::SweepStore& store, std::size_t number);
 
-// Both, one after the other. Throws Failure as the function above.
-std::vector<AskedWord> all_words_of_case(const inner::SweepStore& store, std::size_t number);
+// The same from the numbers of a case by the names that vary; "case" names a scenario if one is among the numbers.
+std::vector<AskedWord> words_of_numbers(const inner::Model& model,
+                                        const std::vector<std::pair<std::string, std::string>>& numbers,
+                                        bool of_scenarios);
 
 // The command that computes the motion of a case: without the numbers of a case, to which they are added, and with them.
 // A model that is known by its text alone is model.toml.
 std::string command_of_sweep(const inner::SweepStore& store);
 std::string command_of_case(const inner::SweepStore& store, std::size_t number);
 
-// The system of a case, in its initial state. Errors: as `prepare`, and as the function above.
+// The system of a case, in its initial state. Errors: as `prepare`, and as `words_of_case`.
 Result<System> system_of_case(const inner::SweepStore& store, std::size_t number);
+// The same from the words of a case. Errors: as `prepare`.
+Result<System> system_of_words(const inner::SweepStore& store, const std::vector<AskedWord>& of_case);
 
 // The options of the motion of any case: those of the sweep where `given` does not say otherwise.
 MotionOptions options_of_case(const inner::SweepStore& store, const MotionOptions& given);

@@ -52,6 +52,7 @@ std::vector<std::pair<std::string, std::string>> asked_of(const PreparedSweep& p
   std::string set;
   for (const auto& [name, value] : model.overrides) set += (set.empty() ? "" : " ") + name + "=" + value;
   add("set", set), add("case", inner::joined(model.cases, " ")), add("form", forms_of(p));
+  if (system.choice.t) add("t", system.choice.t->get_str());
   std::string initial, eliminate;
   for (const inner::StateOverride& s : system.choice.overrides)
     initial += (initial.empty() ? "" : " ") +
@@ -229,26 +230,36 @@ Result<std::size_t> SweepFolder::refine(const std::string& word, std::optional<s
   });
 }
 
+using Numbers = std::vector<std::pair<std::string, std::string>>;
+
+// The numbers of a case of a sweep that is prepared. Throws Failure.
+static Numbers numbers_in(const PreparedSweep& p, const inner::SweepStore& store, std::size_t number) {
+  if (number >= store.cases())
+    throw inner::Failure({}, "there is no case " + std::to_string(number),
+                         "the cases are numbered from 0 to " + std::to_string(store.cases() - 1));
+  std::size_t place = number;  // in its piece
+  auto piece = p.pieces.begin();
+  if (!p.variation())
+    for (; place >= piece->options.cases; ++piece) place -= piece->options.cases;
+  const inner::EnsembleCase of =
+      p.variation() ? numbers_of(store, *p.variation())(number) : piece->options.numbers(place);
+  Numbers list;
+  if (!piece->word.empty()) list.emplace_back("case", piece->word);
+  for (std::size_t k = 0; k < of.values.size(); ++k)
+    list.emplace_back(piece->options.varied[k].name, of.values[k].get_str());
+  return list;
+}
+
+// What a case has of its own: exact, from the sweep that is prepared, or else as the folder keeps it. Throws Failure.
+static std::vector<AskedWord> own_words(const SweepFolder::Data& data, const inner::SweepStore& store,
+                                        std::size_t number) {
+  if (!data.prepared) return words_of_case(store, number);
+  const PreparedSweep& p = *data.prepared;
+  return words_of_numbers(*p.model->model, numbers_in(p, store, number), !p.scenarios.empty());
+}
+
 Result<std::vector<std::pair<std::string, std::string>>> SweepFolder::numbers(std::size_t number) const {
-  using Numbers = std::vector<std::pair<std::string, std::string>>;
-  return told([&]() -> Result<Numbers> {
-    const PreparedSweep& p = prepared(*data_);
-    const inner::SweepStore store = data_->now();
-    if (number >= store.cases())
-      return mistake("there is no case " + std::to_string(number),
-                     "the cases are numbered from 0 to " + std::to_string(store.cases() - 1));
-    std::size_t place = number;  // in its piece
-    auto piece = p.pieces.begin();
-    if (!p.variation())
-      for (; place >= piece->options.cases; ++piece) place -= piece->options.cases;
-    const inner::EnsembleCase of =
-        p.variation() ? numbers_of(store, *p.variation())(number) : piece->options.numbers(place);
-    Numbers list;
-    if (!piece->word.empty()) list.emplace_back("case", piece->word);
-    for (std::size_t k = 0; k < of.values.size(); ++k)
-      list.emplace_back(piece->options.varied[k].name, of.values[k].get_str());
-    return list;
-  });
+  return told([&]() -> Result<Numbers> { return numbers_in(prepared(*data_), data_->now(), number); });
 }
 
 Result<std::vector<std::pair<std::string, std::string>>> SweepFolder::words(std::size_t number) const {
@@ -256,7 +267,8 @@ Result<std::vector<std::pair<std::string, std::string>>> SweepFolder::words(std:
   return told([&]() -> Result<Words> {
     const inner::SweepStore store = data_->now();
     Words list;
-    for (AskedWord& w : all_words_of_case(store, number)) list.emplace_back(std::move(w.option), std::move(w.word));
+    for (const AskedWord& w : words_of_sweep(store)) list.emplace_back(w.option, w.word);
+    for (const AskedWord& w : own_words(*data_, store, number)) list.emplace_back(w.option, w.word);
     return list;
   });
 }
@@ -264,7 +276,7 @@ Result<std::vector<std::pair<std::string, std::string>>> SweepFolder::words(std:
 Result<Run> SweepFolder::run(std::size_t number, const MotionOptions& options) const {
   return told([&]() -> Result<Run> {
     const inner::SweepStore store = data_->now();
-    const Result<System> system = system_of_case(store, number);
+    const Result<System> system = system_of_words(store, own_words(*data_, store, number));
     if (!system) return system.error();
     return simulate(*system, options_of_case(store, options));
   });

@@ -79,7 +79,8 @@ class HybridMotion {
       if (bodies_.dynamics.place(c).gap < 0 && !bodies_.near.negligible(c))
         return {OutcomeKind::inconsistent,
                 "the gap of contact '" + bodies_.contacts[c].name + "' is " +
-                    number_text(static_cast<double>(bodies_.dynamics.place(c).gap), 6) + where +
+                    number_text(static_cast<double>(bodies_.dynamics.place(c).gap), 6) +
+                    (bodies_.contacts[c].units.gap.empty() ? "" : " " + bodies_.contacts[c].units.gap) + where +
                     ", and a gap is not negative",
                 hint};
     return {};

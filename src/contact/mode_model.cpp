@@ -73,8 +73,11 @@ class ModeBuilder {
       ends(c, ModeChange::leaves, normal, -1, number(ModeNumber::slack));
       if (c.rough()) friction = mode.touch == Touch::sticks ? stick(c, mode, normal) : slip(c, mode, normal);
     }
+    const std::map<std::string, std::string> units = column_units({c});
     const auto record = [&](const char* what, Expr e) {
       model_->monitors.push_back({c.name + what, put_masses(*model_, e), c.span});
+      if (const auto unit = units.find(c.name + what); unit != units.end())
+        model_->outputs.push_back({c.name + what, unit->second, {}, {}, false, c.span});
     };
     record(".mode", g_.number(mode.touch == Touch::open ? 0 : mode.touch == Touch::slips ? 1 : 2));
     if (c.under) {

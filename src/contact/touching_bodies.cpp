@@ -93,7 +93,8 @@ std::optional<std::string> TouchingBodies::contradiction() const {
     if (sticks || against)
       return "the contact '" + contacts[c].name +
              (sticks ? "' sticks, and slips with " : "' slips against its direction with ") +
-             number_text(static_cast<double>(v), 6);
+             number_text(static_cast<double>(v), 6) +
+             (contacts[c].units.slip.empty() ? "" : " " + contacts[c].units.slip);
   }
   return std::nullopt;
 }

@@ -125,7 +125,7 @@ class Reader {  // its references are used only while it runs
     if (!diagnostics_.has_errors()) check_values(model_, diagnostics_);
     if (!diagnostics_.has_errors())
       for (Diagnostic& d : wrong_coefficients(contacts_, model_)) diagnostics_.add(std::move(d));
-    if (!diagnostics_.has_errors()) check_dimensions(root, scope_, model_, diagnostics_);
+    if (!diagnostics_.has_errors()) check_dimensions(root, scope_, model_, contacts_, diagnostics_);
     if (!diagnostics_.has_errors())
       for (const Replaced& r : replaced_) guard([&] { must_have_unit_of(r); });
     // From here on, expressions grow in proportion to the model.

@@ -37,6 +37,7 @@ class SceneMaker {
       floor_ = root(*view_.floor);
     else if (!view_.no_floor && !flat() && level())
       floor_ = root(model_.graph->zero());
+    scene_.no_grid = view_.no_floor;
     scene_.follow = view_.follow;
     scene_.flat = flat();
     scene_.tape = compile(exprs_);
@@ -252,6 +253,8 @@ class SceneWriter {
     j_.key("floor");
     if (s_.floor)
       j_.open_object().key("z").number(number(*s_.floor)).close();
+    else if (s_.no_grid)
+      j_.boolean(false);
     else
       j_.null();
     j_.close();

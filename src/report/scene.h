@@ -33,6 +33,7 @@ struct Scene {
   std::vector<SceneItem> items;
   std::optional<std::array<std::size_t, 3>> camera, target;
   std::optional<double> floor;  // height of a plane z = const
+  bool no_grid = false;         // the model wants neither floor nor grid
   std::array<double, 3> up{0, 0, 1};
   bool flat = false;  // everything stays in a plane z = const
   std::string follow;

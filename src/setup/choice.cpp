@@ -199,7 +199,7 @@ void give(StateChoice& choice, const Model& model, const InitialName& of, const 
   if (!of.multiplier)
     if (const auto wrong = GivenQuantity::of_coordinate(model, index, of.order).misfit(value))
       throw Failure({}, called + wrong->message, wrong->hint("a number "));
-  choice.overrides.push_back({of.order, index, value.value, of.multiplier});
+  choice.overrides.push_back({of.order, index, value.value, of.multiplier, value.dimension.has_value()});
 }
 
 }  // namespace anholon

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "expr/generic_point.h"
+#include "modelfile/names/with_unit.h"
 #include "tape/point.h"
 
 namespace anholon {
@@ -77,9 +78,20 @@ bool changes(const System& system, std::size_t coordinate) {
   });
 }
 
+// Whether the initial value of the coordinate is written with a unit, in the file or beside it.
+bool is_with_unit(const Model& model, const std::vector<StateOverride>& overrides, std::size_t coordinate) {
+  for (const StateOverride& o : overrides)
+    if (!o.multiplier && o.order == 0 && o.coordinate == coordinate) return o.with_unit;
+  const Expr symbol = model.graph->jet(static_cast<std::uint32_t>(coordinate), 0);
+  return std::any_of(model.initial.given.begin(), model.initial.given.end(), [&](const GivenValue& v) {
+    return v.symbol == symbol && is_with_unit(model.source_text, v.span);
+  });
+}
+
 }  // namespace
 
-std::string note_of_large_angles(const System& system, const InitialState<double>& state, std::size_t nodes) {
+std::string note_of_large_angles(const System& system, const InitialState<double>& state, std::size_t nodes,
+                                 const std::vector<StateOverride>& overrides) {
   constexpr std::size_t kNamed = 8;
   const Model& model = *system.model;
   const std::size_t n = state.q.size();
@@ -92,8 +104,9 @@ std::string note_of_large_angles(const System& system, const InitialState<double
   if (large.empty()) return {};
   std::vector<bool> angles = terms_of_angles(*model.graph, nodes, n);
   remove_lengths(model, angles);
-  std::erase_if(large,
-                [&](std::size_t a) { return !angles[a] || !(usual_in_degrees(state.q[a]) || changes(system, a)); });
+  std::erase_if(large, [&](std::size_t a) {
+    return !angles[a] || !(usual_in_degrees(state.q[a]) || changes(system, a)) || is_with_unit(model, overrides, a);
+  });
   if (large.empty()) return {};
   const auto text = [&](std::size_t a, const std::string& value) { return model.coordinates[a].name + " = " + value; };
   std::string list;

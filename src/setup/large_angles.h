@@ -1,8 +1,9 @@
 // Initial angles that may have been meant in degrees.
 #pragma once
 #include <string>
+#include <vector>
 
-#include "structure/state.h"
+#include "structure/initial_problem.h"
 #include "system/system.h"
 
 namespace anholon {
@@ -10,8 +11,10 @@ namespace anholon {
 // The note on given initial angles whose numbers look like degrees, or "" if there are none. These are angles of 30, 45,
 // 60, 90, 180, 270 or 360 rad of either sign, and angles of more than four turns on which the equations depend: the
 // angle of a wheel that has rolled may have any value. A coordinate is an angle if it is a term in the argument of a
-// sine, cosine or tangent, as those of rotations are, and no length in the position of a body.
-// `nodes`: those of the graph when the model was read.
-std::string note_of_large_angles(const System& system, const InitialState<double>& state, std::size_t nodes);
+// sine, cosine or tangent, as those of rotations are, and no length in the position of a body. An angle that is written
+// with its unit is meant as it stands.
+// `nodes`: those of the graph when the model was read. `overrides`: the values that replace those of the model.
+std::string note_of_large_angles(const System& system, const InitialState<double>& state, std::size_t nodes,
+                                 const std::vector<StateOverride>& overrides);
 
 }  // namespace anholon

@@ -234,7 +234,7 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
     });
   const Outcome structured = analyse(s.system, parameters, hints_at(s.state), s.structure);
   if (structured.ok()) smooth_enough(s), drop_absent(s.system, s.structure);
-  const std::string large_angles = note_of_large_angles(s.system, s.state, s.given_nodes);
+  const std::string large_angles = note_of_large_angles(s.system, s.state, s.given_nodes, choice.overrides);
   if (!large_angles.empty()) s.notes.push_back(large_angles);
   if (!initial.ok()) return initial;
   if (!structured.ok()) return structured;

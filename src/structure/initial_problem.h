@@ -16,6 +16,7 @@ struct StateOverride {
   std::size_t coordinate;  // or the index of a constraint
   Rational value;
   bool multiplier = false;
+  bool with_unit = false;  // written as "45 rad"
 };
 
 // The expressions needed for positions and velocities, built once for many states: with a plan, `consistent_state`

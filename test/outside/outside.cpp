@@ -118,6 +118,11 @@ void sweep(const anholon::System& system) {
          "the last row is the end");
   expect(rows->column("max(theta)")[3] >= rows->rows("theta")[6] && rows->rows("max(theta)").empty(),
          "an extreme is one number for each case");
+  expect(!rows->write("sweep.txt"), "a sweep is written in the formats that hold sweeps");
+  const auto map = anholon::figure(*all), other_map = anholon::figure(*all, {.columns = {"theta"}});
+  expect(map && other_map && map->starts_with("<svg") && *map != *other_map, "maps over the two numbers that vary");
+  expect(!anholon::figure(*all, {.columns = {"thet"}}), "a figure names its columns");
+
   options.at = {}, options.reduce = {}, options.columns = {};
   options.vary = {{"m", {}, "uniform(1,2)"}};
   const auto endless = anholon::sweep(system, options);
@@ -175,6 +180,9 @@ void sweep_over_scenarios() {
          "a case tells its scenario");
   const auto refined = folder->refine();
   expect(!refined && refined.text().find("no grid") != std::string::npos, "several scenarios are no grid");
+  const std::string file = std::string(name) + "/falls.csv";
+  const auto written = all->write(file);
+  expect(written && *written == file && std::filesystem::file_size(file) > 100, "a sweep in memory is written");
   std::filesystem::remove_all(name);
 
   const auto error_of = [&](std::vector<anholon::Vary> vary) {

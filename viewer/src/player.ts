@@ -26,7 +26,7 @@ export class Player {
     const kinds = new Set(model.items.map((i) => i.kind));
     this.shown = {
       traces: true, frames: model.items.filter((i) => i.kind === 'frame').length <= 2, vectors: new Set(), scale: 1,
-      labels: model.items.filter((i) => placed(i) && i.label).length <= 8, grid: true,
+      labels: model.items.filter((i) => placed(i) && i.label).length <= 8, grid: model.floor !== false,
     };
     const offered = {
       traces: kinds.has('trace'), frames: kinds.has('frame'), labels: model.items.some((i) => placed(i) && i.label),

@@ -22,7 +22,7 @@ export interface RawScene {
   items: Item[];
   observer: null | { t: string; quaternion: string; origin: string };
   camera: { eye: Slots3 | null; target: Slots3 | null; up: Vector; flat: boolean; follow: string | null };
-  floor: null | { z: number };
+  floor: null | false | { z: number };     // false: no grid either
 }
 
 export interface Pose { name: string; kind: Kind; position: Vector; axes: number[] | null; vector?: Vector; points?: Vector[] }

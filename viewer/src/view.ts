@@ -73,7 +73,7 @@ export class View {
     this.carrier = new Group();
     this.world.add(this.carrier, new HemisphereLight(0xffffff, t.dark ? 0x9a9ea8 : 0xd8d4cc, flat ? 2.7 : 2.5));
     this.key = new DirectionalLight(0xffffff, flat ? 0.5 : 1.1);
-    this.key.castShadow = !flat && this.model.floor !== null;
+    this.key.castShadow = !flat && !!this.model.floor;
     this.key.shadow.mapSize.set(1024, 1024);
     this.key.shadow.radius = 3;
     // From the reader's side, so that no face that is looked at is grey.
@@ -87,7 +87,7 @@ export class View {
     };
     this.actors = make_actors(this.model, style);
     for (const a of this.actors) (a.item.kind === 'trace' ? this.world : this.carrier).add(a.object);
-    this.ground = new Ground(this.model.floor?.z ?? 0, t.ink, t.dark, this.key.castShadow);
+    this.ground = new Ground(this.model.floor ? this.model.floor.z : 0, t.ink, t.dark, this.key.castShadow);
     this.carrier.add(this.ground.group);
     this.triad = this.frame === 'inertial' && this.model.motion ? new Triad(1.1 * unit, 0.018 * unit, t.dark) : null;
     if (this.triad) this.carrier.add(this.triad.group);

@@ -178,6 +178,26 @@ test('what is shown can be chosen: toggles, following, both frames', { skip }, a
   assert.deepEqual(faults, []);
 });
 
+test('a scene with floor false has no grid until the reader wants one', { skip }, async () => {
+  const bare = disc(steady, 10, 201), lined = disc(steady, 10, 201);
+  bare.scene!.floor = false;
+  lined.scene!.floor = null;
+  const { page, faults } = await open([bare, lined]);
+  const picture = async (k: number): Promise<string> => {
+    await page.locator('.player').nth(k).scrollIntoViewIfNeeded();
+    await until_painted(page, `.player[data-case="${k}"] canvas.view`);
+    await settled(page);
+    return page.evaluate((i) => document.querySelectorAll<HTMLCanvasElement>('.player')[i].querySelector('canvas')!.toDataURL(), k);
+  };
+  const without = await picture(0), with_grid = await picture(1);
+  assert.notEqual(without, with_grid);
+  assert.equal(await page.locator('.player').first().locator('.grid-note').textContent(), '');
+  await page.locator('.player').first().getByLabel('Grid').check();
+  await settled(page);
+  assert.equal(await picture(0), with_grid);
+  assert.deepEqual(faults, []);
+});
+
 test('the plot reads the stored value under the cursor, in full', { skip }, async () => {
   const raw = disc(wobbling(12), 12, 401);
   const { page, faults } = await open([raw]);

@@ -39,7 +39,10 @@ void take_up(const SystemCommand& o, const std::string& rows, Told& x) {
   if (x.run.table.rows() == 0) throw UsageError{"error: the run has no rows\n"};
   if (!rows.empty()) {
     x.in = read(o);
-    if (x.run.units.empty()) x.run.units = column_units(*x.in.model);
+    if (x.run.units.empty()) {
+      x.run.units = column_units(*x.in.model);
+      x.run.units.merge(column_units(contacts(*x.in.names)));
+    }
     make_ready(with_form(o, x.in), x);
     return;
   }

@@ -1,6 +1,5 @@
 #include "cli/motions/sweep_output.h"
 
-#include "base/json.h"
 #include "cli/say.h"
 #include "ensemble/parts/judgement.h"
 
@@ -13,29 +12,14 @@ SweepOutput::SweepOutput(const ResultFormat& format, const std::string& path, co
 
 void SweepOutput::result(const CaseResult& r) {
   const std::size_t number = before_ + r.number;
-  if (!r.outcome.ok()) {
-    StoppedCases& s = stopped_[r.outcome.kind];
-    if (s.count++ == 0) s.first = number, s.outcome = r.outcome;
-  }
+  count_stopped(stopped_, number, r.outcome);
   table_->rows(r, number, word_, [&](std::span<const SweepCell> cells) { file_->row(cells); });
   ++taken_;
   failed_ = !file_->error().empty();
 }
 
 std::string SweepOutput::close(const EnsembleReport& report) {
-  std::string text = "{\n  \"stopped\": [";
-  bool first = true;
-  for (const auto& [kind, s] : stopped_) {
-    text += std::string(first ? "" : ",") + "\n    {\"outcome\": \"" + name(kind) +
-            "\", \"cases\": " + std::to_string(s.count) + ", \"first\": " + std::to_string(s.first) +
-            ", \"message\": \"" + json_escape(s.outcome.message) + "\", \"hint\": \"" + json_escape(s.outcome.hint) +
-            "\"}";
-    first = false;
-  }
-  return file_->close(text + (first ? "" : "\n  ") + "],\n  \"error_estimate\": " + error_json(report.error) +
-                      ",\n  \"residuals\": " + residuals_json(report.residuals) + ",\n  \"cases\": " +
-                      std::to_string(report.done) + ",\n  \"finished\": " + std::to_string(report.finished) +
-                      ",\n  \"outcome\": \"" + name(report.outcome.kind) + "\"\n}");
+  return file_->close(sweep_report_json(stopped_, report));
 }
 
 const ResultFormat& sweep_format(const std::string& output, bool json) {

@@ -1,19 +1,13 @@
 // The file of a sweep and what is said of its cases at the end.
 #pragma once
 #include <atomic>
-#include <map>
 
 #include "cli/input.h"
+#include "ensemble/parts/sweep_report.h"
 #include "ensemble/table.h"
 #include "result/format.h"
 
 namespace anholon::cli {
-
-// Cases that ended in the same way; the first of them is printed.
-struct StoppedCases {
-  std::size_t count = 0, first = 0;
-  Outcome outcome;
-};
 
 // Hands the rows of the cases to the writer of a file, and counts the outcomes of those that stopped.
 class SweepOutput final : public CaseSink {
@@ -25,7 +19,7 @@ class SweepOutput final : public CaseSink {
   void result(const CaseResult& r) override;
   // Called by all threads.
   bool failed() const { return failed_; }
-  const std::map<OutcomeKind, StoppedCases>& stopped() const { return stopped_; }
+  const StoppedByKind& stopped() const { return stopped_; }
   // Returns an empty string, or the reason why the file could not be written.
   std::string close(const EnsembleReport& report);
 
@@ -35,7 +29,7 @@ class SweepOutput final : public CaseSink {
   std::string word_;
   std::size_t before_ = 0, taken_ = 0;  // cases
   std::atomic<bool> failed_{false};
-  std::map<OutcomeKind, StoppedCases> stopped_;
+  StoppedByKind stopped_;
 };
 
 // The format of the file that -o names; without a file --json decides. Throws UsageError.

@@ -70,6 +70,20 @@ class Elements {
     return formulas_.units_seen;
   }
 
+  // Gives the contacts their units. REQUIRES: the elements have been run.
+  void measure(std::vector<Contact>& list) {
+    for (const char* section : {"contact", "constraint"}) {
+      const Item* items = root_.find(section);
+      if (!items || items->kind != Item::Kind::array) continue;
+      for (std::size_t k = 0; k < items->items.size(); ++k) {
+        const Item& c = items->items[k];
+        const Item* named = c.find("name");
+        const std::string name = named ? normal_name(named->text()) : section + std::to_string(k + 1);
+        guard([&] { measure(list, c, name); }, c.span);
+      }
+    }
+  }
+
   const std::vector<Diagnostic>& found() const { return found_.list(); }
   FormulaDimensions& formulas() { return formulas_; }
 
@@ -175,16 +189,38 @@ class Elements {
   // The power of friction is that of a force: a coefficient without a body is [gap]/([slip] s).
   void contacts() {
     list("contact", [&](const Item& c) {
-      DimensionForm friction;
+      DimensionForm friction, distance;
       const Item *gap = c.find("gap"), *slip = c.find("slip");
+      if (gap && gap->is_formula()) guard([&] { distance = formulas_.of(*gap).dimension; }, gap->span);
       if (gap && slip && gap->is_formula() && slip->is_formula())
-        friction = formulas_.of(*gap).dimension / (formulas_.of(*slip).dimension * formulas_.unit("s"));
+        friction = distance / (formulas_.of(*slip).dimension * formulas_.unit("s"));
       for (const char* key : {"friction", "static_friction"})
         if (const Item* i = c.find(key); i && (c.find("body") || (slip && slip->is_formula()))) expect(*i, friction);
       if (const Item* e = c.find("restitution")) expect(*e, DimensionForm{});
       for (const char* length : {"rolling_resistance", "drilling_resistance", "at", "through"})
         expect(c.find(length), "m");
     });
+  }
+
+  // The contacts of an element. The power of a force is that of the rate of its gap, and of its slip velocity.
+  void measure(std::vector<Contact>& list, const Item& c, const std::string& name) {
+    const Item *gap = c.find("gap"), *slip = c.find("slip"), *equation = c.find("equation");
+    DimensionForm distance = formulas_.unit("m"), velocity = formulas_.unit("m/s");
+    if (gap) distance = formulas_.of(*gap).dimension;
+    if (equation) distance = formulas_.of(parse_equation(equation->formula)[0]).dimension;
+    if (slip && slip->is_formula()) velocity = formulas_.of(*slip).dimension;
+    if (slip && !slip->items.empty()) velocity = formulas_.of(slip->items[0]).dimension;
+    const auto unit = [&](const DimensionForm& form) {
+      const auto known = formulas_.known(form);
+      return known ? print(*known) : std::string();
+    };
+    const ContactUnits units{unit(distance), unit(formulas_.unit("J") / distance), unit(velocity),
+                             unit(formulas_.unit("W") / velocity)},
+        resistance{units.gap, units.normal, "1/s", "N*m"};
+    for (Contact& contact : list) {
+      const bool own = contact.under ? list[*contact.under].element == name : contact.element == name;
+      if (own && !contact.held) contact.units = contact.under ? resistance : units;
+    }
   }
 
   // The knots may have units as well.
@@ -316,7 +352,8 @@ static bool overrides_with_units(const Scope& scope) {
   });
 }
 
-void check_dimensions(const Item& root, const Scope& scope, Model& model, Diagnostics& diagnostics) {
+void check_dimensions(const Item& root, const Scope& scope, Model& model, std::vector<Contact>& contacts,
+                      Diagnostics& diagnostics) {
   if (!may_have_units(root) && !overrides_with_units(scope)) return;
   Elements elements(root, scope, model);
   const bool units_seen = elements.run();
@@ -339,6 +376,7 @@ void check_dimensions(const Item& root, const Scope& scope, Model& model, Diagno
     diagnostics.warning(b.span, b.text + " without a unit stands beside " + describe(b.dimension),
                         b.text + " " + print(b.dimension) + ", or 1*" + b.text +
                             " where the number has its unit in SI");
+  elements.measure(contacts);
 }
 
 std::map<std::string, std::string> implied_units(const Item& root, const Scope& scope, const Model& model) {

@@ -6,12 +6,13 @@
 #pragma once
 #include <map>
 
-#include "modelfile/names/names.h"
+#include "modelfile/mechanical/contacts.h"
 
 namespace anholon {
 
-// Reports clashes, and stores the units that were found in the model. The file must have no errors.
-void check_dimensions(const Item& root, const Scope& scope, Model& model, Diagnostics& diagnostics);
+// Reports clashes, and stores the units that were found in the model and in its contacts. The file must have no errors.
+void check_dimensions(const Item& root, const Scope& scope, Model& model, std::vector<Contact>& contacts,
+                      Diagnostics& diagnostics);
 // The units of the coordinates and parameters of a file without units, as far as they follow from its formulas: a position
 // is a length. Empty if the formulas contradict one another.
 std::map<std::string, std::string> implied_units(const Item& root, const Scope& scope, const Model& model);

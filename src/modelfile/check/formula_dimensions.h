@@ -38,6 +38,7 @@ class FormulaDimensions {
   void expect(const Measured& m, const DimensionForm& wanted, Span place);
   void alike(const Measured& a, const Measured& b, Span place, const char* between, const char* behind = "");
   std::optional<Dimension> known(const std::string& name);
+  std::optional<Dimension> known(const DimensionForm& form) const { return dimensions_.known(form); }
 
   // The dimensions of x and y of a table.
   std::pair<DimensionForm, DimensionForm> table(const std::string& name);

@@ -144,7 +144,8 @@ initial = {z = 1, "phi'" = 9}
   Poisson's law: the impulse that stops the gap is followed by e times this impulse. Both agree without friction; with friction Newton's law may raise the energy, which ends the
   motion. All contacts of a model have one law. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
   That limit is found for the impacts of one contact. A box that bounces from corner to corner may instead take many impacts and stop with the outcome that a gap is negative.
-- At most eight contacts; those that touch at one time are few, as all their modes are tried. Motions, reports and sweeps know them, in the libraries, too; derivations, proofs and linear models are those of
+- At most eight contacts; those that touch at one time are few, as all their modes are tried. Soft contacts may be as many as you like: a `[[force]]` each,
+  with `vector = "-k*min(P.z, 0)*ez"`. Motions, reports and sweeps know contacts, in the libraries, too; derivations, proofs and linear models are those of
   one mode, `--mode NAME=sticks`. They do not go with events that set values, nor with servo constraints. [Recipes](contact.md).
 
 ```toml

@@ -14,6 +14,23 @@ namespace anholon {
 
 bool Contact::rough() const { return !slip.empty() && !(is_zero(friction) && is_zero(static_friction)); }
 
+std::map<std::string, std::string> column_units(const std::vector<Contact>& contacts) {
+  std::map<std::string, std::string> units;
+  const auto add = [&](const std::string& column, const std::string& unit) {
+    if (!unit.empty()) units[column] = unit;
+  };
+  for (const Contact& c : contacts) {
+    if (c.under) {
+      add(c.name + ".moment", c.units.friction);
+      continue;
+    }
+    add(c.name + ".gap", c.units.gap);
+    add(c.name + ".normal", c.units.normal);
+    add(c.name + ".friction", c.units.friction);
+  }
+  return units;
+}
+
 namespace {
 
 class ContactReader {
@@ -90,6 +107,7 @@ class ContactReader {
       if (const Item* i = c.find(key))
         throw Failure(i->key_span, "'" + std::string(key) + "' goes with 'body'", "body = \"ball\"");
     const Item* gap = c.find("gap");
+    if (!gap && (is_misspelt("gap", c, "contact") || is_misspelt("body", c, "contact"))) throw silent_failure();
     if (!gap)
       throw Failure(contact.span, "the contact '" + contact.name + "' has no gap",
                     "gap = \"P.z - R\": the distance, which is not negative; or body = \"ball\", whose shape touches");
@@ -227,6 +245,11 @@ bool is_one_sided(const Item& constraint) {
   return word->truth;
 }
 
+// What a model with too many contacts may have instead.
+static constexpr const char* kSoftContacts =
+    "leave out contacts that stay open, or write soft ones, as many as you like: [[force]] with vector = \"-k*min(P.z, "
+    "0)*ez\"";
+
 std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
   constexpr std::size_t kMost = 8;  // the modes of those that touch are enumerated
   std::vector<Contact> list;
@@ -236,7 +259,8 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
   };
   const auto add = [&](Contact contact) {
     if (!contact.under && touching() == kMost)
-      throw Failure(contact.span, "more than " + std::to_string(kMost) + " contacts; a box has one for each corner");
+      throw Failure(contact.span, "more than " + std::to_string(kMost) + " contacts; a box has one for each corner",
+                    kSoftContacts);
     if (std::any_of(list.begin(), list.end(), [&](const Contact& o) { return o.name == contact.name; }))
       throw Failure(contact.span, "there are two contacts '" + contact.name + "'");
     list.push_back(std::move(contact));
@@ -257,7 +281,8 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
       }
     });
   std::size_t count = items ? items->items.size() : 0;
-  const Item* last = items;
+  // The first contact that is one too many.
+  Span beyond = count > kMost ? items->items[kMost].span : Span{};
   if (constraints)
     for (std::size_t k = 0; k < constraints->items.size(); ++k) {
       const Item& c = constraints->items[k];
@@ -270,13 +295,13 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
           throw Failure(active->key_span, "'active' does not go with one_sided = true",
                         "an event that sets a mode opens and closes a constraint with 'active'; one of one side opens "
                         "where it would pull");
-        last = word;
-        if (++count <= kMost) add(reader.read_one_sided(c, k));
+        if (++count <= kMost) return add(reader.read_one_sided(c, k));
+        if (count == kMost + 1) beyond = word->key_span;
       });
     }
   if (count > kMost)
-    diagnostics.error(last->key_span,
-                      std::to_string(count) + " contacts; at most " + std::to_string(kMost) + " are accepted");
+    diagnostics.error(beyond, std::to_string(count) + " contacts; at most " + std::to_string(kMost) + " are accepted",
+                      kSoftContacts);
   return list;
 }
 

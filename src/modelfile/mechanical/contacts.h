@@ -5,6 +5,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -44,6 +45,11 @@ struct Switch {
   std::optional<std::size_t> at_start;
 };
 
+// The SI units of a contact in a file with units; empty where they do not follow.
+struct ContactUnits {
+  std::string gap, normal, slip, friction;  // of resistance: slip is an angular velocity, friction a moment
+};
+
 struct Contact {
   std::string name;
   std::string element;     // its name in the file: of a corner of a box that of the box
@@ -66,8 +72,12 @@ struct Contact {
   std::vector<Coefficient> given;
   std::optional<Switch> held;  // a constraint that holds in some modes: its left side minus its right one is `gap`
   std::shared_ptr<const ContactForces> forces;  // those of all contacts of the model; null if no formula holds any
-  bool rough() const;                           // whether there is friction
+  ContactUnits units;
+  bool rough() const;  // whether there is friction
 };
+
+// The SI units of the columns of contacts: {"floor.gap": "m", "floor.normal": "N"}, as far as they are known.
+std::map<std::string, std::string> column_units(const std::vector<Contact>& contacts);
 
 // In the notes of a model whose contacts are open, or whose modes are those of the start.
 inline constexpr const char* kOpenContacts = "part of these equations, which hold while ";

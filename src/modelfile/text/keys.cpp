@@ -55,6 +55,10 @@ std::string hint_for_other_word(const std::string& section, const std::string& w
   return "";
 }
 
+bool is_among(const std::vector<std::string>& known, const std::string& key) {
+  return std::find(known.begin(), known.end(), key) != known.end();
+}
+
 std::string list_of(const std::vector<std::string>& known) {
   std::string list = "known here: ";
   for (std::size_t k = 0; k < known.size(); ++k) list += (k ? ", " : "") + known[k];
@@ -66,7 +70,7 @@ std::string list_of(const std::vector<std::string>& known) {
 void check_keys(const Item& table, const std::string& where, const std::string& section, Diagnostics& diagnostics) {
   const std::vector<std::string> known = known_keys(language_section(section));
   for (const Item& i : table.items) {
-    if (std::find(known.begin(), known.end(), i.key) != known.end()) continue;
+    if (is_among(known, i.key)) continue;
     const std::string other = hint_for_other_word(section, i.key),
                       near = other.empty() ? did_you_mean(i.key, known) : "";
     diagnostics.error(i.key_span,
@@ -76,6 +80,15 @@ void check_keys(const Item& table, const std::string& where, const std::string& 
                       : near.empty() ? list_of(known)
                                      : "");
   }
+}
+
+bool is_misspelt(const std::string& key, const Item& table, const std::string& section) {
+  const std::vector<std::string> known = known_keys(language_section(section));
+  return std::any_of(table.items.begin(), table.items.end(), [&](const Item& i) {
+    if (is_among(known, i.key)) return false;
+    const std::string other = hint_for_other_word(section, i.key);
+    return other.empty() ? did_you_mean(i.key, known) == key : other.starts_with(key + " = ");
+  });
 }
 
 const Item* find_section(const Item& root, const char* key, Diagnostics& diagnostics) {

@@ -11,6 +11,9 @@ namespace anholon {
 // name for the table.
 void check_keys(const Item& table, const std::string& where, const std::string& section, Diagnostics& diagnostics);
 
+// Whether a key that check_keys() reports was meant as this one: it resembles it, or its hint is about it.
+bool is_misspelt(const std::string& key, const Item& table, const std::string& section);
+
 // The section of that name; null if there is none, or if its value is not a section (reported).
 const Item* find_section(const Item& root, const char* key, Diagnostics& diagnostics);
 

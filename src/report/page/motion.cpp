@@ -42,11 +42,15 @@ class MotionSection {
     const RunTable& t = c.run.table;
     if (t.rows() == 0) return "";
     constexpr std::size_t kMostColumns = 64;
-    std::string out =
-        "<div class=\"wide\"><table><thead><tr><td></td><th>first row</th><th>last row</th></tr></thead><tbody>\n";
-    for (std::size_t k = 0; k < std::min(t.columns.size(), kMostColumns); ++k)
+    const bool units = !c.run.units.empty();
+    std::string out = "<div class=\"wide\"><table><thead><tr><td></td><th>first row</th><th>last row</th>" +
+                      std::string(units ? "<th>unit</th>" : "") + "</tr></thead><tbody>\n";
+    for (std::size_t k = 0; k < std::min(t.columns.size(), kMostColumns); ++k) {
+      const auto unit = c.run.units.find(t.columns[k]);
       out += "<tr><th scope=\"row\">" + user(t.columns[k]) + "</th><td>" + markup_escape(t.text(0, k)) + "</td><td>" +
-             markup_escape(t.text(t.rows() - 1, k)) + "</td></tr>\n";
+             markup_escape(t.text(t.rows() - 1, k)) + "</td>" +
+             (units ? "<td>" + (unit == c.run.units.end() ? "" : user(unit->second)) + "</td>" : "") + "</tr>\n";
+    }
     return out + "</tbody></table></div>\n";
   }
 

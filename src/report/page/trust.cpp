@@ -24,24 +24,33 @@ std::string digits(const SimulationReport& r) {
   return list + ", by " + r.error->means;
 }
 
-std::string watched(const SimulationReport& r, const std::string& of) {
+// `units`: of columns, as far as they are known.
+std::string watched(const SimulationReport& r, const std::map<std::string, std::string>& units, const std::string& of) {
   constexpr std::size_t kMostEvents = 50;
+  const auto unit = [&](const std::string& name) {
+    const auto it = units.find(name);
+    return it == units.end() ? std::string() : user(it->second);
+  };
+  std::vector<std::string> head = {"", "first", "last", "least", "greatest", "largest change, relative"};
+  if (!units.empty()) head.insert(head.end() - 1, "unit");
   std::vector<std::vector<std::string>> rows;
   for (const std::vector<WatchedReport>* list : {&r.conserved, &r.monitors})
-    for (const WatchedReport& w : *list)
+    for (const WatchedReport& w : *list) {
       rows.push_back(
           {user(w.name), w.first.text(), w.last.text(), w.least.text(), w.greatest.text(), residual(w.largest_change)});
-  std::string out = table("Integrals of the motion and what was watched" + of,
-                          {"", "first", "last", "least", "greatest", "largest change, relative"}, rows);
+      if (!units.empty()) rows.back().insert(rows.back().end() - 1, unit(w.name));
+    }
+  std::string out = table("Integrals of the motion and what was watched" + of, head, rows);
   std::vector<std::vector<std::string>> events;
   for (std::size_t k = 0; k < std::min(r.events.size(), kMostEvents); ++k) {
     const EventReport& e = r.events[k];
     std::string set;
     for (const EventReport::Change& c : e.changes)
-      set += (set.empty() ? "" : ", ") + user(c.name) + " " + c.before.text() + " → " + c.after.text();
+      set += (set.empty() ? "" : ", ") + user(c.name) + " " + c.before.text() + " → " + c.after.text() +
+             (unit(c.name).empty() ? "" : " " + unit(c.name));
     events.push_back({user(e.name), e.t.text(), set});
   }
-  out += table("Events" + of, {"", "t", "what was set"}, events);
+  out += table("Events" + of, {"", unit("t").empty() ? "t" : "t (" + unit("t") + ")", "what was set"}, events);
   for (const std::string& note : r.notes) out += warning_box({sentence(note), ""});
   for (const Warning& w : r.warnings) out += warning_box(w);
   return out;
@@ -81,7 +90,8 @@ std::string trust_section(const Page& page, const CaseReports& reports) {
   }
   out += table("Residual report", reports.size() > 1 ? head : std::vector<std::string>{}, rows);
   for (std::size_t k = 0; k < reports.size(); ++k)
-    if (reports[k]) out += watched(*reports[k], page.cases[k].name.empty() ? "" : ", " + page.cases[k].name);
+    if (reports[k])
+      out += watched(*reports[k], page.cases[k].run.units, page.cases[k].name.empty() ? "" : ", " + page.cases[k].name);
   return out;
 }
 

@@ -189,7 +189,7 @@ TEST(SharedFriction, ContactsThatDoNotAsTheirModesSayAreFound) {
   Scenario s;
   ASSERT_TRUE(make_scenario(open->model, *find_formulation("routh"), {}, s).ok());
   Workspace own(s);
-  const std::vector<Contact> list = contacts(*open->names);
+  std::vector<Contact> list = contacts(*open->names);
   const auto says = [&](double velocity, Touch touch, double direction) {
     TouchingBodies bodies(own, list, {Rational(0), {0, 0.1, 0}, {velocity, 0, 0}, {}});
     bodies.modes.resize(2);
@@ -201,6 +201,8 @@ TEST(SharedFriction, ContactsThatDoNotAsTheirModesSayAreFound) {
   EXPECT_EQ(says(1, Touch::slips, 1), "");
   EXPECT_EQ(says(1, Touch::sticks, 0), "the contact 'l1' sticks, and slips with 1");
   EXPECT_EQ(says(1, Touch::slips, -1), "the contact 'l1' slips against its direction with 1");
+  for (Contact& c : list) c.units.slip = "m/s";
+  EXPECT_EQ(says(1, Touch::sticks, 0), "the contact 'l1' sticks, and slips with 1 m/s");
 }
 
 }  // namespace shared_forces_test

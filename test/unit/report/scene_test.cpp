@@ -101,6 +101,19 @@ TEST(Scene, PlaneModelsAreFlatAndDrawnByTheirView) {
   for (const Json& i : s["items"]) EXPECT_NE(i["kind"], "point");  // hidden
 }
 
+TEST(Scene, FloorFalseIsNeitherFloorNorGrid) {
+  const auto floor_of = [](const std::string& view) {
+    const std::string model = R"toml(coordinates = ["x", "y", "z"]
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey + z*ez"}]
+gravity.field = "-9.81*ez"
+)toml";
+    return scene_of(*test::model_of(model + view))["floor"];
+  };
+  EXPECT_EQ(floor_of("view.floor = false\n"), false);
+  EXPECT_EQ(floor_of("view.floor = -1\n")["z"], -1);
+  EXPECT_NE(floor_of(""), false);
+}
+
 TEST(Scene, WithoutAViewParticlesLeaveTheirPath) {
   Diagnostics d;
   const auto model = read_model(

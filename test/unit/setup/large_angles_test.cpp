@@ -1,6 +1,7 @@
 // The note on initial angles that may have been meant in degrees.
 #include <gtest/gtest.h>
 
+#include "setup/choice.h"
 #include "setup/large_angles.h"
 #include "setup/scenario.h"
 #include "support/models.h"
@@ -38,10 +39,10 @@ s = 45
 phi = 100
 )toml";
 
-std::string note(const std::string& text) {
+std::string note(const std::string& text, const StateChoice& choice = {}) {
   Scenario s;
-  make_scenario(test::model_of(text), *find_formulation("routh"), {}, s);
-  return note_of_large_angles(s.system, s.state, s.given_nodes);
+  make_scenario(test::model_of(text), *find_formulation("routh"), choice, s);
+  return note_of_large_angles(s.system, s.state, s.given_nodes, choice.overrides);
 }
 
 std::string with_theta(const std::string& value) { return test::replaced(kModel, "theta = 0.3", "theta = " + value); }
@@ -66,6 +67,37 @@ TEST(LargeAngles, MoreThanFourTurnsAreNotedIfTheEquationsDependOnThem) {
 TEST(LargeAngles, DegreesWithTheirUnitAreNotNoted) {
   EXPECT_EQ(note(with_theta("\"45 deg\"")), "");
   EXPECT_EQ(note(with_theta("0.5\n\"theta'\" = 45")), "");
+}
+
+TEST(LargeAngles, AnglesWithTheirUnitAreMeantAsTheyStand) {
+  for (const std::string value : {"45 rad", "2000 deg", "-10 rev", "pi/2 + 200*45 deg"})
+    EXPECT_EQ(note(with_theta("\"" + value + "\"")), "") << value;
+  EXPECT_NE(note(with_theta("\"45\"")), "");
+  EXPECT_NE(note(with_theta("\"30*m\"")), "");
+  const auto given = [](const std::string& value) {
+    StateChoice choice;
+    give(choice, *test::model_of(kModel), {"theta"}, read_constant(value));
+    return choice;
+  };
+  EXPECT_EQ(note(kModel, given("45 rad")), "");
+  EXPECT_NE(note(kModel, given("45")), "");
+  EXPECT_NE(note(with_theta("\"45 rad\""), given("60")), "");
+}
+
+TEST(LargeAngles, TheUnitOfAFamilyIsThatOfEachMember) {
+  const std::string chain = R"toml(index.i = "1..2"
+coordinates = ["a[i]"]
+[[particle]]
+name = "P[i]"
+mass = 1
+position = "i*(cos(a[i])*ex + sin(a[i])*ey)"
+[gravity]
+field = "-9.81*ey"
+[initial]
+"a[i]" = "45 rad"
+)toml";
+  EXPECT_EQ(note(chain), "");
+  EXPECT_NE(note(test::replaced(chain, "45 rad", "45")), "");
 }
 
 // The state of such a start clashes with the constraints, and the note may tell the reason.

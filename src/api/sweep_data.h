@@ -1,0 +1,35 @@
+// What stands behind a Sweep.
+#pragma once
+#include "anholon/sweep.h"
+#include "api/data.h"
+#include "ensemble/parts/sweep_report.h"
+#include "ensemble/table.h"
+
+namespace anholon::v1 {
+
+struct Sweep::Data {
+  std::shared_ptr<const Model::Data> model;         // without the scenarios that vary
+  std::vector<std::string> names, columns;          // of what is varied; of the final state, then the reductions
+  std::vector<std::string> scenarios;               // that vary; each has as many cases
+  std::vector<std::vector<double>> varied, values;  // by name, by column
+  std::size_t of_state = 0;                         // how many columns are no reductions
+  std::vector<double> times;
+  std::vector<std::vector<double>> rows;  // by column of the state: case by case, at the times
+  std::vector<double> t;
+  std::vector<Outcome> outcomes;
+  std::vector<std::string> events;  // empty if none has ended a motion
+  std::vector<std::size_t> steps;
+  Outcome outcome;
+  std::size_t finished = 0;
+
+  // As a table of the command line, which has the columns of the state and reductions at these places among all of them.
+  std::optional<inner::SweepTable> table;
+  std::vector<std::size_t> places;
+  std::size_t all_of_state = 0, all_reductions = 0;
+  std::string form;
+  std::map<std::string, std::string> units;  // of columns and of what is varied, as far as they are known
+  inner::StoppedByKind stopped;
+  inner::EnsembleReport report;
+};
+
+}  // namespace anholon::v1

@@ -1,0 +1,11 @@
+// Numbers of a model file that are written with a unit.
+#pragma once
+#include "base/diagnostic.h"
+
+namespace anholon {
+
+// Whether the value of the key at this place holds a number with a unit: theta = "45 rad". Reads the text again. False if
+// there is no such key.
+bool is_with_unit(const SourceText& source, Span key);
+
+}  // namespace anholon

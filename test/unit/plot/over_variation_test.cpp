@@ -1,0 +1,42 @@
+// Columns of a sweep over the number that varies.
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "plot/over_variation.h"
+
+namespace anholon::plot::over_variation_test {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> column(const RunFile& run, std::size_t k) {
+  const std::span<const double> values = run.table.values[k];
+  return {values.begin(), values.end()};
+}
+
+TEST(OverVariation, OneCaseOfEachValueIsACurve) {
+  const RunFile run =
+      over_variation({"m", "kg", {3, 1, 2, 4}}, {{"x", "m", {30, 10, 20, kNone}}, {"y", "", {3, kNone, 2, kNone}}});
+  EXPECT_EQ(run.table.columns, (std::vector<std::string>{"m", "x", "y"}));
+  EXPECT_EQ(run.units, (std::map<std::string, std::string>{{"m", "kg"}, {"x", "m"}}));
+  EXPECT_EQ(column(run, 0), (std::vector<double>{1, 2, 3}));  // no case has a number at m = 4
+  EXPECT_EQ(column(run, 1), (std::vector<double>{10, 20, 30}));
+  EXPECT_TRUE(std::isnan(column(run, 2)[0]));
+  EXPECT_EQ(column(run, 2)[2], 3);
+}
+
+TEST(OverVariation, SeveralCasesOfAValueAreQuantiles) {
+  std::vector<double> m(11, 1), x;
+  for (int k = 10; k >= 0; --k) x.push_back(k);
+  m.push_back(2), x.push_back(7);
+  const RunFile run = over_variation({"m", "", m}, {{"x", "", x}});
+  EXPECT_EQ(run.table.columns, (std::vector<std::string>{"m", "x 10 %", "x 50 %", "x 90 %"}));
+  EXPECT_EQ(column(run, 1), (std::vector<double>{1, 7}));
+  EXPECT_EQ(column(run, 2), (std::vector<double>{5, 7}));
+  EXPECT_EQ(column(run, 3), (std::vector<double>{9, 7}));
+}
+
+}  // namespace
+}  // namespace anholon::plot::over_variation_test
