@@ -3,6 +3,7 @@
 #include "ensemble/case_scenario.h"
 #include "ensemble/columns.h"
 #include "observe/estimate.h"
+#include "simulation/simulate.h"
 
 namespace anholon {
 
@@ -14,15 +15,57 @@ bool made_by_kernel(const Scenario& s) {
   return s.model->bounds.empty() && no_plan(p).empty();
 }
 
-SimulationReport compared(const Scenario& of_case, const EnsembleOptions& o, const EnsembleCase& numbers,
-                          const CaseResult& r) {
+// Makes further runs of cases, one after the other. All that have the equations of the first one share its workspace, and
+// what its run leaves.
+class FurtherRuns {
+ public:
+  FurtherRuns(const Scenario& of_all, const EnsembleOptions& o) : of_all_(of_all), o_(o) {}
+
+  // The sharper run of a case, compared with its result.
+  SimulationReport compare(const CaseResult& r);
+  // A run as the case's, with its residuals.
+  SimulationReport look_at(const CaseResult& r);
+
+ private:
+  Outcome begin(const EnsembleCase& numbers);
+
+  const Scenario& of_all_;
+  const EnsembleOptions& o_;
+  std::unique_ptr<Workspace> own_;
+  RunToJudge<long double>::Plans compared_;
+  SimulationPlans looked_at_;
+};
+
+// Makes the workspace that of a case.
+Outcome FurtherRuns::begin(const EnsembleCase& numbers) {
+  StateChoice state = o_.state;
+  state.overrides = overrides_of(o_, &numbers);
+  if (own_) {
+    for (std::size_t i = 0; i < o_.varied.size(); ++i)
+      if (o_.varied[i].kind == Varied::Kind::parameter) own_->set_parameter(o_.varied[i].index, numbers.values[i]);
+    if (const std::optional<Outcome> begun = begin_anew(*own_, state)) return *begun;
+  }
+  compared_ = {};
+  looked_at_ = {};
+  own_.reset();
+  Scenario of_case;
+  const Outcome o = scenario_of_case(of_all_, o_, numbers, of_case);
+  if (o.ok()) own_ = std::make_unique<Workspace>(of_case);
+  return o;
+}
+
+SimulationReport FurtherRuns::compare(const CaseResult& r) {
   SimulationReport report;
-  Workspace s(of_case);
+  const EnsembleCase numbers = o_.numbers(r.number);
+  if (!begin(numbers).ok()) return report;
+  const EnsembleOptions& o = o_;
+  Workspace& s = *own_;
   SimulationOptions options = options_of_case(o, numbers);
   options.estimate = o.estimate;
   RunToJudge<long double> run;
   run.columns = ensemble_places(columns_after_time(s, largest_order(s, s.structure.d)));
   run.knows_resets = false;
+  run.plans = &compared_;
   run.by_kernel = o.kernel && made_by_kernel(s);
   report.steps = r.steps;
   const auto end = from_rational<long double>(numbers.to ? *numbers.to : o.to);
@@ -60,14 +103,17 @@ class NoRows final : public RowSink {
   void row(const Row&) override {}
 };
 
-SimulationReport looked_at(const Scenario& of_case, const EnsembleOptions& o, const EnsembleCase& numbers) {
-  SimulationOptions options = options_of_case(o, numbers);
-  options.to = numbers.to ? *numbers.to : o.to;
-  options.order = o.order;
-  options.method = o.method;
-  options.kernel = o.kernel;
+SimulationReport FurtherRuns::look_at(const CaseResult& r) {
+  SimulationReport report;
+  const EnsembleCase numbers = o_.numbers(r.number);
+  if (report.outcome = begin(numbers); !report.outcome.ok()) return report;
+  SimulationOptions options = options_of_case(o_, numbers);
+  options.to = numbers.to ? *numbers.to : o_.to;
+  options.order = o_.order;
+  options.method = o_.method;
+  options.kernel = o_.kernel;
   NoRows rows;
-  return simulate(of_case, options, rows);
+  return simulate_in(*own_, options, rows, &looked_at_);
 }
 
 // The reports of two further runs of a case.
@@ -75,18 +121,10 @@ struct Judged {
   SimulationReport compared, looked_at;
 };
 
-// The two runs of one case, each with a scenario of its own, so that two threads can make them at once.
-void compare(const Scenario& of_all, const EnsembleOptions& o, const CaseResult& r, SimulationReport& report) {
-  const EnsembleCase numbers = o.numbers(r.number);
-  Scenario of_case;
-  if (scenario_of_case(of_all, o, numbers, of_case).ok()) report = compared(of_case, o, numbers, r);
-}
-
-void look_at(const Scenario& of_all, const EnsembleOptions& o, const CaseResult& r, SimulationReport& report) {
-  const EnsembleCase numbers = o.numbers(r.number);
-  Scenario of_case;
-  report.outcome = scenario_of_case(of_all, o, numbers, of_case);
-  if (report.outcome.ok()) report = looked_at(of_case, o, numbers);
+// How many cases follow one another with the same equations: those of short runs, for which to derive the equations would
+// take longer than the runs. Others are made side by side.
+std::size_t cases_in_turn(const EnsembleOptions& o, std::size_t cases) {
+  return o.estimate == ErrorEstimate::always ? 1 : std::max<std::size_t>(cases, 1);
 }
 
 CasesError error_of(std::span<const CaseResult* const> fit, std::span<const Judged> judged) {
@@ -138,21 +176,21 @@ void judge_cases(const Scenario& scenario, const EnsembleOptions& o, std::span<c
                  const Each& each, EnsembleReport& report) {
   const std::vector<const CaseResult*> fit = fit_for_judgement(o, results);
   std::vector<Judged> judged(fit.size());
-  each(2 * fit.size(), [&](std::size_t i) {
-    const CaseResult& r = *fit[i / 2];
-    Judged& of_case = judged[i / 2];
-    const bool compares = i % 2 == 0;
-    try {
-      if (compares)
-        compare(scenario, o, r, of_case.compared);
-      else
-        look_at(scenario, o, r, of_case.looked_at);
-    } catch (const Failure& e) {
-      if (compares)
-        of_case.compared.no_error = e.diagnostic.message;
-      else
-        of_case.looked_at.outcome = {OutcomeKind::too_large, e.diagnostic.message, e.diagnostic.hint};
-    }
+  const std::size_t in_turn = cases_in_turn(o, fit.size());
+  each(2 * ((fit.size() + in_turn - 1) / in_turn), [&](std::size_t task) {
+    const bool compares = task % 2 == 0;
+    FurtherRuns runs(scenario, o);
+    for (std::size_t i = task / 2 * in_turn; i < std::min(fit.size(), (task / 2 + 1) * in_turn); ++i) try {
+        if (compares)
+          judged[i].compared = runs.compare(*fit[i]);
+        else
+          judged[i].looked_at = runs.look_at(*fit[i]);
+      } catch (const Failure& e) {
+        if (compares)
+          judged[i].compared.no_error = e.diagnostic.message;
+        else
+          judged[i].looked_at.outcome = {OutcomeKind::too_large, e.diagnostic.message, e.diagnostic.hint};
+      }
   });
   report.error = error_of(fit, judged);
   report.residuals = residuals_of(fit, judged);

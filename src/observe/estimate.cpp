@@ -35,23 +35,21 @@ class SharperRun {
     // Both runs in one type of numbers would round their start alike, and grow alike from what is lost there.
     motion_.start_in_other_digits(std::same_as<W, V> && s_.model->events.empty());
     if constexpr (std::same_as<M, double>)
-      if (run_.motion) motion_.use(run_.motion->plans());
+      if (const std::optional<MotionPlans> known = known_plans()) motion_.use(*known);
     if (Outcome o = motion_.start(o_.state); !o.ok()) return o;
     t0_ = motion_.stepper().time();
     end_ = times_.back();
     forward_ = end_ > t0_;
     if constexpr (std::same_as<M, double>)
       if (motion_.stepper().accelerated()) {
-        waiting_.rows = run_.waiting;
-        if (!waiting_.rows)
-          waiting_.own = WaitingRows::make(s_, {}, orders_of_rows(s_), motion_.parameters(), motion_.start_state(),
-                                           to_double(end_));
-        if (!waiting_.rows) waiting_.rows = waiting_.own.get();
+        waiting_.rows = run_.waiting ? run_.waiting : rows_of_plans();
         if (waiting_.rows) waiting_.rows->set_parameters(motion_.parameters());
         if (waiting_.rows) waiting_.block.emplace(waiting_.rows->lanes());
       }
     const Outcome o = follow();
     const Outcome last = compare_waiting();
+    if constexpr (std::same_as<M, double>)
+      if (!run_.motion && motion_.plans().plan) plans().motion = motion_.plans();
     return o.ok() ? last : o;
   }
 
@@ -96,6 +94,25 @@ class SharperRun {
   bool whole() const { return lost_ || (!compared_.empty() && compared_.back()); }
 
  private:
+  typename RunToJudge<V>::Plans& plans() { return run_.plans ? *run_.plans : own_plans_; }
+  std::optional<MotionPlans> known_plans()
+    requires std::same_as<M, double>
+  {
+    if (run_.motion) return run_.motion->plans();
+    return plans().motion.plan ? std::optional(plans().motion) : std::nullopt;
+  }
+  WaitingRows* rows_of_plans()
+    requires std::same_as<M, double>
+  {
+    std::unique_ptr<WaitingRows>& rows = plans().rows;
+    if (rows)
+      rows->set_end(to_double(end_));
+    else
+      rows =
+          WaitingRows::make(s_, {}, orders_of_rows(s_), motion_.parameters(), motion_.start_state(), to_double(end_));
+    return rows.get();
+  }
+
   static int orders_of_rows(const Scenario& s) {
     Column monitors;
     for (const Monitor& m : s.model->monitors) monitors.push_back(m.value);
@@ -333,10 +350,10 @@ class SharperRun {
   std::vector<std::optional<RowComparison::Row>> compared_;
   struct {
     WaitingRows* rows = nullptr;  // null if rows are made by the reference
-    std::unique_ptr<WaitingRows> own;
     std::optional<WaitingBlock> block;
     std::vector<Foretold> foretold;
   } waiting_;
+  typename RunToJudge<V>::Plans own_plans_;
   std::vector<EventMoment<W>> met_;
   W t0_{0}, end_{0};
   bool forward_ = true, extended_ = false;

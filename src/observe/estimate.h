@@ -65,6 +65,13 @@ struct RunToJudge {
   const Motion<double>* motion = nullptr;
   std::vector<Expr> quadratures = {};
   WaitingRows* waiting = nullptr;
+  // Otherwise: what the second run of another motion has left, in the same workspace and with the same options; then what
+  // this one leaves.
+  struct Plans {
+    MotionPlans motion;
+    std::unique_ptr<WaitingRows> rows;
+  };
+  Plans* plans = nullptr;
 };
 
 // N: the numbers of the run. Fills `error`, or `no_error`.

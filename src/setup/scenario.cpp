@@ -255,10 +255,11 @@ Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& for
   return o;
 }
 
-std::optional<Outcome> begin_anew(Workspace& s) {
+std::optional<Outcome> begin_anew(Workspace& s, const StateChoice& choice) {
   if (s.routh || !s.elimination.pivots().empty()) return std::nullopt;
   const std::vector<double> parameters = parameter_values<double>(*s.model);
-  const InitialProblem<double> problem{s.mechanics.get(), parameters, {}, std::nullopt, nullptr, s.start.get()};
+  const InitialProblem<double> problem{s.mechanics.get(), parameters, choice.overrides,
+                                       choice.t,          nullptr,    s.start.get()};
   if (Outcome o = consistent_state(problem, s.state); !o.ok()) return o;
   if (Outcome o = admissible(*s.model, parameters, s.state); !o.ok()) return o;
   if (independent_constraints(*s.mechanics, parameters, s.state).independent != s.independent) return std::nullopt;

@@ -82,9 +82,10 @@ std::vector<ConstraintClass> classify(const Mechanics& mechanics);
 Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
                       Scenario& scenario);
 
-// Finds the consistent state of a workspace whose parameters have got other values (set_parameter). Returns nullopt if its
+// Finds the consistent state of a workspace whose parameters have got other values (set_parameter), or whose state others
+// (`choice`, for the same symbols as those with which it was made). Returns nullopt if its
 // equations are not those of the new state, where other constraints are independent: make_scenario makes them anew.
-std::optional<Outcome> begin_anew(Workspace& s);
+std::optional<Outcome> begin_anew(Workspace& s, const StateChoice& choice = {});
 
 // Derivatives of the multipliers that belong to the state or are solved for, in forms with multipliers.
 int multiplier_orders(const Scenario& scenario);
