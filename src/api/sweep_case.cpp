@@ -266,9 +266,10 @@ std::vector<AskedWord> words_of_numbers(const inner::Model& model,
                                         const std::vector<std::pair<std::string, std::string>>& numbers,
                                         bool of_scenarios) {
   std::vector<AskedWord> list;
-  for (const auto& [name, value] : numbers) {
+  for (const auto& number : numbers) {
+    const std::string &name = number.first, &value = number.second;
     const bool parameter = std::any_of(model.parameters.begin(), model.parameters.end(),
-                                       [&name = name](const inner::Parameter& p) { return p.name == name; });
+                                       [&](const inner::Parameter& p) { return p.name == name; });
     if (of_scenarios && name == "case" && list.empty())
       list.push_back({name, value});
     else

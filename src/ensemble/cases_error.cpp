@@ -180,7 +180,8 @@ void judge_cases(const Scenario& scenario, const EnsembleOptions& o, std::span<c
   each(2 * ((fit.size() + in_turn - 1) / in_turn), [&](std::size_t task) {
     const bool compares = task % 2 == 0;
     FurtherRuns runs(scenario, o);
-    for (std::size_t i = task / 2 * in_turn; i < std::min(fit.size(), (task / 2 + 1) * in_turn); ++i) try {
+    for (std::size_t i = task / 2 * in_turn; i < std::min(fit.size(), (task / 2 + 1) * in_turn); ++i) {
+      try {
         if (compares)
           judged[i].compared = runs.compare(*fit[i]);
         else
@@ -191,6 +192,7 @@ void judge_cases(const Scenario& scenario, const EnsembleOptions& o, std::span<c
         else
           judged[i].looked_at.outcome = {OutcomeKind::too_large, e.diagnostic.message, e.diagnostic.hint};
       }
+    }
   });
   report.error = error_of(fit, judged);
   report.residuals = residuals_of(fit, judged);

@@ -62,6 +62,7 @@ class TaylorCourse {
   std::size_t weakest_unknown() const { return motion_.stepper().least_regular().unknown; }
   const N& first_sigma() const { return motion_.stepper().first_sigma(); }
   MethodReport report() const;
+  static std::string take_advice() { return {}; }
 
  private:
   Motion<N> motion_;
@@ -102,6 +103,8 @@ class MethodCourse {
   std::size_t weakest_unknown() const { return least_regular().unknown; }
   double first_sigma() const { return motion_.stepper().first_sigma(); }
   MethodReport report() const;
+  // What a looser tolerance would win, told once; else empty.
+  std::string take_advice() { return choice_ ? choice_->take_advice() : std::string(); }
 
  private:
   const LeastRegular<double>& least_regular() const;

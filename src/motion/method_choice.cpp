@@ -22,6 +22,10 @@ constexpr std::size_t kFewSteps = 48, kManySteps = 256;
 constexpr std::size_t kOftener = 8;
 // A trial that has spent this part of what it may spend has come this far, or is given up.
 constexpr double kEarly = 0.25, kFar = 0.05;
+// A motion of so many steps of Taylor's may be long because it is stiff. Advice tells of a BDF that is so many times
+// cheaper.
+constexpr std::size_t kLong = 16 * kFirstStiff;
+constexpr double kWorthAdvice = 16;
 // The same of a motion in the lanes of a kernel, whose operations are so many times cheaper than those of a trial.
 constexpr double kMuchCheaperThanLanes = 16;
 
@@ -63,7 +67,10 @@ std::optional<MethodChoice::Turn> MethodChoice::leave_taylor(long double end) {
     if (pays(Method::runge_kutta, kFewSteps, kCheaper, end))
       return Turn{Method::runge_kutta, "the motion has met many kinks: " + percent()};
   }
-  if (steps >= next_stiff_ && far(kManySteps, 1)) return leave_for_bdf(end);
+  if (steps < next_stiff_ || !far(kManySteps, 1)) return std::nullopt;
+  if (log_tolerance_ >= kBdf) return leave_for_bdf(end);
+  next_stiff_ = 2 * steps;
+  if (steps >= kLong && steps < 2 * kLong) look_for_advice(end);
   return std::nullopt;
 }
 
@@ -86,27 +93,45 @@ std::size_t MethodChoice::stays_with_taylor(long double end, std::size_t most) c
 
 std::optional<MethodChoice::Turn> MethodChoice::leave_for_bdf(long double end) {
   next_stiff_ = 2 * motion_.stepper().steps();
-  if (log_tolerance_ < kBdf || !pays(Method::bdf, kManySteps, kMuchCheaper, end)) return std::nullopt;
+  if (log_tolerance_ < kBdf) {
+    look_for_advice(end);
+    return std::nullopt;
+  }
+  if (!pays(Method::bdf, kManySteps, kMuchCheaper, end)) return std::nullopt;
   return Turn{Method::bdf, "the motion is stiff: " + percent()};
 }
 
-// Whether the method would come from here as far as Taylor's last `steps` did, with `factor` times fewer operations.
+// For a tolerance that is too tight for BDF, which may be what makes the motion long. The trial is none of the motion's.
+void MethodChoice::look_for_advice(long double end) {
+  const Trials before = trials_;
+  if (const auto trial = steppers_.make(Method::bdf, kBdf);
+      times_.size() > kManySteps && pays(*trial, kManySteps, kMuchCheaper, end) && ratio_ * kWorthAdvice < 1)
+    advice_ = "the motion is stiff: BDF, which serves tolerances of " +
+              number_text(info(Method::bdf).least_tolerance, 3) + " and more, would take " + percent();
+  trials_ = before;
+}
+
 bool MethodChoice::pays(Method method, std::size_t steps, double factor, long double end) {
   if (times_.size() <= steps) return false;
+  const auto trial = steppers_.make(method);
+  return pays(*trial, steps, factor, end);
+}
+
+// Whether the stepper comes from here as far as Taylor's last `steps` did, with `factor` times fewer operations.
+bool MethodChoice::pays(StateStepper& trial, std::size_t steps, double factor, long double end) {
   const MotionPoint from = present_point(motion_);
   const long double span = from.t - times_[times_.size() - 1 - steps], left = end - from.t;
   const bool whole = std::abs(span) < std::abs(left);
   const long double to = whole ? from.t + span : end;
-  const auto trial = steppers_.make(method);
   if (!steppers_.plan() || !std::isfinite(steppers_.work_of_expansion())) return false;
   const double all = steppers_.work_of_expansion() * static_cast<double>(steps),
                part = whole ? 1.0 : std::abs(static_cast<double>(left / span));
   const double costs = all * part, most = costs / factor;
   taylor_pace_ = all / std::abs(static_cast<double>(span));
   ++trials_.count;
-  const bool good = comes_to(*trial, from, to, most);
-  trials_.evaluations += trial->rate().evaluations();
-  ratio_ = work_of(*trial) / costs;
+  const bool good = comes_to(trial, from, to, most);
+  trials_.evaluations += trial.rate().evaluations();
+  ratio_ = work_of(trial) / costs;
   return good;
 }
 

@@ -1,6 +1,8 @@
 // The choice of a method on the way (theory: methods): whether another one would come as far as Taylor's last steps did
 // with fewer operations. It is found by a trial on a stretch of the motion itself.
 #pragma once
+#include <utility>
+
 #include "motion/state_steppers.h"
 
 namespace anholon {
@@ -35,9 +37,13 @@ class MethodChoice {
   // Whether the other method has cost more than Taylor would, over its last steps.
   bool slower_than_taylor(StateStepper& other);
   const Trials& trials() const { return trials_; }
+  // What a looser tolerance would win, found in a long motion, once; empty if it is nothing, or was told before.
+  std::string take_advice() { return std::exchange(advice_, {}); }
 
  private:
   bool pays(Method method, std::size_t steps, double factor, long double end);
+  bool pays(StateStepper& trial, std::size_t steps, double factor, long double end);
+  void look_for_advice(long double end);
   std::string percent() const;
 
   StateSteppers& steppers_;
@@ -54,6 +60,7 @@ class MethodChoice {
   };
   Stretch stretch_;
   Trials trials_;
+  std::string advice_;
 };
 
 // Whether a motion that many others accompany in the lanes of a kernel had better be made alone, by a method that is by far

@@ -74,10 +74,13 @@ void StateSteppers::make_plans() {
     expansion_work_ = kReference * anholon::work_of_expansion(*all);
 }
 
-std::unique_ptr<StateStepper> StateSteppers::make(Method method) {
+std::unique_ptr<StateStepper> StateSteppers::make(Method method, double log_tolerance) {
   make_plans();
-  return make_state_stepper(
-      method, {motion_.program(), parameter_values<double>(model_), motion_.parameters(), plan_, guards_}, settings_);
+  StepSettings settings = settings_;
+  settings.log_tolerance = log_tolerance;
+  return make_state_stepper(method,
+                            {motion_.program(), parameter_values<double>(model_), motion_.parameters(), plan_, guards_},
+                            std::move(settings));
 }
 
 std::unique_ptr<StateStepper> make_state_stepper(Method method, StateRate rate, StepSettings settings) {

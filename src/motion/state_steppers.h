@@ -19,8 +19,9 @@ class StateSteppers {
   StateSteppers(const Motion<double>& motion, const Model& model, const StepSettings& settings,
                 std::vector<Guard> guards, bool counts);
 
-  // A stepper of runge_kutta or bdf, from where the motion is.
-  std::unique_ptr<StateStepper> make(Method method);
+  // A stepper of runge_kutta or bdf, from where the motion is; to the tolerance of the motion, or to a looser one.
+  std::unique_ptr<StateStepper> make(Method method) { return make(method, settings_.log_tolerance); }
+  std::unique_ptr<StateStepper> make(Method method, double log_tolerance);
   // The plan of the rates of the last stepper made; null if no kernel computes them.
   const std::shared_ptr<const KernelPlan>& plan() const { return plan_; }
   // Operations of one of Taylor's expansions; infinity if no kernel makes them.

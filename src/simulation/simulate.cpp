@@ -218,6 +218,7 @@ class Run {
     work_ = std::max(work_, W(abs(course_.integrals()[0])));
     limit_stretch();
     Outcome o = course_.steps(schedule_.end(), stretch_);
+    if (const std::string advice = course_.take_advice(); !advice.empty()) note(advice);
     work_ = std::max(work_, W(stretch_.greatest_integral));
     // Before its last step there is nothing to do.
     for (std::size_t i = 0; i + (o.ok() ? 1 : 0) < stretch_.times.size(); ++i) tell_step(stretch_.times[i]);

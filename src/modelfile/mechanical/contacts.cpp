@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "expr/normal.h"
+#include "formula/indices.h"
 #include "modelfile/mechanical/contact_shapes.h"
 #include "modelfile/names/along.h"
 #include "modelfile/text/collect.h"

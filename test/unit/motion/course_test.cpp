@@ -1,4 +1,5 @@
 // Methods other than Taylor's: they give the same motion, and the automatic choice finds where they pay.
+#include <algorithm>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -163,6 +164,24 @@ TEST(Course, NothingElseGoesByBdf) {
   EXPECT_GT(disc.report.method.taylor_steps, 4096U);
   EXPECT_GT(disc.report.method.trials, 0U) << "it was not even tried";
   EXPECT_EQ(disc.report.method.steps, 0U);
+}
+
+// At a tolerance that BDF does not serve, a long motion that is stiff says so, also where it cannot come to its end.
+TEST(Course, StiffMotionsWithTightTolerancesAreTold) {
+  const auto told = [](const Result& r) {
+    return std::count_if(r.report.notes.begin(), r.report.notes.end(),
+                         [](const std::string& note) { return note.find("is stiff: BDF") != std::string::npos; });
+  };
+  const Result whole = motion(kStiff, 10, {Method::automatic, power_of_ten(12)});
+  EXPECT_TRUE(whole.report.outcome.ok());
+  EXPECT_EQ(told(whole), 1);
+  EXPECT_EQ(whole.report.method.trials, 0U);
+  const Result stopped = motion(kStiff, 10, {Method::automatic, power_of_ten(12), 20'000});
+  EXPECT_EQ(stopped.report.outcome.kind, OutcomeKind::interrupted);
+  EXPECT_EQ(told(stopped), 1);
+  const Result smooth = motion(test::shipped_text("zoo/disc"), 8000, {Method::automatic, power_of_ten(12)});
+  EXPECT_GT(smooth.report.steps, 80'000U);
+  EXPECT_EQ(told(smooth), 0);
 }
 
 TEST(Course, KinksAreMetToTheTolerance) {
