@@ -90,8 +90,10 @@ struct MotionTrack {
   std::size_t present = 0;
 };
 
-// A step that is no longer than this, in relation to the time, is no ordinary one: it is near to a collapse of steps.
-inline constexpr double kShortStep = 32 * 0x1p-53;
+// Steps smaller than this many round-offs of the time are a collapse.
+inline constexpr int kCollapsedRoundoffs = 16;
+// Nearer to that, in relation to the time, no step is an ordinary one.
+inline constexpr double kShortStep = 2 * kCollapsedRoundoffs * 0x1p-53;
 
 // What ordinary steps that are made in the lanes of a kernel tell the stepper of a motion (lanes/ordinary_steps.h).
 struct OrdinaryCourse {

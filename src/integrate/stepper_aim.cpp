@@ -7,14 +7,6 @@
 
 namespace anholon {
 
-namespace {
-
-// Steps smaller than this many round-offs of the time are a collapse.
-constexpr int kCollapsedRoundoffs = 16;
-static_assert(kShortStep == 2 * kCollapsedRoundoffs * 0x1p-53);
-
-}  // namespace
-
 template <Number N>
 bool Stepper<N>::may_be_ordinary() const
   requires std::same_as<N, double>

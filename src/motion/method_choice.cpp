@@ -29,6 +29,18 @@ constexpr double kWorthAdvice = 16;
 // The same of a motion in the lanes of a kernel, whose operations are so many times cheaper than those of a trial.
 constexpr double kMuchCheaperThanLanes = 16;
 
+// Where a trial ends that goes as far as Taylor's last steps did, or to the end of the motion, and what these steps cost.
+struct TrialStretch {
+  long double to = 0;
+  double costs = 0;
+  TrialStretch(const MotionPoint& from, long double since, double work_of_steps, long double end) {
+    const long double span = from.t - since, left = end - from.t;
+    const bool whole = std::abs(span) < std::abs(left);
+    to = whole ? from.t + span : end;
+    costs = work_of_steps * (whole ? 1.0 : std::abs(static_cast<double>(left / span)));
+  }
+};
+
 // Whether a stepper comes from a point to a time with at most so many operations.
 bool comes_to(StateStepper& stepper, const MotionPoint& from, long double to, double most) {
   bool good = stepper.start(from, to).ok();
@@ -120,18 +132,15 @@ bool MethodChoice::pays(Method method, std::size_t steps, double factor, long do
 // Whether the stepper comes from here as far as Taylor's last `steps` did, with `factor` times fewer operations.
 bool MethodChoice::pays(StateStepper& trial, std::size_t steps, double factor, long double end) {
   const MotionPoint from = present_point(motion_);
-  const long double span = from.t - times_[times_.size() - 1 - steps], left = end - from.t;
-  const bool whole = std::abs(span) < std::abs(left);
-  const long double to = whole ? from.t + span : end;
   if (!steppers_.plan() || !std::isfinite(steppers_.work_of_expansion())) return false;
-  const double all = steppers_.work_of_expansion() * static_cast<double>(steps),
-               part = whole ? 1.0 : std::abs(static_cast<double>(left / span));
-  const double costs = all * part, most = costs / factor;
-  taylor_pace_ = all / std::abs(static_cast<double>(span));
+  const long double since = times_[times_.size() - 1 - steps];
+  const double work = steppers_.work_of_expansion() * static_cast<double>(steps);
+  const TrialStretch stretch(from, since, work, end);
+  taylor_pace_ = work / std::abs(static_cast<double>(from.t - since));
   ++trials_.count;
-  const bool good = comes_to(trial, from, to, most);
+  const bool good = comes_to(trial, from, stretch.to, stretch.costs / factor);
   trials_.evaluations += trial.rate().evaluations();
-  ratio_ = work_of(trial) / costs;
+  ratio_ = work_of(trial) / stretch.costs;
   return good;
 }
 
@@ -172,21 +181,15 @@ bool TaylorWatch::another_pays(Stepper<double>& taylor, const Equations& equatio
 bool TaylorWatch::pays(Method method, const Mark& since, Stepper<double>& taylor, const Equations& equations,
                        long double end) const {
   taylor.leave_kernel();
-  MotionPoint from;
-  from.t = taylor.time();
-  from.state = taylor.state();
-  from.integrals = taylor.integrals();
-  for (const long double x : taylor.leading()) from.leading.push_back(static_cast<double>(x));
-  const long double span = from.t - since.t, left = end - from.t;
-  const bool whole = std::abs(span) < std::abs(left);
-  const double costs = work_of_expansion(*equations.expansions) * static_cast<double>(taylor.steps() - since.steps) *
-                       (whole ? 1.0 : std::abs(static_cast<double>(left / span)));
+  const MotionPoint from = present_point(taylor, *equations.program);
+  const TrialStretch stretch(
+      from, since.t, work_of_expansion(*equations.expansions) * static_cast<double>(taylor.steps() - since.steps), end);
   StepSettings settings;
   settings.log_tolerance = log_tolerance_;
   const auto trial = make_state_stepper(
       method, {*equations.program, *equations.parameters, *equations.wide_parameters, equations.rates}, settings);
-  return comes_to(*trial, from, whole ? from.t + span : end, costs / kMuchCheaper) &&
-         work_of(*trial) * kMuchCheaperThanLanes < costs;
+  return comes_to(*trial, from, stretch.to, stretch.costs / kMuchCheaper) &&
+         work_of(*trial) * kMuchCheaperThanLanes < stretch.costs;
 }
 
 std::string MethodChoice::percent() const {

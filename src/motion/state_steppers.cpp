@@ -40,14 +40,13 @@ double work_of_expansion(const KernelPlan& plan) {
   return plan.work() + kStep * steps * (plan.plan().stages + 1) + kExpansion;
 }
 
-MotionPoint present_point(const Motion<double>& motion) {
-  const Stepper<double>& taylor = motion.stepper();
+MotionPoint present_point(const Stepper<double>& taylor, const Program& program) {
   MotionPoint p;
   p.t = taylor.time();
   p.state = taylor.state();
   p.integrals = taylor.integrals();
   for (std::size_t j = 0; j < taylor.unknowns(); ++j)
-    p.leading.push_back(to_double(taylor.point().derivative(j, motion.program().d[j])));
+    p.leading.push_back(to_double(taylor.point().derivative(j, program.d[j])));
   return p;
 }
 

@@ -11,7 +11,10 @@
 namespace anholon {
 
 // Where Taylor's motion has come to.
-MotionPoint present_point(const Motion<double>& motion);
+MotionPoint present_point(const Stepper<double>& taylor, const Program& program);
+inline MotionPoint present_point(const Motion<double>& motion) {
+  return present_point(motion.stepper(), motion.program());
+}
 
 class StateSteppers {
  public:
