@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
+#include "base/thread_time.h"
 #include "motion/course.h"
 #include "motion/representation.h"
 #include "observe/watch.h"
@@ -10,7 +11,7 @@
 namespace anholon {
 
 EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o)
-    : of_all(s), options(o), scenario(s), parameters(scenario, o.varied) {
+    : of_all(s), options(o), scenario(s), parameters(scenario, o.varied), lanes(o.cases, o.threads) {
   make();
   scenario.graph().freeze();
 }
@@ -52,8 +53,6 @@ void EnsemblePlan::make() {
         rates.emplace(std::make_shared<const Program>(*program), numbers, t, state);
     }
   }
-  constexpr std::size_t kMany = 32;
-  if (kernel && o.cases >= kMany) lanes = tiers().back().lanes;
   Column monitors;
   for (const Monitor& m : model.monitors) monitors.push_back(m.value);
   stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitors));
@@ -68,11 +67,6 @@ void EnsemblePlan::make() {
     outputs->inputs.push_back(e);
     leading = leading || (e.variable && e.order >= s.structure.d[*e.variable]);
   }
-}
-
-void EnsemblePlan::compile_if_long(std::size_t next) const {
-  if (const std::unique_lock lock(compiling_, std::try_to_lock); lock)
-    code_.step(kernel, static_cast<double>(next), static_cast<double>(options.cases), lanes);
 }
 
 CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shared_ptr<Kernel>& kernel, int lane) {
@@ -293,14 +287,28 @@ static bool contained(CaseResult& r, const Work& work) {
   return false;
 }
 
-// A lane takes the next case when it has done one. Its bits do not depend on the other lanes.
 void CaseWorker::integrate(std::span<CaseResult> results) {
-  if (!results.empty()) plan_.compile_if_long(results.front().number);
-  if (plan_.kernel && !kernel_) {
-    kernel_ = std::make_shared<Kernel>(plan_.kernel, plan_.lanes);
-    if (plan_.lanes > 1) ordinary_.emplace(kernel_, plan_.settings);
-  }
-  while (walks_.size() < static_cast<std::size_t>(plan_.lanes)) walks_.emplace_back();
+  if (results.empty()) return;
+  const SweepLanes::Turn turn = plan_.lanes.begin(plan_.kernel, results.front().number);
+  const double begun = seconds_of_this_thread();
+  integrate(together(turn.lanes), results);
+  plan_.lanes.end(turn, results.size(), seconds_of_this_thread() - begun);
+}
+
+CaseWorker::Together& CaseWorker::together(int lanes) {
+  const auto [at, made] = together_.try_emplace(lanes);
+  Together& t = at->second;
+  if (!made) return t;
+  t.walks.resize(static_cast<std::size_t>(lanes));
+  if (!plan_.kernel) return t;
+  t.kernel = std::make_shared<Kernel>(plan_.kernel, lanes);
+  if (lanes > 1) t.ordinary.emplace(t.kernel, plan_.settings);
+  return t;
+}
+
+// A lane takes the next case when it has done one. Its bits do not depend on the other lanes.
+void CaseWorker::integrate(Together& together, std::span<CaseResult> results) {
+  auto& [kernel, ordinary, walks] = together;
   std::vector<OrdinarySteps::Motion> motions;
   std::size_t next = 0, walking = 0;
   const auto go = [&](CaseWalk& walk, CaseWay (CaseWalk::*part)()) {
@@ -314,44 +322,44 @@ void CaseWorker::integrate(std::span<CaseResult> results) {
     if (done) contained(r, [&] { end(way, walk.numbers(), r); });
   };
   for (;;) {
-    for (std::size_t lane = 0; lane < walks_.size(); ++lane)
-      while (!walks_[lane].walking() && next < results.size()) {
+    for (std::size_t lane = 0; lane < walks.size(); ++lane)
+      while (!walks[lane].walking() && next < results.size()) {
         CaseResult& r = results[next++];
-        CaseWalk& walk = walks_[lane];
+        CaseWalk& walk = walks[lane];
         const bool done = contained(r, [&] {
-          const CaseWay way = walk.begin(plan_, r, kernel_, static_cast<int>(lane));
+          const CaseWay way = walk.begin(plan_, r, kernel, static_cast<int>(lane));
           if (!walk.walking()) end(way, walk.numbers(), r);
         });
         if (!done) walk.abandon();
         if (walk.walking()) ++walking;
       }
     if (walking == 0) return;
-    if (walks_.size() == 1) {
-      go(walks_[0], &CaseWalk::step);
+    if (walks.size() == 1) {
+      go(walks[0], &CaseWalk::step);
       continue;
     }
-    for (CaseWalk& w : walks_) go(w, &CaseWalk::begin_step);
-    if (kernel_) kernel_->begin();
+    for (CaseWalk& w : walks) go(w, &CaseWalk::begin_step);
+    if (kernel) kernel->begin();
     bool aimed = false;
-    if (ordinary_) {
+    if (ordinary) {
       motions.clear();
-      for (const CaseWalk& w : walks_) motions.push_back(w.motion());
-      aimed = ordinary_->run(motions);
+      for (const CaseWalk& w : walks) motions.push_back(w.motion());
+      aimed = ordinary->run(motions);
     }
     if (!aimed)
-      for (CaseWalk& w : walks_) go(w, &CaseWalk::aim);
-    for (bool again = kernel_ != nullptr; again; aimed = false) {
+      for (CaseWalk& w : walks) go(w, &CaseWalk::aim);
+    for (bool again = kernel != nullptr; again; aimed = false) {
       if (!aimed) {
-        kernel_->advance();
-        kernel_->start_next();
+        kernel->advance();
+        kernel->start_next();
       }
       again = false;
-      for (CaseWalk& w : walks_) {
+      for (CaseWalk& w : walks) {
         go(w, &CaseWalk::look_at_end);
         again = again || (w.walking() && w.looks_elsewhere());
       }
     }
-    for (CaseWalk& w : walks_) go(w, &CaseWalk::finish_step);
+    for (CaseWalk& w : walks) go(w, &CaseWalk::finish_step);
   }
 }
 

@@ -6,11 +6,12 @@
 // workspace of its own, so its outcome is that of `simulate`. A case in which the equations have another structure is derived anew.
 #pragma once
 #include <deque>
-#include <mutex>
+#include <map>
 
 #include "ensemble/case_parameters.h"
 #include "ensemble/case_scenario.h"
 #include "ensemble/columns.h"
+#include "ensemble/lanes/sweep_lanes.h"
 #include "integrate/lanes/ordinary_steps.h"
 #include "kernel/kernel.h"
 #include "motion/method_choice.h"
@@ -37,8 +38,7 @@ class EnsemblePlan {
   // scenario, those of `simulate` at the start of the case: the last digits may differ. Machine code with the same bits
   // is made beside the cases when these have taken a while.
   std::shared_ptr<const KernelPlan> kernel;
-  void compile_if_long(std::size_t next) const;
-  int lanes = 1;                  // of the kernels of cases: as many as the machine has
+  mutable SweepLanes lanes;       // of the kernels of cases
   std::size_t first_reduced = 0;  // of the program's quadratures
   std::vector<WatchedSeries> watched;
   std::vector<std::optional<SetByEvent>> sets;  // of each event, if it sets something
@@ -59,9 +59,6 @@ class EnsemblePlan {
 
  private:
   void make();
-
-  mutable std::mutex compiling_;
-  mutable CodeForLongRuns code_;
 };
 
 // How a case is computed: plainly, by the tapes of the plan; or in a workspace of its own, by `simulate` with the
@@ -136,15 +133,21 @@ class CaseWorker {
  private:
   using W = Wider<double>;
 
+  // A kernel, and a case in each of its lanes.
+  struct Together {
+    std::shared_ptr<Kernel> kernel{};
+    std::optional<OrdinarySteps> ordinary{};
+    std::deque<CaseWalk> walks{};
+  };
+  Together& together(int lanes);
+  void integrate(Together& together, std::span<CaseResult> results);
   void end(CaseWay way, const EnsembleCase& numbers, CaseResult& result);
   void by_simulation(const EnsembleCase& numbers, CaseResult& result);
   void by_derivation(const EnsembleCase& numbers, CaseResult& result);
   void simulate_case(Workspace& own, const EnsembleCase& numbers, CaseResult& result);
 
   const EnsemblePlan& plan_;
-  std::shared_ptr<Kernel> kernel_;
-  std::optional<OrdinarySteps> ordinary_;
-  std::deque<CaseWalk> walks_;  // one for each lane
+  std::map<int, Together> together_;  // number of lanes -> the kernel with so many
   std::size_t in_workspaces_ = 0;
 };
 

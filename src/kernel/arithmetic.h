@@ -166,6 +166,8 @@ struct Tier {
 };
 // The tiers that this machine supports, the fastest last.
 const std::vector<Tier>& tiers();
+// The fastest tier that computes so many lanes. REQUIRES: there is one.
+const Tier& tier_of(int lanes);
 extern const Tier tier_plain, tier_avx2, tier_avx512;
 
 }  // namespace anholon

@@ -82,6 +82,14 @@ const std::vector<Tier>& tiers() {
   return list;
 }
 
+const Tier& tier_of(int lanes) {
+  const std::vector<Tier>& all = tiers();
+  const auto found =
+      std::find_if(all.rbegin(), all.rend(), [&](const Tier& t) { return lanes == 1 || t.lanes == lanes; });
+  ANHOLON_ASSERT(found != all.rend());
+  return *found;
+}
+
 void KernelTables::Divisors::add(long double n) {
   const long double reciprocal_of_n = n > 0 ? static_cast<double>(1 / n) : 0;
   number.push_back(static_cast<double>(n));
@@ -278,15 +286,13 @@ std::string KernelPlan::compile(const std::string& cache, int lanes, CodeEffort 
   if (!in_pieces &&
       (plan_.stage.size() + plan_.after.size() > kMostCompiled || e.update_list.size() + solved > kMostEliminated))
     return "it is too large to be compiled in a short time";
-  Compiled& made = lanes == 1 ? one_ : several_;
+  Compiled& made = compiled(lanes);
   const std::lock_guard lock(made.making);
   if (const Code* known = this->code(lanes); known && known->effort >= effort) return {};
   if (lanes == 1 && code_of_stages()) return {};
-  const bool first = !made.ready.load(std::memory_order_relaxed);
-  if (!first && made.lanes != lanes) return "there is code for another number of lanes";
   Code code;
   std::string message;
-  const Tier& tier = tiers().back();
+  const Tier& tier = tier_of(lanes);
   module->compile(tables_, lanes, effort,
                   {power_of, function_of, looked_up, lanes == 1 ? tier.sines_of_one : tier.sines_of_all,
                    tier.sines_of_all, tier.lanes},
@@ -294,7 +300,6 @@ std::string KernelPlan::compile(const std::string& cache, int lanes, CodeEffort 
   if (!code.extend) return message;
   Code& place = code.effort == CodeEffort::full ? made.full : made.quick;
   place = std::move(code);
-  if (first) made.lanes = lanes;  // other threads read it as soon as a code is ready
   made.ready.store(&place, std::memory_order_release);
   return {};
 }
@@ -304,7 +309,7 @@ void Kernel::Free::operator()(double* p) const { std::free(p); }
 Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* tier)
     : plan_(std::move(plan)), lanes_(lanes), next_(plan_->tables().motions[0]), begun_(plan_->tables().motions[1]),
       before_(plan_->tables().motions[2]), base_(next_) {
-  if (!tier) tier = &tiers().back();
+  if (!tier) tier = &tier_of(lanes);
   ANHOLON_ASSERT(lanes == 1 || lanes == tier->lanes);
   const std::size_t bytes = plan_->tables().size * sizeof(double) * static_cast<std::size_t>(lanes);
   memory_.reset(static_cast<double*>(std::aligned_alloc(64, (bytes + 63) / 64 * 64)));

@@ -4,7 +4,9 @@
 // thread. It computes the expansion of Expansion<double>, the reference, to round-off, without refinement. Pivots are
 // static: if `health` is small, the reference makes the step.
 #pragma once
+#include <array>
 #include <atomic>
+#include <bit>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -51,13 +53,12 @@ class KernelPlan {
   // code, else an empty string.
   std::string compile(const std::string& cache, int lanes = 1, CodeEffort effort = CodeEffort::full) const;
   const Code* code(int lanes = 1) const {
-    const Compiled& c = lanes == 1 ? one_ : several_;
-    const Code* ready = c.ready.load(std::memory_order_acquire);
-    return ready && ready->values && c.lanes == lanes ? ready : nullptr;
+    const Code* ready = compiled(lanes).ready.load(std::memory_order_acquire);
+    return ready && ready->values ? ready : nullptr;
   }
   // The code of a long plan, which only extends: tables do the rest, which is done once per expansion.
   const Code* code_of_stages() const {
-    const Code* ready = one_.ready.load(std::memory_order_acquire);
+    const Code* ready = compiled(1).ready.load(std::memory_order_acquire);
     return ready && !ready->values ? ready : nullptr;
   }
   // The cost of one expansion, and its number of operations. For a motion alone, the cost includes the operations of a
@@ -92,15 +93,18 @@ class KernelPlan {
   struct Compiled {
     std::mutex making;
     Code quick, full;
-    int lanes = 1;
     std::atomic<const Code*> ready{nullptr};
   };
-  mutable Compiled one_, several_;  // lanes
+  // `lanes`: 1, 2, 4 or 8.
+  Compiled& compiled(int lanes) const {
+    return compiled_[static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(lanes)))];
+  }
+  mutable std::array<Compiled, 4> compiled_;
 };
 
 class Kernel {
  public:
-  // `lanes`: 1, or the number of the tier. Without a tier: the best tier of this machine.
+  // `lanes`: 1, or the number of the tier. Without a tier: the fastest of this machine that computes so many lanes.
   explicit Kernel(std::shared_ptr<const KernelPlan> plan, int lanes = 1, const Tier* tier = nullptr);
 
   int lanes() const { return lanes_; }

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <vector>
 
-#include <time.h>
+#include "base/thread_time.h"
 
 namespace anholon {
 
@@ -51,18 +51,17 @@ void CodeForLongRuns::leave() {
   left_behind().push_back({compilation_.done, std::move(compilation_.thread)});
 }
 
-// Seconds of processor time that this thread has used: those in which it waited for a core are not counted.
-static double seconds_of_this_thread() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+double CodeForLongRuns::seconds_to_make(const KernelPlan& plan, int lanes) {
+  // What the compiler takes to be loaded, and what it takes for each step of a stage.
+  constexpr double kLoadedSoon = 0.02;
+  const double each_step = translated_at_first(lanes) ? 0.00025 : 0.0015;
+  return kLoadedSoon + each_step * static_cast<double>(plan.plan().stage.size());
 }
 
 void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes,
                            std::optional<double> spent) {
-  // Seconds: what is observed before, what the compiler takes to be loaded, and what it takes for each step of a stage.
-  constexpr double kObserved = 0.001, kObservedLonger = 0.005, kLoadedSoon = 0.02, kEachStep = 0.006;
-  const double each_step_soon = translated_at_first(lanes) ? 0.00025 : 0.0015;
+  // Seconds: what is observed before, and what the compiler takes for each step of a stage for better code.
+  constexpr double kObserved = 0.001, kObservedLonger = 0.005, kEachStep = 0.006;
   // By so much the better code is faster at least. In lanes less of the time is spent in the code, the less the shorter
   // it is, and the compiler takes its time from the cases.
   const double stage = plan ? static_cast<double>(plan->plan().stage.size()) : 0;
@@ -81,8 +80,7 @@ void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double
     return elapsed < observed ? 0 : elapsed / done * (std::abs(end - at) * times_ + done * (times_ - 1));
   };
   if (!code) {
-    if (!known && left(*first_, kObserved) > kLoadedSoon + each_step_soon * stage)
-      begin(plan, lanes, CodeEffort::quick);
+    if (!known && left(*first_, kObserved) > seconds_to_make(*plan, lanes)) begin(plan, lanes, CodeEffort::quick);
   } else if (code->effort == CodeEffort::quick) {
     if (!since_quick_) since_quick_ = now;
     if (left(*since_quick_, kObservedLonger) * better > kEachStep * stage) begin(plan, lanes, CodeEffort::full);

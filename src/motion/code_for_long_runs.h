@@ -22,6 +22,8 @@ class CodeForLongRuns {
   // are not all that have passed. The first code is made quickly.
   void step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes = 1,
             std::optional<double> spent = {});
+  // About the seconds until quick code for a plan is there.
+  static double seconds_to_make(const KernelPlan& plan, int lanes);
   // The rest takes so many times as long, because the motion is computed once more.
   void expect(double times) { times_ = times; }
   // Tells how many steps followed the last request, which stands for one of them.

@@ -261,6 +261,18 @@ TEST(Ensemble, LanesHaveTheBitsOfACaseAlone) {
   expect_the_bits_of_a_case_alone(text, many, {0, 7, 8, 13, 23, 39});
 }
 
+// A long sweep tries more lanes when it has been under way for a while.
+TEST(Ensemble, LongSweepsHaveTheBitsOfACaseAlone) {
+  const std::string text = test::shipped_text("zoo/disc");
+  Sweep many(text);
+  many.options.varied = {initial(3, 0)};
+  many.options.cases = 12'000;
+  many.options.numbers = [](std::size_t k) {
+    return EnsembleCase{{Rational(1, 4) + Rational(static_cast<int>(k % 97), 128)}, Rational(1, 4)};
+  };
+  expect_the_bits_of_a_case_alone(text, many, {0, 5000, 11'000, 11'999});
+}
+
 // Steps of all lanes are made together until one of them meets its end, a row, or a pulse that its series do not show.
 TEST(Ensemble, StepsTogetherAreThoseOfACaseAlone) {
   const std::string text = kPulses;
