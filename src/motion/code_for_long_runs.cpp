@@ -61,7 +61,7 @@ double CodeForLongRuns::seconds_to_make(const KernelPlan& plan, int lanes) {
 void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes,
                            std::optional<double> spent) {
   // Seconds: what is observed before, and what the compiler takes for each step of a stage for better code.
-  constexpr double kObserved = 0.001, kObservedLonger = 0.005, kEachStep = 0.006;
+  constexpr double kObserved = 0.001, kObservedLonger = 0.025, kEachStep = 0.006;
   // By so much the better code is faster at least. In lanes less of the time is spent in the code, the less the shorter
   // it is, and the compiler takes its time from the cases.
   const double stage = plan ? static_cast<double>(plan->plan().stage.size()) : 0;
