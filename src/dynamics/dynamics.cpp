@@ -294,7 +294,7 @@ void Dynamics::compute(Kernel& kernel, const Call& call, std::size_t from, std::
     kernel.solve_point();
     for (std::size_t lane = 0; lane < some; ++lane) {
       // The pivots were chosen at the start: where they are small, the reference chooses others.
-      if (kernel.pivots(static_cast<int>(lane)).health > kHealthy)
+      if (kernel.pivots(static_cast<int>(lane)).health > plan_->least_health())
         put_rates(call, first + lane,
                   [&](std::size_t j) { return kernel.derivative(j, unknowns_[j].order(), static_cast<int>(lane)); });
       else
@@ -345,7 +345,7 @@ std::vector<double> Dynamics::leading(double t, const std::vector<double>& x, In
   with_kernel(1, call, [&](Kernel& k) {
     compute(k, call, 0, 1);
     for (std::size_t j = 0; j < list.size(); ++j) list[j] = k.derivative(j, unknowns_[j].order());
-    if (!(k.pivots(0).health > kHealthy)) list = by_reference(t, state, parameters(given, 1, 0));
+    if (!(k.pivots(0).health > plan_->least_health())) list = by_reference(t, state, parameters(given, 1, 0));
   });
   return list;
 }

@@ -13,15 +13,15 @@ namespace anholon {
 
 // Who asks for the last digits gets them from the reference, which refines its solutions in wider numbers, where an
 // elimination begins to lose some.
-static double trusted_health(double log_tolerance, bool mapped) {
+static double trusted_health(const KernelPlan& plan, double log_tolerance) {
   constexpr double kLosesNone = 0.25;
-  return asks_for_last_digits(log_tolerance) && !mapped ? kLosesNone : kHealthy;
+  return asks_for_last_digits(log_tolerance) && !plan.map() ? kLosesNone : plan.least_health();
 }
 
 KernelExpansion::KernelExpansion(std::shared_ptr<Kernel> kernel, int lane, const Program& motion, int order,
                                  double log_tolerance)
     : kernel_(std::move(kernel)), lane_(lane), program_(&motion), order_(order),
-      least_health_(trusted_health(log_tolerance, mapped())) {
+      least_health_(trusted_health(kernel_->plan(), log_tolerance)) {
   kernel_->set_shrink(step_shrink(log_tolerance, order));
   // The roots of a kernel with unknowns of its own are its own, too: of what J keeps from zero.
   if (!mapped()) deciding_ = kernel_->plan().plan().deciding;

@@ -47,6 +47,7 @@ class KernelPlan {
   const StateMap* map() const { return map_.get(); }
   Company company() const { return company_; }
   int waits() const { return waits_; }
+  double least_health() const { return tables_.refine ? kHealthyIfRefined : kHealthy; }
   int levels() const { return levels_; }  // of hidden constraints
   // Makes machine code for one lane, or for this number of lanes, with the same bits; kernels use it from their next
   // expansion on. Each code is made at most once for each effort, from any thread. Returns the reason if there is no

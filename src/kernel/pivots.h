@@ -9,8 +9,8 @@ struct Pivots {
   double health = 0;       // the smallest ratio, by absolute value
   double determinant = 0;  // the product of the ratios: the ratio of det J
 };
-// Pivots of smaller health are not trusted.
-inline constexpr double kHealthy = 2e-3;
+// Pivots of smaller health are not trusted; where solutions are refined, only those that leave refinement few digits.
+inline constexpr double kHealthy = 2e-3, kHealthyIfRefined = 1e-5;
 // Whether J may have been singular between two points: its determinant has changed its sign, or has become much smaller
 // together with a pivot (a square keeps its sign). A single pivot proves nothing: if one passes zero, the next one
 // passes infinity.

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "program/sparse_lu.h"
-
 namespace anholon {
 
 namespace {
@@ -18,6 +16,13 @@ double stand_in(std::uint32_t k) {
   const std::uint32_t draw = (k + 1) * 2654435761U;
   const double size = 0.5 + 1.5 * static_cast<double>(draw >> 8) / 16777216.0;
   return (draw & 1U) != 0 ? size : -size;
+}
+
+EliminationOrder order_of(const SparseLu& lu) {
+  EliminationOrder order;
+  for (const SparseLu::Pivot& pivot : lu.pivots) order.column.push_back(pivot.column), order.row.push_back(pivot.row);
+  order.entries = lu.entries;
+  return order;
 }
 
 }  // namespace
@@ -84,22 +89,29 @@ const EliminationOrder& Linearized::order() const {
 }
 
 EliminationOrder Linearized::make_order() const {
+  std::vector<double> values;
+  for (const std::uint32_t t : term_of_) values.push_back(t == kNone ? 1 : -sample_[t]);
+  const SparseElimination e = eliminated(values);
+  const double n = unknowns(), full = n * n * n / 3;
+  if (static_cast<double>(e.lu.update_list.size() + e.lu.scaled_entries.size() + values.size()) > kMuchCheaper * full)
+    return {};
+  return order_of(e.lu);
+}
+
+EliminationOrder Linearized::order_for(const std::vector<double>& values) const {
+  return order_of(eliminated(values).lu);
+}
+
+SparseElimination Linearized::eliminated(const std::vector<double>& values) const {
   std::vector<SampledEntry> entries;
   for (std::uint32_t j = 0; j < size(); ++j)
     for (std::uint32_t e = columns_.first[j]; e < columns_.first[j + 1]; ++e) {
       const std::uint32_t t = term_of_[e];
       SampledEntry entry{columns_.row[e], j, {}, t == kNone || terms_[t].source == Source::rational};
-      entry.value[0] = t == kNone ? 1 : -sample_[t];
+      entry.value[0] = values[e];
       entries.push_back(entry);
     }
-  const SparseElimination e = eliminate_sparse(size(), entries, 1);
-  const double n = unknowns(), full = n * n * n / 3;
-  if (e.lu.pivots.empty() ||
-      static_cast<double>(e.lu.update_list.size() + e.lu.scaled_entries.size() + entries.size()) > kMuchCheaper * full)
-    return {};
-  EliminationOrder order;
-  for (const SparseLu::Pivot& pivot : e.lu.pivots) order.column.push_back(pivot.column), order.row.push_back(pivot.row);
-  return order;
+  return eliminate_sparse(size(), entries, 1);
 }
 
 namespace {

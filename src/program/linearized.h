@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "program/program.h"
+#include "program/sparse_lu.h"
 #include "program/threshold_lu.h"
 
 namespace anholon {
@@ -44,10 +45,14 @@ class Linearized {
   // An order of elimination with little fill, found at the first call. It depends on the places of the entries and on
   // their rational numbers alone. Empty if the elimination is not much cheaper than that of a full J.
   const EliminationOrder& order() const;
+  // An order with little fill for these numbers of the entries of columns(); empty if J is singular.
+  EliminationOrder order_for(const std::vector<double>& values) const;
 
  private:
   void make_columns();
   EliminationOrder make_order() const;
+  // `values`: of the entries of columns().
+  SparseElimination eliminated(const std::vector<double>& values) const;
 
   std::vector<std::uint32_t> first_, roots_;
   std::vector<Term> terms_;

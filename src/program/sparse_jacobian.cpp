@@ -53,7 +53,15 @@ bool SparseJacobian<N>::factor() {
     values_.push_back(t == Linearized::kNone ? N(1) : N(-partials_[t]));
   factored_ = false;
   refused_ = true;
-  if (!lu_.factor(a, values_, linearized_->order())) return false;
+  // Far from the numbers for which the order was found, other pivots fill in more and more of the factors.
+  constexpr std::size_t kMuchFill = 3;
+  const EliminationOrder& usual = linearized_->order();
+  if (!lu_.factor(a, values_, usual, kMuchFill * usual.entries)) {
+    std::vector<double> narrow;
+    for (const N& v : values_) narrow.push_back(to_double(v));
+    const EliminationOrder own = linearized_->order_for(narrow);
+    if (own.column.empty() || !lu_.factor(a, values_, own)) return false;
+  }
   std::vector<N> side, x, image, sizes;
   for (const double v : largest_[0]) side.push_back(N(v));
   solve_once(side, x);

@@ -6,6 +6,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "numeric/number.h"
@@ -22,14 +23,16 @@ struct SparseColumns {
 // Columns in the order of their elimination, each with the row that is preferred for its pivot.
 struct EliminationOrder {
   std::vector<std::uint32_t> column, row;
+  std::size_t entries = 0;  // of the factors, if every pivot is taken where it is preferred
 };
 
 template <Number N>
 class ThresholdLu {
  public:
-  // Returns false if no pivot is left of a column, or if an entry is not finite; the factors are then unusable.
-  // `values`: of the entries, in their order.
-  bool factor(const SparseColumns& a, const std::vector<N>& values, const EliminationOrder& order);
+  // Returns false if no pivot is left of a column, if an entry is not finite, or if the factors have more than `most`
+  // entries; the factors are then unusable. `values`: of the entries, in their order.
+  bool factor(const SparseColumns& a, const std::vector<N>& values, const EliminationOrder& order,
+              std::size_t most = std::numeric_limits<std::size_t>::max());
 
   // The number of entries of the factors, with the pivots.
   std::size_t entries() const { return lower_.size() + upper_.size() + pivot_.size(); }
@@ -118,7 +121,8 @@ std::uint32_t ThresholdLu<N>::choose_pivot(std::uint32_t preferred) const {
 }
 
 template <Number N>
-bool ThresholdLu<N>::factor(const SparseColumns& a, const std::vector<N>& values, const EliminationOrder& order) {
+bool ThresholdLu<N>::factor(const SparseColumns& a, const std::vector<N>& values, const EliminationOrder& order,
+                            std::size_t most) {
   const std::uint32_t n = a.size();
   lower_.clear(), upper_.clear(), pivot_.clear();
   lower_end_.clear(), upper_end_.clear();
@@ -154,6 +158,7 @@ bool ThresholdLu<N>::factor(const SparseColumns& a, const std::vector<N>& values
     pivot_.push_back(top), row_of_.push_back(pivot);
     lower_end_.push_back(static_cast<std::uint32_t>(lower_.size()));
     upper_end_.push_back(static_cast<std::uint32_t>(upper_.size()));
+    if (entries() > most) return false;
   }
   return true;
 }

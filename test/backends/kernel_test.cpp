@@ -14,6 +14,7 @@
 #include "kernel/kernel.h"
 #include "motion/representation.h"
 #include "simulation/simulate.h"
+#include "support/chain.h"
 #include "support/compiler.h"
 #include "support/models.h"
 
@@ -459,6 +460,39 @@ TEST(Kernels, KeepTheirLastTwoStarts) {
 }
 
 // Angles that have turned 1000 times, known to the digits of long double: a coordinate, and the sum of two of them.
+// Where a pivot is small, refinement gives back what the elimination loses.
+TEST(Kernels, KeepTheirDigitsWithSmallPivotsIfTheyRefine) {
+  constexpr int kLinks = 300, kStates = 12;
+  const Reference r(test::model_of(test::chain_text(kLinks)));
+  const auto plan = r.plan();
+  ASSERT_TRUE(plan && plan->tables().refine);
+  EXPECT_EQ(plan->least_health(), kHealthyIfRefined);
+  Kernel kernel(plan);
+  kernel.set_parameters(0, r.parameters);
+  const double t = static_cast<double>(r.start.t);
+  int compared = 0;
+  for (int k = 0; k < kStates; ++k) {
+    std::vector<double> state = Reference::narrow(r.start.state);
+    for (std::size_t i = 0; i < state.size(); ++i)
+      state[i] += std::remainder(0.618 * static_cast<double>(i + 3) * (k + 7), 4);
+    kernel.load(0, t, state, {});
+    kernel.expand();
+    if (const double health = kernel.pivots(0).health; !(health > kHealthyIfRefined) || health > kHealthy) continue;
+    Expansion<long double> reference(*r.stepping, r.parameters, kStages);
+    reference.load(t, {state.begin(), state.end()}, {});
+    Expansion<double> plain(*r.stepping, Reference::narrow(r.parameters), kStages);
+    plain.load(t, state, {});
+    ASSERT_TRUE(reference.prepare().ok() && reference.solve().ok() && reference.extend().ok());
+    ASSERT_TRUE(plain.prepare().ok() && plain.solve().ok() && plain.extend().ok());
+    const auto off = [&](const auto& series) {
+      return difference(*plan, reference, [&](std::size_t j, int order) { return series.coefficient(j, order); });
+    };
+    EXPECT_LT(off(kernel), 1e-13 + 10 * off(plain)) << k;
+    ++compared;
+  }
+  EXPECT_GE(compared, 3);
+}
+
 TEST(Kernels, KeepTheSinesOfAnglesThatHaveTurnedOften) {
   const Reference r(test::model_of(R"toml(
 title = "Pendulum of two links, its joint by the angle between them"

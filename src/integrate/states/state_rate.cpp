@@ -79,7 +79,7 @@ bool StateRate::by_kernel(double t, const std::vector<double>& state, bool proje
   kernel_->load(0, t, state, leading_);
   kernel_->expand(projected);
   pivots_ = kernel_->pivots(0);
-  if (!(pivots_->health > kHealthy)) return false;
+  if (!(pivots_->health > kernel_->plan().least_health())) return false;
   moved_ = projected && kernel_->moved(0);
   drift_ = projected ? kernel_->drift(0) : 0;
   state_.resize(state.size());

@@ -46,7 +46,7 @@ void RowKernel::compute() {
 }
 
 bool RowKernel::good(std::size_t lane) const {
-  if (!(kernel_.pivots(static_cast<int>(lane)).health > kHealthy)) return false;
+  if (!(kernel_.pivots(static_cast<int>(lane)).health > plan_->least_health())) return false;
   const Plan& plan = plan_->plan();
   for (std::size_t j = 0; j < plan.x.size(); ++j)
     if (!std::isfinite(derivative(j, plan.d[j] + (with_series_ ? plan.stages : 0), lane))) return false;

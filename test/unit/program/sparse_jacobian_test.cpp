@@ -57,6 +57,20 @@ TEST(SparseJacobian, OfAChainGrowsWithItsLinks) {
   EXPECT_LE(entries[2], 200) << "a full matrix has 512 a link";
 }
 
+// Where the links lie in a line, many pivots of the usual order are small, and those in their place would fill the
+// factors.
+TEST(SparseJacobian, OfAHorizontalChainHasAsFewEntries) {
+  constexpr std::size_t kLinks = 600;
+  Chain chain(kLinks);
+  Expansion<double> bent = chain.expansion<double>();
+  ASSERT_TRUE(bent.prepare().ok());
+  for (std::size_t i = 0; i < kLinks; ++i) chain.state[2 * i] = 1.57L + 0.001L * (i % 7);
+  Expansion<double> horizontal = chain.expansion<double>();
+  ASSERT_TRUE(horizontal.prepare().ok());
+  ASSERT_TRUE(horizontal.system_jacobian().is_sparse());
+  EXPECT_LE(horizontal.system_jacobian().sparse().entries(), bent.system_jacobian().sparse().entries() * 5 / 4);
+}
+
 TEST(SparseJacobian, IsThatOfFewUnknownsWrittenDown) {
   const Chain chain(20);
   Expansion<double> e = chain.expansion<double>();

@@ -87,6 +87,15 @@ TEST(ThresholdLu, KeepsTheOrderWhereItsPivotsAreNotSmall) {
   EXPECT_EQ(lu.entries(), 3 * kSize - 2);
 }
 
+TEST(ThresholdLu, StopsWhereItFillsInTooMuch) {
+  constexpr std::size_t kPlaces = 4;
+  const SparseColumns a{{0, 2, 4}, {0, 1, 0, 1}};
+  const std::vector<double> values{1, 2, 2, 1};
+  ThresholdLu<double> lu;
+  EXPECT_TRUE(lu.factor(a, values, natural(2), kPlaces));
+  EXPECT_FALSE(lu.factor(a, values, natural(2), kPlaces - 1));
+}
+
 TEST(ThresholdLu, LeavesTheOrderWhereAPivotIsSmall) {
   // Eliminated by the small diagonal, it loses all digits.
   const SparseColumns a{{0, 2, 4}, {0, 1, 0, 1}};
