@@ -9,7 +9,7 @@
 namespace anholon::sweep_lanes_test {
 namespace {
 
-constexpr std::size_t kCases = 1'000'000'000;  // more than the test begins
+constexpr std::size_t kCases = 1'000'000'000'000'000;  // more than the test begins
 
 class SweepOfDiscs : public testing::Test {
  protected:
