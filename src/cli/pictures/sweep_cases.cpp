@@ -171,7 +171,7 @@ std::vector<unsigned> SweepCases::generations() const {
   return list;
 }
 
-// `report` shows a motion with its changes of mode, and not that of one mode.
+// `report` shows a motion with its changes of mode, and Python that of one mode.
 std::string SweepCases::command() const {
   return store_ && store_->asked("mode").empty() ? v1::command_of_sweep(*store_) : std::string();
 }
