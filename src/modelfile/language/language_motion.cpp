@@ -135,7 +135,7 @@ initial = {z = 1, "phi'" = 9}
 - `rolling_resistance` δ and `drilling_resistance` hold moments against the angular velocity of the body: δN against its part along the surface while the body
   rolls, at most δN while it does not; the same about the normal. They need a `body` with an orientation. Columns are `NAME.rolling.mode` (0 open, 1 rolls, 2 rests),
   `NAME.rolling.moment`, `NAME.drilling.mode`, `NAME.drilling.moment`; events are `NAME.rolling.starts`, `NAME.rolling.stops`, `NAME.rolling.reverses`, and the same of `NAME.drilling`.
-- Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. At `NAME.reverses` a slip
+- Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. A gap that is 0 at the start and shrinks is an impact, `NAME.hits`, at the start. At `NAME.reverses` a slip
   velocity passes zero and the contact slips on. Rows have the columns `NAME.mode` (0 open,
   1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
 - In monitors, outputs, events and the definitions they use, `lambda.NAME` is N, 0 while the contact is open, and `lambda.NAME.t1`, `lambda.NAME.t2` are the components
