@@ -32,6 +32,15 @@ std::map<std::string, std::string> column_units(const std::vector<Contact>& cont
   return units;
 }
 
+std::string hint_for_coefficient(const std::string& name) {
+  for (const std::string key :
+       {"friction", "static_friction", "restitution", "rolling_resistance", "drilling_resistance"})
+    if (name == key || name.ends_with("." + key))
+      return "a coefficient that takes other values is a parameter: parameters = {c = 0.3} in the file, and " + key +
+             " = \"c\" in the contact";
+  return "";
+}
+
 namespace {
 
 class ContactReader {
