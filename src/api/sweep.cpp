@@ -7,7 +7,7 @@
 #include "api/sweep_request.h"
 #include "ensemble/parts/judgement.h"
 #include "ensemble/parts/scenarios.h"
-#include "observe/rows/row_values.h"
+#include "observe/rows/quantity_units.h"
 
 namespace anholon::v1 {
 
@@ -106,11 +106,7 @@ inner::SweepTable table_of(const PreparedPiece& piece, const KeptColumns& column
 
 // The units of the time, of columns and of what is varied, as far as the model tells them.
 std::map<std::string, std::string> units_of(const Model::Data& model, const Sweep::Data& d) {
-  std::map<std::string, std::string> units = inner::column_units(*model.model);
-  units.merge(inner::column_units(model.contacts));
-  for (std::size_t k = 0; k < model.model->parameter_units.size(); ++k)
-    if (!model.model->parameter_units[k].empty())
-      units.emplace(model.model->parameters[k].name, model.model->parameter_units[k]);
+  std::map<std::string, std::string> units = inner::quantity_units(*model.model, model.contacts);
   const auto is_in = [](const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };

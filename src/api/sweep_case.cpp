@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/json.h"
 #include "ensemble/case_table.h"
 #include "formula/formula.h"
 #include "numeric/number.h"
@@ -286,6 +287,13 @@ std::string command_of_sweep(const SweepStore& store) {
 }
 
 std::string command_of_case(const SweepStore& store, std::size_t number) {
+  if (!store.asked("mode").empty()) {
+    const std::string of = std::to_string(number);
+    inner::JsonWriter folder;
+    folder.string(store.folder());
+    return "python3 -c " + quoted("import anholon; anholon.open_sweep(" + folder.text() + ").run(" + of +
+                                  ").page(\"case-" + of + ".html\")");
+  }
   std::string text = command_of_sweep(store);
   for (const AskedWord& w : words_of_case(store, number)) text += " --" + w.option + " " + quoted(w.word);
   return text + " -o case-" + std::to_string(number) + ".html";

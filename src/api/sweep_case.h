@@ -28,6 +28,7 @@ std::vector<AskedWord> words_of_numbers(const inner::Model& model,
 // The command that computes the motion of a case: without the numbers of a case, to which they are added, and with them.
 // A model that is known by its text alone is model.toml.
 std::string command_of_sweep(const inner::SweepStore& store);
+// That of a case of a sweep in one mode of the contacts is one of Python.
 std::string command_of_case(const inner::SweepStore& store, std::size_t number);
 
 // The system of a case, in its initial state. Errors: as `prepare`, and as `words_of_case`.

@@ -150,6 +150,9 @@ class HybridMotion {
   Outcome impact() {
     const std::size_t n = bodies_.at.q.size();
     std::vector<bool> touches;
+    std::size_t striking = 0;
+    for (std::size_t c = bodies_.contacts.size(); c-- > 0;)
+      if (bodies_.near.closed(c) && bodies_.near.gap_rate(c) < 0 && !bodies_.contacts[c].under) striking = c;
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
       touches.push_back(bodies_.near.closed(c) && bodies_.near.gap_rate(c) <= 0);
     std::vector<std::vector<long double>> list = impact_jumps(bodies_.dynamics, bodies_.contacts, touches);
@@ -175,7 +178,7 @@ class HybridMotion {
         changes.push_back({s_.model->coordinates[a].name + "'", {bodies_.at.qd[a], ""}, {v, ""}});
       bodies_.at.qd[a] = v;
     }
-    joined_.set(bodies_.at.t.get_d(), changes);
+    joined_.set(bodies_.at.t.get_d(), changes, event_name(striking, ModeChange::hits));
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
       if (touches[c] && bodies_.near.gap_rate(c) != 0 && !bodies_.contacts[c].under)
         accumulation_.impact(c, bodies_.at.t.get_d());

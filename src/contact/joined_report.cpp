@@ -27,7 +27,7 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
     const SimulationReport first = all_;
     all_ = r;
     all_.model = first.model, all_.looks_for_events = true;
-    all_.events.clear(), all_.constraints_each.clear(), all_.monitors.clear();
+    all_.events = first.events, all_.constraints_each.clear(), all_.monitors.clear();
   } else {
     all_.steps += r.steps;
     all_.rows_looked_at += r.rows_looked_at;
@@ -92,13 +92,13 @@ void JoinedReport::by_bdf(double t, SimulationReport r) {
         {t, stiff_method(), "where slips are so slow that friction is stiff, and Taylor elsewhere"});
 }
 
-void JoinedReport::set(double t, const std::vector<EventReport::Change>& changes) {
+void JoinedReport::set(double t, const std::vector<EventReport::Change>& changes, const std::string& without_event) {
   const auto hit = std::find_if(all_.events.rbegin(), all_.events.rend(),
                                 [&](const EventReport& e) { return e.t.value == t && e.changes.empty(); });
   if (hit != all_.events.rend())
     hit->changes = changes;
   else
-    all_.events.push_back({"impact", {t, ""}, changes});
+    all_.events.push_back({without_event, {t, ""}, changes});
 }
 
 void JoinedReport::event(const std::string& name, double t) { all_.events.push_back({name, {t, ""}, {}}); }

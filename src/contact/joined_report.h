@@ -12,8 +12,9 @@ class JoinedReport {
   bool add(const SimulationReport& segment, const std::map<std::string, ModeEvent>& contacts);
   // A segment by BDF that begins at t.
   void by_bdf(double t, SimulationReport segment);
-  // Velocities that an impact has set, told with the event that led to it.
-  void set(double t, const std::vector<EventReport::Change>& changes);
+  // Velocities that an impact has set, told with the event that led to it; an impact at the start has none, and becomes one
+  // of this name.
+  void set(double t, const std::vector<EventReport::Change>& changes, const std::string& without_event);
   void event(const std::string& name, double t);
   // The last event of this name has changed nothing.
   void take_back(const std::string& name);

@@ -172,7 +172,7 @@ class SwitchedMotion {
       else
         changes_.push_back({name, {before[a], ""}, {at_.qd[a], ""}});
     }
-    if (!changes_.empty()) joined_.set(at_.t.get_d(), changes_);
+    if (!changes_.empty()) joined_.set(at_.t.get_d(), changes_, "impact");
     changes_.clear();
   }
 

@@ -90,7 +90,7 @@ std::optional<std::string> TouchingBodies::contradiction() const {
     const bool sticks = modes[c].touch == Touch::sticks && v > most;
     const bool against = modes[c].touch == Touch::slips && contacts[c].rough() && contacts[c].slip.size() == 1 &&
                          place.slip[0] * modes[c].direction[0] < -most;
-    if (sticks || against)
+    if ((sticks || against) && !near.hardly_slips(c))
       return "the contact '" + contacts[c].name +
              (sticks ? "' sticks, and slips with " : "' slips against its direction with ") +
              number_text(static_cast<double>(v), 6) +

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "formula/indices.h"
+#include "modelfile/contacts.h"
 #include "modelfile/names/constant.h"
 #include "numeric/random/philox.h"
 #include "numeric/random/sobol.h"
@@ -103,6 +104,9 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
     known.push_back(model.parameters[i].name);
   }
   known.insert(known.end(), coordinates.begin(), coordinates.end());
+  const std::string coefficient = hint_for_coefficient(name);
+  if (!coefficient.empty())
+    mistake_in(word, 0, text.size(), "there is no parameter and no coordinate '" + name + "'", coefficient);
   mistake_in(word, 0, text.size(), "there is no parameter and no coordinate '" + name + "'" + meant_by(name, known),
              "the names in [parameters], coordinates, and velocities such as " +
                  (coordinates.empty() ? std::string("x") : coordinates[0]) + "'");

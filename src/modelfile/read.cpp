@@ -302,10 +302,11 @@ class Reader {  // its references are used only while it runs
       if (!index_overrides_.count(name) && std::find(used.begin(), used.end(), name) == used.end()) {
         std::vector<std::string> known;
         for (const Parameter& p : model_.parameters) known.push_back(p.name);
-        const std::string near = did_you_mean(name, known);
+        const std::string coefficient = hint_for_coefficient(name),
+                          near = coefficient.empty() ? did_you_mean(name, known) : "";
         diagnostics_.error(
             {}, "--set: there is no parameter '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
-            parameters_known(known));
+            coefficient.empty() ? parameters_known(known) : coefficient);
       }
   }
 

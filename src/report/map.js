@@ -135,6 +135,8 @@ function anholon_map(root, data, host) {
   // A word for a shell.
   const quoted = word => /^[\w=.,+\-/:]*$/.test(word) ? word : "'" + word.replaceAll("'", "'\\''") + "'";
   function command(k) {
+    // No command computes the motion of one mode.
+    if (!data.command) return "python3 -c " + quoted(`import anholon; anholon.open_sweep(${JSON.stringify(data.folder)}).run(${cases[k]}).page("case-${cases[k]}.html")`);
     let line = data.command;
     for (const name of data.varied) {
       const plain = name.replace("(0)", ""), primes = plain.split("'").length - 1, c = column(name);
@@ -191,7 +193,7 @@ function anholon_map(root, data, host) {
         element("details", {}, element("summary", {}, `The numbers of case ${cases[wanted]}`), table_of(wanted)));
     }
     about.append(table_of(row));
-    if (data.command) tell_command(row);
+    if (data.command || data.folder) tell_command(row);
     host.picked(cases[row], row);
   }
   function row_of(n) { return cases.indexOf(n); }

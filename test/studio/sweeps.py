@@ -119,6 +119,17 @@ def contact_run(program, folder, reply):
     return simulated(program, folder, reply["command"], round(1 / interval) + 1)
 
 
+def one_mode(program, folder):
+    """The command of a motion in one mode is one of Python, with the folder and the number of the case."""
+    (folder / "f.toml").write_text(CONTACT)
+    sweep(program, folder, "f.toml", "--mode", "floor=open", "--vary", "z=0.5:1:4", "-o", "it's one/", "--chunk", "3")
+    with Studio(program, "it's one", cwd=folder) as s:
+        _, reply = s.ask("case", "2", edition=3)
+    words = shlex.split(reply.get("command", ""))
+    wanted = 'import anholon; anholon.open_sweep("it\'s one").run(2).page("case-2.html")'
+    return [] if words == ["python3", "-c", wanted] else [f"the command is {words or reply}"]
+
+
 def mistakes(program, folder):
     """Numbers that are none, requests of strangers, and folders in which something is missing or changed."""
     found = []
@@ -293,7 +304,7 @@ def main():
     if not pathlib.Path("viewer/dist/studio.js").exists():
         print("skipped: the viewer is not built, and so no studio")
         return 77
-    for test in [motions, mistakes, held, newer]:
+    for test in [motions, one_mode, mistakes, held, newer]:
         with tempfile.TemporaryDirectory() as folder:
             began = time.monotonic()
             found += test(args.program, pathlib.Path(folder))

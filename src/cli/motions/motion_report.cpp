@@ -60,17 +60,26 @@ void second_opinion(const Scenario& s, const SimulationReport& r) {
       o.of.c_str());
 }
 
+using Units = std::map<std::string, std::string>;
+
+// " m" behind a number in m; empty for a pure number and where the unit is unknown.
+std::string behind(const Units& units, const std::string& name) {
+  const auto it = units.find(name);
+  return it == units.end() || it->second.empty() || it->second == "1" ? "" : " " + it->second;
+}
+
 // "event burn_out at t = 160: stage 1 -> 2, fuel 0 -> 90000"
-void events(const SimulationReport& r) {
+void events(const SimulationReport& r, const Units& units) {
   constexpr std::size_t kMostLines = 20;
   for (std::size_t k = 0; k < r.events.size() && k < kMostLines; ++k) {
     const EventReport& e = r.events[k];
     std::string list;
     for (const auto& c : e.changes)
-      list += (list.empty() ? ": " : ", ") + c.name + " " + c.before.text() + " -> " + c.after.text();
+      list += (list.empty() ? ": " : ", ") + c.name + " " + c.before.text() + " -> " + c.after.text() +
+              behind(units, c.name);
     if (e.correction > 0) list += "; made consistent by " + small(e.correction);
-    say(stderr, "event %s at t = %s%s%s\n", e.name.c_str(), e.t.text().c_str(), list.c_str(),
-        e.stop ? ": the motion ends here" : "");
+    say(stderr, "event %s at t = %s%s%s%s\n", e.name.c_str(), e.t.text().c_str(), behind(units, "t").c_str(),
+        list.c_str(), e.stop ? ": the motion ends here" : "");
   }
   if (r.events.size() > kMostLines)
     say(stderr, "… and %zu more events (all of them with --json)\n", r.events.size() - kMostLines);
@@ -91,7 +100,7 @@ void redundant(const Scenario& s) {
 
 }  // namespace
 
-void print_report(const Scenario& s, const SimulationReport& r) {
+void print_report(const Scenario& s, const SimulationReport& r, const Units& units) {
   std::fflush(stdout);
   // `check` prints the notes that concern the model itself; here only those of the state follow.
   for (const std::string& n : s.state.notes) say(stderr, "note: %s\n", n.c_str());
@@ -109,14 +118,16 @@ void print_report(const Scenario& s, const SimulationReport& r) {
     say(stderr, "digits to trust%s\n", digits_to_trust(*r.error).c_str());
   else if (!r.no_error.empty())
     say(stderr, "digits to trust: not estimated, %s\n", r.no_error.c_str());
-  events(r);
+  events(r, units);
   for (const WatchedReport& w : r.conserved)
-    say(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(), w.first.text().c_str(),
-        small(w.largest_change).c_str());
-  for (const WatchedReport& w : r.monitors)
-    say(stderr, "monitor %s: from %s to %s, between %s and %s, largest change %s of its size\n", w.name.c_str(),
-        w.first.text().c_str(), w.last.text().c_str(), w.least.text().c_str(), w.greatest.text().c_str(),
-        small(w.largest_change).c_str());
+    say(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(),
+        (w.first.text() + behind(units, w.name)).c_str(), small(w.largest_change).c_str());
+  for (const WatchedReport& w : r.monitors) {
+    const std::string unit = behind(units, w.name);
+    say(stderr, "monitor %s: from %s to %s%s, between %s and %s%s, largest change %s of its size\n", w.name.c_str(),
+        w.first.text().c_str(), w.last.text().c_str(), unit.c_str(), w.least.text().c_str(), w.greatest.text().c_str(),
+        unit.c_str(), small(w.largest_change).c_str());
+  }
   if (r.rigorous) {
     const RigorousReport& g = *r.rigorous;
     say(stderr,

@@ -1,9 +1,13 @@
 // The report of a motion, in words on stderr.
 #pragma once
+#include <map>
+
 #include "simulation/simulate.h"
 
 namespace anholon::cli {
 
-void print_report(const Scenario& scenario, const SimulationReport& report);
+// units: of columns and parameters by name, as far as they are known.
+void print_report(const Scenario& scenario, const SimulationReport& report,
+                  const std::map<std::string, std::string>& units);
 
 }  // namespace anholon::cli

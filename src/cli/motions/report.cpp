@@ -10,8 +10,7 @@
 #include "cli/motions/run_formulas.h"
 #include "cli/motions/run_info.h"
 #include "cli/say.h"
-#include "modelfile/contacts.h"
-#include "observe/rows/row_values.h"
+#include "observe/rows/quantity_units.h"
 #include "report/page/page_of.h"
 #include "result/file.h"
 
@@ -39,10 +38,7 @@ void take_up(const SystemCommand& o, const std::string& rows, Told& x) {
   if (x.run.table.rows() == 0) throw UsageError{"error: the run has no rows\n"};
   if (!rows.empty()) {
     x.in = read(o);
-    if (x.run.units.empty()) {
-      x.run.units = column_units(*x.in.model);
-      x.run.units.merge(column_units(contacts(*x.in.names)));
-    }
+    if (x.run.units.empty()) x.run.units = quantity_units(*x.in.model, contacts(*x.in.names));
     make_ready(with_form(o, x.in), x);
     return;
   }

@@ -1,9 +1,8 @@
 #include "cli/motions/run_info.h"
 
 #include "cli/model_options.h"
-#include "modelfile/contacts.h"
 #include "modelfile/hash.h"
-#include "observe/rows/row_values.h"
+#include "observe/rows/quantity_units.h"
 
 namespace anholon::cli {
 
@@ -15,8 +14,7 @@ RunInfo run_info(const SystemCommand& o, const Reader& in, const Scenario& scena
   info.created_by = "anholon " ANHOLON_VERSION;
   info.model.push_back({in.source.name, in.source.text});
   for (const SourceText& s : in.source.others) info.model.push_back({s.name, s.text});
-  info.units = column_units(*in.model);
-  info.units.merge(column_units(contacts(*in.names)));
+  info.units = quantity_units(*in.model, contacts(*in.names));
 
   const auto one = [&](const char* name, const std::string& word) {
     info.settings[name] = word.empty() ? std::vector<std::string>{} : std::vector<std::string>{word};

@@ -265,7 +265,7 @@ int simulate_motion(const SimulateCommand& asked, const SavedRun* resume, Told* 
   }
   if (!w.started) return kStopped;
   if (told) told->run.report = report_json(w.report);
-  if (!o.quiet && w.report.rows > 0) print_report(s, w.report);
+  if (!o.quiet && w.report.rows > 0) print_report(s, w.report, info.units);
   return say_end(o, w, saver.error);
 }
 

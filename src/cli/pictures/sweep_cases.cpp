@@ -6,7 +6,7 @@
 #include "api/sweep_case.h"
 #include "base/read_file.h"
 #include "modelfile/read.h"
-#include "observe/rows/row_values.h"
+#include "observe/rows/quantity_units.h"
 #include "result/format.h"
 #include "result/table.h"
 
@@ -171,7 +171,7 @@ std::vector<unsigned> SweepCases::generations() const {
   return list;
 }
 
-// `report` shows a motion with its changes of mode, and not that of one mode.
+// `report` shows a motion with its changes of mode, and Python that of one mode.
 std::string SweepCases::command() const {
   return store_ && store_->asked("mode").empty() ? v1::command_of_sweep(*store_) : std::string();
 }
@@ -179,13 +179,12 @@ std::string SweepCases::command() const {
 // Units and meanings come from the model in the folder; a model that refers to files that are not there has none.
 void SweepCases::read_model() {
   Diagnostics diagnostics;
-  const auto model = anholon::read_model(SourceText{store_->folder(), store_->asked("model")}, diagnostics);
-  if (!model) return;
-  units_ = column_units(*model);
-  for (std::size_t k = 0; k < std::min(model->parameters.size(), model->parameter_units.size()); ++k) {
-    units_.emplace(model->parameters[k].name, model->parameter_units[k]);
-    meanings_.emplace(model->parameters[k].name, model->parameters[k].doc);
-  }
+  const auto open = open_model(SourceText{store_->folder(), store_->asked("model")}, diagnostics);
+  if (!open) return;
+  units_ = quantity_units(*open->model, contacts(*open->names));
+  const Model& model = *open->model;
+  for (std::size_t k = 0; k < std::min(model.parameters.size(), model.parameter_units.size()); ++k)
+    meanings_.emplace(model.parameters[k].name, model.parameters[k].doc);
 }
 
 }  // namespace anholon::cli

@@ -157,6 +157,7 @@ SweepMap map_of_sweep(const PlotCommand& o) {
   JsonWriter j;
   j.open_object().key("title").string(map.title).key("shown").string(shown).key("command").string(cases.command());
   j.key("model").string(cases.store() ? cases.store()->asked("model") : "");
+  j.key("folder").string(cases.command().empty() && cases.store() ? o.run : "");
   j.key("varied").open_array();
   for (const std::string& name : cases.varied()) j.string(name);
   // A scenario that varies is no axis.

@@ -84,6 +84,23 @@ class Elements {
     }
   }
 
+  // Gives monitors, states and outputs without a unit theirs. REQUIRES: the elements have been run.
+  void measure(Model& model) {
+    const auto record = [&](const std::string& name, Span span, const DimensionForm& form) {
+      if (const std::string unit = unit_of(form); !unit.empty())
+        model.outputs.push_back({name, unit, {}, {}, false, span});
+    };
+    each("monitor", [&](const Item& i) {
+      if (i.is_formula()) record(normal_name(i.key), i.key_span, formulas_.of(i).dimension);
+    });
+    for (const StateVariable& z : model.states) guard([&] { record(z.name, z.span, named(z.name)); }, z.span);
+    each("output", [&](const Item& i) {
+      const Item* value = i.kind == Item::Kind::table ? i.find("value") : &i;
+      for (OutputQuantity& o : model.outputs)
+        if (value && o.name == i.key && o.unit.empty()) o.unit = unit_of(formulas_.term(*value).dimension);
+    });
+  }
+
   const std::vector<Diagnostic>& found() const { return found_.list(); }
   FormulaDimensions& formulas() { return formulas_; }
 
@@ -210,12 +227,8 @@ class Elements {
     if (equation) distance = formulas_.of(parse_equation(equation->formula)[0]).dimension;
     if (slip && slip->is_formula()) velocity = formulas_.of(*slip).dimension;
     if (slip && !slip->items.empty()) velocity = formulas_.of(slip->items[0]).dimension;
-    const auto unit = [&](const DimensionForm& form) {
-      const auto known = formulas_.known(form);
-      return known ? print(*known) : std::string();
-    };
-    const ContactUnits units{unit(distance), unit(formulas_.unit("J") / distance), unit(velocity),
-                             unit(formulas_.unit("W") / velocity)},
+    const ContactUnits units{unit_of(distance), unit_of(formulas_.unit("J") / distance), unit_of(velocity),
+                             unit_of(formulas_.unit("W") / velocity)},
         resistance{units.gap, units.normal, "1/s", "N*m"};
     for (Contact& contact : list) {
       const bool own = contact.under ? list[*contact.under].element == name : contact.element == name;
@@ -256,6 +269,12 @@ class Elements {
       expect(*value, formulas_.given_unit(normal_name(unit->text())));
     else
       formulas_.term(*value);
+  }
+
+  // In SI; empty if it does not follow.
+  std::string unit_of(const DimensionForm& form) const {
+    const auto known = formulas_.known(form);
+    return known ? print(*known) : std::string();
   }
 
   DimensionForm named(const std::string& name) { return formulas_.named(name).dimension; }
@@ -377,6 +396,7 @@ void check_dimensions(const Item& root, const Scope& scope, Model& model, std::v
                         b.text + " " + print(b.dimension) + ", or 1*" + b.text +
                             " where the number has its unit in SI");
   elements.measure(contacts);
+  elements.measure(model);
 }
 
 std::map<std::string, std::string> implied_units(const Item& root, const Scope& scope, const Model& model) {

@@ -125,6 +125,8 @@ initial = {z = 1, "phi'" = 9}
 - With `body` the gap and the slip velocity follow from the shape of the body and the plane. A disc is turned about its axis z and touches with
   its rim; a box touches with its corners, whose contacts are called `NAME1`, `NAME2`, …; in a plane motion these are four. `at` without `shape` is a point of the body, a position in the
   observer's axes as of a `[point]`: `at = "s.center + s(0.3, 0, -0.1)"` is fixed in the body s, and `[0.3, 0, -0.1]` in space. (In `force.on.at` an array is along the axes of the body.)
+- A contact has one body. The plane has no border, and the corners of a box are points: edges and faces of two boxes do not touch each other. Of two bodies one is
+  a point or a ball and the other a ball B, `on = "ball(R)"` with `through = "B.center"`, whose turning is not part of the slip velocity; others have `gap` and `slip` as formulas.
 - The normal of a plane does not turn; `through` may move. On a ball the directions of slip are those across `ey`.
 - A contact pushes and does not pull: it is open, sticks or slips. The normal force N acts along the gradient of the gap, friction against the slip velocity:
   μN while it slips, at most the static coefficient times N while it sticks. Without `slip` there is no friction.
@@ -133,13 +135,13 @@ initial = {z = 1, "phi'" = 9}
 - `rolling_resistance` δ and `drilling_resistance` hold moments against the angular velocity of the body: δN against its part along the surface while the body
   rolls, at most δN while it does not; the same about the normal. They need a `body` with an orientation. Columns are `NAME.rolling.mode` (0 open, 1 rolls, 2 rests),
   `NAME.rolling.moment`, `NAME.drilling.mode`, `NAME.drilling.moment`; events are `NAME.rolling.starts`, `NAME.rolling.stops`, `NAME.rolling.reverses`, and the same of `NAME.drilling`.
-- Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. At `NAME.reverses` a slip
+- Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. A gap that is 0 at the start and shrinks is an impact, `NAME.hits`, at the start. At `NAME.reverses` a slip
   velocity passes zero and the contact slips on. Rows have the columns `NAME.mode` (0 open,
   1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
 - In monitors, outputs, events and the definitions they use, `lambda.NAME` is N, 0 while the contact is open, and `lambda.NAME.t1`, `lambda.NAME.t2` are the components
   of friction along those of the slip velocity, as forces on what slips; `lambda.NAME.rolling.t1` and so on are the moments of resistance. `reaction(B)` holds the forces of contacts. A force that jumps over
   the zero of an event at a change of mode does not make it happen.
-- Coefficients are not negative, and a restitution is at most 1. Where the file has units, friction and restitution are numbers, and resistances lengths.
+- Coefficients are not negative, a restitution is at most 1, and `static_friction` is at least `friction`. Where the file has units, friction and restitution are numbers, and resistances lengths.
 - Impacts follow Newton's law in Moreau's form: the velocity of the gap is reversed and multiplied by the restitution e. With `impact = "poisson"` they follow
   Poisson's law: the impulse that stops the gap is followed by e times this impulse. Both agree without friction; with friction Newton's law may raise the energy, which ends the
   motion. All contacts of a model have one law. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.

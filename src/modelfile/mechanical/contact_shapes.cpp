@@ -4,6 +4,7 @@
 
 #include "expr/normal.h"
 #include "modelfile/mechanical/shapes.h"
+#include "modelfile/names/constant.h"
 
 namespace anholon {
 
@@ -22,6 +23,8 @@ Vector axis(Graph& g, int k) {
   return v;
 }
 
+bool is_zero_vector(const Vector& v) { return proved_zero(v[0]) && proved_zero(v[1]) && proved_zero(v[2]); }
+
 // Two directions across n, one of them an axis if n has no component along it.
 std::vector<Vector> tangents(const Vector& n) {
   Graph& g = *n[0].graph;
@@ -35,10 +38,17 @@ std::vector<Vector> tangents(const Vector& n) {
   return {t, cross(n, t)};
 }
 
+// The other ways in which two bodies touch.
+constexpr const char* kTwoBodies = "on = \"ball(R)\" with through = \"B.center\" where the other body B is a ball; "
+                                   "else gap = \"…\" and slip = \"…\" as "
+                                   "formulas in place of 'body'";
+
 class TouchingReader {
  public:
   TouchingReader(const Item& c, Scope& scope, Model& model) : c_(c), scope_(scope), model_(model), g_(*model.graph) {
     const Item& named = *c.find("body");
+    if (named.kind == Item::Kind::array)
+      throw Failure(named.span, "a contact names one body, which touches a plane, a ball or a bowl", kTwoBodies);
     if (named.kind != Item::Kind::string) throw Failure(named.span, "the name of a body", "body = \"ball\"");
     body_ = scope.body(named.text(), named.span);
     if (const Item* both = c.find("gap") ? c.find("gap") : c.find("slip"))
@@ -46,7 +56,11 @@ class TouchingReader {
                     "leave out 'gap' and 'slip', or 'body'");
     read_shape_of_contact();
     through_ = c.find("through") ? scope.vector(*c.find("through")) : zero_vector(g_);
+    if (const Item* through = c.find("through"); through && is_zero_vector(through_ - body().center))
+      throw Failure(through->span, "a body does not touch what goes through its own centre",
+                    "leave out 'through', or name a place of what is touched: through = \"-3*ez\"");
     read_ground();
+    if (shape_.kind == "box") note_moving_plane();
   }
 
   std::vector<Touching> read() {
@@ -91,7 +105,10 @@ class TouchingReader {
   void read_ground() {
     const Item *on = c_.find("on"), *normal = c_.find("normal");
     if (!on) {
-      normal_ = normal ? unit(scope_.vector(*normal)) : axis(g_, 2);
+      const Vector given = normal ? scope_.vector(*normal) : axis(g_, 2);
+      if (is_zero_vector(given))
+        throw Failure(normal->span, "the normal is zero and has no direction", "normal = \"ez\"");
+      normal_ = normal ? unit(given) : given;
       for (int k = 0; k < 3; ++k)
         if (normal && !proved_zero(total_derivative(normal_[k])))
           throw Failure(normal->span, "the normal of a plane does not turn",
@@ -100,13 +117,36 @@ class TouchingReader {
     }
     if (normal) throw Failure(normal->key_span, "a ball and a bowl have no 'normal'", "leave out 'normal', or 'on'");
     const Syntax s = on->kind == Item::Kind::string ? parse_formula(on->formula) : Syntax{};
+    if (const Item::Kind kind = on->kind; kind == Item::Kind::string && scope_.find_body(on->text()))
+      throw Failure(on->span,
+                    *scope_.find_body(on->text()) == body_
+                        ? "a body does not touch itself"
+                        : "'" + on->text() + "' is a body, and a contact is on a ball or in a bowl",
+                    kTwoBodies);
+    if (s.op == Syntax::Op::call && s.text == "box")
+      throw Failure(on->span, "a contact is on a ball or in a bowl: the edges and faces of a box are not known",
+                    kTwoBodies);
     if (s.op != Syntax::Op::call || (s.text != "ball" && s.text != "bowl") || s.args.size() != 1)
       throw Failure(on->span, "a contact is on a ball or in a bowl",
                     "on = \"ball(R)\" or \"bowl(R)\"; without it on a plane");
     if (shape_.kind != "point" && shape_.kind != "ball")
       throw Failure(on->span, "on a ball and in a bowl there are points and balls, and this is a " + shape_.kind);
     radius_ = evaluate_number(s.args[0], scope_);
+    if (const auto radius = constant_value(model_, *radius_); radius && !(*radius > 0))
+      throw Failure(s.args[0].span,
+                    "the radius of the " + s.text + " is " + number_text(*radius, 6) + ", and a radius is positive",
+                    "on = \"ball(R)\" around 'through', or \"bowl(R)\" where the body is inside");
     bowl_ = s.text == "bowl";
+  }
+
+  // A plane that moves with coordinates may be meant as a face of another body.
+  void note_moving_plane() {
+    if (radius_ || !(jet_order(through_[0]) >= 0 || jet_order(through_[1]) >= 0 || jet_order(through_[2]) >= 0)) return;
+    const Item* named = c_.find("name");
+    model_.notes.push_back(
+        (named ? "contact '" + named->text() + "'" : "the contact of '" + body().name + "'") +
+        ": the corners of the box touch a plane that moves and has no border; edges and faces of two "
+        "boxes do not touch each other");
   }
 
   Touching touching(const Vector& place) {

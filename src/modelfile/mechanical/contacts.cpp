@@ -32,6 +32,15 @@ std::map<std::string, std::string> column_units(const std::vector<Contact>& cont
   return units;
 }
 
+std::string hint_for_coefficient(const std::string& name) {
+  for (const std::string key :
+       {"friction", "static_friction", "restitution", "rolling_resistance", "drilling_resistance"})
+    if (name == key || name.ends_with("." + key))
+      return "a coefficient that takes other values is a parameter: parameters = {c = 0.3} in the file, and " + key +
+             " = \"c\" in the contact";
+  return "";
+}
+
 namespace {
 
 class ContactReader {
@@ -113,8 +122,12 @@ class ContactReader {
       throw Failure(contact.span, "the contact '" + contact.name + "' has no gap",
                     "gap = \"P.z - R\": the distance, which is not negative; or body = \"ball\", whose shape touches");
     contact.gap = formula(*gap, "a gap");
-    if (jet_order(contact.gap) != 0)
-      throw Failure(gap->span, "a gap is a formula of coordinates and time, without velocities");
+    if (jet_order(contact.gap) < 0)
+      throw Failure(gap->span, "the gap of the contact '" + contact.name + "' does not depend on coordinates",
+                    "gap = \"P.z - R\": the distance of a point P that moves");
+    if (jet_order(contact.gap) > 0)
+      throw Failure(gap->span, "a gap is a formula of coordinates and time, without velocities",
+                    "the velocity at the contact is the slip: slip = \"vel(B, P)\"");
     if (const Item* slip = c.find("slip")) contact.slip = velocities(*slip, c.find("along"));
   }
 
@@ -441,21 +454,29 @@ std::vector<Diagnostic> wrong_coefficients(const std::vector<Contact>& contacts,
   std::vector<Diagnostic> list;
   Column values;
   for (const Parameter& p : model.parameters) values.push_back(p.value);
+  const auto value_of = [&](const Expr& e) {
+    values.push_back(model.graph->own(e));
+    const double value = evaluate_parameters<double>(*model.graph, values).back();
+    values.pop_back();
+    return value;
+  };
   for (const Contact& contact : contacts)
     for (const Contact::Coefficient& c : contact.given) {
-      values.push_back(model.graph->own(c.value));
-      const double value = evaluate_parameters<double>(*model.graph, values).back();
-      values.pop_back();
+      const double value = value_of(c.value), sliding = value_of(contact.friction);
       const bool restitution = c.key == "restitution";
-      if (value >= 0 && (value <= 1 || !restitution)) continue;
+      const bool too_weak = c.key == "static_friction" && value >= 0 && value < sliding;
+      if (value >= 0 && (value <= 1 || !restitution) && !too_weak) continue;
       if (std::any_of(list.begin(), list.end(), [&](const Diagnostic& o) {
             return o.span.file == c.span.file && o.span.line == c.span.line && o.span.column == c.span.column;
           }))
         continue;
       list.push_back({Severity::error, c.span,
                       "'" + c.key + "' of the contact '" + contact.element + "' is " + number_text(value, 6) +
-                          (restitution ? ", and a restitution lies between 0 and 1" : ", and it must not be negative"),
-                      c.key + (restitution ? " = 0.5" : " = 0, or a positive number")});
+                          (too_weak      ? ", less than the " + number_text(sliding, 6) + " of 'friction'"
+                           : restitution ? ", and a restitution lies between 0 and 1"
+                                         : ", and it must not be negative"),
+                      too_weak ? "what sticks holds at least the friction of what slips: leave out 'static_friction'"
+                               : c.key + (restitution ? " = 0.5" : " = 0, or a positive number")});
     }
   return list;
 }

@@ -79,6 +79,9 @@ struct Contact {
 // The SI units of the columns of contacts: {"floor.gap": "m", "floor.normal": "N"}, as far as they are known.
 std::map<std::string, std::string> column_units(const std::vector<Contact>& contacts);
 
+// How a coefficient of a contact is varied, if a word such as "floor.friction" names one; else empty.
+std::string hint_for_coefficient(const std::string& name);
+
 // In the notes of a model whose contacts are open, or whose modes are those of the start.
 inline constexpr const char* kOpenContacts = "part of these equations, which hold while ";
 

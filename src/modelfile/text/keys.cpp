@@ -39,6 +39,12 @@ const std::vector<OtherWord>& other_words() {
       {"contact",
        {"mu", "mu_k", "mu_d", "kinetic_friction", "dynamic_friction", "sliding_friction", "friction_coefficient"},
        "friction = 0.3"},
+      {"contact", {"radius", "size"}, "shape = \"ball(R)\", or the shape of the body"},
+      {"contact",
+       {"with", "other", "body2", "against", "to"},
+       "'body' names one body, which touches a plane; on = \"ball(R)\" with through = \"B.center\" where the other "
+       "body B "
+       "is a ball"},
       {"contact", {"mu_s", "mu_0", "sticking_friction"}, "static_friction = 0.4"},
       {"contact", {"e", "epsilon", "cor", "coefficient_of_restitution"}, "restitution = 0.5"},
       {"contact",

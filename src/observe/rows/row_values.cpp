@@ -26,6 +26,9 @@ std::map<std::string, std::string> column_units(const Model& model) {
     for (const Monitor& m : model.monitors)
       if (!o.unit.empty() && (m.name == o.name || (o.values.size() == 3 && m.name.rfind(o.name + ".", 0) == 0)))
         units[m.name] = o.unit;
+  for (const OutputQuantity& o : model.outputs)
+    for (const StateVariable& z : model.states)
+      if (z.name == o.name) units[z.name] = o.unit;
   return units;
 }
 

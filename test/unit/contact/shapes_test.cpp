@@ -263,6 +263,7 @@ TEST(Shapes, MistakesHavePlaces) {
   says("body = \"ball\"\ngap = \"z\"\n", "gap and slip velocity follow from the body");
   says("body = \"ball\"\nshape = \"torus(2, 1)\"\n", "the contact of a torus is not known");
   says("body = \"ball\"\non = \"bowle(1)\"\n", "a contact is on a ball or in a bowl");
+  says("body = \"ball\"\non = \"ball\"\n", "a body does not touch itself");
   says("body = \"ball\"\nnormal = \"sin(t)*ex + cos(t)*ez\"\n", "the normal of a plane does not turn");
   says("gap = \"z\"\nnormal = \"ez\"\n", "'normal' goes with 'body'");
 }

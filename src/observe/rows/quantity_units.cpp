@@ -1,0 +1,15 @@
+#include "observe/rows/quantity_units.h"
+
+#include "observe/rows/row_values.h"
+
+namespace anholon {
+
+std::map<std::string, std::string> quantity_units(const Model& model, const std::vector<Contact>& contacts) {
+  std::map<std::string, std::string> units = column_units(model);
+  units.merge(column_units(contacts));
+  for (std::size_t k = 0; k < model.parameters.size() && k < model.parameter_units.size(); ++k)
+    if (!model.parameter_units[k].empty()) units.emplace(model.parameters[k].name, model.parameter_units[k]);
+  return units;
+}
+
+}  // namespace anholon
