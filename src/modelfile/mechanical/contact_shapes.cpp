@@ -5,6 +5,7 @@
 #include "expr/normal.h"
 #include "modelfile/mechanical/shapes.h"
 #include "modelfile/names/constant.h"
+#include "numeric/number.h"
 
 namespace anholon {
 
