@@ -41,8 +41,7 @@ std::vector<Vector> tangents(const Vector& n) {
 
 // The other ways in which two bodies touch.
 constexpr const char* kTwoBodies = "on = \"ball(R)\" with through = \"B.center\" where the other body B is a ball; "
-                                   "else gap = \"…\" and slip = \"…\" as "
-                                   "formulas in place of 'body'";
+                                   "else gap = \"…\" and slip = \"…\" as formulas in place of 'body'";
 
 class TouchingReader {
  public:

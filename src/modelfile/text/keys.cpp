@@ -43,8 +43,7 @@ const std::vector<OtherWord>& other_words() {
       {"contact",
        {"with", "other", "body2", "against", "to"},
        "'body' names one body, which touches a plane; on = \"ball(R)\" with through = \"B.center\" where the other "
-       "body B "
-       "is a ball"},
+       "body B is a ball"},
       {"contact", {"mu_s", "mu_0", "sticking_friction"}, "static_friction = 0.4"},
       {"contact", {"e", "epsilon", "cor", "coefficient_of_restitution"}, "restitution = 0.5"},
       {"contact",
