@@ -4,45 +4,6 @@
 
 namespace anholon {
 
-namespace {
-
-// Tells for each column of a whether a x = b determines that entry of x: true if its unit vector is a combination of the
-// rows, which Gauss-Jordan elimination with full pivoting shows.
-template <Number N>
-std::vector<bool> determined_columns(Matrix<N> a) {
-  for (std::size_t i = 0; i < a.rows; ++i) {
-    N largest(0);
-    for (std::size_t j = 0; j < a.cols; ++j)
-      if (N v = abs(a(i, j)); v > largest) largest = v;
-    for (std::size_t j = 0; j < a.cols && largest > N(0); ++j) a(i, j) = N(a(i, j) / largest);
-  }
-  std::vector<bool> determined(a.cols, false), used(a.cols, false);
-  std::vector<std::size_t> pivots;
-  for (std::size_t top = 0; top < a.rows; ++top) {
-    std::size_t row = top, column = 0;
-    N pivot(0);
-    for (std::size_t i = top; i < a.rows; ++i)
-      for (std::size_t j = 0; j < a.cols; ++j)
-        if (N v = abs(a(i, j)); !used[j] && v > pivot) pivot = v, row = i, column = j;
-    if (!(pivot > N(kDependent))) break;
-    used[column] = true;
-    pivots.push_back(column);
-    const N by = a(row, column);
-    for (std::size_t j = 0; j < a.cols; ++j) std::swap(a(top, j), a(row, j)), a(top, j) = N(a(top, j) / by);
-    for (std::size_t i = 0; i < a.rows; ++i)
-      if (const N factor = a(i, column); i != top && factor != N(0))
-        for (std::size_t j = 0; j < a.cols; ++j) a(i, j) = N(a(i, j) - factor * a(top, j));
-  }
-  for (std::size_t k = 0; k < pivots.size(); ++k) {
-    bool alone = true;
-    for (std::size_t j = 0; j < a.cols; ++j) alone = alone && (used[j] || !(abs(a(k, j)) > N(kDependent)));
-    determined[pivots[k]] = alone;
-  }
-  return determined;
-}
-
-}  // namespace
-
 // If linear constraints of order 3 and more leave accelerations free, the motion starts without their reaction: the
 // guess is the acceleration without them. (A nonlinear one must have a reaction; there 0 is as good as any value.)
 template <Number N>
@@ -146,12 +107,9 @@ void StateSolver<N>::say_choices(const System& s, const Structure& t) {
 // Marks the positions and velocities as chosen that the equations move but do not determine: they have the values that
 // change least.
 template <Number N>
-void StateSolver<N>::mark_undetermined(const Stage<N>& stage, const InitialState<N>& before,
+void StateSolver<N>::mark_undetermined(Stage<N>& stage, const InitialState<N>& before,
                                        const std::vector<std::size_t>& free) {
-  Matrix<N> a(stage.size(), free.size());
-  for (std::size_t i = 0; i < stage.size(); ++i)
-    for (std::size_t j = 0; j < free.size(); ++j) a(i, j) = stage.jacobian(i, free[j]);
-  const std::vector<bool> determined = determined_columns(std::move(a));
+  const std::vector<bool>& determined = stage.determined(free);
   for (std::size_t j = 0; j < free.size(); ++j) {
     const Node n = stage.unknown(free[j]);
     std::erase_if(changed_least_, [&](const Node& o) { return o.index == n.index && o.order == n.order; });
@@ -183,8 +141,7 @@ void StateSolver<N>::say_least_change() {
   template void StateSolver<N>::start_unconstrained(const StageEquations&, const Column&, unsigned);                   \
   template void StateSolver<N>::mark_choices(const StageEquations&, const Column&, unsigned);                          \
   template void StateSolver<N>::say_choices(const System&, const Structure&);                                          \
-  template void StateSolver<N>::mark_undetermined(const Stage<N>&, const InitialState<N>&,                             \
-                                                  const std::vector<std::size_t>&);                                    \
+  template void StateSolver<N>::mark_undetermined(Stage<N>&, const InitialState<N>&, const std::vector<std::size_t>&); \
   template void StateSolver<N>::say_least_change();
 INSTANTIATE(double)
 INSTANTIATE(long double)

@@ -9,7 +9,7 @@ namespace anholon {
 template <Number N>
 Outcome StateSolver<N>::positions_and_velocities() {
   const std::size_t n = m_.q.size();
-  state_ = {};
+  state_.clear();
   state_.q.assign(n, N(0));
   state_.qd.assign(n, N(0));
   state_.q_origin.assign(n, Origin::chosen);
@@ -72,10 +72,12 @@ void StateSolver<N>::start_values(const std::function<bool(const Node&)>& wanted
 // file's values are only the start of the least change.
 template <Number N>
 Outcome StateSolver<N>::solve(const StartPlan::Stages& stages, const std::function<StartPlan::Stages()>& without) {
-  const InitialState<N> before = state_;
-  const Outcome o = attempt(stages, p_.overrides.empty());
-  if (o.ok() || p_.overrides.empty()) return o;
-  const InitialState<N> failed = std::exchange(state_, before);
+  if (!stages) return {};
+  if (p_.overrides.empty()) return attempt(stages, true);
+  notes_.at_first = state_;
+  if (Outcome o = attempt(stages, false); o.ok()) return o;
+  std::swap(state_, notes_.at_first);
+  InitialState<N>& failed = notes_.at_first;
   for (Expr u : stages->unknowns)
     if (Origin& origin = *state_.origin(node(u)); origin == Origin::given && !overridden(node(u)))
       origin = Origin::guessed;
@@ -104,8 +106,10 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
   Stage<N>* known = memory_ ? memory_->stage(stages) : nullptr;
   std::optional<Stage<N>> own;
   Stage<N>& stage = known ? *known : own.emplace(m_, stages, p_.parameters);
-  std::vector<std::size_t> free, all;
-  const InitialState<N> before = state_;
+  std::vector<std::size_t>&free = notes_.free, &all = notes_.all;
+  free.clear(), all.clear();
+  notes_.before = state_;
+  const InitialState<N>& before = notes_.before;
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
     all.push_back(j);
     if (*state_.origin(stage.unknown(j)) != Origin::given) free.push_back(j);

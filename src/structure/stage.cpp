@@ -93,21 +93,20 @@ bool Stage<N>::evaluate(const InitialState<N>& s) {
   at_.resize(n);
   for (std::size_t j = 0; j < n; ++j) at_[j] = *s.value(unknown(j));
   const bool stays = change != Change::all && plan_->linear && !plan_->mass_moves;
-  if (!stays) elimination_.reset();
-  if (!read_equations()) return false;
+  if (!stays) elimination_.reset(), determined_.reset();
+  if (!read_equations(stays)) return false;
   if (!stays && !read_metric()) return false;
   known_ = true;
   return true;
 }
 
 template <Number N>
-bool Stage<N>::read_equations() {
+bool Stage<N>::read_equations(bool jacobian_stays) {
   const std::size_t n = unknowns();
   residual.assign(size(), N(0));
   scale.assign(size(), N(0));
   floor_.assign(size(), N(0));
-  jacobian.rows = size(), jacobian.cols = n;
-  jacobian.data.assign(size() * n, N(0));
+  if (!jacobian_stays) jacobian.rows = size(), jacobian.cols = n, jacobian.data.assign(size() * n, N(0));
   N largest_unknown(1);
   for (const N& x : at_)
     if (N v = abs(x); v > largest_unknown) largest_unknown = v;
@@ -121,11 +120,12 @@ bool Stage<N>::read_equations() {
     if (!is_finite(residual[i])) return false;
     scale[i] = machine_.terms(i, 0);
     for (std::size_t j = 0; j < n; ++j) {
-      jacobian(i, j) = machine_.value(size() + i * n + j);
-      if (!is_finite(jacobian(i, j))) return false;
-      if (!(abs(jacobian(i, j)) > N(0))) continue;
-      if (N part = abs(N(jacobian(i, j) * at_[j])); part > scale[i]) scale[i] = part;
-      if (N part = abs(jacobian(i, j)) * largest_unknown * unit_roundoff<N>(); part > floor_[i]) floor_[i] = part;
+      N& slope = jacobian(i, j);
+      if (!jacobian_stays) slope = machine_.value(size() + i * n + j);
+      if (!is_finite(slope)) return false;
+      if (!(abs(slope) > N(0))) continue;
+      if (N part = abs(N(slope * at_[j])); part > scale[i]) scale[i] = part;
+      if (N part = abs(slope) * largest_unknown * unit_roundoff<N>(); part > floor_[i]) floor_[i] = part;
     }
     if (floor_[i] > scale[i]) scale[i] = floor_[i];
     if (!(scale[i] > N(0))) scale[i] = N(1);
@@ -177,6 +177,56 @@ typename Stage<N>::Elimination& Stage<N>::elimination(const std::vector<std::siz
   e.possible = !rows.empty() && e.change.factor(part, ar);
   e.free = free;  // is set last: after an exception the elimination is that of no unknowns
   return e;
+}
+
+namespace {
+
+// Tells for each column of a whether a x = b determines that entry of x: true if its unit vector is a combination of the
+// rows, which Gauss-Jordan elimination with full pivoting shows.
+template <Number N>
+std::vector<bool> determined_columns(Matrix<N> a) {
+  for (std::size_t i = 0; i < a.rows; ++i) {
+    N largest(0);
+    for (std::size_t j = 0; j < a.cols; ++j)
+      if (N v = abs(a(i, j)); v > largest) largest = v;
+    for (std::size_t j = 0; j < a.cols && largest > N(0); ++j) a(i, j) = N(a(i, j) / largest);
+  }
+  std::vector<bool> determined(a.cols, false), used(a.cols, false);
+  std::vector<std::size_t> pivots;
+  for (std::size_t top = 0; top < a.rows; ++top) {
+    std::size_t row = top, column = 0;
+    N pivot(0);
+    for (std::size_t i = top; i < a.rows; ++i)
+      for (std::size_t j = 0; j < a.cols; ++j)
+        if (N v = abs(a(i, j)); !used[j] && v > pivot) pivot = v, row = i, column = j;
+    if (!(pivot > N(kDependent))) break;
+    used[column] = true;
+    pivots.push_back(column);
+    const N by = a(row, column);
+    for (std::size_t j = 0; j < a.cols; ++j) std::swap(a(top, j), a(row, j)), a(top, j) = N(a(top, j) / by);
+    for (std::size_t i = 0; i < a.rows; ++i)
+      if (const N factor = a(i, column); i != top && factor != N(0))
+        for (std::size_t j = 0; j < a.cols; ++j) a(i, j) = N(a(i, j) - factor * a(top, j));
+  }
+  for (std::size_t k = 0; k < pivots.size(); ++k) {
+    bool alone = true;
+    for (std::size_t j = 0; j < a.cols; ++j) alone = alone && (used[j] || !(abs(a(k, j)) > N(kDependent)));
+    determined[pivots[k]] = alone;
+  }
+  return determined;
+}
+
+}  // namespace
+
+template <Number N>
+const std::vector<bool>& Stage<N>::determined(const std::vector<std::size_t>& free) {
+  if (!determined_ || determined_->free != free) {
+    Matrix<N> a(size(), free.size());
+    for (std::size_t i = 0; i < size(); ++i)
+      for (std::size_t j = 0; j < free.size(); ++j) a(i, j) = jacobian(i, free[j]);
+    determined_ = Determined{free, determined_columns(std::move(a))};
+  }
+  return determined_->is;
 }
 
 template <Number N>
@@ -254,13 +304,12 @@ class Iteration {
       }
       if (rows.independent.empty()) break;
       if (!elimination.possible) return true;
-      std::vector<N> step;
-      least_step(elimination, nearest, step);
-      if (!search(step)) return false;
+      least_step(elimination, nearest);
+      if (!search()) return false;
       if (in_vain_ > kMostInVain) return true;
       N moved(0), size(0);
       for (std::size_t j = 0; j < free_.size(); ++j) {
-        if (N v = abs(step[j]); v > moved) moved = v;
+        if (N v = abs(step_[j]); v > moved) moved = v;
         if (N v = abs(*x_[j]); v > size) size = v;
       }
       const N floor = unit_roundoff<N>() * N(8) * (size > N(1) ? size : N(1));
@@ -277,36 +326,39 @@ class Iteration {
                        [&](std::size_t i) { return abs(s_.residual[i]) > stage_rounding<N>() * s_.scale[i]; });
   }
 
-  void least_step(typename Stage<N>::Elimination& e, bool nearest, std::vector<N>& step) const {
+  // Computes the step that least changes the point, or the guess if `nearest`.
+  void least_step(typename Stage<N>::Elimination& e, bool nearest) {
     const std::vector<std::size_t>& rows = e.rows.independent;
     const std::size_t n = free_.size();
-    std::vector<N> b(rows.size(), N(0)), y;
+    right_.resize(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      b[i] = -s_.residual[rows[i]];
+      right_[i] = -s_.residual[rows[i]];
       if (nearest)
-        for (std::size_t j = 0; j < n; ++j) b[i] += e.a(rows[i], j) * (*x_[j] - guess_[j]);
+        for (std::size_t j = 0; j < n; ++j) right_[i] += e.a(rows[i], j) * (*x_[j] - guess_[j]);
     }
-    e.change.solve(b, y);
-    step.resize(n);
-    for (std::size_t j = 0; j < n; ++j) step[j] = nearest ? N(guess_[j] + y[j] - *x_[j]) : y[j];
+    e.change.solve(right_, step_);
+    if (nearest)
+      for (std::size_t j = 0; j < n; ++j) step_[j] = N(guess_[j] + step_[j] - *x_[j]);
   }
 
-  // Goes along the step as long as the residual decreases; `step` is then the step made.
-  bool search(std::vector<N>& step) {
+  // Goes along the step as long as the residual decreases; `step_` is then the step made.
+  bool search() {
     // Progress is measured relative to the scales at the start of the step: those at its end grow with it.
-    const std::vector<N> scale = s_.scale, old = point();
-    const N now = s_.worst(scale);
+    scale_ = s_.scale;
+    old_.clear();
+    for (const N* v : x_) old_.push_back(*v);
+    const N now = s_.worst(scale_);
     N fraction(1);
     bool better = false;
     for (int halvings = 0; halvings < 12 && !better; ++halvings) {
       if (halvings > 0) fraction = fraction * N(0.5);
-      for (std::size_t j = 0; j < x_.size(); ++j) *x_[j] = old[j] + fraction * step[j];
+      for (std::size_t j = 0; j < x_.size(); ++j) *x_[j] = old_[j] + fraction * step_[j];
       if (!s_.evaluate(state_)) continue;
-      const bool less = s_.worst(scale) <= now * N(0.9) + stage_rounding<N>() * N(4);
+      const bool less = s_.worst(scale_) <= now * N(0.9) + stage_rounding<N>() * N(4);
       in_vain_ = less ? 0 : in_vain_ + (halvings == 11);
       better = less || halvings == 11;
     }
-    for (std::size_t j = 0; j < x_.size(); ++j) step[j] = *x_[j] - old[j];
+    for (std::size_t j = 0; j < x_.size(); ++j) step_[j] = *x_[j] - old_[j];
     return better || s_.evaluate(state_);
   }
 
@@ -315,7 +367,9 @@ class Iteration {
   const std::vector<std::size_t>& free_;
   std::vector<N*> x_;
   std::vector<N> guess_;
-  int in_vain_ = 0;  // searches in a row that found no improvement along their step
+  std::vector<N> right_, step_;  // of a step: the right side, and the step itself
+  std::vector<N> scale_, old_;   // at the start of a step
+  int in_vain_ = 0;              // searches in a row that found no improvement along their step
 };
 
 // The k-th point around the guess, at increasing distance.

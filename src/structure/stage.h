@@ -84,6 +84,8 @@ class Stage {
     bool possible = false;  // whether there are such changes
   };
   Elimination& elimination(const std::vector<std::size_t>& free);
+  // Tells for each of these unknowns whether the equations determine it; kept as long as the Jacobian stays.
+  const std::vector<bool>& determined(const std::vector<std::size_t>& free);
   // True if the equations depend on unknown j.
   bool moves(std::size_t j) const {
     for (std::size_t i = 0; i < size(); ++i)
@@ -107,13 +109,18 @@ class Stage {
   // The inputs that differ from those of the last evaluation.
   enum class Change : std::uint8_t { none, unknowns, all };
   Change bind_inputs(const InitialState<N>& s);
-  bool read_equations();
+  bool read_equations(bool jacobian_stays);
   bool read_metric();
 
   std::vector<N> floor_, at_;  // the values of the unknowns
   std::vector<bool> kept_;     // empty: all
   bool known_ = false;         // whether the numbers are those of the inputs
   std::optional<Elimination> elimination_;
+  struct Determined {
+    std::vector<std::size_t> free;
+    std::vector<bool> is;
+  };
+  std::optional<Determined> determined_;
 
   const Mechanics& m_;
   std::shared_ptr<const StagePlan> plan_;

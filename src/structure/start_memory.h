@@ -11,6 +11,13 @@
 
 namespace anholon {
 
+// What the solver of a state notes on its way, kept from one state to the next so that their lists keep their memory.
+template <Number N>
+struct StartNotes {
+  InitialState<N> at_first, before;    // the state before all attempts, and before the present one
+  std::vector<std::size_t> free, all;  // unknowns of a stage
+};
+
 template <Number N>
 class StartMemory {
  public:
@@ -23,6 +30,7 @@ class StartMemory {
   }
 
   const Machine<N>& values() const { return values_; }
+  StartNotes<N>& notes() { return notes_; }
   // Returns nullptr if the stage does not belong to the plan.
   Stage<N>* stage(const StartPlan::Stages& of) {
     for (Known& k : stages_)
@@ -39,6 +47,7 @@ class StartMemory {
     std::unique_ptr<Stage<N>> stage;
   };
   Machine<N> values_;
+  StartNotes<N> notes_;
   std::vector<Known> stages_;
 };
 

@@ -32,6 +32,15 @@ struct InitialState {
   N largest_correction{0};         // the largest correction of a given value
   std::vector<std::string> notes;  // the choices made
 
+  // Takes all values away; the memory of the lists is kept for the next state.
+  void clear() {
+    t = largest_correction = N(0);
+    q.clear(), qd.clear(), q_origin.clear(), qd_origin.clear();
+    higher.clear(), multipliers.clear();
+    states.clear(), state_rates.clear(), states_origin.clear(), state_rates_origin.clear();
+    notes.clear();
+  }
+
   // q_a^(k) or lambda_r^(k); null for orders that the state does not hold, and for other symbols.
   N* value(const Node& n) { return entry(*this, n); }
   const N* value(const Node& n) const { return entry(*this, n); }

@@ -15,7 +15,8 @@ template <Number N>
 class StateSolver {
  public:
   StateSolver(const InitialProblem<N>& p, InitialState<N>& state, StartMemory<N>* memory = nullptr)
-      : p_(p), m_(*p.mechanics), model_(*m_.model), state_(state), memory_(memory) {}
+      : p_(p), m_(*p.mechanics), model_(*m_.model), state_(state), memory_(memory),
+        notes_(memory ? memory->notes() : own_notes_) {}
 
   Outcome positions_and_velocities();
   Outcome complete(const System& s, const Structure& t);
@@ -59,7 +60,7 @@ class StateSolver {
   void start_unconstrained(const StageEquations& laws, const Column& unknowns, unsigned metric);
   void mark_choices(const StageEquations& equations, const Column& unknowns, unsigned metric);
   void say_choices(const System& s, const Structure& t);
-  void mark_undetermined(const Stage<N>& stage, const InitialState<N>& before, const std::vector<std::size_t>& free);
+  void mark_undetermined(Stage<N>& stage, const InitialState<N>& before, const std::vector<std::size_t>& free);
   void say_least_change();
 
   // Messages about contradictions (clash.cpp).
@@ -78,6 +79,8 @@ class StateSolver {
   const Model& model_;
   InitialState<N>& state_;
   StartMemory<N>* memory_;
+  StartNotes<N> own_notes_;  // without a memory
+  StartNotes<N>& notes_;
   std::vector<Node> changed_least_;  // positions and velocities that the equations move but do not determine
   bool clash_is_told_ = false;       // the message names the values and equations of the last stage that failed
 };
