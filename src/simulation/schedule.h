@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "numeric/multiples.h"
 #include "observe/options.h"
 
 namespace anholon {
@@ -63,9 +64,9 @@ class RowSchedule {
 
  private:
   void evenly(const Rational& every) {
-    const Rational step = end_ < start_ ? Rational(-every) : every;
+    const Multiples<W> steps(end_ < start_ ? Rational(-every) : every);
     for (long k = 0;; ++k) {
-      const W next = start_ + from_rational<W>(Rational(k * step));
+      const W next = start_ + steps(k);
       if (end_ < start_ ? next < end_ : next > end_) break;
       times_.push_back(next);
     }

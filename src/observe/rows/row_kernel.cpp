@@ -1,7 +1,8 @@
 #include "observe/rows/row_kernel.h"
 
-#include <chrono>
 #include <cmath>
+
+#include "base/thread_time.h"
 
 namespace anholon {
 
@@ -37,12 +38,12 @@ void RowKernel::place(std::size_t lane, const RowPlace& place) {
 
 void RowKernel::compute() {
   code_.step(plan_, at_, end_, kernel_.lanes(), spent_);
-  const auto begun = std::chrono::steady_clock::now();
+  const double begun = seconds_of_this_thread();
   if (with_series_)
     kernel_.begin();
   else
     kernel_.begin_point();
-  spent_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  spent_ += seconds_of_this_thread() - begun;
 }
 
 bool RowKernel::good(std::size_t lane) const {

@@ -65,6 +65,7 @@ void RowBlock::clear() {
 #ifndef ANHOLON_HDF5
 
 bool has_hdf5() { return false; }
+void load_hdf5_library() {}
 std::string create_hdf5(const std::string&, const RunInfo&, const std::vector<std::string>&) { return kNoHdf5; }
 std::string extend_hdf5(const std::string&, const RowBlock&) { return kNoHdf5; }
 RunFile read_hdf5(const std::string&) {
@@ -74,6 +75,7 @@ RunFile read_hdf5(const std::string&) {
 #else
 
 bool has_hdf5() { return true; }
+void load_hdf5_library() { static_cast<void>(hdf5::load_hdf5()); }
 
 using namespace hdf5;
 

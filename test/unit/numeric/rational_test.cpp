@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "numeric/multiples.h"
 #include "numeric/number.h"
 #include "numeric/rational.h"
 
@@ -169,6 +170,20 @@ TEST(FromRational, IsCorrectlyRounded) {
 TEST(FromRational, TruncationWouldBeNoticed) {
   const Rational r(1, 10);
   EXPECT_FALSE(is_nearest(r.get_d(), r)) << "the mutant of the test above: GMP truncates";
+}
+
+TEST(Multiples, AreTheNearestNumbers) {
+  for (const mpq_class& q : remarkable_fractions()) {
+    const Rational of(q);
+    const Multiples<double> doubles(of);
+    const Multiples<long double> wide(of);
+    for (const long k : {0L, 1L, 3L, 99'999L, (1L << 53) + 1, std::numeric_limits<long>::max()}) {
+      const Rational multiple = k * of;
+      EXPECT_EQ(doubles(k), from_rational<double>(multiple)) << k << " times " << of;
+      EXPECT_EQ(wide(k), from_rational<long double>(multiple)) << k << " times " << of;
+      EXPECT_TRUE(is_nearest(wide(k), multiple)) << k << " times " << of;
+    }
+  }
 }
 
 }  // namespace
