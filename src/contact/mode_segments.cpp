@@ -107,6 +107,8 @@ SimulationOptions ModeSegments::asked_of_stretch(const Rational& to, const Ratio
   std::sort(o.at.begin(), o.at.end());
   o.at.erase(std::unique(o.at.begin(), o.at.end()), o.at.end());
   o.method = stiff_method();
+  o.dense = nullptr;
+  o.followed.clear();
   o.tolerance = tolerance;
   o.most_steps = kMostSteps;
   return o;
