@@ -12,6 +12,7 @@
 #include "contact/slip_start.h"
 #include "contact/switched_motion.h"
 #include "numeric/number.h"
+#include "observe/angles.h"
 
 namespace anholon {
 
@@ -47,7 +48,10 @@ class HybridMotion {
                    "end the motion earlier"};
       else
         outcome = choose();
-      if (outcome.ok() && !segments_->follow(end_, outcome)) break;
+      if (outcome.ok() && !segments_->follow(end_, outcome)) {
+        explain(outcome);
+        break;
+      }
       if (outcome.ok() && !slips_->hold(outcome)) break;
       if (outcome.ok()) outcome = not_inside(when(), kPassed);
     }
@@ -84,6 +88,26 @@ class HybridMotion {
                     ", and a gap is not negative",
                 hint};
     return {};
+  }
+
+  // Names angles that are near their singularity where a mode has no motion or does not go on. The values that a mode begins
+  // with are none that the user has given.
+  void explain(Outcome& outcome) {
+    constexpr double kNear = 0.1;
+    if (outcome.kind != OutcomeKind::singular && outcome.kind != OutcomeKind::inconsistent) return;
+    if (outcome.kind == OutcomeKind::inconsistent)
+      outcome = {OutcomeKind::inconsistent, "no velocities fit the modes of the contacts" + when(),
+                 "end the motion before, or take coordinates that are regular there"};
+    AngleWatch watch(s_, parameter_values<double>(*s_.model));
+    watch.see(bodies_.at.t.get_d(), [this](std::size_t a) { return bodies_.at.q[a]; });
+    for (std::size_t i = 0; i < watch.triples.size(); ++i) {
+      if (!(watch.least[i].value < kNear)) continue;
+      const AngleTriple& triple = watch.triples[i];
+      outcome.kind = OutcomeKind::singular;
+      outcome.message += "; the angles " + triple.angles + " of '" + triple.body + "' are near their singularity";
+      outcome.hint = "end the motion before, or describe the orientation of '" + triple.body +
+                     "' by a quaternion: quat(e0, e1, e2, e3)";
+    }
   }
 
   // An outcome if a contact has not done what its mode says.

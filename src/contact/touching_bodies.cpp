@@ -40,12 +40,12 @@ ContactProblem TouchingBodies::with_touching() const {
 }
 
 void TouchingBodies::come_to_rest() {
-  constexpr long double kZero = 1e-13L, kNoPlace = 1e-16L;
+  constexpr long double kZero = 1e-13L;
   most_place.resize(at.q.size(), 0);
   for (std::size_t a = 0; a < at.qd.size(); ++a) {
     if (std::abs(at.qd[a]) <= kZero * dynamics.most(a)) at.qd[a] = 0;
     most_place[a] = std::max<long double>(most_place[a], std::abs(at.q[a]));
-    if (std::abs(at.q[a]) <= kNoPlace * most_place[a]) at.q[a] = 0;
+    if (std::abs(at.q[a]) <= RoundOff::kPlace * most_place[a]) at.q[a] = 0;
   }
 }
 
