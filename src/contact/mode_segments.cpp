@@ -5,6 +5,7 @@
 
 #include "contact/slow_slips.h"
 #include "motion/stiff_method.h"
+#include "simulation/near_singular.h"
 #include "simulation/simulate.h"
 
 namespace anholon {
@@ -29,17 +30,20 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
   ReadyMode* mode = begin(ModeEnds::events, outcome);
   if (!mode) return false;
   rows_.begin_segment(mode->of.stopped);
-  const SimulationReport r = simulate_in(*mode->own, asked(to), rows_, &mode->plans);
+  SimulationReport r = simulate_in(*mode->own, asked(to), rows_, &mode->plans);
   outcome = r.outcome;
   rows_.last_state(bodies_.at);
   bodies_.dynamics.pass(from, bodies_.at);
+  // The components that hold are chosen anew.
+  const bool holds_others = bodies_.at.t > from.t && may_hold_others(r);
+  if (holds_others) forget_singularity(r);
   const bool every_event_known = joined_.add(r, mode->of.events);
   if ((outcome.kind == OutcomeKind::step_collapse || gave_up(r)) && slip_vanishes()) {
     outcome = {};
     bodies_.excluded.assign(bodies_.contacts.size(), {});
     return true;
   }
-  if (bodies_.at.t > from.t && (may_be_stiff(r, to) || may_hold_others(r))) {
+  if (holds_others || (bodies_.at.t > from.t && may_be_stiff(r, to))) {
     outcome = {};
     nothing_has_changed();
     return true;
