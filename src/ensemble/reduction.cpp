@@ -74,12 +74,16 @@ class MonitorNames final : public Names {
   const std::vector<std::string>& multipliers_;
 };
 
-// Whether the text is of the form NAME.mode, or another column that a contact has.
-bool of_contact(const std::string& text) {
-  const std::size_t dot = text.rfind('.');
-  if (dot == std::string::npos || dot == 0) return false;
-  const std::string column = text.substr(dot + 1);
-  return column == "mode" || column == "gap" || column == "normal" || column == "friction" || column == "slip";
+// Throws MistakeInWord if the text is of the form NAME.mode, or names another column of these contacts.
+void must_be_no_column(const std::string& word, std::size_t at, const std::string& text,
+                       const std::vector<Contact>& contacts) {
+  for (const Contact& c : contacts) {
+    const std::vector<std::string> columns = contact_columns({c}), events = contact_events({c});
+    if (std::find(columns.begin(), columns.end(), text) != columns.end() && !events.empty())
+      mistake_in(word, at, text.size(), "'" + text + "' is a column of a contact, no formula",
+                 "rows at times have it: --at 1,2 --columns t," + text + "; events: count(" + events[0] + "), first(" +
+                     events[0] + ")");
+  }
 }
 
 // The reactions and the forces of contacts differ from mode to mode, also in the equations that they belong to.
@@ -116,11 +120,8 @@ Expr formula_of(const std::string& word, std::size_t at, const std::string& text
   } catch (const Failure& f) {
     const auto of_force = [&](const Contact& c) { return text.find("lambda." + c.name) != std::string::npos; };
     if (std::any_of(moving.begin(), moving.end(), of_force)) refuse_force(word, at, text);
-    Diagnostic d = f.diagnostic;
-    if (of_contact(text))
-      d.hint = "mode, gap and forces of a contact are columns of the rows, not names in formulas: --columns t," + text +
-               " with --every or --at; 'simulate --json' tells the times of its events";
-    throw MistakeInWord{d, word};
+    must_be_no_column(word, at, text, contacts(*model.names));
+    throw MistakeInWord{f.diagnostic, word};
   }
   if (const Expr* e = std::get_if<Expr>(&value)) return put_masses(*model.model, *e);
   mistake_in(word, at, text.size(), "'" + text + "' is " + type_name(value) + ", no number",
