@@ -47,7 +47,7 @@ class HybridMotion {
         outcome = {OutcomeKind::interrupted, "more than 100000 changes of the contacts" + when(),
                    "end the motion earlier"};
       else
-        outcome = choose();
+        name_angles(outcome = choose());
       if (outcome.ok() && !segments_->follow(end_, outcome)) {
         explain(outcome);
         break;
@@ -90,20 +90,23 @@ class HybridMotion {
     return {};
   }
 
-  // Names angles that are near their singularity where a mode has no motion or does not go on. The values that a mode begins
-  // with are none that the user has given.
+  // The values with which a mode begins are none that the user has given.
   void explain(Outcome& outcome) {
-    constexpr double kNear = 0.1;
-    if (outcome.kind != OutcomeKind::singular && outcome.kind != OutcomeKind::inconsistent) return;
     if (outcome.kind == OutcomeKind::inconsistent)
-      outcome = {OutcomeKind::inconsistent, "no velocities fit the modes of the contacts" + when(),
+      outcome = {OutcomeKind::singular, "no velocities fit the modes of the contacts" + when(),
                  "end the motion before, or take coordinates that are regular there"};
+    name_angles(outcome);
+  }
+
+  // Names angles that are near their singularity where the motion is singular.
+  void name_angles(Outcome& outcome) {
+    constexpr double kNear = 0.1;
+    if (outcome.kind != OutcomeKind::singular) return;
     AngleWatch watch(s_, parameter_values<double>(*s_.model));
     watch.see(bodies_.at.t.get_d(), [this](std::size_t a) { return bodies_.at.q[a]; });
     for (std::size_t i = 0; i < watch.triples.size(); ++i) {
       if (!(watch.least[i].value < kNear)) continue;
       const AngleTriple& triple = watch.triples[i];
-      outcome.kind = OutcomeKind::singular;
       outcome.message += "; the angles " + triple.angles + " of '" + triple.body + "' are near their singularity";
       outcome.hint = "end the motion before, or describe the orientation of '" + triple.body +
                      "' by a quaternion: quat(e0, e1, e2, e3)";
@@ -156,6 +159,7 @@ class HybridMotion {
     slips_->begin(beginning, list[0].x);
     // The velocities at the end of a segment have the round-off of those before, which may be much larger.
     bodies_.dynamics.go(bodies_.at);
+    bodies_.close_gaps();
     bodies_.stop(bodies_.modes);
     bodies_.drop_left_over();
     return {};

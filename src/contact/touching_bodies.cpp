@@ -148,6 +148,30 @@ void TouchingBodies::stop(const ContactModes& to) {
   dynamics.go(at);
 }
 
+void TouchingBodies::close_gaps() {
+  const auto left = [this](std::size_t c) {
+    return modes[c].touch != Touch::open && !contacts[c].under &&
+           std::abs(dynamics.place(c).gap) > RoundOff::kPlace * near.place_size(c);
+  };
+  bool any = false;
+  for (std::size_t c = 0; c < contacts.size(); ++c) any = any || left(c);
+  if (!any) return;
+  ContactProblem p = dynamics.stop();
+  std::fill(p.beta.begin(), p.beta.end(), 0);
+  ContactModes closed(contacts.size());
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (modes[c].touch == Touch::open || contacts[c].under) continue;
+    closed[c].touch = Touch::slips;
+    p.contacts[c].normal_rate = dynamics.place(c).gap;
+  }
+  share_forces(p, closed);
+  for (ContactMode& m : closed) m.load.of.clear();
+  const auto change = of_modes(p, closed);
+  if (!change) return;
+  for (std::size_t a = 0; a < at.q.size(); ++a) at.q[a] = static_cast<double>(at.q[a] + change->x[a]);
+  dynamics.go(at);
+}
+
 void TouchingBodies::add_to_velocities(const std::vector<long double>& jump) {
   for (std::size_t a = 0; a < at.qd.size(); ++a) at.qd[a] = static_cast<double>(at.qd[a] + jump[a]);
 }

@@ -65,6 +65,19 @@ TEST(Axle, TiltsByRoundOffAlone) {
   EXPECT_LT(std::abs(m.last("ro'")), 1e-14);
 }
 
+// The balls strike in turns, sooner and sooner. Where both come to touch, one gap is 1e-13, and the axle is brought to the place at
+// which both gaps are zero, as the mode holds them there.
+TEST(Axle, ComesToLieOnBothBalls) {
+  const auto m = contact_motion(
+      axle(R"({z = 0.232, ro = 0.175, th = -0.9, "x'" = 0.3, "th'" = -1.12, "ro'" = -0.53, "psi'" = -1.69})"),
+      Rational(7, 25));
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  EXPECT_EQ(test::times(m, "left.hits").size(), 4U);
+  EXPECT_LT(std::abs(m.last("left.gap")), 1e-16);
+  EXPECT_LT(std::abs(m.last("ro")), 1e-15);
+  EXPECT_GT(m.last("left.mode") * m.last("right.mode"), 0);
+}
+
 // The axle falls over its balls. Where it hangs down, its three angles have their singularity.
 TEST(Axle, NamesAnglesAtTheirSingularity) {
   const auto m = contact_motion(axle(R"({z = 0.2, ro = 0.05, "x'" = 0.3, "th'" = -3, "ro'" = 0.2, "psi'" = 0.3})"), 1);
