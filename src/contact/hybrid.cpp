@@ -159,7 +159,6 @@ class HybridMotion {
     slips_->begin(beginning, list[0].x);
     // The velocities at the end of a segment have the round-off of those before, which may be much larger.
     bodies_.dynamics.go(bodies_.at);
-    bodies_.close_gaps();
     bodies_.stop(bodies_.modes);
     bodies_.drop_left_over();
     return {};

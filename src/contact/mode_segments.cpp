@@ -27,11 +27,19 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
     nothing_has_changed();
     return bodies_.at.t < end_;
   }
-  ReadyMode* mode = begin(ModeEnds::events, outcome);
+  SimulationReport r;
+  ReadyMode* mode = nullptr;
+  for (bool again = true;; again = false) {
+    if ((mode = begin(ModeEnds::events, outcome))) {
+      rows_.begin_segment(mode->of.stopped);
+      r = simulate_in(*mode->own, asked(to), rows_, &mode->plans);
+      outcome = r.outcome;
+    }
+    // The mode closes gaps that are round-off, and the velocities belong to places with these gaps.
+    if (!again || outcome.kind != OutcomeKind::inconsistent || (mode && r.steps > 0)) break;
+    bodies_.close_gaps();
+  }
   if (!mode) return false;
-  rows_.begin_segment(mode->of.stopped);
-  SimulationReport r = simulate_in(*mode->own, asked(to), rows_, &mode->plans);
-  outcome = r.outcome;
   rows_.last_state(bodies_.at);
   bodies_.dynamics.pass(from, bodies_.at);
   // The components that hold are chosen anew.

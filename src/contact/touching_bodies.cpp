@@ -40,12 +40,12 @@ ContactProblem TouchingBodies::with_touching() const {
 }
 
 void TouchingBodies::come_to_rest() {
-  constexpr long double kZero = 1e-13L;
+  constexpr long double kZero = 1e-13L, kNoPlace = 1e-16L;
   most_place.resize(at.q.size(), 0);
   for (std::size_t a = 0; a < at.qd.size(); ++a) {
     if (std::abs(at.qd[a]) <= kZero * dynamics.most(a)) at.qd[a] = 0;
     most_place[a] = std::max<long double>(most_place[a], std::abs(at.q[a]));
-    if (std::abs(at.q[a]) <= RoundOff::kPlace * most_place[a]) at.q[a] = 0;
+    if (std::abs(at.q[a]) <= kNoPlace * most_place[a]) at.q[a] = 0;
   }
 }
 
@@ -149,13 +149,7 @@ void TouchingBodies::stop(const ContactModes& to) {
 }
 
 void TouchingBodies::close_gaps() {
-  const auto left = [this](std::size_t c) {
-    return modes[c].touch != Touch::open && !contacts[c].under &&
-           std::abs(dynamics.place(c).gap) > RoundOff::kPlace * near.place_size(c);
-  };
-  bool any = false;
-  for (std::size_t c = 0; c < contacts.size(); ++c) any = any || left(c);
-  if (!any) return;
+  dynamics.go(at);
   ContactProblem p = dynamics.stop();
   std::fill(p.beta.begin(), p.beta.end(), 0);
   ContactModes closed(contacts.size());
@@ -169,7 +163,10 @@ void TouchingBodies::close_gaps() {
   const auto change = of_modes(p, closed);
   if (!change) return;
   for (std::size_t a = 0; a < at.q.size(); ++a) at.q[a] = static_cast<double>(at.q[a] + change->x[a]);
+  come_to_rest();
   dynamics.go(at);
+  stop(modes);
+  drop_left_over();
 }
 
 void TouchingBodies::add_to_velocities(const std::vector<long double>& jump) {

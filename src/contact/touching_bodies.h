@@ -35,8 +35,7 @@ struct TouchingBodies {
   // The jump of least change after which what touches does not move along its normal, and what sticks does not slip. A
   // contact that the others stop already is left out.
   void stop(const ContactModes& to);
-  // Moves what touches so that its gaps are zero, if one is no round-off of its place: a mode begins there, and its velocities
-  // are those of this place.
+  // Moves what touches so that its gaps are zero, with the velocities that the modes leave there.
   void close_gaps();
   void add_to_velocities(const std::vector<long double>& jump);
   // The jump of least change that gives a contact the slip velocity v along d.
