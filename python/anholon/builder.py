@@ -67,8 +67,12 @@ On = Union[Expr, str, "tuple[Any, Any]"]
 """On what a force acts: a body or particle, at its centre, or ``(body, place)``. Three components are along the body's axes."""
 
 
+def _directions(along: Any) -> Any:
+    return along if along is None or isinstance(along, (list, tuple)) else expr(along).text
+
+
 class Constraint:
-    """A constraint of a :class:`Builder`."""
+    """A constraint or a contact of a :class:`Builder`."""
 
     def __init__(self, name: str) -> None:
         self.name: str = name
@@ -358,7 +362,9 @@ class Builder:
 
     # ---- constraints, control, time ----
 
-    def constraint(self, name: str, equation: Equation | str, *, along: Any = None, by: Any = None) -> Constraint:
+    def constraint(
+        self, name: str, equation: Equation | str, *, along: Any = None, by: Any = None, active: Term | None = None, one_sided: bool = False
+    ) -> Constraint:
         """Adds a constraint ``a == b`` of numbers or vectors, of any order.
 
         Args:
@@ -366,11 +372,65 @@ class Builder:
             equation: ``dot(P.vel(), blade.y) == 0``, or a text.
             along: of a vector equation: a frame or a list of vectors, along which components are taken.
             by: the inputs that keep it (servo constraint).
+            active: it holds while this formula of modes is positive.
+            one_sided: it pushes and does not pull: left - right may become positive.
         """
         _must_be_equation(equation)
         inputs = None if by is None else [expr(u).text for u in by] if isinstance(by, (list, tuple)) else expr(by).text
-        directions = along if along is None or isinstance(along, (list, tuple)) else expr(along).text
-        self._element("constraint", {"name": name, "equation": equation, "along": directions, "by": inputs})
+        self._element(
+            "constraint",
+            {"name": name, "equation": equation, "along": _directions(along), "by": inputs, "active": active}
+            | {"one_sided": True if one_sided else None},
+        )
+        return Constraint(name)
+
+    def contact(
+        self,
+        name: str,
+        *,
+        gap: Term | None = None,
+        slip: Any = None,
+        along: Any = None,
+        body: Term | None = None,
+        shape: str | None = None,
+        at: Term | None = None,
+        normal: Term | None = None,
+        through: Term | None = None,
+        on: str | None = None,
+        friction: Term | None = None,
+        static_friction: Term | None = None,
+        rolling_resistance: Term | None = None,
+        drilling_resistance: Term | None = None,
+        restitution: Term | None = None,
+        impact: str | None = None,
+    ) -> Constraint:
+        """Adds a contact that pushes, with Coulomb friction and impacts; the ``multiplier`` of what it returns is the normal force.
+
+        Args:
+            name: of its events and columns: ``floor.hits``, ``floor.gap``.
+            gap: the distance, which is not negative.
+            slip: the relative tangential velocity: a number, a list of two, or a vector with `along`.
+            along: the tangential directions of a vector `slip`.
+            body: instead of `gap` and `slip`: the body that touches, with its shape.
+            shape: what touches, ``"ball(R)"``; the shape of the body without it.
+            at: the place of what touches; the centre of the body without it.
+            normal: of the plane; ``ez`` without it.
+            through: a point of the plane, or the centre of the ball or bowl.
+            on: ``"ball(R)"`` or ``"bowl(R)"`` instead of the plane.
+            friction: Coulomb's coefficient.
+            static_friction: the coefficient while it sticks.
+            rolling_resistance: a length.
+            drilling_resistance: a length.
+            restitution: from 0 to 1.
+            impact: ``"newton"`` or ``"poisson"``.
+        """
+        self._element(
+            "contact",
+            {"name": name, "gap": gap, "slip": slip, "along": _directions(along), "body": body, "shape": shape, "at": at}
+            | {"normal": normal, "through": through, "on": on, "friction": friction, "static_friction": static_friction}
+            | {"rolling_resistance": rolling_resistance, "drilling_resistance": drilling_resistance}
+            | {"restitution": restitution, "impact": impact},
+        )
         return Constraint(name)
 
     def quasi(self, name: str, velocity: Term) -> Expr:

@@ -434,3 +434,43 @@ def test_a_builder_runs_as_a_script(tmp_path: pathlib.Path) -> None:
 
     done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False)
     assert f"{script}:4: error: unknown name 'mm'" in done.stderr
+
+
+def test_contacts() -> None:
+    b = an.Builder("Ball on a floor")
+    x, z = b.coordinates("x z")
+    P = b.point("P", x * ex + z * ez)
+    ball = b.particle("ball", mass=1, position=P)
+    floor = b.contact("floor", gap=z, slip=P.vel(), along=[ex], friction="0.25", static_friction="0.5", restitution="0.5", impact="poisson")
+    b.contact("wall", body=ball, normal=-ex, through=ex, impact="poisson")
+    b.gravity(-10 * ez)
+    b.monitor("load", floor.multiplier)
+    b.initial({z: "0.2", x.dt: "0.1"})
+    model = b.model()
+    assert [e.name for e in model.simulate(to=1).events][:1] == ["floor.hits"]
+    first = model.sweep({"z": ["0.2", "0.45"]}, to=1, reduce=["first(floor.hits)", "count(wall.hits)", "max(x')"])
+    assert first["first(floor.hits)"] == pytest.approx([0.2, 0.3], abs=1e-14)
+    assert list(first["count(wall.hits)"]) == [0, 0]
+    assert list(first["max(x')"]) == [0.1, 0.1]
+    with pytest.raises(an.ModelError, match="did you mean 'floor.hits'"):
+        model.sweep({"z": ["0.2"]}, to=1, reduce=["count(floor.hit)"])
+
+
+def test_constraints_that_are_switched_or_push() -> None:
+    b = an.Builder("Ball on a string")
+    x, y = b.coordinates("x y")
+    b.particle("ball", mass=1, position=x * ex + y * ey)
+    taut = b.mode("taut", 0)
+    b.constraint("string", x**2 + y**2 == 1, active=taut)
+    b.event("tightens", x**2 + y**2 - 1, direction="up", set={taut: 1})
+    b.gravity(-10 * ey)
+    b.initial({x: "0.6"})
+    assert [e.name for e in b.model().simulate(to=1).events] == ["tightens"]  # where y = -0.8
+    assert b.model().simulate(to=1).events[0].t == pytest.approx(0.4, abs=1e-14)
+    c = an.Builder("Bead that lies on a table")
+    (z,) = c.coordinates("z")
+    c.particle("bead", mass=2, position=z * ez)
+    table = c.constraint("table", z == 0, one_sided=True)
+    c.gravity(-10 * ez)
+    c.monitor("load", table.multiplier)
+    assert c.model().simulate(at=[1])["load"] == pytest.approx([20])

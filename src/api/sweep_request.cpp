@@ -121,8 +121,14 @@ PreparedPiece::PreparedPiece(System of, const inner::Outcome& of_system, std::st
   settings.error_estimate = "never";
   inner::ask(settings, *scenario, {"", "", [](const std::string&) {}}, options);
   options.threads = asked.threads;
-  move_with(system.data().model->contacts, options);
+  move_with(moving(), options);
   if (!start.ok()) start = inner::scenario_of_cases(options, own_);
+}
+
+// The contacts of the model from whose graph the formulas are; none in one mode.
+const std::vector<inner::Contact>& PreparedPiece::moving() const {
+  const std::vector<inner::Contact>& of_model = system.data().model->contacts;
+  return open_ && !of_model.empty() ? contacts(*open_->names) : of_model;
 }
 
 // The scenario of the system, or one of this piece that has the formulas of the reductions or another start.
@@ -134,7 +140,7 @@ const inner::Scenario* PreparedPiece::scenario_for(const std::vector<std::string
   open_ = of.model->open_again(diagnostics);
   if (!open_) throw inner::Failure(diagnostics.list().front());
   try {
-    for (const std::string& reduction : reductions) options.reductions.add(reduction, *open_);
+    for (const std::string& reduction : reductions) options.reductions.add(reduction, *open_, moving());
   } catch (const inner::MistakeInWord& m) {
     refuse(m, "reduce");
   }

@@ -28,6 +28,7 @@ struct PreparedPiece {
 
  private:
   const inner::Scenario* scenario_for(const std::vector<std::string>& reductions, const inner::Outcome& of_system);
+  const std::vector<inner::Contact>& moving() const;
   std::optional<inner::OpenModel> open_;  // in whose graph the formulas of the reductions are
   inner::Scenario own_;                   // with these formulas, or of the first case that has a start
 };

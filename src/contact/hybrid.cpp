@@ -12,6 +12,7 @@
 #include "contact/slip_start.h"
 #include "contact/switched_motion.h"
 #include "numeric/number.h"
+#include "observe/angles.h"
 
 namespace anholon {
 
@@ -46,8 +47,11 @@ class HybridMotion {
         outcome = {OutcomeKind::interrupted, "more than 100000 changes of the contacts" + when(),
                    "end the motion earlier"};
       else
-        outcome = choose();
-      if (outcome.ok() && !segments_->follow(end_, outcome)) break;
+        name_angles(outcome = choose());
+      if (outcome.ok() && !segments_->follow(end_, outcome)) {
+        explain(outcome);
+        break;
+      }
       if (outcome.ok() && !slips_->hold(outcome)) break;
       if (outcome.ok()) outcome = not_inside(when(), kPassed);
     }
@@ -84,6 +88,29 @@ class HybridMotion {
                     ", and a gap is not negative",
                 hint};
     return {};
+  }
+
+  // The values with which a mode begins are none that the user has given.
+  void explain(Outcome& outcome) {
+    if (outcome.kind == OutcomeKind::inconsistent)
+      outcome = {OutcomeKind::singular, "no velocities fit the modes of the contacts" + when(),
+                 "end the motion before, or take coordinates that are regular there"};
+    name_angles(outcome);
+  }
+
+  // Names angles that are near their singularity where the motion is singular.
+  void name_angles(Outcome& outcome) {
+    constexpr double kNear = 0.1;
+    if (outcome.kind != OutcomeKind::singular) return;
+    AngleWatch watch(s_, parameter_values<double>(*s_.model));
+    watch.see(bodies_.at.t.get_d(), [this](std::size_t a) { return bodies_.at.q[a]; });
+    for (std::size_t i = 0; i < watch.triples.size(); ++i) {
+      if (!(watch.least[i].value < kNear)) continue;
+      const AngleTriple& triple = watch.triples[i];
+      outcome.message += "; the angles " + triple.angles + " of '" + triple.body + "' are near their singularity";
+      outcome.hint = "end the motion before, or describe the orientation of '" + triple.body +
+                     "' by a quaternion: quat(e0, e1, e2, e3)";
+    }
   }
 
   // An outcome if a contact has not done what its mode says.

@@ -313,6 +313,20 @@ std::vector<std::string> contact_columns(const std::vector<Contact>& contacts) {
   return names;
 }
 
+std::vector<std::string> contact_events(const std::vector<Contact>& contacts) {
+  std::vector<std::string> names;
+  for (const Contact& c : contacts) {
+    if (c.held) continue;
+    if (!c.under)
+      for (const std::string& what : {word(c, ModeChange::hits), word(c, ModeChange::leaves), std::string("rests")})
+        names.push_back(c.name + "." + what);
+    if (c.slip.empty()) continue;
+    for (const ModeChange change : {ModeChange::slips, ModeChange::sticks, ModeChange::reverses})
+      names.push_back(c.name + "." + word(c, change));
+  }
+  return names;
+}
+
 ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes,
                      ModeEnds ends) {
   ModeBuilder builder(model, contacts, modes, ends);

@@ -37,6 +37,9 @@ std::string word(const Contact& contact, ModeChange change);
 // The columns of rows that contacts add after those of the model.
 std::vector<std::string> contact_columns(const std::vector<Contact>& contacts);
 
+// The names of the events that these contacts have, NAME.WORD, in the order of the contacts; none of switched constraints.
+std::vector<std::string> contact_events(const std::vector<Contact>& contacts);
+
 // Puts the forces of a mode, N and the components of friction of each contact, into the monitors and events that hold them.
 void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
                 const std::vector<std::vector<Expr>>& components, Model& model);

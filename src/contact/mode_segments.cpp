@@ -5,6 +5,7 @@
 
 #include "contact/slow_slips.h"
 #include "motion/stiff_method.h"
+#include "simulation/near_singular.h"
 #include "simulation/simulate.h"
 
 namespace anholon {
@@ -26,20 +27,31 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
     nothing_has_changed();
     return bodies_.at.t < end_;
   }
-  ReadyMode* mode = begin(ModeEnds::events, outcome);
+  SimulationReport r;
+  ReadyMode* mode = nullptr;
+  for (bool again = true;; again = false) {
+    if ((mode = begin(ModeEnds::events, outcome))) {
+      rows_.begin_segment(mode->of.stopped);
+      r = simulate_in(*mode->own, asked(to), rows_, &mode->plans);
+      outcome = r.outcome;
+    }
+    // The mode closes gaps that are round-off, and the velocities belong to places with these gaps.
+    if (!again || outcome.kind != OutcomeKind::inconsistent || (mode && r.steps > 0)) break;
+    bodies_.close_gaps();
+  }
   if (!mode) return false;
-  rows_.begin_segment(mode->of.stopped);
-  const SimulationReport r = simulate_in(*mode->own, asked(to), rows_, &mode->plans);
-  outcome = r.outcome;
   rows_.last_state(bodies_.at);
   bodies_.dynamics.pass(from, bodies_.at);
+  // The components that hold are chosen anew.
+  const bool holds_others = bodies_.at.t > from.t && may_hold_others(r);
+  if (holds_others) forget_singularity(r);
   const bool every_event_known = joined_.add(r, mode->of.events);
   if ((outcome.kind == OutcomeKind::step_collapse || gave_up(r)) && slip_vanishes()) {
     outcome = {};
     bodies_.excluded.assign(bodies_.contacts.size(), {});
     return true;
   }
-  if (bodies_.at.t > from.t && (may_be_stiff(r, to) || may_hold_others(r))) {
+  if (holds_others || (bodies_.at.t > from.t && may_be_stiff(r, to))) {
     outcome = {};
     nothing_has_changed();
     return true;
@@ -107,6 +119,8 @@ SimulationOptions ModeSegments::asked_of_stretch(const Rational& to, const Ratio
   std::sort(o.at.begin(), o.at.end());
   o.at.erase(std::unique(o.at.begin(), o.at.end()), o.at.end());
   o.method = stiff_method();
+  o.dense = nullptr;
+  o.followed.clear();
   o.tolerance = tolerance;
   o.most_steps = kMostSteps;
   return o;

@@ -148,6 +148,27 @@ void TouchingBodies::stop(const ContactModes& to) {
   dynamics.go(at);
 }
 
+void TouchingBodies::close_gaps() {
+  dynamics.go(at);
+  ContactProblem p = dynamics.stop();
+  std::fill(p.beta.begin(), p.beta.end(), 0);
+  ContactModes closed(contacts.size());
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (modes[c].touch == Touch::open || contacts[c].under) continue;
+    closed[c].touch = Touch::slips;
+    p.contacts[c].normal_rate = dynamics.place(c).gap;
+  }
+  share_forces(p, closed);
+  for (ContactMode& m : closed) m.load.of.clear();
+  const auto change = of_modes(p, closed);
+  if (!change) return;
+  for (std::size_t a = 0; a < at.q.size(); ++a) at.q[a] = static_cast<double>(at.q[a] + change->x[a]);
+  come_to_rest();
+  dynamics.go(at);
+  stop(modes);
+  drop_left_over();
+}
+
 void TouchingBodies::add_to_velocities(const std::vector<long double>& jump) {
   for (std::size_t a = 0; a < at.qd.size(); ++a) at.qd[a] = static_cast<double>(at.qd[a] + jump[a]);
 }

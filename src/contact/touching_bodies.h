@@ -35,6 +35,8 @@ struct TouchingBodies {
   // The jump of least change after which what touches does not move along its normal, and what sticks does not slip. A
   // contact that the others stop already is left out.
   void stop(const ContactModes& to);
+  // Moves what touches so that its gaps are zero, with the velocities that the modes leave there.
+  void close_gaps();
   void add_to_velocities(const std::vector<long double>& jump);
   // The jump of least change that gives a contact the slip velocity v along d.
   void set_slip(std::size_t c, const std::array<long double, 2>& d, long double v);

@@ -184,9 +184,11 @@ CaseWay CaseWalk::after_step() {
       return stop(CaseWay::simulation);
   if (!rows()) return stop(CaseWay::simulation);
   if (reducer_) {
-    if (stepper_->one_sided()) return stop(CaseWay::simulation);
+    if (stepper_->one_sided() && !plan_->options.reductions.formulas.empty()) return stop(CaseWay::simulation);
     reducer_->step(stepper_->order() - 1, to_double(W(stepper_->time() - stepper_->before())),
                    [&](std::size_t i, int k) { return stepper_->quadrature_coefficient(plan_->first_reduced + i, k); });
+    for (const Fired<double>& f : stepper_->fired())
+      reducer_->event(plan_->scenario.model->events[f.series].name, to_double(W(stepper_->before() + W(f.where))));
     reducer_->values(result_->reduced);
   }
   if (!stepper_->fired().empty()) return take_events();
@@ -418,17 +420,22 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
   options.method = o.method;
   options.kernel = o.kernel;
   Reducer reducer(o.reductions);
-  if (!o.reductions.list.empty()) {
+  if (!o.reductions.formulas.empty()) {
     options.followed = o.reductions.formulas;
     options.dense = [&](const StepPolynomials& step) {
       reducer.step(step.one_sided ? 0 : step.order - 1, step.end - step.begin, step.followed);
-      reducer.values(r.reduced);
     };
   }
   EnsembleRowFilter rows(o.at, r);
   const SimulationReport report = o.own_motion ? o.own_motion(own, options, rows) : simulate_in(own, options, rows);
-  for (const EventReport& e : report.events)
+  for (const EventReport& e : report.events) {
     if (e.stop) r.event = e.name;
+    reducer.event(e.name, e.t.value);
+  }
+  // Other methods, which motions with contacts take where slips are slow, have no polynomials.
+  if (!report.method.turns.empty()) reducer.lose_formulas();
+  const bool moved = report.outcome.ok() || report.steps > 0 || !report.events.empty();
+  if (moved && !o.reductions.list.empty()) reducer.values(r.reduced);
   r.outcome = report.outcome;
   r.steps = report.steps;
   r.t = report.t;

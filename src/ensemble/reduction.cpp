@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/mode_model.h"
 #include "ensemble/mistake_in_word.h"
 #include "formula/formula.h"
 #include "integrate/motion_state.h"
@@ -15,16 +16,17 @@ namespace anholon {
 namespace {
 
 constexpr const char* kReductionHint =
-    "max(FORMULA), min(FORMULA), mean(FORMULA) or last(FORMULA), such as max(theta')";
+    "max(FORMULA), min(FORMULA), mean(FORMULA), last(FORMULA), count(EVENT) or first(EVENT), such as max(theta')";
 
 // The kind of that name in another language, or the nearest one to a misspelt name; "" if there is none.
 std::string kind_meant_by(const std::string& word) {
   constexpr std::pair<const char*, const char*> kOthers[] = {
-      {"maximum", "max"},  {"greatest", "max"}, {"largest", "max"}, {"minimum", "min"}, {"least", "min"},
-      {"smallest", "min"}, {"average", "mean"}, {"avg", "mean"},    {"final", "last"},  {"end", "last"}};
+      {"maximum", "max"},  {"greatest", "max"}, {"largest", "max"}, {"minimum", "min"},   {"least", "min"},
+      {"smallest", "min"}, {"average", "mean"}, {"avg", "mean"},    {"final", "last"},    {"end", "last"},
+      {"number", "count"}, {"times", "count"},  {"when", "first"},  {"earliest", "first"}};
   for (const auto& [other, kind] : kOthers)
     if (word == other) return kind;
-  return did_you_mean(word, {"max", "min", "mean", "last"});
+  return did_you_mean(word, {"max", "min", "mean", "last", "count", "first"});
 }
 
 std::optional<Reduction::Kind> kind_of(const std::string& word) {
@@ -32,6 +34,8 @@ std::optional<Reduction::Kind> kind_of(const std::string& word) {
   if (word == "min") return Reduction::Kind::least;
   if (word == "mean") return Reduction::Kind::mean;
   if (word == "last") return Reduction::Kind::last;
+  if (word == "count") return Reduction::Kind::count;
+  if (word == "first") return Reduction::Kind::first;
   return std::nullopt;
 }
 
@@ -70,16 +74,41 @@ class MonitorNames final : public Names {
   const std::vector<std::string>& multipliers_;
 };
 
-// Whether the text is of the form NAME.mode, or another column that a contact has.
-bool of_contact(const std::string& text) {
-  const std::size_t dot = text.rfind('.');
-  if (dot == std::string::npos || dot == 0) return false;
-  const std::string column = text.substr(dot + 1);
-  return column == "mode" || column == "gap" || column == "normal" || column == "friction" || column == "slip";
+// Throws MistakeInWord if the text is of the form NAME.mode, or names another column of these contacts.
+void must_be_no_column(const std::string& word, std::size_t at, const std::string& text,
+                       const std::vector<Contact>& contacts) {
+  for (const Contact& c : contacts) {
+    const std::vector<std::string> columns = contact_columns({c}), events = contact_events({c});
+    if (std::find(columns.begin(), columns.end(), text) != columns.end() && !events.empty())
+      mistake_in(word, at, text.size(), "'" + text + "' is a column of a contact, no formula",
+                 "rows at times have it: --at 1,2 --columns t," + text + "; events: count(" + events[0] + "), first(" +
+                     events[0] + ")");
+  }
+}
+
+// The reactions and the forces of contacts differ from mode to mode, also in the equations that they belong to.
+[[noreturn]] void refuse_force(const std::string& word, std::size_t at, const std::string& text) {
+  mistake_in(
+      word, at, text.size(), "'" + text + "' holds reactions or forces of contacts, which change with the modes",
+      "a formula of coordinates, velocities, accelerations and t; rows at times have the forces: --at, --columns");
+}
+
+bool holds_contact_force(const std::vector<Contact>& contacts, std::size_t monitor) {
+  using Formula = ContactForces::Formula;
+  if (contacts.empty() || !contacts[0].forces) return false;
+  const std::vector<Formula>& list = contacts[0].forces->formulas;
+  return std::any_of(list.begin(), list.end(),
+                     [&](const Formula& f) { return f.of == Formula::Of::monitor && f.index == monitor; });
+}
+
+bool holds_multiplier(Expr e) {
+  const std::vector<NodeId> ids = symbols({&e, 1});
+  return std::any_of(ids.begin(), ids.end(), [&](NodeId id) { return e.graph->node(id).kind == Kind::multiplier; });
 }
 
 // The formula of a monitor, or one that is written out.
-Expr formula_of(const std::string& word, std::size_t at, const std::string& text, const OpenModel& model) {
+Expr formula_of(const std::string& word, std::size_t at, const std::string& text, const OpenModel& model,
+                const std::vector<Contact>& moving) {
   for (const Monitor& m : model.model->monitors)
     if (m.name == text) return m.value;
   Value value;
@@ -89,11 +118,10 @@ Expr formula_of(const std::string& word, std::size_t at, const std::string& text
     MonitorNames names(model);
     value = evaluate(parse_formula(FormulaText(text, place)), names);
   } catch (const Failure& f) {
-    Diagnostic d = f.diagnostic;
-    if (of_contact(text))
-      d.hint = "mode, gap and forces of a contact are columns of the rows, not names in formulas: --columns t," + text +
-               " with --every or --at; 'simulate --json' tells the times of its events";
-    throw MistakeInWord{d, word};
+    const auto of_force = [&](const Contact& c) { return text.find("lambda." + c.name) != std::string::npos; };
+    if (std::any_of(moving.begin(), moving.end(), of_force)) refuse_force(word, at, text);
+    must_be_no_column(word, at, text, contacts(*model.names));
+    throw MistakeInWord{f.diagnostic, word};
   }
   if (const Expr* e = std::get_if<Expr>(&value)) return put_masses(*model.model, *e);
   mistake_in(word, at, text.size(), "'" + text + "' is " + type_name(value) + ", no number",
@@ -101,9 +129,44 @@ Expr formula_of(const std::string& word, std::size_t at, const std::string& text
                                                    : "a formula that is a number");
 }
 
+// The same if the contacts move. Throws MistakeInWord.
+void must_hold_no_forces(const std::string& word, std::size_t at, const std::string& text, Expr formula,
+                         const Model& model, const std::vector<Contact>& moving) {
+  if (moving.empty()) return;
+  for (std::size_t i = 0; i < model.monitors.size(); ++i)
+    if (model.monitors[i].name == text && holds_contact_force(moving, i)) refuse_force(word, at, text);
+  if (holds_multiplier(formula)) refuse_force(word, at, text);
+}
+
+// The name without the spaces around it, if there is such an event. Throws MistakeInWord.
+std::string event_of(const std::string& word, std::size_t at, const std::string& text, const OpenModel& model,
+                     const std::vector<Contact>& moving) {
+  const std::size_t begin = text.find_first_not_of(' '), end = text.find_last_not_of(' ');
+  const std::string name = text.substr(begin, end - begin + 1);
+  std::vector<std::string> all;
+  for (const Event& e : model.model->events) all.push_back(e.name);
+  for (const std::string& event : contact_events(moving)) all.push_back(event);
+  if (std::find(all.begin(), all.end(), name) != all.end()) return name;
+  std::string near = did_you_mean(name, all);
+  for (const std::string& event : all)
+    if (near.empty() && event.starts_with(name + ".")) near = event;
+  constexpr std::size_t kShown = 8;
+  std::string shown;
+  for (std::size_t k = 0; k < std::min(all.size(), kShown); ++k) shown += (k == 0 ? "" : ", ") + all[k];
+  if (all.size() > kShown) shown += ", …";
+  const bool one_mode = moving.empty() && !contacts(*model.names).empty();
+  mistake_in(
+      word, at + begin, name.size(),
+      "there is no event '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+      one_mode ? "the contacts keep their modes: leave out the mode, and their changes are events"
+      : all.empty()
+          ? "the model has no events: an [[event]] with name and when, or a [[contact]], whose changes are events"
+          : "the events are " + shown);
+}
+
 }  // namespace
 
-void Reductions::add(const std::string& word, const OpenModel& model) {
+void Reductions::add(const std::string& word, const OpenModel& model, const std::vector<Contact>& moving) {
   const std::size_t open = word.find('(');
   const std::string kind = word.substr(0, open);
   const std::optional<Reduction::Kind> known = kind_of(kind);
@@ -120,8 +183,19 @@ void Reductions::add(const std::string& word, const OpenModel& model) {
     if (before.name == word) mistake_in(word, 0, word.size(), "'" + word + "' is asked for twice", "once is enough");
   const std::string text = word.substr(open + 1, word.size() - open - 2);
   if (text.find_first_not_of(' ') == std::string::npos)
-    mistake_in(word, open + 1, 1, "a formula is missing here", kReductionHint);
-  const Expr e = formula_of(word, open + 1, text, model);
+    mistake_in(word, open + 1, 1,
+               std::string(Reduction{*known, 0, ""}.of_event() ? "an event" : "a formula") + " is missing here",
+               kReductionHint);
+  if (Reduction r{*known, 0, word}; r.of_event()) {
+    const std::string name = event_of(word, open + 1, text, model, moving);
+    const auto same = std::find(events.begin(), events.end(), name);
+    r.of = static_cast<std::size_t>(same - events.begin());
+    list.push_back(r);
+    if (same == events.end()) events.push_back(name);
+    return;
+  }
+  const Expr e = formula_of(word, open + 1, text, model, moving);
+  must_hold_no_forces(word, open + 1, text, e, *model.model, moving);
   const auto same = std::find(formulas.begin(), formulas.end(), e);
   list.push_back({*known, static_cast<std::size_t>(same - formulas.begin()), word});
   if (same == formulas.end()) formulas.push_back(e);
@@ -224,8 +298,11 @@ void Reducer::restart() {
                    kNone = std::numeric_limits<double>::quiet_NaN();
   seen_.assign(of_->formulas.size(), {});
   for (Seen& s : seen_) s.most = -kInfinity, s.fewest = kInfinity, s.last = kNone;
+  fired_.assign(of_->events.size(), {});
+  for (Fired& f : fired_) f.first = kNone;
   for (const Reduction& r : of_->list) {
-    Seen& s = seen_[r.formula];
+    if (r.of_event()) continue;
+    Seen& s = seen_[r.of];
     s.greatest = s.greatest || r.kind == Reduction::Kind::greatest;
     s.least = s.least || r.kind == Reduction::Kind::least;
     s.mean = s.mean || r.kind == Reduction::Kind::mean;
@@ -249,10 +326,23 @@ void Reducer::see(std::size_t formula, double h) {
   s.fewest = -greatest_on(c.data(), degree, h, -s.fewest);
 }
 
+void Reducer::event(const std::string& name, double t) {
+  for (std::size_t i = 0; i < fired_.size(); ++i)
+    if (of_->events[i] == name && fired_[i].times++ == 0) fired_[i].first = t;
+}
+
+void Reducer::lose_formulas() {
+  for (Seen& s : seen_) s.last = std::numeric_limits<double>::quiet_NaN();
+}
+
 void Reducer::values(std::vector<double>& to) const {
   to.clear();
   for (const Reduction& r : of_->list) {
-    const Seen& s = seen_[r.formula];
+    if (r.of_event()) {
+      to.push_back(r.kind == Reduction::Kind::count ? fired_[r.of].times : fired_[r.of].first);
+      continue;
+    }
+    const Seen& s = seen_[r.of];
     const bool none = std::isnan(s.last);
     switch (r.kind) {
     case Reduction::Kind::greatest:
@@ -266,6 +356,9 @@ void Reducer::values(std::vector<double>& to) const {
       break;
     case Reduction::Kind::last:
       to.push_back(s.last);
+      break;
+    case Reduction::Kind::count:
+    case Reduction::Kind::first:
       break;
     }
   }

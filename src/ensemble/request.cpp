@@ -35,10 +35,12 @@ void must_be_had(const Reductions& reductions, const Scenario& s, const Asker& a
   if (method != Method::automatic && method != Method::taylor)
     throw Failure({}, asker.called("reduce") + " follows the polynomials of Taylor's method",
                   "leave out " + asker.called("method") + ", or use " + asker.example("method", "taylor"));
-  for (const Reduction& r : reductions.list)
-    if (const Expr e = reductions.formulas[r.formula]; orders_needed(s, {&e, 1}) > 0)
+  for (const Reduction& r : reductions.list) {
+    if (r.of_event()) continue;
+    if (const Expr e = reductions.formulas[r.of]; orders_needed(s, {&e, 1}) > 0)
       throw Failure({}, "'" + r.name + "' holds derivatives beyond those that are solved for",
                     "write the formula with lower derivatives");
+  }
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ const std::map<std::string, const char*>& other_names() {
                                                           {"rotY", "roty"},     {"rotZ", "rotz"},
                                                           {"velocity", "vel"},  {"acceleration", "acc"},
                                                           {"omega", "angvel"},  {"angular_velocity", "angvel"},
+                                                          {"spin", "angvel"},   {"angular_acceleration", "angacc"},
                                                           {"fmin", "min"},      {"fmax", "max"}};
   return list;
 }

@@ -4,6 +4,7 @@
 #include "observe/angles.h"
 #include "observe/report.h"
 #include "observe/watch.h"
+#include "simulation/near_singular.h"
 
 namespace anholon {
 
@@ -84,8 +85,8 @@ std::vector<Warning> warnings(const Workspace& s, const Course<N>& course, const
     const std::string what =
         j < n ? derivative_name(s.system.variable_names[j], order, Format::text) + " is hardly determined"
               : "the constraint '" + s.system.equation_names[j] + "' hardly holds";
-    list.push_back({"the motion passes near a singular configuration at t = " +
-                        number_text(to_double(course.smallest_sigma_time()), 6) + ": " + what,
+    list.push_back({std::string(kPassesNearSingular) +
+                        " at t = " + number_text(to_double(course.smallest_sigma_time()), 6) + ": " + what,
                     "trust what follows less; write the constraint or the coordinates so that they are regular there"});
   }
   for (std::size_t i = 0; i < model.monitors.size(); ++i)

@@ -93,8 +93,9 @@ Variation variation_of(const SweepCommand& o, const Model& model, const std::sha
 
 Reductions reductions_of(const SweepCommand& o, const Reader& in) {
   Reductions list;
+  const std::vector<Contact> moving = o.mode.empty() ? contacts(*in.names) : std::vector<Contact>{};
   try {
-    for (const std::string& word : split(o.reduce)) list.add(word, {in.model, in.names});
+    for (const std::string& word : split(o.reduce)) list.add(word, {in.model, in.names}, moving);
   } catch (const MistakeInWord& m) {
     refuse(m, "--reduce");
   }

@@ -102,7 +102,8 @@ void add_sweep(CommandLine& line) {
   c->add_option("--seed", o.seed, "other draws (default 0)")->type_name("N");
   c->add_option(
        "--reduce", o.reduce,
-       "max(FORMULA), min(FORMULA), mean(FORMULA) or last(FORMULA) over each motion, by its Taylor polynomials")
+       "over each motion: max(FORMULA), min(FORMULA), mean(FORMULA) or last(FORMULA), by its Taylor polynomials; "
+       "count(EVENT), first(EVENT): how often an event fired, and its first time")
       ->type_name("WHAT,…");
   c->add_option("--columns", o.columns,
                 "which columns, or patterns with * and ?: theta,*',outcome; beside the usual ones there are event and "

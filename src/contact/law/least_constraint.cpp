@@ -31,8 +31,8 @@ class Responses {
         components_.push_back({c, a});
     }
     share_forces(p, modes);
-    force_ = std::max(largest(p.b), std::numeric_limits<Real>::min());
     without_ = of_modes(smooth, modes);
+    if (without_) force_ = size_of_forces(p, *without_);
     for (std::size_t k = 0; without_ && k < components_.size(); ++k) {
       for (std::size_t i = 0; i < p.b.size(); ++i) smooth.b[i] = p.b[i] - force_ * row(k)[i];
       const auto f = of_modes(smooth, modes);

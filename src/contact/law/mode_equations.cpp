@@ -1,5 +1,7 @@
 #include "contact/law/mode_equations.h"
 
+#include <limits>
+
 #include "contact/law/pivoted_equations.h"
 
 namespace anholon {
@@ -17,6 +19,11 @@ std::vector<std::size_t> held_gaps(const ContactProblem& p, const ContactModes& 
   for (std::size_t c = 0; c < modes.size(); ++c)
     if (modes[c].touch != Touch::open && !p.contacts[c].under && !modes[c].load.shared) list.push_back(c);
   return list;
+}
+
+long double size_of_forces(const ContactProblem& p, const ContactSolution& f) {
+  const long double given = largest(p.b);
+  return std::max(given > 0 ? given : largest(f.normal), std::numeric_limits<long double>::min());
 }
 
 bool shares_friction(const ContactModes& modes) {

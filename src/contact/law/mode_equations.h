@@ -78,6 +78,8 @@ struct HeldComponent {
 std::vector<HeldComponent> held_components(const ContactProblem& problem, const ContactModes& modes);
 // The contacts whose gaps are held, likewise.
 std::vector<std::size_t> held_gaps(const ContactProblem& problem, const ContactModes& modes);
+// The size of the forces, positive: of the given ones, or of the loads where there are none but those, as in an impact.
+long double size_of_forces(const ContactProblem& problem, const ContactSolution& solution);
 // Whether a contact that sticks shares friction.
 bool shares_friction(const ContactModes& modes);
 

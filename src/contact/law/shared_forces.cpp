@@ -281,7 +281,7 @@ void share_forces(const ContactProblem& p, ContactModes& modes) {
 std::optional<ContactSolution> distributed(const ContactProblem& p, const ContactSolution& equal) {
   constexpr int kSettled = 3;
   constexpr Real kSpared = 1e-9L;
-  const Real force = std::max(largest(p.b), std::numeric_limits<Real>::min());
+  const Real force = size_of_forces(p, equal);
   ContactModes modes = equal.modes;
   std::vector<std::size_t> order = in_order(modes.size());
   std::stable_sort(order.begin(), order.end(),
