@@ -210,7 +210,10 @@ def _fill_by_workers(
 
     # Its functions have no types.
     api: Any = distributed
-    client = api.Client(on) if isinstance(on, str) else on
+    try:
+        client = api.Client(on) if isinstance(on, str) else on
+    except OSError as error:
+        raise OSError(f"no scheduler of Dask answers at {on}: {error}\nhint: where one answers, the same call goes on with the parts that are kept") from error
     path = os.path.realpath(core.path)
     idle, first = 0, None
     try:

@@ -308,6 +308,15 @@ def test_workers_of_dask_make_the_same_folder(client: Any, quiet: pathlib.Path, 
     assert again.complete and hashes(tmp_path / "address") == hashes(quiet)
 
 
+def test_a_scheduler_that_does_not_answer_is_named(tmp_path: pathlib.Path, disc: an.Model) -> None:
+    dask = pytest.importorskip("dask")
+    pytest.importorskip("distributed")
+    with dask.config.set({"distributed.comm.timeouts.connect": "100ms"}), pytest.raises(OSError, match=r"no scheduler of Dask answers at tcp://127\.0\.0\.1:9") as error:
+        disc.sweep({"phi'": SPINS}, to=1, out=tmp_path / "lost", chunk=7, on="tcp://127.0.0.1:9")
+    assert "the same call goes on" in str(error.value)
+    disc.sweep({"phi'": SPINS}, to=1, out=tmp_path / "lost", chunk=7)
+
+
 def test_a_part_that_cannot_be_written_ends_the_sweep(client: Any, tmp_path: pathlib.Path, disc: an.Model) -> None:
     folder = tmp_path / "changed"
     disc.sweep({"phi'": SPINS}, to=1, out=folder, chunk=7, share=(1, 9))

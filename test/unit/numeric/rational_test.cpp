@@ -174,7 +174,7 @@ TEST(FromRational, TruncationWouldBeNoticed) {
 
 TEST(Multiples, AreTheNearestNumbers) {
   for (const mpq_class& q : remarkable_fractions()) {
-    const Rational of(q);
+    const Rational of(q.get_num(), q.get_den());
     const Multiples<double> doubles(of);
     const Multiples<long double> wide(of);
     for (const long k : {0L, 1L, 3L, 99'999L, (1L << 53) + 1, std::numeric_limits<long>::max()}) {
