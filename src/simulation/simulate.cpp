@@ -6,9 +6,7 @@
 
 #include "simulation/event_paces.h"
 #include "simulation/first_pull.h"
-#include "simulation/kernel_rows.h"
-#include "simulation/schedule.h"
-#include "simulation/shown_motion.h"
+#include "simulation/run_rows.h"
 #include "simulation/trust.h"
 
 namespace anholon {
@@ -57,8 +55,9 @@ class Run {
       : s_(s), o_(o), power_(anholon::power(*s.mechanics)),
         stages_(std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
         course_(s, step_settings(*s.model, o), method(o), quadratures(s, power_, o), stages_), shown_(course_),
-        rows_(sink, o.digits), watch_(s, power_, o.conserved, motion().parameters()),
-        angles_(s, doubles(motion().parameters())), judge_(s, o), floors_(s), paces_(s.model->events) {
+        watch_(s, power_, o.conserved, motion().parameters()), angles_(s, doubles(motion().parameters())), judge_(s, o),
+        floors_(s), paces_(s.model->events),
+        rows_({s, o, stages_, course_, shown_, watch_, judge_, floors_, report_}, sink) {
     report_.model = s.model->title;
     report_.form = s.system.form->name;
     report_.constraints_each = constraint_reports(s);
@@ -75,7 +74,7 @@ class Run {
     report_.outcome = o_.resume ? resume(*o_.resume) : begin();
     if (report_.outcome.ok()) {
       show_second();
-      rows_.columns(run_columns(s_, highest()));
+      rows_.columns();
       follow();
     }
     report();
@@ -83,6 +82,8 @@ class Run {
   }
 
  private:
+  const RowSchedule<W>& schedule() const { return rows_.schedule(); }
+  const RowWriter<N>& written() const { return rows_.writer(); }
   Motion<N>& motion() { return course_.taylor(); }
   const Motion<N>& motion() const { return course_.taylor(); }
 
@@ -91,7 +92,6 @@ class Run {
     for (const W& x : numbers) list.push_back(to_double(x));
     return list;
   }
-  int highest() const { return largest_order(s_, motion().program().d); }
 
   void note(const std::string& text) {
     report_.notes.push_back(text);
@@ -102,12 +102,12 @@ class Run {
 
   Outcome begin() {
     if (Outcome o = course_.start(o_.state); !o.ok()) return o;
-    schedule_ = RowSchedule<W>(o_, course_.time());
+    rows_.begin(RowSchedule<W>(o_, course_.time()));
     if (o_.estimate != ErrorEstimate::never) motion().expect_second_run();
-    prepare_rows();
-    if (course_.at(schedule_.start()).ok()) watch_.start(course_.point());
+    rows_.begin_beside(plans_.rows);
+    if (course_.at(schedule().start()).ok()) watch_.start(course_.point());
     if (Outcome o = motion().within_bounds(); !o.ok()) return o;
-    if (schedule_.forward())
+    if (schedule().forward())
       for (const std::string& text : passed_limits(*s_.model, motion())) note(text);
     return {};
   }
@@ -115,11 +115,11 @@ class Run {
   // Another integrator, whose motion is then the one that is written.
   void show_second() {
     if (o_.integrator == Method::taylor) return;
-    kernel_rows_.reset();
+    rows_.by_reference();
     if constexpr (std::same_as<N, double>)
       shown_.show(std::make_unique<SecondMotion>(
           s_, o_.state, watched_quadratures(s_, power_)[0],
-          SundialsSettings{o_.integrator, o_.tolerance.get_d(), o_.most_steps, o_.cancelled}, schedule_.end()));
+          SundialsSettings{o_.integrator, o_.tolerance.get_d(), o_.most_steps, o_.cancelled}, schedule().end()));
     if (shown_.second()) judge_.look_beside(course_);
   }
 
@@ -135,16 +135,16 @@ class Run {
 
   // Stores the state from which a run goes on with the same bits.
   void save() {
-    settle_rows();
+    rows_.settle();
     turn_over();
     SavedRun to;
     motion().save(to);
     watch_.save(to);
-    to.set_numbers<W>("start", {schedule_.start()});
-    to.set_numbers<W>("rows", {*schedule_.given()});
+    to.set_numbers<W>("start", {schedule().start()});
+    to.set_numbers<W>("rows", {*schedule().given()});
     // The last step will be made again.
-    const std::size_t steps = rows_.steps() > 0 ? rows_.steps() - 1 : 0;
-    to.set_numbers<double>("given", {static_cast<double>(rows_.rows()), static_cast<double>(steps)});
+    const std::size_t steps = written().steps() > 0 ? written().steps() - 1 : 0;
+    to.set_numbers<double>("given", {static_cast<double>(written().rows()), static_cast<double>(steps)});
     std::vector<double> worst, angles;
     for (const double* x : carried()) worst.push_back(*x);
     angles_.save(angles);
@@ -158,7 +158,7 @@ class Run {
     const W start = from.number<W>("start"), given_until = from.number<W>("rows");
     if (from.has("given")) {
       const std::vector<double> given = from.numbers<double>("given", 2);
-      rows_.go_on(static_cast<std::size_t>(given[0]), static_cast<std::size_t>(given[1]));
+      rows_.writer().go_on(static_cast<std::size_t>(given[0]), static_cast<std::size_t>(given[1]));
     }
     judge_.goes_on_from(given_until);
     watch_.resume(from);
@@ -166,8 +166,8 @@ class Run {
     const std::vector<double> worst = from.numbers<double>("residuals", residuals.size());
     for (std::size_t i = 0; i < worst.size(); ++i) *residuals[i] = worst[i];
     angles_.resume(from.numbers<double>("angles", angles_.saved()));
-    schedule_ = RowSchedule<W>(o_, start, given_until);
-    prepare_rows();
+    rows_.begin(RowSchedule<W>(o_, start, given_until));
+    rows_.begin_beside(plans_.rows);
     return {};
   }
 
@@ -175,28 +175,28 @@ class Run {
 
   void follow() {
     // Rows at or before the start come from the initial state itself.
-    if (!schedule_.given()) {
-      const W start = schedule_.start();
-      if (schedule_.every_step()) row(start, "");
-      while (schedule_.due_at(start)) row(schedule_.take());
-      schedule_.set_given(start);
-    } else if (schedule_.reaches(*schedule_.given(), schedule_.end())) {
+    if (RowSchedule<W>& due = rows_.schedule(); !due.given()) {
+      const W start = due.start();
+      if (due.every_step()) rows_.at(start, "");
+      while (due.due_at(start)) rows_.at(due.take());
+      due.set_given(start);
+    } else if (due.reaches(*due.given(), due.end())) {
       return;  // nothing is left
     }
     if (o_.rigorous)
-      defect_.emplace(s_, *o_.rigorous, Ball(*schedule_.given()), Ball(schedule_.end()), significand_bits<W>());
+      defect_.emplace(s_, *o_.rigorous, Ball(*schedule().given()), Ball(schedule().end()), significand_bits<W>());
     // Soon at first, so that a run that is killed early can go on, too; then at longer and longer intervals.
     constexpr double kFirst = 0.5, kLonger = 1.5;
     auto saved = std::chrono::steady_clock::now();
     double pause = std::min(kFirst, o_.save_seconds);
-    while (report_.outcome.ok() && !(course_.time() == schedule_.end())) {
+    while (report_.outcome.ok() && !(course_.time() == schedule().end())) {
       if (!step()) break;
       if (!o_.save || std::chrono::duration<double>(std::chrono::steady_clock::now() - saved).count() < pause) continue;
       save();
       saved = std::chrono::steady_clock::now();
       pause = std::min(kLonger * pause, o_.save_seconds);
     }
-    settle_rows();
+    rows_.settle();
     turn_over();
     if (report_.outcome.ok() && course_.steps() > 0 && shown_.at(course_.time()).ok())
       watch_.end(shown_.point(), shown_.work(), report_);
@@ -206,9 +206,9 @@ class Run {
 
   // Limits the stretch to the steps after which nothing is due.
   void limit_stretch() {
-    const bool each = schedule_.every_step() || o_.dense || defect_ || watch_.any_redundant() ||
+    const bool each = schedule().every_step() || o_.dense || defect_ || watch_.any_redundant() ||
                       masses_vary<N>(*s_.model, motion().stepper());
-    stretch_.begin(each, schedule_.next());
+    stretch_.begin(each, schedule().next());
     angles_.keep_in(stretch_);
   }
 
@@ -217,11 +217,11 @@ class Run {
   bool step() {
     work_ = std::max(work_, W(abs(course_.integrals()[0])));
     limit_stretch();
-    Outcome o = course_.steps(schedule_.end(), stretch_);
+    Outcome o = course_.steps(schedule().end(), stretch_);
     if (const std::string advice = course_.take_advice(); !advice.empty()) note(advice);
     work_ = std::max(work_, W(stretch_.greatest_integral));
     // Before its last step there is nothing to do.
-    for (std::size_t i = 0; i + (o.ok() ? 1 : 0) < stretch_.times.size(); ++i) tell_step(stretch_.times[i]);
+    for (std::size_t i = 0; i + (o.ok() ? 1 : 0) < stretch_.times.size(); ++i) rows_.tell_step(stretch_.times[i]);
     if (!o.ok()) {
       report_.outcome = std::move(o);
       return false;
@@ -233,8 +233,8 @@ class Run {
     if (o_.dense && course_.by_taylor()) tell_polynomials(masses.t);
     if (defect_) defect_->step(dense_step(motion().stepper(), masses.t));
     if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
-    rows_until(masses.t);
-    step_of_rows(masses.t);
+    rows_.until(masses.t);
+    rows_.end_step(masses.t);
     if (report_.outcome.ok() && !(masses.t == course_.time())) {
       report_.outcome = negative_mass(*s_.model, masses.mass, to_double(masses.t));
       reached_ = masses.t;
@@ -258,7 +258,7 @@ class Run {
 
   // Takes the events that fired in the last step; returns false if they end the motion.
   bool events() {
-    settle_rows();
+    rows_.settle();
     if (!report_.outcome.ok()) return false;
     if (Outcome o = motion().at(motion().stepper().time()); o.ok()) watch_.leave(motion().point());
     std::vector<Occurrence<W>> occurrences;
@@ -266,10 +266,11 @@ class Run {
     report_.outcome = motion().settle(occurrences, goes_on);
     for (const Occurrence<W>& o : occurrences) {
       const Event& e = s_.model->events[o.event];
-      EventReport r{e.name, rows_.written(o.t), {}, to_double(o.correction), e.stop};
-      for (const auto& c : o.changes) r.changes.push_back({c.name, rows_.written(c.before), rows_.written(c.after)});
+      EventReport r{e.name, written().written(o.t), {}, to_double(o.correction), e.stop};
+      for (const auto& c : o.changes)
+        r.changes.push_back({c.name, written().written(c.before), written().written(c.after)});
       report_.events.push_back(std::move(r));
-      const Outcome pace = paces_.see(o, W(schedule_.end() - schedule_.start()));
+      const Outcome pace = paces_.see(o, W(schedule().end() - schedule().start()));
       if (report_.outcome.ok()) report_.outcome = pace;
     }
     judge_.events(occurrences);
@@ -278,8 +279,7 @@ class Run {
       return false;
     }
     angles_.set_parameters(doubles(motion().parameters()));
-    if constexpr (std::same_as<N, double>)
-      if (kernel_rows_) kernel_rows_->set_parameters(motion().parameters());
+    rows_.set_parameters();
     if (motion().at(motion().stepper().time()).ok()) watch_.enter(motion().point(), motion().parameters());
     if (!goes_on) ended();
     return goes_on && report_.outcome.ok();
@@ -289,7 +289,7 @@ class Run {
   void ended() {
     const W t = course_.time();
     reached_ = t;
-    if (!schedule_.every_step() && !schedule_.took(t)) row(t, "");
+    if (!schedule().every_step() && !schedule().took(t)) rows_.at(t, "");
   }
 
   // Ends the motion where it cannot be continued.
@@ -307,108 +307,20 @@ class Run {
       return;  // it has its row
     }
     // The last good state is worth a row of its own.
-    if (course_.steps() > 0 && !schedule_.every_step()) {
+    if (course_.steps() > 0 && !schedule().every_step()) {
       const Outcome why = report_.outcome;
       report_.outcome = {};
-      row(course_.before(), "");
+      rows_.at(course_.before(), "");
       // So near to where J is singular that it cannot be solved to all digits any more: the series reach as far back as
       // forward.
       if (!report_.outcome.ok() && course_.by_taylor())
-        report_.outcome = {}, row(course_.before() - (course_.time() - course_.before()), "");
+        report_.outcome = {}, rows_.at(course_.before() - (course_.time() - course_.before()), "");
       report_.outcome = why;
     }
   }
 
-  // ---- rows --------------------------------------------------------------------------------------
-
-  // The rows that lie in the last step.
-  void rows_until(const W& stop) {
-    while (report_.outcome.ok() && schedule_.due(stop)) {
-      const auto due = schedule_.take();
-      row_in_step(due.t, due.label);
-    }
-    if (schedule_.reaches(*schedule_.given(), stop)) return;
-    if (schedule_.every_step() && report_.outcome.ok()) row_in_step(stop, "");
-    schedule_.set_given(stop);
-  }
-
-  // Rows of Taylor's steps may be computed side by side.
-  void prepare_rows() {
-    if constexpr (std::same_as<N, double>) {
-      if (!motion().stepper().accelerated()) return;
-      const double end = to_double(schedule_.end());
-      if (!plans_.rows)
-        plans_.rows =
-            WaitingRows::make(s_, o_.conserved, stages_, motion().start_parameters(), motion().start_state(), end);
-      const std::shared_ptr<WaitingRows>& rows = *plans_.rows;
-      if (!rows) return;
-      rows->set_parameters(motion().parameters());
-      rows->set_end(end);
-      kernel_rows_ = std::make_unique<KernelRows>(s_, o_, motion(), stages_, rows,
-                                                  RowTakers{watch_, judge_, floors_, rows_, report_});
-    }
-  }
-
-  void row_in_step(const W& t, const std::string& label) {
-    if constexpr (std::same_as<N, double>)
-      if (kernel_rows_ && course_.by_taylor() && !motion().stepper().one_sided()) {
-        kernel_rows_->add(motion(), t, label, judge_.wanted(course_));
-        if (kernel_rows_->failed()) settle_rows();
-        return;
-      }
-    settle_rows();
-    if (report_.outcome.ok()) row(t, label);
-  }
-
-  // Tells the end of a step. While rows are under way, their thread tells it, after the rows before it.
-  void tell_step(const W& end) {
-    if (kernel_rows_)
-      kernel_rows_->step(to_double(end));
-    else
-      rows_.step(end);
-  }
-
-  // The end of a step, after its rows.
-  void step_of_rows(const W& end) {
-    tell_step(end);
-    if (!kernel_rows_) return;
-    kernel_rows_->look_at_the_time();
-    if (kernel_rows_->failed()) settle_rows();
-  }
-
-  // Waits for the rows that are under way. What has ended the motion stands, unless one of them has no solution.
-  void settle_rows() {
-    if (!kernel_rows_) return;
-    if (Outcome o = kernel_rows_->settle(); !o.ok()) report_.outcome = std::move(o);
-  }
-
   // The watch may be in use beside the motion; it hears of the work so far when it is not.
   void turn_over() { watch_.turn_over(work_); }
-
-  void row(const typename RowSchedule<W>::Due& due) { row(due.t, due.label); }
-
-  // A row by the reference.
-  void row(const W& t, const std::string& label) {
-    report_.outcome = shown_.at(t);
-    if (!report_.outcome.ok()) return;
-    report_.outcome = see(shown_.point());
-    row_values(s_, highest(), shown_.point(), watch_, numbers_);
-    write_row(t, label, [&](std::size_t r) { return to_double(watch_.multiplier(r)); });
-  }
-
-  Outcome see(const Expansion<W>& point) {
-    ++report_.rows_looked_at;
-    return watch_.see(point, report_);
-  }
-
-  template <class Multiplier>
-  void write_row(const W& t, const std::string& label, const Multiplier& multiplier) {
-    judge_.row(t, label, numbers_, course_);
-    floors_.see(to_double(t), multiplier, numbers_);
-    rows_.row(t, label, numbers_);
-    ++report_.rows;
-    if (o_.rows_lost) o_.rows_lost();
-  }
 
   // ---- the report --------------------------------------------------------------------------------
 
@@ -436,10 +348,8 @@ class Run {
     for (const std::string& text : floors_.notes()) note(text);
     const std::vector<Warning> more = warnings<N>(s_, course_, watch_, angles_);
     report_.warnings.insert(report_.warnings.end(), more.begin(), more.end());
-    if (kernel_rows_)
-      if (const auto warning = kernel_rows_->warning()) report_.warnings.push_back(*warning);
-    judge_.estimate(course_, watched_quadratures(s_, power_), kernel_rows_ ? &kernel_rows_->waiting() : nullptr,
-                    report_);
+    if (const auto warning = rows_.warning()) report_.warnings.push_back(*warning);
+    judge_.estimate(course_, watched_quadratures(s_, power_), rows_.waiting(), report_);
   }
 
   void report_watched() {
@@ -455,10 +365,10 @@ class Run {
 
   WatchedReport watched(const std::string& name, const Track<W>& track) const {
     return {name,
-            rows_.written(track.first),
-            rows_.written(track.last),
-            rows_.written(track.least),
-            rows_.written(track.greatest),
+            written().written(track.first),
+            written().written(track.last),
+            written().written(track.least),
+            written().written(track.greatest),
             track.relative_change()};
   }
 
@@ -468,9 +378,6 @@ class Run {
   int stages_;  // orders beyond the leading derivatives that rows show
   Course<N> course_;
   ShownMotion<N> shown_;
-  RowSchedule<W> schedule_;
-  std::vector<W> numbers_;  // of a row
-  RowWriter<N> rows_;
   Watch<W> watch_;
   AngleWatch angles_;
   Judge<N> judge_;
@@ -481,8 +388,8 @@ class Run {
   std::optional<W> reached_;  // the time at which the motion ended before its end
   W work_{0};                 // the greatest so far, where a step began
   SimulationReport report_;
-  SimulationPlans plans_;                    // those of the motion are in the motion
-  std::unique_ptr<KernelRows> kernel_rows_;  // null if rows are made by the reference; the last: uses the others
+  SimulationPlans plans_;  // those of the motion are in the motion
+  RunRows<N> rows_;        // the last: uses the others
 };
 
 SimulationReport in_doubles(Workspace& s, const SimulationOptions& o, RowSink& sink, SimulationPlans* plans) {

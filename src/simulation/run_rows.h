@@ -1,0 +1,148 @@
+// The rows of one run: each is made where it is due, by the kernel beside the motion or by the reference, and is then
+// watched, judged and written.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "simulation/kernel_rows.h"
+#include "simulation/schedule.h"
+#include "simulation/shown_motion.h"
+
+namespace anholon {
+
+template <Number N>
+class RunRows {
+ public:
+  using W = Wider<N>;
+
+  // What the rows are made of, and who looks at them; all outlive the rows.
+  struct Parts {
+    Workspace& s;
+    const SimulationOptions& options;
+    int stages;  // orders beyond the leading derivatives that rows show
+    Course<N>& course;
+    ShownMotion<N>& shown;
+    Watch<W>& watch;
+    Judge<N>& judge;
+    FloorWatch& floors;
+    SimulationReport& report;  // its outcome says why a row has no solution
+  };
+
+  RunRows(const Parts& parts, RowSink& sink) : of_(parts), writer_(sink, parts.options.digits) {}
+
+  // ---- at the start --------------------------------------------------------------------------------
+
+  void begin(const RowSchedule<W>& schedule) { schedule_ = schedule; }
+  RowSchedule<W>& schedule() { return schedule_; }
+  const RowSchedule<W>& schedule() const { return schedule_; }
+  void columns() { writer_.columns(run_columns(of_.s, highest())); }
+  // Rows and steps since the start of the motion.
+  RowWriter<N>& writer() { return writer_; }
+  const RowWriter<N>& writer() const { return writer_; }
+
+  // Rows of Taylor's steps may be computed side by side; `known` is what computes them, if it was made before.
+  void begin_beside(std::optional<std::shared_ptr<WaitingRows>>& known) {
+    if constexpr (std::same_as<N, double>) {
+      const Motion<N>& motion = of_.course.taylor();
+      if (!motion.stepper().accelerated()) return;
+      const double end = to_double(schedule_.end());
+      if (!known)
+        known = WaitingRows::make(of_.s, of_.options.conserved, of_.stages, motion.start_parameters(),
+                                  motion.start_state(), end);
+      const std::shared_ptr<WaitingRows>& rows = *known;
+      if (!rows) return;
+      rows->set_parameters(motion.parameters());
+      rows->set_end(end);
+      beside_ = std::make_unique<KernelRows>(of_.s, of_.options, motion, of_.stages, rows,
+                                             RowTakers{of_.watch, of_.judge, of_.floors, writer_, of_.report});
+    }
+  }
+  // From now on the reference makes all rows.
+  void by_reference() { beside_.reset(); }
+
+  // ---- during the motion ---------------------------------------------------------------------------
+
+  // Those that lie in the last step, up to this time.
+  void until(const W& stop) {
+    while (of_.report.outcome.ok() && schedule_.due(stop)) {
+      const auto due = schedule_.take();
+      in_step(due.t, due.label);
+    }
+    if (schedule_.reaches(*schedule_.given(), stop)) return;
+    if (schedule_.every_step() && of_.report.outcome.ok()) in_step(stop, "");
+    schedule_.set_given(stop);
+  }
+
+  // Tells the end of a step. While rows are under way, their thread tells it, after the rows before it.
+  void tell_step(const W& end) {
+    if (beside_)
+      beside_->step(to_double(end));
+    else
+      writer_.step(end);
+  }
+
+  // The end of a step, after its rows.
+  void end_step(const W& end) {
+    tell_step(end);
+    if (!beside_) return;
+    beside_->look_at_the_time();
+    if (beside_->failed()) settle();
+  }
+
+  // Waits for the rows that are under way. What has ended the motion stands, unless one of them has no solution.
+  void settle() {
+    if (!beside_) return;
+    if (Outcome o = beside_->settle(); !o.ok()) of_.report.outcome = std::move(o);
+  }
+
+  // The rows that follow have the present parameters of the motion. Call it after settle().
+  void set_parameters() {
+    if constexpr (std::same_as<N, double>)
+      if (beside_) beside_->set_parameters(of_.course.taylor().parameters());
+  }
+
+  void at(const typename RowSchedule<W>::Due& due) { at(due.t, due.label); }
+  // A row by the reference.
+  void at(const W& t, const std::string& label) {
+    of_.report.outcome = of_.shown.at(t);
+    if (!of_.report.outcome.ok()) return;
+    ++of_.report.rows_looked_at;
+    of_.report.outcome = of_.watch.see(of_.shown.point(), of_.report);
+    row_values(of_.s, highest(), of_.shown.point(), of_.watch, numbers_);
+    of_.judge.row(t, label, numbers_, of_.course);
+    of_.floors.see(to_double(t), [&](std::size_t r) { return to_double(of_.watch.multiplier(r)); }, numbers_);
+    writer_.row(t, label, numbers_);
+    ++of_.report.rows;
+    if (of_.options.rows_lost) of_.options.rows_lost();
+  }
+
+  // ---- for the report, after settle() --------------------------------------------------------------
+
+  std::optional<Warning> warning() const { return beside_ ? beside_->warning() : std::nullopt; }
+  // What computes the rows beside the motion; null if the reference makes them.
+  WaitingRows* waiting() { return beside_ ? &beside_->waiting() : nullptr; }
+
+ private:
+  int highest() const { return largest_order(of_.s, of_.course.taylor().program().d); }
+
+  void in_step(const W& t, const std::string& label) {
+    if constexpr (std::same_as<N, double>)
+      if (const Motion<N>& motion = of_.course.taylor();
+          beside_ && of_.course.by_taylor() && !motion.stepper().one_sided()) {
+        beside_->add(motion, t, label, of_.judge.wanted(of_.course));
+        if (beside_->failed()) settle();
+        return;
+      }
+    settle();
+    if (of_.report.outcome.ok()) at(t, label);
+  }
+
+  Parts of_;
+  RowSchedule<W> schedule_;
+  std::vector<W> numbers_;  // of a row
+  RowWriter<N> writer_;
+  std::unique_ptr<KernelRows> beside_;  // null if rows are made by the reference; the last: uses the others
+};
+
+}  // namespace anholon
