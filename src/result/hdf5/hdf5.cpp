@@ -317,6 +317,9 @@ std::string extend_hdf5(const std::string& path, const RowBlock& block) {
 // HDF5 follows addresses in a file, and a damaged file may crash it. A child process therefore reads the file first;
 // its exit status tells whether it survived.
 static bool is_passable(const std::string& path) {
+  // While another thread loads the library, a child would wait for ever for the locks of that thread, which it does not
+  // have.
+  load_hdf5_library();
   std::fflush(nullptr);
   const pid_t child = fork();
   if (child < 0) return true;
