@@ -28,16 +28,11 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
     return bodies_.at.t < end_;
   }
   SimulationReport r;
-  ReadyMode* mode = nullptr;
-  for (bool again = true;; again = false) {
-    if ((mode = begin(ModeEnds::events, outcome))) {
-      rows_.begin_segment(mode->of.stopped);
-      r = simulate_in(*mode->own, asked(to), rows_, &mode->plans);
-      outcome = r.outcome;
-    }
-    // The mode closes gaps that are round-off, and the velocities belong to places with these gaps.
-    if (!again || outcome.kind != OutcomeKind::inconsistent || (mode && r.steps > 0)) break;
+  ReadyMode* mode = simulate_mode(to, r, outcome);
+  // The mode closes gaps that are round-off, and the velocities belong to places with these gaps.
+  if (outcome.kind == OutcomeKind::inconsistent && r.steps == 0) {
     bodies_.close_gaps();
+    mode = simulate_mode(to, r, outcome);
   }
   if (!mode) return false;
   rows_.last_state(bodies_.at);
@@ -88,6 +83,15 @@ ReadyMode* ModeSegments::begin(ModeEnds ends, Outcome& outcome) {
     mode = &ready_.begin(bodies_.modes, bodies_.at, outcome, ends);
     if (!outcome.ok()) return nullptr;
   } while (bodies_.deeper(mode->own->state.q));
+  return mode;
+}
+
+ReadyMode* ModeSegments::simulate_mode(const Rational& to, SimulationReport& report, Outcome& outcome) {
+  ReadyMode* const mode = begin(ModeEnds::events, outcome);
+  if (!mode) return nullptr;
+  rows_.begin_segment(mode->of.stopped);
+  report = simulate_in(*mode->own, asked(to), rows_, &mode->plans);
+  outcome = report.outcome;
   return mode;
 }
 

@@ -25,6 +25,8 @@ class ModeSegments {
  private:
   // The mode, at its consistent state; nullptr with an outcome if there is none.
   ReadyMode* begin(ModeEnds ends, Outcome& outcome);
+  // Begins the mode and simulates it up to a time at most; nullptr, and no new report, if it does not begin.
+  ReadyMode* simulate_mode(const Rational& to, SimulationReport& report, Outcome& outcome);
   // What is asked of a segment up to a time, by Taylor's method, and of one by BDF.
   SimulationOptions asked(const Rational& to) const;
   SimulationOptions asked_of_stretch(const Rational& to, const Rational& tolerance) const;

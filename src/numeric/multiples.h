@@ -1,7 +1,6 @@
 // Whole multiples of a rational number.
 #pragma once
 #include <algorithm>
-#include <cmath>
 #include <concepts>
 #include <limits>
 
@@ -22,7 +21,8 @@ class Multiples {
     if constexpr (std::floating_point<N>) {
       constexpr long kHeld = 1L << std::min(std::numeric_limits<N>::digits, 62);
       long product = 0;
-      if (den_ > 0 && den_ <= kHeld && !__builtin_mul_overflow(k, num_, &product) && std::abs(product) <= kHeld)
+      if (den_ > 0 && den_ <= kHeld && !__builtin_mul_overflow(k, num_, &product) && product <= kHeld &&
+          product >= -kHeld)
         return static_cast<N>(product) / static_cast<N>(den_);
     }
     return from_rational<N>(Rational(k * of_));

@@ -177,7 +177,7 @@ TEST(Multiples, AreTheNearestNumbers) {
     const Rational of(q.get_num(), q.get_den());
     const Multiples<double> doubles(of);
     const Multiples<long double> wide(of);
-    for (const long k : {0L, 1L, 3L, 99'999L, (1L << 53) + 1, std::numeric_limits<long>::max()}) {
+    for (const long k : {0L, 1L, 2L, 3L, 99'999L, (1L << 53) + 1, std::numeric_limits<long>::max()}) {
       const Rational multiple = k * of;
       EXPECT_EQ(doubles(k), from_rational<double>(multiple)) << k << " times " << of;
       EXPECT_EQ(wide(k), from_rational<long double>(multiple)) << k << " times " << of;
