@@ -36,9 +36,6 @@ struct ResultFormat {
   const char* missing = nullptr;
   const char* missing_hint = nullptr;
 
-  // Loads what writing needs, which any thread may do ahead of it; null if nothing is to be loaded.
-  void (*load)() = nullptr;
-
   // Whether a file that begins so is of this format; null for the format that is tried after all others.
   bool (*recognizes)(std::string_view beginning) = nullptr;
   // Reads a run from the text of a file, or from the file of a name; one of the two is null. Throws Failure.

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <deque>
 #include <filesystem>
-#include <future>
 
 #include "cli/input.h"
 #include "cli/models/show.h"
@@ -223,10 +222,7 @@ int say_end(const SimulateCommand& o, const Written& w, const std::string& save_
 }  // namespace
 
 int simulate_motion(const SimulateCommand& asked, const SavedRun* resume, Told* told) {
-  const ResultFormat* const format = format_of(asked.output);
-  check_format(format);
-  std::future<void> loading;  // beside the derivation
-  if (format && format->load) loading = std::async(std::launch::async, format->load);
+  check_format(format_of(asked.output));
   Told own;
   Told& all = told ? *told : own;
   all.in = read(asked);

@@ -65,7 +65,6 @@ void RowBlock::clear() {
 #ifndef ANHOLON_HDF5
 
 bool has_hdf5() { return false; }
-void load_hdf5_library() {}
 std::string create_hdf5(const std::string&, const RunInfo&, const std::vector<std::string>&) { return kNoHdf5; }
 std::string extend_hdf5(const std::string&, const RowBlock&) { return kNoHdf5; }
 RunFile read_hdf5(const std::string&) {
@@ -75,7 +74,6 @@ RunFile read_hdf5(const std::string&) {
 #else
 
 bool has_hdf5() { return true; }
-void load_hdf5_library() { static_cast<void>(hdf5::load_hdf5()); }
 
 using namespace hdf5;
 
@@ -317,9 +315,6 @@ std::string extend_hdf5(const std::string& path, const RowBlock& block) {
 // HDF5 follows addresses in a file, and a damaged file may crash it. A child process therefore reads the file first;
 // its exit status tells whether it survived.
 static bool is_passable(const std::string& path) {
-  // While another thread loads the library, a child would wait for ever for the locks of that thread, which it does not
-  // have.
-  load_hdf5_library();
   std::fflush(nullptr);
   const pid_t child = fork();
   if (child < 0) return true;

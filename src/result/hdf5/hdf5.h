@@ -15,8 +15,6 @@ namespace anholon {
 
 // Whether this build can read and write HDF5, and the message if it cannot.
 bool has_hdf5();
-// Loads the library HDF5 if it is not loaded; trouble is told by what uses it.
-void load_hdf5_library();
 extern const char* const kNoHdf5;
 
 // Rows that are appended to a file together.

@@ -67,7 +67,6 @@ const ResultFormat hdf5_format = {
     .streams = false,
     .missing = has_hdf5() ? nullptr : kNoHdf5,
     .missing_hint = "-o run.csv, or build it where libhdf5-dev is installed",
-    .load = load_hdf5_library,
     .recognizes = looks_like_hdf5,
     .read_file = read_hdf5,
     .write =
