@@ -225,8 +225,7 @@ void KernelExpansion::state_at(const W& begun, const W& h, std::vector<W>& state
 void KernelExpansion::own_state_at(const W& h, std::vector<W>& own, std::vector<W>& leading) const {
   kernel_->set_step(lane_, static_cast<double>(h));
   kernel_->change_over_step();
-  kernel_->fetch_base(lane_, own);
-  advanced(h, own, own, leading);
+  kernel_->fetch_changed(lane_, own);
   leading.resize(program_->unknowns());
   for (std::size_t j = 0; j < leading.size(); ++j) {
     const auto in_kernel = own_unknown(j);

@@ -266,14 +266,23 @@ void Stepper<N>::limit_by_events() {
 
 template <Number N>
 void Stepper<N>::limit_by_quadratures() {
+  if constexpr (std::same_as<N, double>)
+    if (const KernelExpansion* kernel = expander_.kernel()) return limit_by_quadratures(*kernel);
+  limit_by_quadratures(expander_);
+}
+
+// `series` has the quadratures of the present expansion.
+template <Number N>
+template <class Series>
+void Stepper<N>::limit_by_quadratures(const Series& series) {
   const std::vector<W>& integrals = track_.now.integrals;
   for (std::size_t i = 0; i < std::min(settings_.integrals, integrals.size()); ++i)
-    if (!expander_.constant_quadrature(i))
+    if (!series.constant_quadrature(i))
       horizon_ = limited_by_quadrature(horizon_, order_, tolerance_, to_double(integrals[i]),
-                                       [&](int k) -> N { return expander_.quadrature(i, k); });
+                                       [&](int k) -> N { return series.quadrature(i, k); });
   for (std::size_t i = settings_.known_from; i < std::min(settings_.known_to, program_->quadratures); ++i)
-    if (!expander_.constant_quadrature(i))
-      horizon_ = limited_by_value(horizon_, order_, tolerance_, [&](int k) -> N { return expander_.quadrature(i, k); });
+    if (!series.constant_quadrature(i))
+      horizon_ = limited_by_value(horizon_, order_, tolerance_, [&](int k) -> N { return series.quadrature(i, k); });
 }
 
 // Where there is no such step in either direction of time, the fault stands.

@@ -170,6 +170,8 @@ class Stepper {
   Outcome expand_one_sided(Outcome fault);
   bool take_one_sided(const W& h);
   void limit_by_quadratures();
+  template <class Series>
+  void limit_by_quadratures(const Series& series);
   void limit_by_events();
   void limit_by_kinks();
   void read_events();

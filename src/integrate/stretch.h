@@ -41,22 +41,31 @@ struct Stretch {
 };
 
 // How many steps are asked for at once, so that whoever waits for a motion (to stop it, for its rows, its progress, a
-// saved run) is asked often enough. That has no influence on the steps.
+// saved run) is asked often enough. That has no influence on the steps. Many stretches end early, because a row is due;
+// the clock is read after as many steps as are asked for.
 class StretchPace {
  public:
-  std::size_t steps() {
+  using Clock = std::chrono::steady_clock;
+
+  // `made`: the steps of the stretch before.
+  std::size_t steps(std::size_t made) {
     constexpr std::size_t kMost = 64;
     constexpr std::chrono::microseconds kShort(500), kLong(5000);
-    const auto now = std::chrono::steady_clock::now();
-    if (now - asked_ < kShort) steps_ = std::min(kMost, 2 * steps_);
-    if (now - asked_ > kLong) steps_ = 1;
-    asked_ = now;
+    made_ += made;
+    if (made_ < steps_) return steps_;
+    made_ = 0;
+    const Clock::time_point now = Clock::now();
+    if (now - read_ < kShort) steps_ = std::min(kMost, 2 * steps_);
+    if (now - read_ > kLong) steps_ = 1;
+    read_ = now;
     return steps_;
   }
+  // When the clock was read last.
+  Clock::time_point read() const { return read_; }
 
  private:
-  std::size_t steps_ = 1;
-  std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
+  std::size_t steps_ = 1, made_ = 0;
+  Clock::time_point read_ = Clock::now();
 };
 
 // Stretches one after the other, of the lengths that StretchPace gives.
@@ -64,8 +73,9 @@ template <Number W>
 struct PacedStretch : Stretch<W> {
   // The next one, which ends with the first step that comes to `time`. `each_step`: something is due after every step.
   void begin(bool each_step, const W* time) {
+    const std::size_t steps = pace.steps(this->times.size());
     this->restart();
-    this->most = each_step ? 1 : pace.steps();
+    this->most = each_step ? 1 : steps;
     this->until = time;
   }
   StretchPace pace;

@@ -168,6 +168,8 @@ struct Tier {
 const std::vector<Tier>& tiers();
 // The fastest tier that computes so many lanes. REQUIRES: there is one.
 const Tier& tier_of(int lanes);
+// The most lanes of a tier whose machine code is translated at first (code.h), or the most of all if it has one lane.
+int lanes_at_first();
 extern const Tier tier_plain, tier_avx2, tier_avx512;
 
 }  // namespace anholon

@@ -90,6 +90,13 @@ const Tier& tier_of(int lanes) {
   return *found;
 }
 
+int lanes_at_first() {
+  int lanes = 1;
+  for (const Tier& t : tiers())
+    if (translated_at_first(t.lanes)) lanes = std::max(lanes, t.lanes);
+  return lanes > 1 ? lanes : tiers().back().lanes;
+}
+
 void KernelTables::Divisors::add(long double n) {
   const long double reciprocal_of_n = n > 0 ? static_cast<double>(1 / n) : 0;
   number.push_back(static_cast<double>(n));

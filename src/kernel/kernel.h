@@ -246,6 +246,8 @@ class Kernel {
   }
   // Computes the changes of x_j^(k), k = 0..d_j, one after the other, over the set steps.
   void change_over_step();
+  // After change_over_step(), for unknowns of first order: the state at the end of the step.
+  void fetch_changed(int lane, std::vector<long double>& state) const;
   // Element i is at offset i * lanes().
   const double* increments(int lane) const {
     return arena_ + plan_->tables().increments * static_cast<std::size_t>(lanes_) + static_cast<std::size_t>(lane);

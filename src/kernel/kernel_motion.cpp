@@ -153,6 +153,16 @@ void Kernel::fetch(int lane, Moment moment, std::vector<long double>& state, std
 
 void Kernel::fetch_base(int lane, std::vector<long double>& state) const { sum_up(base_, lane, state); }
 
+// Each unknown has two increments, that of its value and that of its derivative.
+void Kernel::fetch_changed(int lane, std::vector<long double>& state) const {
+  const std::uint32_t n = plan_->tables().state_size;
+  const std::size_t stride = 2 * static_cast<std::size_t>(lanes_);
+  const double* increment = increments(lane);
+  state.resize(n);
+  for (std::uint32_t i = 0; i < n; ++i, increment += stride)
+    state[i] = static_cast<long double>(number(base_ + i, lane)) + number(base_ + n + i, lane) + *increment;
+}
+
 // The even and the odd terms side by side, as a sum waits for its last term.
 double Kernel::integral(std::size_t i, int lane) const {
   const LastSeries& q = quadratures_[i];
@@ -164,18 +174,23 @@ double Kernel::integral(std::size_t i, int lane) const {
   const double *numbers = arena_ + q.at * lanes + static_cast<std::size_t>(lane),
                *reciprocal = t.order.reciprocal.data() + 1;
   const double square = h * h;
-  const std::uint32_t aside = shows_last_ ? 0 : std::min(q.count, count);
+  // The orders below this one may be beside the series, and that of 0 is the time if t itself is the quadrature.
+  const std::uint32_t low = std::max<std::uint32_t>(1, shows_last_ ? 0 : std::min(q.count, count));
   double even = 0, odd = 0;
   std::uint32_t k = count;
-  const auto term = [&] {
-    --k;
-    const double number = k == 0 ? quadrature(i, 0, lane) : k < aside ? last(q, k, lane) : numbers[k * lanes];
-    return number * reciprocal[k];
+  const auto term = [&](std::uint32_t order) { return numbers[order * lanes] * reciprocal[order]; };
+  const auto low_term = [&](std::uint32_t order) {
+    const double number = order == 0 ? quadrature(i, 0, lane) : last(q, order, lane);
+    return number * reciprocal[order];
   };
-  if (count % 2 != 0) even = term();
-  while (k > 0) {
-    odd = odd * square + term();
-    even = even * square + term();
+  if (count % 2 != 0) --k, even = k < low ? low_term(k) : term(k);
+  for (; k >= low + 2; k -= 2) {
+    odd = odd * square + term(k - 1);
+    even = even * square + term(k - 2);
+  }
+  for (; k > 0; k -= 2) {
+    odd = odd * square + (k - 1 < low ? low_term(k - 1) : term(k - 1));
+    even = even * square + low_term(k - 2);
   }
   return (even + odd * h) * h;
 }

@@ -14,7 +14,7 @@ bool looked_at(std::size_t row) {
 }
 
 // Rows that are worked on together, blocks under way, and rows from which on another thread is worth its start.
-constexpr std::size_t kTogether = 64, kBlocks = 8, kFew = 512;
+constexpr std::size_t kTogether = 256, kBlocks = 8, kFew = 512;
 // Steps without rows that are told together.
 constexpr std::size_t kSteps = 4096;
 

@@ -37,8 +37,8 @@ class KernelRows {
   // The end of a step after the rows that were noted.
   void step(double end);
   // Hands over what waits for too long.
-  void look_at_the_time() {
-    if (work_.filling().rows.late()) pass_on();
+  void look_at_the_time(std::chrono::steady_clock::time_point now) {
+    if (work_.filling().rows.late(now)) pass_on();
   }
   // Whether a row has no solution: the motion is to end.
   bool failed() const { return failed_; }

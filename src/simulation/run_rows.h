@@ -49,7 +49,7 @@ class RunRows {
       const double end = to_double(schedule_.end());
       if (!known)
         known = WaitingRows::make(of_.s, of_.options.conserved, of_.stages, motion.start_parameters(),
-                                  motion.start_state(), end);
+                                  motion.start_state(), end, schedule_.left());
       const std::shared_ptr<WaitingRows>& rows = *known;
       if (!rows) return;
       rows->set_parameters(motion.parameters());
@@ -82,11 +82,11 @@ class RunRows {
       writer_.step(end);
   }
 
-  // The end of a step, after its rows.
-  void end_step(const W& end) {
+  // The end of a step, after its rows. `now`: when the clock was read last.
+  void end_step(const W& end, std::chrono::steady_clock::time_point now) {
     tell_step(end);
     if (!beside_) return;
-    beside_->look_at_the_time();
+    beside_->look_at_the_time(now);
     if (beside_->failed()) settle();
   }
 

@@ -55,6 +55,8 @@ class RowSchedule {
     const std::size_t k = next_++;
     return {times_[k], k < labels_.size() ? labels_[k] : std::string()};
   }
+  // How many times are left; 0 if a row is due at the end of every step.
+  std::size_t left() const { return times_.size() - next_; }
   // Whether the last row that was taken is that of t.
   bool took(const W& t) const { return next_ > 0 && times_[next_ - 1] == t; }
 

@@ -4,15 +4,6 @@
 
 namespace anholon {
 
-int SweepLanes::greatest() { return tiers().back().lanes; }
-
-int SweepLanes::at_first() {
-  int lanes = 1;
-  for (const Tier& t : tiers())
-    if (translated_at_first(t.lanes)) lanes = std::max(lanes, t.lanes);
-  return lanes > 1 ? lanes : greatest();
-}
-
 SweepLanes::SweepLanes(std::size_t cases, std::size_t threads, int narrow, int wide)
     : cases_(cases), compiles_beside_(threads > 0 && threads < std::thread::hardware_concurrency()) {
   constexpr std::size_t kMany = 32;

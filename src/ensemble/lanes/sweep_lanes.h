@@ -23,7 +23,8 @@ class SweepLanes {
 
   // `cases`: of the sweep; few cases are computed in one lane. `threads`: of the sweep; 0: as many as the machine has.
   // `narrow`: the number of lanes to begin with; `wide`: the greatest one of a tier of this machine.
-  SweepLanes(std::size_t cases, std::size_t threads) : SweepLanes(cases, threads, at_first(), greatest()) {}
+  SweepLanes(std::size_t cases, std::size_t threads)
+      : SweepLanes(cases, threads, lanes_at_first(), tiers().back().lanes) {}
   SweepLanes(std::size_t cases, std::size_t threads, int narrow, int wide);
 
   // Tells in how many lanes the group of cases that begins with this one is computed, and begins compilations that pay.
@@ -33,9 +34,6 @@ class SweepLanes {
   void end(const Turn& turn, std::size_t cases, double seconds);
 
  private:
-  static int at_first();
-  static int greatest();
-
   // A number of lanes, and what cases took in it.
   struct Width {
     int lanes = 1;

@@ -17,11 +17,13 @@ using RowPlace = Start<long double>;
 class RowKernel {
  public:
   // `outputs`: expressions whose values the rows need. `stages`: how many orders beyond the leading derivatives. `here`:
-  // the start of the motion; `end`: its end.
+  // the start of the motion; `end`: its end; `rows`: about how many there will be, 0 if nobody knows. Many are computed
+  // in fewer lanes, whose machine code is there sooner.
   // Returns null if rows need the reference: the form eliminates coordinates, constraints are redundant, an expression
   // holds derivatives that are not solved for, or there is no kernel for the equations.
   static std::unique_ptr<RowKernel> make(Workspace& scenario, const Column& outputs, int stages,
-                                         const std::vector<long double>& parameters, const RowPlace& here, double end);
+                                         const std::vector<long double>& parameters, const RowPlace& here, double end,
+                                         std::size_t rows = 0);
 
   // The rows that follow are of a motion with these parameters, and of one that ends there.
   void set_parameters(const std::vector<long double>& parameters);
@@ -41,13 +43,14 @@ class RowKernel {
   double output(std::size_t i, std::size_t lane) const { return kernel_.quadrature(i, 0, static_cast<int>(lane)); }
 
  private:
-  RowKernel(std::shared_ptr<const KernelPlan> plan, bool with_series, const std::vector<long double>& parameters,
-            double end);
+  RowKernel(std::shared_ptr<const KernelPlan> plan, int lanes, bool with_series,
+            const std::vector<long double>& parameters, double end);
 
   bool with_series_;  // beyond the leading derivatives
   std::shared_ptr<const KernelPlan> plan_;
   Kernel kernel_;
   double end_, spent_ = 0, at_ = 0;  // the end of the motion; seconds; the time in the first lane
+  std::size_t computed_ = 0;         // times
   CodeForLongRuns code_;
 };
 

@@ -14,11 +14,11 @@ void WaitingBlock::add(const Motion<double>& motion, long double t, const std::s
 
 std::unique_ptr<WaitingRows> WaitingRows::make(Workspace& s, const std::vector<Conserved>& conserved, int stages,
                                                const std::vector<long double>& parameters, const RowPlace& start,
-                                               double end) {
+                                               double end, std::size_t rows) {
   Column terms;
   for (const Conserved& c : conserved) terms.insert(terms.end(), c.terms.begin(), c.terms.end());
   RowExpressions expressions(s, terms);
-  auto kernel = RowKernel::make(s, expressions.all, stages, parameters, start, end);
+  auto kernel = RowKernel::make(s, expressions.all, stages, parameters, start, end, rows);
   if (!kernel) return nullptr;
   return std::unique_ptr<WaitingRows>(new WaitingRows(s, std::move(expressions), std::move(kernel), parameters));
 }

@@ -30,9 +30,9 @@ class WaitingBlock {
   Waiting& operator[](std::size_t i) { return rows_[i]; }
   void clear() { count_ = 0; }
   // Whether a row waits for so long that somebody who looks at the output would miss it.
-  bool late() const {
+  bool late(std::chrono::steady_clock::time_point now) const {
     constexpr std::chrono::milliseconds kLate(100);
-    return count_ > 0 && std::chrono::steady_clock::now() - since_ > kLate;
+    return count_ > 0 && now - since_ > kLate;
   }
 
  private:
@@ -43,10 +43,11 @@ class WaitingBlock {
 
 class WaitingRows {
  public:
-  // `stages`: how many orders beyond the leading derivatives a row shows. Returns nullptr where rows need the reference.
+  // `stages`: how many orders beyond the leading derivatives a row shows; `rows`: about how many there will be, 0 if
+  // nobody knows. Returns nullptr where rows need the reference.
   static std::unique_ptr<WaitingRows> make(Workspace& scenario, const std::vector<Conserved>& conserved, int stages,
                                            const std::vector<long double>& parameters, const RowPlace& start,
-                                           double end);
+                                           double end, std::size_t rows = 0);
 
   // The rows that follow are of a motion with these parameters, and of one that ends there.
   void set_parameters(const std::vector<long double>& parameters);

@@ -21,6 +21,7 @@ struct Rows {
     outputs.emplace(*s, Column{});
     kernel = RowKernel::make(*s, outputs->all, 0, parameters, start, 1);
   }
+  void expect_many() { kernel = RowKernel::make(*s, outputs->all, 0, parameters, start, 1, 100'000); }
   // A place near the start that misses the constraints by little more than round-off, as those of steps do.
   RowPlace near(int k) const {
     constexpr long double kNear = 1e-3L, kMissed = 1e-13L;
@@ -109,6 +110,20 @@ TEST_P(RowsOf, HaveTheSameBitsInAnyCompany) {
     rows.compute({places[k]});
     EXPECT_EQ(rows.numbers(0), together[k]);
   }
+}
+
+// Many rows are computed in as many lanes as have machine code soon.
+TEST_P(RowsOf, HaveTheSameBitsWhereManyAreExpected) {
+  Rows rows(GetParam());
+  ASSERT_TRUE(rows.kernel);
+  const RowPlace place = rows.near(1);
+  rows.compute({place});
+  const std::vector<double> of_few = rows.numbers(0);
+  rows.expect_many();
+  ASSERT_TRUE(rows.kernel);
+  EXPECT_EQ(rows.kernel->lanes(), static_cast<std::size_t>(lanes_at_first()));
+  rows.compute({place});
+  EXPECT_EQ(rows.numbers(0), of_few);
 }
 
 INSTANTIATE_TEST_SUITE_P(Zoo, RowsOf,
