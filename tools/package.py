@@ -4,7 +4,7 @@
     package.py FOLDER      FOLDER gets anholon_VERSION_amd64.deb, anholon-VERSION-linux-x86_64.tar.xz and SHA256SUMS
 
 The libraries are linked in from build/libraries (static_libraries.py); what stays outside is what every Debian 12 has: the C and C++ libraries.
-HDF5 is loaded if it is there. Figures in PDF and PNG need cairo, which is left out; SVG and pgfplots do not.
+HDF5 and cairo (figures in PDF and PNG) are loaded where they are needed, if they are there.
 """
 
 import hashlib
@@ -57,7 +57,7 @@ def compiled(prefix, build):
     libraries = ROOT / "build" / "libraries"
     static_libraries.main(libraries)
     run("cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_PREFIX_PATH={libraries}", "-DANHOLON_TESTS=OFF",
-        "-DANHOLON_CAIRO=OFF", "-DCMAKE_EXE_LINKER_FLAGS=-Wl,--gc-sections", stdout=subprocess.DEVNULL)  # fmt: skip
+        "-DCMAKE_EXE_LINKER_FLAGS=-Wl,--gc-sections", stdout=subprocess.DEVNULL)  # fmt: skip
     run("cmake", "--build", build, "--target", "anholon", "--parallel", os.environ.get("ANHOLON_JOBS", str(os.cpu_count() or 2)))
     run("cmake", "--install", build, "--prefix", prefix, "--component", "program", "--strip", stdout=subprocess.DEVNULL)
     run(sys.executable, ROOT / "tools" / "command_line.py", prefix / "bin" / "anholon", prefix)
@@ -96,7 +96,7 @@ Architecture: amd64
 Maintainer: The Anholon authors <{address()}>
 Installed-Size: {size}
 Depends: {", ".join(depends)}
-Recommends: libhdf5-103-1
+Recommends: libhdf5-103-1, libcairo2
 Suggests: chromium, ffmpeg
 Section: science
 Priority: optional

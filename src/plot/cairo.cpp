@@ -1,9 +1,8 @@
-// The only file that uses cairo.
+// Figures in PDF and PNG.
 #include "plot/drawing.h"
 
 #ifdef ANHOLON_CAIRO
-#include <cairo-pdf.h>
-#include <cairo.h>
+#include "plot/cairo_library.h"
 #endif
 
 #include <cerrno>
@@ -14,52 +13,56 @@
 
 namespace anholon::plot {
 
-const char* const kNoCairo = "this build of anholon draws no PDF and PNG";
-
 #ifndef ANHOLON_CAIRO
 
-bool has_cairo() { return false; }
-std::string draw_cairo(const Figure&, CairoFormat, const std::string&) { return kNoCairo; }
-std::string draw_cairo(const Drawing&, const std::string&, CairoFormat, const std::string&) { return kNoCairo; }
+const std::string& no_cairo() {
+  static const std::string why = "this build of anholon draws no PDF and PNG";
+  return why;
+}
+std::string draw_cairo(const Figure&, CairoFormat, const std::string&) { return no_cairo(); }
+std::string draw_cairo(const Drawing&, const std::string&, CairoFormat, const std::string&) { return no_cairo(); }
 
 #else
 
-bool has_cairo() { return true; }
+const std::string& no_cairo() { return cairo::load_cairo(); }
 
 namespace {
 
+using cairo::library;
+
 void colour(cairo_t* c, const char* hex) {
   const unsigned long rgb = std::strtoul(hex + 1, nullptr, 16);
-  cairo_set_source_rgb(c, static_cast<double>(rgb >> 16) / 255, static_cast<double>(rgb >> 8 & 255) / 255,
-                       static_cast<double>(rgb & 255) / 255);
+  library().cairo_set_source_rgb(c, static_cast<double>(rgb >> 16) / 255, static_cast<double>(rgb >> 8 & 255) / 255,
+                                 static_cast<double>(rgb & 255) / 255);
 }
 
 void stroke(cairo_t* c, const Stroke& s) {
-  cairo_set_dash(c, nullptr, 0, 0);
+  library().cairo_set_dash(c, nullptr, 0, 0);
   switch (s.role) {
   case Role::grid:
-    colour(c, "#e4e4e4"), cairo_set_line_width(c, 0.5);
+    colour(c, "#e4e4e4"), library().cairo_set_line_width(c, 0.5);
     break;
   case Role::axis:
-    colour(c, "#222222"), cairo_set_line_width(c, 0.6);
+    colour(c, "#222222"), library().cairo_set_line_width(c, 0.6);
     break;
   case Role::series: {
     const double dashes[] = {4, 2};
     colour(c, kColour[s.series % kColours]);
-    cairo_set_line_width(c, 1.1);
-    if (s.series >= kColours) cairo_set_dash(c, dashes, 2, 0);
+    library().cairo_set_line_width(c, 1.1);
+    if (s.series >= kColours) library().cairo_set_dash(c, dashes, 2, 0);
     break;
   }
   }
   for (std::size_t i = 0; i < s.points.size(); ++i)
-    i == 0 ? cairo_move_to(c, s.points[i].x, s.points[i].y) : cairo_line_to(c, s.points[i].x, s.points[i].y);
-  cairo_stroke(c);
+    i == 0 ? library().cairo_move_to(c, s.points[i].x, s.points[i].y)
+           : library().cairo_line_to(c, s.points[i].x, s.points[i].y);
+  library().cairo_stroke(c);
 }
 
 void font(cairo_t* c, const Word& w, const TextPiece& p) {
-  cairo_select_font_face(c, "serif", p.italic ? CAIRO_FONT_SLANT_ITALIC : CAIRO_FONT_SLANT_NORMAL,
-                         CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(c, p.sub ? 0.7 * w.size : w.size);
+  library().cairo_select_font_face(c, "serif", p.italic ? CAIRO_FONT_SLANT_ITALIC : CAIRO_FONT_SLANT_NORMAL,
+                                   CAIRO_FONT_WEIGHT_NORMAL);
+  library().cairo_set_font_size(c, p.sub ? 0.7 * w.size : w.size);
 }
 
 // Draws the dots: the position of a combining mark depends on the font.
@@ -68,9 +71,9 @@ void dots(cairo_t* c, const Word& w, double x, double y, const cairo_text_extent
   const double middle = x + letter.x_bearing + letter.width / 2 + 0.04 * w.size,
                height = y + letter.y_bearing - 0.16 * w.size;
   for (unsigned k = 0; k < count; ++k) {
-    cairo_new_path(c);
-    cairo_arc(c, middle + apart * (k - (count - 1) / 2.0), height, radius, 0, 2 * M_PI);
-    cairo_fill(c);
+    library().cairo_new_path(c);
+    library().cairo_arc(c, middle + apart * (k - (count - 1) / 2.0), height, radius, 0, 2 * M_PI);
+    library().cairo_fill(c);
   }
 }
 
@@ -79,25 +82,25 @@ void word(cairo_t* c, const Word& w) {
   for (const TextPiece& p : w.text) {
     cairo_text_extents_t e;
     font(c, w, p);
-    cairo_text_extents(c, p.text.c_str(), &e);
+    library().cairo_text_extents(c, p.text.c_str(), &e);
     width += e.x_advance;
   }
   colour(c, "#222222");
-  cairo_save(c);
-  cairo_translate(c, w.at.x, w.at.y);
-  if (w.upwards) cairo_rotate(c, -M_PI / 2);
+  library().cairo_save(c);
+  library().cairo_translate(c, w.at.x, w.at.y);
+  if (w.upwards) library().cairo_rotate(c, -M_PI / 2);
   double x = w.anchor == Anchor::start ? 0 : w.anchor == Anchor::middle ? -width / 2 : -width;
   for (const TextPiece& p : w.text) {
     cairo_text_extents_t e;
     font(c, w, p);
-    cairo_text_extents(c, p.text.c_str(), &e);
+    library().cairo_text_extents(c, p.text.c_str(), &e);
     const double y = p.sub ? 0.22 * w.size : 0;
-    cairo_move_to(c, x, y);
-    cairo_show_text(c, p.text.c_str());
+    library().cairo_move_to(c, x, y);
+    library().cairo_show_text(c, p.text.c_str());
     if (p.dots > 0) dots(c, w, x, y, e, p.dots);
     x += e.x_advance;
   }
-  cairo_restore(c);
+  library().cairo_restore(c);
 }
 
 }  // namespace
@@ -107,6 +110,7 @@ std::string draw_cairo(const Figure& figure, CairoFormat format, const std::stri
 }
 
 std::string draw_cairo(const Drawing& d, const std::string& title, CairoFormat format, const std::string& path) {
+  if (!no_cairo().empty()) return no_cairo();
   // cairo reports neither why a file cannot be written nor that its last bytes are missing, so it draws into memory.
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) return std::strerror(errno);
@@ -118,43 +122,45 @@ std::string draw_cairo(const Drawing& d, const std::string& title, CairoFormat f
   constexpr double kPixelsPerPoint = 200.0 / 72;
   cairo_surface_t* surface = nullptr;
   if (format == CairoFormat::pdf) {
-    surface = cairo_pdf_surface_create_for_stream(keep, &bytes, d.width, d.height);
-    if (cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS) {
-      if (!title.empty()) cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, title.c_str());
+    surface = library().cairo_pdf_surface_create_for_stream(keep, &bytes, d.width, d.height);
+    if (library().cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS) {
+      if (!title.empty()) library().cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, title.c_str());
       // Without a creation date the same figure has the same bytes.
-      cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
+      library().cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
     }
   } else {
-    surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(d.width * kPixelsPerPoint)),
-                                         static_cast<int>(std::ceil(d.height * kPixelsPerPoint)));
+    surface =
+        library().cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(std::ceil(d.width * kPixelsPerPoint)),
+                                             static_cast<int>(std::ceil(d.height * kPixelsPerPoint)));
   }
-  cairo_t* c = cairo_create(surface);
+  cairo_t* c = library().cairo_create(surface);
   if (format == CairoFormat::png) {
-    cairo_scale(c, kPixelsPerPoint, kPixelsPerPoint);
+    library().cairo_scale(c, kPixelsPerPoint, kPixelsPerPoint);
     colour(c, "#ffffff");
-    cairo_paint(c);
+    library().cairo_paint(c);
   }
-  cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
-  cairo_set_line_cap(c, CAIRO_LINE_CAP_ROUND);
+  library().cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
+  library().cairo_set_line_cap(c, CAIRO_LINE_CAP_ROUND);
   // Patches that share a border would show the paper between them.
-  cairo_set_antialias(c, CAIRO_ANTIALIAS_NONE);
+  library().cairo_set_antialias(c, CAIRO_ANTIALIAS_NONE);
   for (const Patch& p : d.patches) {
-    cairo_set_source_rgb(c, static_cast<double>(p.rgb >> 16 & 255U) / 255, static_cast<double>(p.rgb >> 8 & 255U) / 255,
-                         static_cast<double>(p.rgb & 255U) / 255);
-    cairo_rectangle(c, p.from.x, p.from.y, p.to.x - p.from.x, p.to.y - p.from.y);
-    cairo_fill(c);
+    library().cairo_set_source_rgb(c, static_cast<double>(p.rgb >> 16 & 255U) / 255,
+                                   static_cast<double>(p.rgb >> 8 & 255U) / 255,
+                                   static_cast<double>(p.rgb & 255U) / 255);
+    library().cairo_rectangle(c, p.from.x, p.from.y, p.to.x - p.from.x, p.to.y - p.from.y);
+    library().cairo_fill(c);
   }
-  cairo_set_antialias(c, CAIRO_ANTIALIAS_DEFAULT);
+  library().cairo_set_antialias(c, CAIRO_ANTIALIAS_DEFAULT);
   for (const Stroke& s : d.strokes) stroke(c, s);
   for (const Word& w : d.words) word(c, w);
-  cairo_status_t status = cairo_status(c);
-  cairo_destroy(c);
+  cairo_status_t status = library().cairo_status(c);
+  library().cairo_destroy(c);
   if (status == CAIRO_STATUS_SUCCESS && format == CairoFormat::png)
-    status = cairo_surface_write_to_png_stream(surface, keep, &bytes);
-  cairo_surface_finish(surface);
-  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface);
-  cairo_surface_destroy(surface);
-  std::string why = status == CAIRO_STATUS_SUCCESS ? "" : cairo_status_to_string(status);
+    status = library().cairo_surface_write_to_png_stream(surface, keep, &bytes);
+  library().cairo_surface_finish(surface);
+  if (status == CAIRO_STATUS_SUCCESS) status = library().cairo_surface_status(surface);
+  library().cairo_surface_destroy(surface);
+  std::string why = status == CAIRO_STATUS_SUCCESS ? "" : library().cairo_status_to_string(status);
   if (why.empty() && (std::fwrite(bytes.data(), 1, bytes.size(), file) != bytes.size() || std::fflush(file) != 0))
     why = std::strerror(errno);
   if (std::fclose(file) != 0 && why.empty()) why = std::strerror(errno);

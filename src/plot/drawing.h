@@ -51,8 +51,8 @@ std::string draw_svg(const Drawing& drawing, const std::string& title);
 std::string draw_tex(const Figure& figure);
 
 enum class CairoFormat { pdf, png };
-bool has_cairo();
-extern const char* const kNoCairo;
+// Why this program cannot draw them here; empty if it can.
+const std::string& no_cairo();
 // Returns an empty string, or the reason why the file could not be written.
 std::string draw_cairo(const Figure& figure, CairoFormat format, const std::string& path);
 std::string draw_cairo(const Drawing& drawing, const std::string& title, CairoFormat format, const std::string& path);
