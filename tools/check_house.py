@@ -11,11 +11,10 @@ usage: check_house.py [--root DIR] [--self-test]
 tools/house_debts.txt lists what is still larger: an entry may not grow, and one that is paid has to be taken out.
 """
 
-import argparse
-import pathlib
 import re
 import sys
-import tempfile
+
+from checking import run, tree
 
 MOST_MEMBERS, MOST_LINES, MOST_FILES = 20, 80, 26
 
@@ -192,28 +191,15 @@ MUTANTS = {
 }
 
 
-def write(root, files):
-    for name, text in files.items():
-        (root / name).parent.mkdir(parents=True, exist_ok=True)
-        (root / name).write_text(text, encoding="utf-8")
-
-
 def self_test():
-    failures = 0
-    with tempfile.TemporaryDirectory() as scratch:
-        write(pathlib.Path(scratch), GOOD)
-        for problem in check(pathlib.Path(scratch)):
-            print(f"a good tree was refused: {problem}")
-            failures += 1
+    with tree(GOOD) as root:
+        for problem in check(root):
+            yield f"a good tree was refused: {problem}"
     for title, (name, text) in MUTANTS.items():
-        with tempfile.TemporaryDirectory() as scratch:
-            more = {name: text} if name else {f"src/a/f{i}.h": "" for i in range(MOST_FILES)}
-            write(pathlib.Path(scratch), GOOD | more)
-            if not any(kind == title.split()[0] or title in ("constructor", "member function") for kind, *_ in check(pathlib.Path(scratch))):
-                print(f"mutant not refused: {title}")
-                failures += 1
-    print(f"{len(MUTANTS)} mutants, {failures} mistakes")
-    return 1 if failures else 0
+        more = {name: text} if name else {f"src/a/f{i}.h": "" for i in range(MOST_FILES)}
+        with tree(GOOD | more) as root:
+            if not any(kind == title.split()[0] or title in ("constructor", "member function") for kind, *_ in check(root)):
+                yield f"mutant not refused: {title}"
 
 
 def debts(root):
@@ -225,7 +211,7 @@ def debts(root):
     return {(kind, place, name): int(size) for kind, place, name, size in rows}
 
 
-def judged(root):
+def unpaid(root):
     """The problems that no debt covers, and the debts that are paid."""
     left = debts(root)
     for kind, where, name, size in check(root):
@@ -236,19 +222,10 @@ def judged(root):
         yield f"{place}: {kind} {name} is no debt any more: take it out of tools/house_debts.txt"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
-    parser.add_argument("--self-test", action="store_true")
-    options = parser.parse_args()
-    if options.self_test:
-        return self_test()
-    problems = list(judged(options.root))
-    for problem in problems:
-        print(problem)
-    print(f"{len(debts(options.root))} debts, {len(problems)} problems")
-    return 1 if problems else 0
+def judge(root):
+    problems = list(unpaid(root))
+    return problems, f"{len(debts(root))} debts, {len(problems)} problems"
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run(__doc__, judge, self_test))

@@ -6,11 +6,10 @@ usage: check_layers.py [--root DIR] [--self-test]
 ARCHITECTURE.md says what each folder owns; the table below holds its level.
 """
 
-import argparse
-import pathlib
 import re
 import sys
-import tempfile
+
+from checking import run, tree
 
 # The rooms of a layer are layers themselves: "modelfile/text" is src/modelfile/text/.
 LEVEL = {
@@ -260,44 +259,20 @@ MUTANTS = {
 }
 
 
-def write(root, files):
-    for name, text in files.items():
-        path = root / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-
-
 def self_test():
-    failures = 0
-    with tempfile.TemporaryDirectory() as scratch:
-        root = pathlib.Path(scratch) / "good"
-        write(root, GOOD)
+    with tree(GOOD) as root:
         for problem in check(root):
-            print(f"a good tree was refused: {problem}")
-            failures += 1
+            yield f"a good tree was refused: {problem}"
     for title, (name, text) in MUTANTS.items():
-        with tempfile.TemporaryDirectory() as scratch:
-            root = pathlib.Path(scratch)
-            write(root, GOOD | {name: text})
+        with tree(GOOD | {name: text}) as root:
             if not check(root):
-                print(f"mutant not refused: {title}")
-                failures += 1
-    print(f"{len(MUTANTS)} mutants, {failures} mistakes")
-    return 1 if failures else 0
+                yield f"mutant not refused: {title}"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
-    parser.add_argument("--self-test", action="store_true")
-    args = parser.parse_args()
-    if args.self_test:
-        return self_test()
-    problems = check(args.root)
-    for problem in problems:
-        print(problem)
-    return 1 if problems else 0
+def judge(root):
+    problems = check(root)
+    return problems, f"{len(problems)} problems"
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run(__doc__, judge, self_test))

@@ -7,12 +7,11 @@ Checked are [text](target), ![text](target) and [name]: target, outside of code 
 scheme (https:) is not looked at. An anchor (#heading) is spelt as GitHub spells it.
 """
 
-import argparse
-import pathlib
 import re
 import sys
-import tempfile
 import urllib.parse
+
+from checking import run, tree
 
 SKIPPED = {"node_modules", "shared"}  # and folders whose names begin with "." or "build"
 
@@ -120,38 +119,18 @@ BAD = ["[a](pages.md)\n", "[a](page.md#twice-2)\n", "[a](#there)\n# Here\n", "[r
 
 
 def self_test():
-    failures = 0
+    around = {"build/bad.md": "[a](nowhere.md)\n", "a.svg": "", "doc/page.md": PAGE, "doc/with space.md": ""}
     for text, refused in [(t, False) for t in GOOD] + [(t, True) for t in BAD]:
-        with tempfile.TemporaryDirectory() as scratch:
-            root = pathlib.Path(scratch) / "root"
-            (root / "doc").mkdir(parents=True)
-            (root / "build").mkdir()
-            (root / "build" / "bad.md").write_text("[a](nowhere.md)\n", encoding="utf-8")
-            (root / "a.svg").write_text("", encoding="utf-8")
-            (root / "doc" / "page.md").write_text(PAGE, encoding="utf-8")
-            (root / "doc" / "with space.md").write_text("", encoding="utf-8")
-            (root / "doc" / "test.md").write_text(text, encoding="utf-8")
+        with tree(around | {"doc/test.md": text}) as root:
             problems, _ = check(root)
-            if len(problems) != refused:
-                print(f"{'not refused' if refused else 'refused'}: {text!r} {problems}")
-                failures += 1
-    print(f"{failures} mistakes")
-    return 1 if failures else 0
+        if len(problems) != refused:
+            yield f"{'not refused' if refused else 'refused'}: {text!r} {problems}"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
-    parser.add_argument("--self-test", action="store_true")
-    args = parser.parse_args()
-    if args.self_test:
-        return self_test()
-    problems, links = check(args.root)
-    for problem in problems:
-        print(problem)
-    print(f"{links} links, {len(problems)} broken")
-    return 1 if problems else 0
+def judge(root):
+    problems, count = check(root)
+    return problems, f"{count} links, {len(problems)} broken"
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run(__doc__, judge, self_test))

@@ -8,11 +8,10 @@ Keys are the literals in `key("…")` of src/; those of report pages are explain
 JSON Schema of model files has names of its own.
 """
 
-import argparse
-import pathlib
 import re
 import sys
-import tempfile
+
+from checking import run, tree
 
 KEY = re.compile(r'\bkey\("([A-Za-z_]\w*)"\)')
 OUTCOME = re.compile(r'return "([a-z_]+)"')
@@ -94,34 +93,17 @@ MUTANTS = [
 
 
 def self_test():
-    failures = 0
     for change in [None, *MUTANTS]:
-        with tempfile.TemporaryDirectory() as scratch:
-            root = pathlib.Path(scratch)
-            for name, text in (GOOD | ({change[0]: change[1]} if change else {})).items():
-                (root / name).parent.mkdir(parents=True, exist_ok=True)
-                (root / name).write_text(text, encoding="utf-8")
+        with tree(GOOD | ({change[0]: change[1]} if change else {})) as root:
             problems = check(root)
-            if len(problems) != (change is not None):
-                print(f"{'not refused' if change else 'refused'}: {change} {problems}")
-                failures += 1
-    print(f"{failures} mistakes")
-    return 1 if failures else 0
+        if len(problems) != (change is not None):
+            yield f"{'not refused' if change else 'refused'}: {change} {problems}"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
-    parser.add_argument("--self-test", action="store_true")
-    args = parser.parse_args()
-    if args.self_test:
-        return self_test()
-    problems = check(args.root)
-    for problem in problems:
-        print(problem)
-    print(f"{len(problems)} gaps")
-    return 1 if problems else 0
+def judge(root):
+    problems = check(root)
+    return problems, f"{len(problems)} gaps"
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run(__doc__, judge, self_test))

@@ -8,11 +8,10 @@ Cited in src/, test/, doc/ and NOTATION.md:
   (theory: name)                         is a file doc/theory/name.md or a heading there, as a link would spell it
 """
 
-import argparse
-import pathlib
 import re
 import sys
-import tempfile
+
+from checking import run, tree
 
 NUMBER = r"\d+(?:\.\d+)*[a-z]?"
 TAG = re.compile(rf"\[([A-Z]{{1,3}}) ({NUMBER}(?:\s*(?:,|–|-)\s*{NUMBER})*)\]")
@@ -76,36 +75,18 @@ def self_test():
     good = "// [L 2.7] [Q 13] [N 3.1] [L 2.10] [L 2.9, 2.11] (theory: routh) (theory: routh-form)\nint a[3];\n"
     bad = ["[L 2.12]", "[Q 1]", "[N 2.10, 3.2]", "[L 2.10–2.13]", "(theory: hamel)", "[NF 2.7]"]
     places = ["src/formulation/forms/multipliers/routh.cpp", "test/laws/forms_test.cpp", "doc/results.md", "NOTATION.md"]
-    failures = 0
     cases = [("", False, places[0])] + [(good, False, p) for p in places]
     for text, refused, place in cases + [(f"//\n// {tag}\n", True, p) for tag in bad for p in places]:
-        with tempfile.TemporaryDirectory() as scratch:
-            root = pathlib.Path(scratch)
-            if text:
-                (root / "doc/theory").mkdir(parents=True)
-                (root / "doc/theory/routh.md").write_text(doc, encoding="utf-8")
-                (root / place).parent.mkdir(parents=True, exist_ok=True)
-                (root / place).write_text(text, encoding="utf-8")
-            if bool(check(root)[0]) != refused:
-                print(f"{'not refused' if refused else 'refused'}: {place}: {text!r} {check(root)[0]}")
-                failures += 1
-    print(f"{failures} mistakes")
-    return 1 if failures else 0
+        with tree({"doc/theory/routh.md": doc, place: text} if text else {}) as root:
+            problems, _ = check(root)
+        if bool(problems) != refused:
+            yield f"{'not refused' if refused else 'refused'}: {place}: {text!r} {problems}"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--root", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent.parent)
-    parser.add_argument("--self-test", action="store_true")
-    args = parser.parse_args()
-    if args.self_test:
-        return self_test()
-    problems, cited = check(args.root)
-    for problem in problems:
-        print(problem)
-    print(f"{cited} citations, {len(problems)} without a derivation")
-    return 1 if problems else 0
+def judge(root):
+    problems, cited = check(root)
+    return problems, f"{cited} citations, {len(problems)} without a derivation"
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run(__doc__, judge, self_test))
