@@ -193,7 +193,7 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
   {  // The conditions may hold already: a value that follows from the others may be given as well.
     Stage<N> said(m_, late, leading_unknowns(s, t), 0, p_.parameters, p_.mass);
     if (!said.evaluate(state_)) return no_value(said);
-    if (to_double(said.worst()) <= kRounded && all_given(s, t)) return {};
+    if (said.is_rounded() && all_given(s, t)) return {};
     if (!(said.worst() > stage_rounding<N>())) return {};
   }
   const InitialState<N> before = state_;

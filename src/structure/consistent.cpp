@@ -120,9 +120,8 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
   if (!find_by_least_change(stage, state_, free, p_.near)) return no_value(stage);
   mark_derived(stage, before, free);
   mark_undetermined(stage, before, free);
-  N miss = stage.worst(&worst);
-  if (!(miss > stage_rounding<N>())) return {};
-  if (to_double(miss) <= kRounded) {
+  if (!(stage.worst(&worst) > stage_rounding<N>())) return {};
+  if (stage.is_rounded()) {
     // The given values are rounded numbers: all may change a little.
     if (find_by_least_change(stage, state_, all) && !(stage.worst(&worst) > stage_rounding<N>())) {
       for (std::size_t j : all)
@@ -133,7 +132,7 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
           }
       return {};
     }
-    miss = stage.worst(&worst);
+    stage.worst(&worst);
   }
   return tell ? clash(stage, worst, before) : failed();
 }

@@ -229,10 +229,25 @@ const std::vector<bool>& Stage<N>::determined(const std::vector<std::size_t>& fr
   return determined_->is;
 }
 
+// Values may have few digits, in relation to the terms that they make; and they may be doubles of which the greatest has a
+// round-off as large as all terms of an equation.
+template <Number N>
+bool Stage<N>::is_rounded(std::size_t i) const {
+  const N round_off_of_doubles = floor_[i] * N(std::max(1.0, unit_roundoff<double>() / to_double(unit_roundoff<N>())));
+  return abs(residual[i]) <= N(kRounded) * scale[i] || abs(residual[i]) <= round_off_of_doubles;
+}
+
+template <Number N>
+bool Stage<N>::is_rounded() const {
+  for (std::size_t i = 0; i < size(); ++i)
+    if (!is_rounded(i)) return false;
+  return true;
+}
+
 template <Number N>
 bool Stage<N>::contradicts(const std::vector<std::size_t>& free) const {
   for (std::size_t i = 0; i < size(); ++i)
-    if (abs(residual[i]) > N(kRounded) * scale[i] &&
+    if (!is_rounded(i) &&
         std::none_of(free.begin(), free.end(), [&](std::size_t j) { return abs(jacobian(i, j)) > N(0); }))
       return true;
   return false;

@@ -92,6 +92,10 @@ class Stage {
       if (abs(jacobian(i, j)) > N(0)) return true;
     return false;
   }
+  // True if rounded values of the unknowns explain by how much the equation is missed.
+  bool is_rounded(std::size_t i) const;
+  // The same of all equations.
+  bool is_rounded() const;
   // True if an equation does not depend on any of these unknowns, and is missed by more than rounded values explain.
   // REQUIRES: the equations are linear.
   bool contradicts(const std::vector<std::size_t>& free) const;
