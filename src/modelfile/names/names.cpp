@@ -56,8 +56,17 @@ std::size_t Scope::body(const std::string& name, Span span) const {
   if (const std::string members = members_known(name, body_names_); !members.empty())
     throw Failure(span, "there is no body or particle '" + name + "'" + members);
   const std::string near = did_you_mean(name, body_names_);
+  // The nearest name first.
+  constexpr std::size_t kMostListed = 8;
+  std::string others;
+  for (std::size_t i = 0, listed = 0; i < body_names_.size() && listed <= kMostListed; ++i) {
+    if (body_names_[i] == near) continue;
+    others += listed == kMostListed ? ", …" : (others.empty() && near.empty() ? "" : ", ") + body_names_[i];
+    ++listed;
+  }
   throw Failure(span,
-                "there is no body or particle '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+                "there is no body or particle '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                others.empty() ? "" : "the model has the bodies and particles " + near + others);
 }
 
 const std::size_t* Scope::find_body(const std::string& name) const {
