@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -186,11 +187,19 @@ void state_table(const Scenario& s) {
     return unit == units.end() || unit->second == "1" ? "" : " " + unit->second;
   };
   say(stdout, "initial state at t = %s%s\n", number_text(x.t).c_str(), behind("t").c_str());
+  constexpr std::size_t kWidest = 22;  // without units
+  std::vector<std::array<std::string, 2>> texts;
+  std::size_t width = kWidest;
   for (std::size_t a = 0; a < x.q.size(); ++a) {
-    const std::string q = s.model->coordinates[a].name, qd = q + "'";
-    say(stdout, "  %-8s = %-22s %-10s %-9s = %-22s %s\n", q.c_str(),
-        (value_text(x.q[a], x.q_origin[a], x) + behind(q)).c_str(), name(x.q_origin[a]), qd.c_str(),
-        (value_text(x.qd[a], x.qd_origin[a], x) + behind(qd)).c_str(), name(x.qd_origin[a]));
+    const std::string& q = s.model->coordinates[a].name;
+    texts.push_back(
+        {value_text(x.q[a], x.q_origin[a], x) + behind(q), value_text(x.qd[a], x.qd_origin[a], x) + behind(q + "'")});
+    for (const std::string& text : texts.back()) width = std::max(width, text.size());
+  }
+  for (std::size_t a = 0; a < x.q.size(); ++a) {
+    const std::string& q = s.model->coordinates[a].name;
+    say(stdout, "  %-8s = %-*s %-10s %-9s = %-*s %s\n", q.c_str(), static_cast<int>(width), texts[a][0].c_str(),
+        name(x.q_origin[a]), (q + "'").c_str(), static_cast<int>(width), texts[a][1].c_str(), name(x.qd_origin[a]));
   }
   for (const StateEntry& e : higher)
     say(stdout, "  %-8s = %-22s %s\n", e.name.c_str(), (number_text(e.value) + behind(e.name)).c_str(), name(e.origin));
