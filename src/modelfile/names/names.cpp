@@ -467,9 +467,7 @@ void Scope::settle_orientation(std::size_t body, Span use) {
   BodyParts& p = parts_[body];
   if (p.orientation_value) return;
   if (p.orientation_failed) throw silent_failure();
-  if (!has_orientation(body))
-    throw Failure(use, "the body '" + body_names_[body] + "' has no orientation",
-                  "give it orientation = \"…\", or angle = \"…\" in the plane");
+  if (!has_orientation(body)) throw Failure(use, what_is(body) + " has no orientation", orientation_hint(body));
   if (p.orientation_open)
     throw Failure(use, "the orientation of '" + body_names_[body] + "' is defined through itself");
   if (depth_ > kDeepest)
