@@ -70,11 +70,30 @@ class _Import:
         if len(rows) < len(speeds):
             raise ModelError("the kinematic differential equations cannot be solved for the generalized speeds")
         rows.sort()
-        solved = a.extract(rows, list(range(a.cols))).LUsolve(-b.extract(rows, [0]))
-        found = dict(zip(speeds, (sm.simplify(x) if sm.count_ops(x) < 200 else x for x in solved), strict=True))
-        self.speeds = {**{u: e.xreplace(found) for u, e in self.speeds.items()}, **found}
-        left = [self.in_rates(e) for k, e in enumerate(equations) if k not in rows]
-        return [e for e in left if sm.simplify(e) != 0]
+        found = self._solution(speeds, a.extract(rows, list(range(a.cols))), -b.extract(rows, [0]))
+        before = self.speeds
+        self.speeds = {**{u: e.xreplace(found) for u, e in before.items()}, **found}
+        left = [self._without_denominator(self.in_rates(e)) for k, e in enumerate(equations) if k not in rows]
+        left = [e for e in left if sm.simplify(e) != 0]
+        if left:
+            # Where all equations hold, the speeds follow from all of them, without pivots that vanish somewhere.
+            among_all = self._solution(speeds, a.T * a, -(a.T * b))
+            if all(self._coordinates_of(sm.denom(sm.together(e))) == set() for e in among_all.values()):
+                self.speeds = {**{u: e.xreplace(among_all) for u, e in before.items()}, **among_all}
+        return left
+
+    def _solution(self, speeds: list[Any], a: Any, b: Any) -> dict[Any, Any]:
+        """The solution of a x = b."""
+        sm = self.sm
+        return dict(zip(speeds, (sm.simplify(x) if sm.count_ops(x) < 200 else x for x in a.LUsolve(b)), strict=True))
+
+    def _coordinates_of(self, e: Any) -> set[Any]:
+        return set(e.atoms(self.sm.core.function.AppliedUndef))
+
+    def _without_denominator(self, e: Any) -> Any:
+        """An equation e = 0 that holds where the denominator vanishes, too: of x' tan(q) - y' the numerator."""
+        above, below = self.sm.fraction(self.sm.together(e))
+        return above if self._coordinates_of(below) else e
 
     def _add_coordinate(self, wish: str) -> Any:
         """A coordinate that SymPy does not have."""
@@ -365,7 +384,8 @@ class _Import:
         constraints += [(f"velocity{k + 1}", w.formula(e)) for k, e in enumerate(self.velocity_constraints())]
         constraints += [(name, w.formula(e)) for name, e in self.centers]
         forces = {w.names[q]: w.formula(s) for q, s in self.generalized_forces().items()}
-        by_name = {name_of(key): value for key, value in values.items()}
+        given, conditions = self._start(initial)
+        by_name = {name_of(key): self._value(value) for key, value in values.items()}
         missing = sorted(symbol.name for symbol in w.parameters if symbol.name not in by_name)
         if missing:
             raise ModelError(f"values are missing for {', '.join(missing)}\nhint: from_sympy(…, values={{{missing[0]}: 1}})")
@@ -374,23 +394,54 @@ class _Import:
         if w.parameters:
             lines.append("[parameters]")
             for symbol, name in w.parameters.items():
-                lines.append(f"{name} = {json.dumps(text_of(by_name[symbol.name]))}")
+                lines.append(f"{name} = {json.dumps(by_name[symbol.name])}")
             lines.append("")
         if w.functions:
             lines.append("[functions]")
             for function, name in w.functions.items():
                 value = by_name.get(str(function.func))
-                lines.append(f"{name} = {json.dumps(text_of(value)) if value is not None else '{}'}")
+                lines.append(f"{name} = {json.dumps(value) if value is not None else '{}'}")
             lines.append("")
         lines += bodies
         if forces:
             lines.append("[[force]]\ngeneralized = {" + ", ".join(f"{q} = {json.dumps(f)}" for q, f in forces.items()) + "}\n")
         lines += [f'[[constraint]]\nname = "{name}"\nequation = {json.dumps(e + " = 0")}\n' for name, e in constraints]
-        given = {self.writer.names.get(key, name_of(key)): value for key, value in initial.items()}
-        if given:
+        if given or conditions:
             lines.append("[initial]")
-            lines += [f"{json.dumps(name)} = {json.dumps(text_of(value))}" for name, value in given.items()]
+            lines += [f"{json.dumps(name)} = {json.dumps(value)}" for name, value in given.items()]
+        if conditions:
+            lines.append(f"conditions = {json.dumps(conditions)}")
         return "\n".join(lines) + "\n"
+
+    def _start(self, initial: Mapping[Any, Number]) -> tuple[dict[str, str], list[str]]:
+        """Initial values by the names of coordinates and rates, and conditions for generalized speeds."""
+        w = self.writer
+        coordinates, speeds = {name_of(q): q for q in w.q}, {name_of(u): u for u in self.speeds}
+        given: dict[str, str] = {}
+        conditions: list[str] = []
+        for key, value in initial.items():
+            written = self._value(value)
+            plain = re.fullmatch(r"(\w+)('*)", key) if isinstance(key, str) else None
+            if isinstance(key, self.sm.Derivative):
+                given[w.formula(key)] = written
+            elif plain and plain[1] in coordinates:
+                given[w.names[coordinates[plain[1]]] + plain[2]] = written
+            elif name_of(key) in coordinates:
+                given[w.names[coordinates[name_of(key)]]] = written
+            elif name_of(key) in speeds:
+                rate = self.speeds[speeds[name_of(key)]]
+                if isinstance(rate, self.sm.Derivative):
+                    given[w.formula(rate)] = written
+                else:
+                    conditions.append(f"{w.formula(rate)} = {written}")
+            else:
+                known = ", ".join([*coordinates, *(f"{name}'" for name in coordinates), *speeds])
+                raise ModelError(f"'{name_of(key)}' in initial is no coordinate, rate or speed\nhint: {known}")
+        return given, conditions
+
+    def _value(self, value: Any) -> str:
+        """A number, or a formula of SymPy, as text."""
+        return self.writer.formula(value) if isinstance(value, self.sm.Basic) else text_of(value)
 
 
 def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, Number] | None = None, initial: Mapping[Any, Number] | None = None) -> Model:
@@ -400,7 +451,8 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
         method: the object of SymPy.
         title: of the model.
         values: of all symbols, and of given functions of time; without one of these nothing is simulated.
-        initial: values of coordinates (symbols or names) and of their rates (names such as ``"q1'"``).
+        initial: values of coordinates, their rates and generalized speeds, each by its symbol or name (``"q1'"``). Values, like those
+            of symbols, are numbers, or formulas as texts or of SymPy.
 
     Returns:
         A model; ``model.text`` is its file. Coordinates and parameters keep their names where these are names.

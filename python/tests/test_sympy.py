@@ -408,3 +408,39 @@ def test_a_motion_of_an_imported_system() -> None:
     method, values = skate()
     run = an.from_sympy(method, values=values, initial={"x'": -0.5, "th'": 1.5}).simulate(to=2).expect()
     assert run.report.constraints < 1e-13 and run.report.newton < 1e-12
+
+
+def sleigh() -> tuple[Any, dict[Any, Any], list[Any]]:
+    """A sleigh whose speeds are u1 along its axis and u2 about the vertical; an auxiliary speed asks for the blade's force."""
+    x, y, th, u1, u2, side, blade = me.dynamicsymbols("x y th u1 u2 side blade")
+    m, J, a, c = sm.symbols("m J a c")
+    N = me.ReferenceFrame("N")
+    B = N.orientnew("B", "Axis", [th, N.z])
+    B.set_ang_vel(N, u2 * N.z)
+    O = me.Point("O")
+    O.set_vel(N, 0)
+    K = O.locatenew("K", x * N.x + y * N.y)
+    K.set_vel(N, u1 * B.x + side * B.y)
+    G = K.locatenew("G", a * B.x)
+    G.set_vel(N, u1 * B.x + (side + a * u2) * B.y)
+    kane = me.KanesMethod(N, [x, y, th], [u1, u2], kd_eqs=[x.diff() - u1 * sm.cos(th), y.diff() - u1 * sm.sin(th), th.diff() - u2], u_auxiliary=[side])
+    kane.kanes_equations([me.RigidBody("sleigh", G, B, m, (me.inertia(B, 0, 0, J), G))], [(G, -c * u1 * B.x + 2 * B.y), (K, blade * B.y)])
+    return kane, {m: 2, J: 0.3, a: 0.4, c: 0.5}, [x, y, th, u1, u2]
+
+
+def test_initial_speeds_and_turns_beyond_a_right_angle() -> None:
+    kane, values, (x, y, th, u1, u2) = sleigh()
+    model = an.from_sympy(kane, values=values, initial={x: 0, "y": 0, th: sm.Rational(3, 10), u1: 1.2, "u2": 0.7})
+    state = model.evaluate()
+    assert state.qdot["x'"] == pytest.approx(1.2 * np.cos(0.3), rel=1e-15)
+    assert state.qdot["y'"] == pytest.approx(1.2 * np.sin(0.3), rel=1e-15)
+    run = model.simulate(to=8, at=[8]).expect()
+
+    def by_hand(_: float, s: Any) -> list[float]:
+        return [0.4 * s[1] ** 2 - 0.25 * s[0], (0.8 - 0.8 * s[0] * s[1]) / 0.62, s[1]]
+
+    solve_ivp = pytest.importorskip("scipy.integrate").solve_ivp
+    hand = solve_ivp(by_hand, (0, 8), [1.2, 0.7, 0.3], "DOP853", rtol=1e-12, atol=1e-13)
+    assert run["th"][-1] == pytest.approx(hand.y[2, -1], rel=1e-10)  # 7.07, through two right angles
+    with pytest.raises(an.ModelError, match=r"'u3' in initial is no coordinate, rate or speed\nhint: x, y, th, x', y', th', u1, u2"):
+        an.from_sympy(kane, values=values, initial={"u3": 1})

@@ -1,5 +1,8 @@
 #include "cli/command_line.h"
 
+#include <algorithm>
+
+#include "base/diagnostic.h"
 #include "base/utf8.h"
 #include "cli/command_words.h"
 #include "cli/completion.h"
@@ -26,6 +29,34 @@ static CommandWords words_of(const CLI::App& app, const std::string& words) {
   for (const CLI::App* inner : app.get_subcommands([](const CLI::App*) { return true; }))
     c.inner.push_back(words_of(*inner, words.empty() ? inner->get_name() : words + " " + inner->get_name()));
   return c;
+}
+
+// What a mode is, for commands that take none.
+static constexpr const char* kAboutModes = "a mode says which contacts are open, slip or stick, and which constraints "
+                                           "with 'active' hold; a motion finds its modes "
+                                           "itself";
+
+// Throws if a word is no option of the command, and says which commands have it.
+void CommandLine::check_options(int argc, char** argv) const {
+  const CLI::App* command = &app_;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands()[0];
+  const CommandWords own = words_of(*command, "");
+  std::vector<std::string> known;
+  for (const CommandWords::Flag& flag : own.flags) known.insert(known.end(), flag.names.begin(), flag.names.end());
+  for (int i = 2; i < argc; ++i) {
+    const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+    if (word == "--") return;
+    if (!word.starts_with("--") || std::find(known.begin(), known.end(), word) != known.end()) continue;
+    std::string others;
+    for (const CLI::App* other : app_.get_subcommands([](const CLI::App*) { return true; }))
+      if (other->get_option_no_throw(word)) others += (others.empty() ? "" : ", ") + other->get_name();
+    const std::string near = others.empty() ? did_you_mean(word, known) : "";
+    const std::string help = "anholon " + std::string(argv[1]) + " --help";
+    throw UsageError{"error: '" + std::string(argv[1]) + "' has no option " + word +
+                     (near.empty() ? "" : "; did you mean " + near + "?") +
+                     "\nhint: " + (others.empty() ? help : word + " is an option of " + others) +
+                     (word == "--mode" ? std::string("; ") + kAboutModes : "") + "\n"};
+  }
 }
 
 // The help of an option. The library counts bytes where it pads names to the column of the descriptions, and an ellipsis
@@ -92,6 +123,7 @@ int CommandLine::run(int argc, char** argv) {
     app_.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app_.exit(e);
+    if (dynamic_cast<const CLI::ExtrasError*>(&e)) check_options(argc, argv);
     const bool named = argc > 1 && argv[1][0] != '-';
     say(stderr, "error: %s\nhint: anholon %s%s--help\n", e.what(), named ? argv[1] : "", named ? " " : "");
     return kBadInput;

@@ -49,6 +49,7 @@ class CommandLine {
   template <class Command>
   int run_parsed(Command& o, int (*function)(const Command&), Model model) const;
   void add_completion();
+  void check_options(int argc, char** argv) const;
 
   CLI::App app_{"Anholon: the equations of nonholonomic mechanics, their motion, with a residual report."};
   std::string typed_;  // the words, in a form that can be typed again

@@ -22,6 +22,7 @@ ModeSegments::ModeSegments(const Workspace& s, const SimulationOptions& options,
 bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
   const ContactState from = bodies_.at;
   if (by_bdf(to)) {
+    rows_.end_segment(true);
     rows_.last_state(bodies_.at);
     bodies_.dynamics.pass(from, bodies_.at);
     nothing_has_changed();
@@ -34,14 +35,19 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
     bodies_.close_gaps();
     mode = simulate_mode(to, r, outcome);
   }
-  if (!mode) return false;
+  if (!mode) {
+    rows_.end_segment(true);
+    return false;
+  }
   rows_.last_state(bodies_.at);
   bodies_.dynamics.pass(from, bodies_.at);
   // The components that hold are chosen anew.
   const bool holds_others = bodies_.at.t > from.t && may_hold_others(r);
   if (holds_others) forget_singularity(r);
   const bool every_event_known = joined_.add(r, mode->of.events);
-  if ((outcome.kind == OutcomeKind::step_collapse || gave_up(r)) && slip_vanishes()) {
+  const bool vanished = (outcome.kind == OutcomeKind::step_collapse || gave_up(r)) && slip_vanishes();
+  rows_.end_segment(!vanished && !direction_vanishes(r.events, mode->of.events));
+  if (vanished) {
     outcome = {};
     bodies_.excluded.assign(bodies_.contacts.size(), {});
     return true;
@@ -54,6 +60,15 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
   if (!outcome.ok()) return false;
   const bool changed = note(r.events, mode->of.events);
   return (changed || to < end_) && every_event_known && bodies_.at.t < end_;
+}
+
+bool ModeSegments::direction_vanishes(const std::vector<EventReport>& events,
+                                      const std::map<std::string, ModeEvent>& known) const {
+  return std::any_of(events.begin(), events.end(), [&](const EventReport& e) {
+    const auto at = known.find(e.name);
+    return at != known.end() && at->second.change == ModeChange::sticks &&
+           bodies_.contacts[at->second.contact].slip.size() > 1;
+  });
 }
 
 bool ModeSegments::note(const std::vector<EventReport>& events, const std::map<std::string, ModeEvent>& known) {

@@ -42,6 +42,8 @@ class ModeSegments {
   // A slip velocity with two components that vanishes on a curved line has no Taylor series there, and the steps become
   // short without end. Returns whether that is how the segment ended; the contact then sticks.
   bool slip_vanishes();
+  // Whether one of the events ends a slip with two components, whose direction round-off tells there.
+  bool direction_vanishes(const std::vector<EventReport>& events, const std::map<std::string, ModeEvent>& known) const;
   // Notes what the events of a segment exclude; returns whether one has changed the modes.
   bool note(const std::vector<EventReport>& events, const std::map<std::string, ModeEvent>& known);
   void nothing_has_changed();

@@ -50,7 +50,27 @@ void SegmentRows::row(const Row& row) {
   }
   std::vector<double> values;
   for (const auto& place : places_) values.push_back(place ? last_[*place] : std::numeric_limits<double>::quiet_NaN());
+  if (times_.empty()) {
+    first_ = first_ && !held_;
+    write_held();
+    held_ = std::move(values);
+    return;
+  }
   to_.row({values, {}});
+  ++count_;
+}
+
+void SegmentRows::end_segment(bool whole) {
+  if (whole || first_)
+    write_held();
+  else
+    held_.reset();
+}
+
+void SegmentRows::write_held() {
+  if (!held_) return;
+  to_.row({*held_, {}});
+  held_.reset();
   ++count_;
 }
 

@@ -11,7 +11,10 @@ class SegmentRows final : public RowSink {
   // Rows at these times alone, if there are any; the ends of segments are no rows.
   void only_at(const std::vector<Rational>& times);
   // stopped: coordinates whose velocities and accelerations are 0 in the segment, and are written so; none if it is empty.
-  void begin_segment(std::vector<bool> stopped = {}) { places_.clear(), stopped_ = std::move(stopped); }
+  void begin_segment(std::vector<bool> stopped = {}) { places_.clear(), stopped_ = std::move(stopped), first_ = true; }
+  // Not whole: the forces of its last row are not determined, as where a slip velocity has vanished, and the row is
+  // left out, as the next segment begins there.
+  void end_segment(bool whole);
 
   void columns(const std::vector<RunColumn>& columns) override;
   void row(const Row& row) override;
@@ -25,6 +28,7 @@ class SegmentRows final : public RowSink {
 
  private:
   bool of_contact(const RunColumn& column) const;
+  void write_held();
 
   RowSink& to_;
   const std::vector<Contact>& contacts_;
@@ -35,6 +39,8 @@ class SegmentRows final : public RowSink {
   std::vector<std::optional<std::size_t>> places_;  // of each joint column among those of the segment
   std::vector<bool> stopped_;
   std::vector<double> last_;
+  std::optional<std::vector<double>> held_;  // the last row of the segment, until it is known whether it counts
+  bool first_ = true;                        // it is the first one, too
   std::size_t count_ = 0;
 };
 

@@ -224,6 +224,7 @@ class SwitchedMotion {
     rows_.begin_segment();
     const SimulationReport r = simulate_in(own, o, rows_);
     outcome = r.outcome;
+    rows_.end_segment(true);
     rows_.last_state(at_);
     bool goes_on = joined_.add(r, setting);
     if (!outcome.ok()) return false;

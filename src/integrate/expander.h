@@ -27,6 +27,7 @@ class ReferenceExpander {
   static constexpr bool suspected() { return false; }
   static constexpr std::size_t expansions_by_kernel() { return 0; }
   int order() const { return reference_.order(); }
+  const std::vector<W>& wide_parameters() const { return point_.parameters(); }
   void restart() {}  // no expansion is made
   void reset() {}    // nor counted
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "integrate/series/hidden_points.h"
-#include "integrate/series/kinks.h"
+#include "integrate/series/time_kink.h"
 
 namespace anholon {
 
@@ -13,6 +13,8 @@ namespace {
 // A step ends past a kink by the tolerance and this many round-offs, so that the next one starts surely on the other
 // side.
 constexpr int kPastKink = 32;
+// Where the time alone decides, this many round-offs of it suffice, also in the wider numbers of the state.
+constexpr int kPastTime = 4;
 // Kinks met so soon after another one are other kinks, until they are too many.
 constexpr int kMostShortKinks = 20;
 
@@ -164,7 +166,8 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
       h = first;
     else
       refused = false;
-    if (!kernel || kernel->may_turn()) kink = first_kink<N>(step.series().machine(), slots_, order_ - 1, convert<N>(h));
+    if (!kernel || kernel->may_turn())
+      kink = first_kink<N>(step.series().machine(), slots_, order_ - 1, convert<N>(h), !kernel);
     where = kink.at_start ? W(0) : kink.ahead ? convert<W>(kink.where) : h;
     past = convert<W>(unit_roundoff<N>()) * W(kPastKink) * (abs(t) > abs(h) ? W(abs(t)) : W(abs(h))) +
            W(std::exp(log_tolerance_)) * abs(h);
@@ -178,9 +181,46 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
   }
   at_kink_ = kink.at_start || kink.ahead;
   if (Outcome o = note_kink(kink.at_start, where, past); !o.ok() || !at_kink_) return o;
-  const W beyond = where + (forward ? past : W(-past));
-  if (abs(beyond) < abs(h)) h = beyond, ++kinks_;
+  const W to = beyond(step, events, kink, where, past, forward);
+  if (abs(to) < abs(h)) h = to, ++kinks_;
   return {};
+}
+
+// What the deciding slot passes, in the wider numbers.
+template <Number N>
+static Wider<N> passed_exactly(const Kink<N>& kink) {
+  if (kink.table)
+    for (const Rational& knot : kink.table->knots)
+      if (from_rational<N>(knot) == kink.passes) return from_rational<Wider<N>>(knot);
+  return convert<Wider<N>>(kink.passes);
+}
+
+// A kink that the time alone decides is met at its time. An event there is located where its formula has passed zero, so the
+// step goes on as past any other kink, and ends at the event.
+template <Number N>
+Wider<N> StepEnd<N>::beyond(PresentStep<N>& step, const EventWatch<N>& events, const Kink<N>& kink, const W& where,
+                            const W& past, bool forward) const {
+  const W usual = where + (forward ? past : W(-past));
+  const W t = step.t(), roundoff = convert<W>(unit_roundoff<N>()) * W(kPastTime) * abs(t + where);
+  const W least = forward ? roundoff : W(-roundoff);
+  const auto time = [&](std::uint32_t slot, const W& value) {
+    return passes_at<W>(*program_, step.expander.wide_parameters(), slot, value);
+  };
+  if (kink.at_start) {
+    const bool alone = std::all_of(kink.slots_at_start.begin(), kink.slots_at_start.end(),
+                                   [&](std::uint32_t slot) { return time(slot, W(0)).has_value(); });
+    return alone && roundoff > W(0) ? least : usual;
+  }
+  if (!kink.slot) return usual;
+  const auto exact = time(*kink.slot, passed_exactly(kink));
+  if (!exact || abs(W(*exact - t - where)) > past) return usual;
+  if (!events.empty() && events.may_pass_near(convert<N>(t), convert<N>(where), convert<N>(past))) return usual;
+  const W to = *exact - t;
+  if (!kink.enters || !sharp(*program_, *kink.slot) || !(abs(to) > roundoff))
+    return roundoff > W(0) ? W(to + least) : usual;
+  // At the time that is written, or at the first one that a step can end at behind it.
+  const bool short_of = forward ? convert<W>(convert<N>(*exact)) < *exact : convert<W>(convert<N>(*exact)) > *exact;
+  return short_of ? W(to + least) : to;
 }
 
 // At a kink functions are taken one-sided along the motion: a very short step finds the side.

@@ -4,6 +4,7 @@
 #include "integrate/end_check.h"
 #include "integrate/look_ahead.h"
 #include "integrate/series/events.h"
+#include "integrate/series/kinks.h"
 #include "kernel/plan/plan.h"
 
 namespace anholon {
@@ -60,6 +61,9 @@ class StepEnd {
     std::uint32_t slot;
     Hiding function;
   };
+  // Where a step ends that meets the kink; `past`: what makes sure that it is past one.
+  W beyond(PresentStep<N>& step, const EventWatch<N>& events, const Kink<N>& kink, const W& where, const W& past,
+           bool forward) const;
   Outcome note_kink(bool at_start, const W& where, const W& past);
   bool may_end_at(PresentStep<N>& step, const EventWatch<N>& events, const W& h);
   bool as_foretold(PresentStep<N>& step, const EventWatch<N>& events, const N& where) const;

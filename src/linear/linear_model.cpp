@@ -351,9 +351,9 @@ void tell(LinearModel& m, LinearModel::Motion motion, std::string why) {
 
 }  // namespace
 
-// Finds the coordinates that have no influence, here and at a point with other values of them, and whether all others
-// rest.
-static void look_for_steadiness(const LinearPoint& point, bool check, LinearModel& out) {
+// Finds the coordinates that have no influence, here and at another point, and whether all others rest. `moving`: the
+// other point lies along the motion, else these coordinates have other values there also if they rest.
+static void look_for_steadiness(const LinearPoint& point, bool check, bool moving, LinearModel& out) {
   const std::size_t n = out.states.size();
   const Multi zero = round_off(kZeroPart) * (Multi(1) + largest(out.A.data)),
               still = round_off(kZeroPart) * (Multi(1) + largest(point.x));
@@ -367,7 +367,7 @@ static void look_for_steadiness(const LinearPoint& point, bool check, LinearMode
     LinearPoint there = point;
     there.t += Multi(0.375);
     for (std::size_t i = 0, k = 0; i < n; ++i)
-      if (!kept[i])
+      if (!kept[i] && (!moving || abs(out.rates[i]) > still))
         there.x[point.independent(i)] +=
             Multi(0.3125) + Multi(static_cast<int>(++k)) / Multi(16) + Multi(0.375) * out.rates[i];
     moved = there.evaluate() && there.settle();
@@ -405,6 +405,15 @@ static void look_for_steadiness(const LinearPoint& point, bool check, LinearMode
       break;
     }
   }
+}
+
+// A heading that rests may have other values in the same motion only if no state is a velocity along fixed axes.
+static void look_for_steadiness(const LinearPoint& point, bool check, LinearModel& out) {
+  look_for_steadiness(point, check, false, out);
+  if (out.motion != LinearModel::Motion::unsteady) return;
+  LinearModel along = out;
+  look_for_steadiness(point, check, true, along);
+  if (along.motion != LinearModel::Motion::unsteady) out = std::move(along);
 }
 
 Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const {

@@ -7,6 +7,7 @@
 #include "expr/degree.h"
 #include "expr/generic_point.h"
 #include "expr/normal.h"
+#include "formula/units.h"
 #include "tape/point.h"
 
 namespace anholon {
@@ -391,7 +392,41 @@ std::string name_of(const Model& model, const Column& field) {
                                               : "momentum along " + name;
 }
 
+// By a component that is a number, or a coordinate times a number.
+void find_units(const Model& model, const Column& field, Conserved& c) {
+  Graph& g = *model.graph;
+  for (std::size_t a = 0; a < field.size(); ++a) {
+    if (is_zero(field[a])) continue;
+    if (g.node(field[a].id).kind == Kind::number) {
+      c.along = a, c.by.reset();
+      return;
+    }
+    for (std::size_t b = 0; b < field.size(); ++b)
+      for (const Expr& q : {g.jet(static_cast<std::uint32_t>(b), 0), -g.jet(static_cast<std::uint32_t>(b), 0)})
+        if (field[a] == q) c.along = a, c.by = b;
+  }
+}
+
+std::optional<Dimension> dimension_of(const Model& model, std::size_t coordinate) {
+  if (coordinate >= model.coordinate_units.size() || model.coordinate_units[coordinate].empty()) return std::nullopt;
+  if (model.coordinate_units[coordinate] == "1") return Dimension{};
+  const std::optional<Unit> unit = read_unit(model.coordinate_units[coordinate]);
+  return unit ? std::optional(unit->dimension) : std::nullopt;
+}
+
 }  // namespace
+
+std::string unit_of(const Model& model, const Conserved& c) {
+  if (std::all_of(model.coordinate_units.begin(), model.coordinate_units.end(),
+                  [](const std::string& unit) { return unit.empty(); }))
+    return "";
+  if (!c.along) return c.name.rfind("momentum", 0) == 0 ? "" : "J";
+  Dimension d = read_unit("J*s")->dimension;
+  const auto along = dimension_of(model, *c.along), by = c.by ? dimension_of(model, *c.by) : Dimension{};
+  if (!along || !by) return "";
+  for (std::size_t k = 0; k < d.size(); ++k) d[k] += (*by)[k] - (*along)[k];
+  return print(d);
+}
 
 Expr momentum_rate(const Mechanics& m, const Column& field) { return rate_along(m, rates(m), field); }
 
@@ -416,6 +451,7 @@ std::vector<Conserved> conserved(const Mechanics& m) {
     p.value = sum(p.terms);
     if (vanishes(p.value)) continue;
     p.name = name_of(model, field);
+    find_units(model, field, p);
     p.because = "the kinetic energy, the forces and the constraints do not change along it";
     list.push_back(std::move(p));
   }
@@ -423,8 +459,8 @@ std::vector<Conserved> conserved(const Mechanics& m) {
 }
 
 void for_each_expression(Conserved& c, const ExprVisitor& f) {
-  auto& [name, because, value, terms] = c;
-  for_each_expression_of(f, name, because, value, terms);
+  auto& [name, because, value, terms, along, by] = c;
+  for_each_expression_of(f, name, because, value, terms, along, by);
 }
 
 }  // namespace anholon

@@ -21,9 +21,14 @@ struct Conserved {
   std::string because;  // in words
   Expr value;           // masses substituted
   Column terms;         // the terms of the sum
+  // Of a momentum: coordinates whose units tell its unit, J*s*[by]/[along]; none where no component tells it.
+  std::optional<std::size_t> along, by;
 };
 
 std::vector<Conserved> conserved(const Mechanics& m);
+
+// Its unit, where those of the coordinates tell it; else empty. Nothing has a unit in a model without units.
+std::string unit_of(const Model& model, const Conserved& c);
 
 // The handles of an integral (expr/handles.h).
 void for_each_expression(Conserved& c, const ExprVisitor& f);

@@ -1,5 +1,6 @@
 #include "simulation/kernel_rows.h"
 
+#include <array>
 #include <bit>
 
 namespace anholon {
@@ -82,6 +83,7 @@ void KernelRows::work(Block& block) {
       ++block.taken;
       return trouble_.ok() && !(o_.rows_lost && o_.rows_lost());
     });
+  count_doubtful();
   if (!failed_) block.taken = block.judged.size();
   tell_steps(block);
   block.rows.clear(), block.judged.clear(), block.steps.clear();
@@ -104,9 +106,7 @@ Outcome KernelRows::take(const WaitingRows::Computed& row, bool judged) {
     row.numbers(numbers_);
   else
     numbers_.assign(wide_.begin(), wide_.end());
-  if (looks && good)
-    check_.see(static_cast<double>(place.t), numbers_, wide_, watch.cancellation(),
-               [&](std::size_t i) { return watch.made_of_monitor(i); });
+  if (looks && good) compare(row);
   takers_.judge.row(place.t, row.label(), numbers_, judged);
   const auto multiplier = [&](std::size_t r) {
     return good ? row.multiplier(r) : static_cast<double>(watch.multiplier(r));
@@ -115,6 +115,44 @@ Outcome KernelRows::take(const WaitingRows::Computed& row, bool judged) {
   takers_.writer.row(place.t, row.label(), numbers_);
   ++takers_.report.rows;
   return {};
+}
+
+// A row whose numbers differ by more than round-off waits until the kernel is free to compute it again.
+void KernelRows::compare(const WaitingRows::Computed& row) {
+  twice_.t = static_cast<double>(row.place().t);
+  twice_.written = numbers_;
+  twice_.solved = wide_;
+  twice_.cancellation = takers_.watch.cancellation();
+  twice_.made_of.clear();
+  for (std::size_t i = 0; i < s_.model->monitors.size(); ++i)
+    twice_.made_of.push_back(takers_.watch.made_of_monitor(i));
+  if (check_.doubts(twice_)) doubtful_.push_back({row.place(), twice_});
+}
+
+void KernelRows::count_doubtful() {
+  for (const Doubtful& d : doubtful_) check_.count(d.row, of_round_off(d.place, d.row.written));
+  doubtful_.clear();
+}
+
+std::vector<double> KernelRows::of_round_off(const RowPlace& place, const std::vector<double>& numbers) {
+  constexpr long double kRoundoff = 0x1p-52L;
+  // As the signs of four independent changes: one alone may leave a column as it is.
+  constexpr std::array<std::size_t, 4> kSigns = {0, 1, 2, 3};
+  std::vector<double> changes(numbers.size(), 0), other;
+  WaitingBlock block(kSigns.size());
+  for (const std::size_t signs : kSigns) {
+    RowPlace changed = place;
+    changed.t *= 1 + (signs % 2 == 0 ? kRoundoff : -kRoundoff);
+    for (std::size_t i = 0; i < changed.state.size(); ++i)
+      changed.state[i] *= 1 + (std::popcount(i & signs) % 2 == 0 ? kRoundoff : -kRoundoff);
+    block.add(changed);
+  }
+  waiting_->compute(block, [&](const WaitingRows::Computed& row) {
+    row.numbers(other);
+    for (std::size_t j = 0; j < numbers.size(); ++j) changes[j] = std::max(changes[j], std::abs(other[j] - numbers[j]));
+    return true;
+  });
+  return changes;
 }
 
 }  // namespace anholon

@@ -68,6 +68,10 @@ class KernelRows {
   void work(Block& block);
   void tell_steps(Block& block);
   Outcome take(const WaitingRows::Computed& row, bool judged);
+  void compare(const WaitingRows::Computed& row);
+  void count_doubtful();
+  // By how much each column changes with the round-off of the state.
+  std::vector<double> of_round_off(const RowPlace& place, const std::vector<double>& numbers);
 
   const Scenario& s_;
   const SimulationOptions& o_;
@@ -79,7 +83,13 @@ class KernelRows {
   std::vector<double> numbers_;    // of a row
   std::vector<long double> wide_;  // of a row by the reference
   RowCheck check_;
-  std::size_t noted_ = 0;  // rows
+  RowTwice twice_;  // the row seen last by the reference
+  struct Doubtful {
+    RowPlace place;
+    RowTwice row;
+  };
+  std::vector<Doubtful> doubtful_;  // rows of the block whose numbers differ
+  std::size_t noted_ = 0;           // rows
   Outcome trouble_;
   std::atomic<bool> failed_ = false;
   InOrder<Block> work_;  // the last member: its thread uses the others

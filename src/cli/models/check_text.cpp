@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -6,6 +7,7 @@
 #include "cli/models/check_report.h"
 #include "cli/models/conserved.h"
 #include "cli/say.h"
+#include "observe/rows/row_values.h"
 
 namespace anholon::cli {
 
@@ -179,13 +181,28 @@ void state_table(const Scenario& s) {
   const InitialState<double>& x = s.state;
   const std::vector<StateEntry> higher = higher_state(s);
   if (!x.q.empty()) say(stdout, "%s\n", data_needed(s, higher).c_str());
-  say(stdout, "initial state at t = %s\n", number_text(x.t).c_str());
-  for (std::size_t a = 0; a < x.q.size(); ++a)
-    say(stdout, "  %-8s = %-22s %-10s %-9s = %-22s %s\n", s.model->coordinates[a].name.c_str(),
-        value_text(x.q[a], x.q_origin[a], x).c_str(), name(x.q_origin[a]), (s.model->coordinates[a].name + "'").c_str(),
-        value_text(x.qd[a], x.qd_origin[a], x).c_str(), name(x.qd_origin[a]));
+  const std::map<std::string, std::string> units = column_units(*s.model);
+  const auto behind = [&](const std::string& name) {
+    const auto unit = units.find(name);
+    return unit == units.end() || unit->second == "1" ? "" : " " + unit->second;
+  };
+  say(stdout, "initial state at t = %s%s\n", number_text(x.t).c_str(), behind("t").c_str());
+  constexpr std::size_t kWidest = 22;  // without units
+  std::vector<std::array<std::string, 2>> texts;
+  std::size_t width = kWidest;
+  for (std::size_t a = 0; a < x.q.size(); ++a) {
+    const std::string& q = s.model->coordinates[a].name;
+    texts.push_back(
+        {value_text(x.q[a], x.q_origin[a], x) + behind(q), value_text(x.qd[a], x.qd_origin[a], x) + behind(q + "'")});
+    for (const std::string& text : texts.back()) width = std::max(width, text.size());
+  }
+  for (std::size_t a = 0; a < x.q.size(); ++a) {
+    const std::string& q = s.model->coordinates[a].name;
+    say(stdout, "  %-8s = %-*s %-10s %-9s = %-*s %s\n", q.c_str(), static_cast<int>(width), texts[a][0].c_str(),
+        name(x.q_origin[a]), (q + "'").c_str(), static_cast<int>(width), texts[a][1].c_str(), name(x.qd_origin[a]));
+  }
   for (const StateEntry& e : higher)
-    say(stdout, "  %-8s = %-22s %s\n", e.name.c_str(), number_text(e.value).c_str(), name(e.origin));
+    say(stdout, "  %-8s = %-22s %s\n", e.name.c_str(), (number_text(e.value) + behind(e.name)).c_str(), name(e.origin));
   say(stdout,
       "  (given; derived from constraints and conditions; chosen: 0, or the least change if constraints leave a "
       "choice; guess: as guessed; corrected: a rounded number made consistent)\n");

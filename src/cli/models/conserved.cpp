@@ -23,7 +23,9 @@ void print_conserved(const Mechanics& m) {
       names.empty() ? "" : (", cyclic: " + names).c_str());
   for (const Conserved& c : list) {
     const std::string formula = print(c.value, m.model->names, Format::text);
-    say(stdout, "  %s%s\n", c.name.c_str(), formula.size() > kLongest ? "" : (" = " + formula).c_str());
+    const std::string unit = unit_of(*m.model, c);
+    say(stdout, "  %s%s%s\n", c.name.c_str(), unit.empty() || unit == "1" ? "" : (" (" + unit + ")").c_str(),
+        formula.size() > kLongest ? "" : (" = " + formula).c_str());
   }
 }
 
@@ -31,7 +33,9 @@ void write_conserved(JsonWriter& j, const Mechanics& m) {
   j.key("conserved").open_array();
   for (const Conserved& c : conserved(m)) {
     j.open_object().key("name").string(c.name).key("cyclic").boolean(cyclic(c));
-    j.key("formula").string(print(c.value, m.model->names, Format::text)).key("because").string(c.because).close();
+    j.key("formula").string(print(c.value, m.model->names, Format::text)).key("because").string(c.because);
+    if (const std::string unit = unit_of(*m.model, c); !unit.empty()) j.key("unit").string(unit);
+    j.close();
   }
   j.close();
 }

@@ -1,9 +1,23 @@
+#include <algorithm>
+#include <filesystem>
+
 #include "cli/motions/result_file.h"
 #include "cli/say.h"
 
 namespace anholon::cli {
 
+// A model has no rows before it is simulated.
+static void check_is_no_model(const std::string& path) {
+  const auto is = [&](const ShippedFile& model) { return model.name == path; };
+  const std::vector<ShippedFile> models = shipped(Shipped::models);
+  const bool named = !std::filesystem::exists(path) && std::any_of(models.begin(), models.end(), is);
+  if (!named && !path.ends_with(".toml")) return;
+  throw UsageError{"error: '" + path + "' is a model, and the command takes a run\nhint: anholon simulate " + path +
+                   " --to 10 -o run.h5 writes the run run.h5\n"};
+}
+
 RunFile read_result(const std::string& path) {
+  check_is_no_model(path);
   SourceText source{path == "-" ? "<standard input>" : path, {}};
   try {
     RunFile run = read_run(path, &source);

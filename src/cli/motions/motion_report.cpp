@@ -121,7 +121,8 @@ void print_report(const Scenario& s, const SimulationReport& r, const Units& uni
   events(r, units);
   for (const WatchedReport& w : r.conserved)
     say(stderr, "conserved: %s = %s, largest change %s of its terms\n", w.name.c_str(),
-        (w.first.text() + behind(units, w.name)).c_str(), small(w.largest_change).c_str());
+        (w.first.text() + behind(units, w.name) + behind(units, "conserved " + w.name)).c_str(),
+        small(w.largest_change).c_str());
   for (const WatchedReport& w : r.monitors) {
     const std::string unit = behind(units, w.name);
     say(stderr, "monitor %s: from %s to %s%s, between %s and %s%s, largest change %s of its size\n", w.name.c_str(),

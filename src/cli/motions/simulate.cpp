@@ -19,6 +19,7 @@
 #include "cli/stop.h"
 #include "contact/hybrid.h"
 #include "modelfile/hash.h"
+#include "observe/rows/quantity_units.h"
 #include "report/columns.h"
 #include "result/file.h"
 #include "result/format.h"
@@ -265,7 +266,11 @@ int simulate_motion(const SimulateCommand& asked, const SavedRun* resume, Told* 
   }
   if (!w.started) return kStopped;
   if (told) told->run.report = report_json(w.report);
-  if (!o.quiet && w.report.rows > 0) print_report(s, w.report, info.units);
+  if (!o.quiet && w.report.rows > 0) {
+    std::map<std::string, std::string> units = info.units;
+    add_units(*s.model, options.conserved, units);
+    print_report(s, w.report, units);
+  }
   return say_end(o, w, saver.error);
 }
 

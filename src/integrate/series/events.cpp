@@ -145,6 +145,25 @@ bool EventWatch<N>::as_foretold(const N& where, double log_tolerance, const Valu
   return true;
 }
 
+// What a value is made of, and the rounding of the time at which it is taken.
+template <Number N>
+N EventWatch<N>::noise(std::size_t i, const N& t) const {
+  return unit_roundoff<N>() * N(kNoise) * (known_[i].terms + abs(known_[i].c[1]) * abs(t));
+}
+
+template <Number N>
+bool EventWatch<N>::may_pass_near(const N& t, const N& where, const N& within) const {
+  for (std::size_t i = 0; i < series_.size(); ++i) {
+    const N* c = known_[i].c.data();
+    if (!has_series(known_[i])) return true;
+    N slope(0);
+    for (int k = degree_; k >= 1; --k) slope = slope * where + c[k] * N(k);
+    const N way = N(2) * abs(slope) * within + N(kMargin) * noise(i, t);
+    if (!(abs(value_at(c, degree_, where)) > way)) return true;
+  }
+  return false;
+}
+
 // All that values at the ends of parts of (0, h] show, up to the first that ends the step.
 template <Number N>
 std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings_of_values(const WatchedSeries& s, int& side,
@@ -193,8 +212,7 @@ std::vector<Fired<N>> EventWatch<N>::look(const N& t, N& h, const std::optional<
   for (std::size_t i = 0; i < series_.size(); ++i) {
     const WatchedSeries& s = series_[i];
     const N* c = known_[i].c.data();
-    // What a value is made of, and the rounding of the time at which it is taken.
-    const N floor = eps * N(kNoise) * (known_[i].terms + abs(c[1]) * abs(t));
+    const N floor = noise(i, t);
     floors.push_back(floor);
     if (s.of_state && !has_series(known_[i])) {
       if (is_finite(c[0]) && abs(c[0]) > N(0) && sides_[i] == 0) sides_[i] = c[0] > N(0) ? 1 : -1;

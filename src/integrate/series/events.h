@@ -69,6 +69,8 @@ class EventWatch {
   bool as_foretold(const N& where, double log_tolerance, const ValueThere& value, const MadeOf& made_of) const;
   // A formula of the state that has a value, but no series: the root of what is zero.
   bool without_series() const;
+  // Whether a series may pass zero so near to a point on the way. `t`: the time of the expansion.
+  bool may_pass_near(const N& t, const N& where, const N& within) const;
   // What fires in (0, h], up to and with the first moment that ends the step; h is then that moment. In order of time,
   // those of one moment in the order of the series. Sides become those after it. `t`: the time of the expansion.
   // `kink`: series hold up to there only, and the step ends shortly after.
@@ -86,6 +88,8 @@ class EventWatch {
     N terms{0};
   };
   static bool has_series(const Known& known);
+  // Values of a series below it are zero.
+  N noise(std::size_t i, const N& t) const;
   static std::vector<Crossing> crossings_of_values(const WatchedSeries& s, int& side, const N& h, const Values& values);
   static std::vector<Crossing> crossings(const N* c, int degree, const N& h, const N& floor, const WatchedSeries& s,
                                          int side);

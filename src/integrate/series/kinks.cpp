@@ -38,8 +38,9 @@ bool may_turn(const Instruction& in) {
 template <Number N>
 class Search {
  public:
-  Search(const Machine<N>& machine, std::uint32_t end, int degree, const N& h)
-      : machine_(machine), end_(end), degree_(degree), h_(h), c_(static_cast<std::size_t>(degree) + 1) {}
+  Search(const Machine<N>& machine, std::uint32_t end, int degree, const N& h, bool expanded)
+      : machine_(machine), end_(end), degree_(degree), h_(h), expanded_(expanded),
+        c_(static_cast<std::size_t>(degree) + 1) {}
 
   const Kink<N>& run() {
     const Tape& tape = machine_.tape();
@@ -52,39 +53,65 @@ class Search {
     if (in.constant) return;
     if (turns_at_zero(in)) {
       const N* c = machine_.series(in.a);
-      if (!(c[0] > N(0)) && !(c[0] < N(0)))
-        kink_.at_start =
-            kink_.at_start || std::any_of(c + 1, c + degree_ + 1, [](const N& x) { return x > N(0) || x < N(0); });
-      else
-        leaves(c, c[0] > N(0));
+      if (c[0] > N(0) || c[0] < N(0))
+        leaves(c, c[0] > N(0), {in.a, N(0), false});
+      else if (std::any_of(c + 1, c + degree_ + 1, [](const N& x) { return x > N(0) || x < N(0); }))
+        at_start(in.a);
     } else if (in.op == Op::select) {
       if (tape.code[in.first].constant) return;
       const N* c = machine_.series(in.first);
-      leaves(c, !(c[0] < N(0)));
+      leaves(c, !(c[0] < N(0)), {in.first, N(0), c[0] < N(0)});
     } else if (in.op == Op::lookup) {
-      const N* c = machine_.series(in.a);
-      const auto [below, above] = machine_.knots_around(slot);
-      for (const N* knot : {below, above}) {
-        if (!knot) continue;
-        std::copy(c, c + degree_ + 1, c_.begin());
-        c_[0] -= *knot;
-        leaves(c_.data(), knot == below);
-      }
+      look_up(in, slot);
     } else if (in.op == Op::power && tape.rationals[in.index].has_even_denominator()) {
       touches_zero(machine_.series(in.a));
     }
   }
 
+  struct Decides {
+    std::uint32_t slot;
+    N passes;
+    bool enters;
+    const StepFunction* table = nullptr;
+  };
+
+  void look_up(const Instruction& in, std::uint32_t slot) {
+    const N* c = machine_.series(in.a);
+    const StepFunction& table = machine_.tape().step_functions[in.index];
+    const auto [below, above] = machine_.knots_around(slot);
+    for (const N* knot : {below, above}) {
+      if (!knot) continue;
+      std::copy(c, c + degree_ + 1, c_.begin());
+      c_[0] -= *knot;
+      if (knot == below && c_[0] == N(0) && expanded_ && !holds(table, *knot, machine_.series(slot)[0]))
+        at_start(in.a);
+      else
+        leaves(c_.data(), knot == below, {in.a, *knot, knot == above, &table});
+    }
+  }
+
+  // Whether the value is the one from the knot on: the wider numbers of the state may lie on the other side of it.
+  static bool holds(const StepFunction& table, const N& knot, const N& value) {
+    std::size_t k = 0;
+    while (k < table.knots.size() && !(knot < from_rational<N>(table.knots[k]))) ++k;
+    return value == from_rational<N>(table.values[k]);
+  }
+
   // Where the polynomial leaves the side it is on: p >= 0, or p < 0.
-  void leaves(const N* c, bool not_negative) {
+  void leaves(const N* c, bool not_negative, const Decides& by) {
     turned_.resize(static_cast<std::size_t>(degree_) + 1);
     for (int k = 0; k <= degree_; ++k) turned_[static_cast<std::size_t>(k)] = not_negative ? c[k] : N(-c[k]);
     const auto x = first_below<N>(turned_.data(), degree_, h_, N(0));
     if (!x) return;
     if (*x == N(0))
-      kink_.at_start = true;
+      at_start(by.slot);
     else
-      ahead(*x);
+      ahead(*x, by);
+  }
+
+  void at_start(std::uint32_t slot) {
+    kink_.at_start = true;
+    kink_.slots_at_start.push_back(slot);
   }
 
   // A root goes on as another one where its argument, falling, turns at zero.
@@ -94,18 +121,22 @@ class Search {
     for (int k = 1; k <= degree_; ++k) slope.push_back(c[1] > N(0) ? N(c[k] * N(k)) : N(-(c[k] * N(k))));
     const auto x = first_below<N>(slope.data(), degree_ - 1, h_, N(0));
     if (!x || *x == N(0)) return;
-    if (!(value_at(c, degree_, *x) > c[0] * N(kTouches))) ahead(*x);
+    if (!(value_at(c, degree_, *x) > c[0] * N(kTouches))) ahead(*x, std::nullopt);
   }
 
-  void ahead(const N& x) {
-    if (!kink_.ahead || abs(x) < abs(kink_.where)) kink_.where = x;
+  void ahead(const N& x, const std::optional<Decides>& by) {
+    if (kink_.ahead && !(abs(x) < abs(kink_.where))) return;
     kink_.ahead = true;
+    kink_.where = x;
+    kink_.slot = by ? std::optional(by->slot) : std::nullopt;
+    if (by) kink_.passes = by->passes, kink_.enters = by->enters, kink_.table = by->table;
   }
 
   const Machine<N>& machine_;
   std::uint32_t end_;
   int degree_;
   N h_;
+  bool expanded_;
   std::vector<N> c_, turned_;
   Kink<N> kink_;
 };
@@ -113,8 +144,8 @@ class Search {
 }  // namespace
 
 template <Number N>
-Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h) {
-  return Search<N>(machine, end, degree, h).run();
+Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h, bool expanded) {
+  return Search<N>(machine, end, degree, h, expanded).run();
 }
 
 std::vector<std::uint32_t> kink_arguments(const Tape& tape, std::uint32_t end) {
@@ -143,10 +174,10 @@ template bool stays_positive(const long double*, int, const long double&);
 template bool stays_positive(const Quad*, int, const Quad&);
 template bool stays_positive(const Multi*, int, const Multi&);
 template bool keeps_sign(const double*, int, const double&);
-template Kink<double> first_kink(const Machine<double>&, std::uint32_t, int, const double&);
-template Kink<long double> first_kink(const Machine<long double>&, std::uint32_t, int, const long double&);
-template Kink<Quad> first_kink(const Machine<Quad>&, std::uint32_t, int, const Quad&);
-template Kink<Multi> first_kink(const Machine<Multi>&, std::uint32_t, int, const Multi&);
+template Kink<double> first_kink(const Machine<double>&, std::uint32_t, int, const double&, bool);
+template Kink<long double> first_kink(const Machine<long double>&, std::uint32_t, int, const long double&, bool);
+template Kink<Quad> first_kink(const Machine<Quad>&, std::uint32_t, int, const Quad&, bool);
+template Kink<Multi> first_kink(const Machine<Multi>&, std::uint32_t, int, const Multi&, bool);
 template double kinks_log_reach(const std::vector<std::uint32_t>&, const Machine<double>&, const Machine<double>&, int,
                                 double);
 template double kinks_log_reach(const std::vector<std::uint32_t>&, const Machine<long double>&,

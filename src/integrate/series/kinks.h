@@ -10,14 +10,22 @@ template <Number N>
 struct Kink {
   bool at_start = false, ahead = false;
   N where{0};  // the first one ahead, from the point of the series
+  // The slot whose value decides there, and what it passes; none for a root that touches zero. `enters`: at that value the
+  // function holds that is entered.
+  std::optional<std::uint32_t> slot;
+  N passes{0};
+  const StepFunction* table = nullptr;  // of which that is a knot
+  bool enters = false;
+  std::vector<std::uint32_t> slots_at_start;  // those that decide at the start
 };
 
 // The slots whose values decide which functions hold below `end`.
 std::vector<std::uint32_t> kink_arguments(const Tape& tape, std::uint32_t end);
 
 // In (0, h], h of either sign, by the series of orders 0..degree, of the slots below `end`.
+// `expanded`: the machine itself has made the series; else it holds those of the slots that decide alone.
 template <Number N>
-Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h);
+Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h, bool expanded);
 
 // Whether a polynomial that is positive at 0 surely stays so over [0, h], and its root the same root: by the sizes of
 // its coefficients. Whether one that is of either sign surely keeps it.

@@ -34,7 +34,8 @@ int ConstraintReader::true_order(Expr& phi) const {
   }
 }
 
-void ConstraintReader::add_constraint(const std::string& name, Expr phi, const std::string& equation, Span place) {
+void ConstraintReader::add_constraint(const std::string& name, Expr phi, const std::string& equation, Span place,
+                                      std::optional<Span> named) {
   phi = with_feedback(model_, phi);
   const int order = true_order(phi);
   if (order < 0) {
@@ -48,7 +49,8 @@ void ConstraintReader::add_constraint(const std::string& name, Expr phi, const s
   if (model_.constraints.size() + model_.coordinates.size() >= kMostUnknowns)
     throw Failure(place,
                   "the constraints and coordinates are more than " + std::to_string(kMostUnknowns) + " together");
-  if (!names_.insert(name).second) throw Failure(place, "there are two constraints '" + name + "'");
+  if (!names_.insert(name).second)
+    throw Failure(named ? *named : place, "there are two constraints '" + name + "'", "give one of them another name");
   model_.constraints.push_back({name, phi, order, equation, place});
   model_.names.multipliers.push_back(name);
 }
@@ -98,9 +100,10 @@ void ConstraintReader::read(const Item& root) {
     Value left = evaluate(sides[0], scope_), right = evaluate(sides[1], scope_);
     const Item* along = c.find("along");
     const Span place = equation->formula.whole();
+    const std::optional<Span> of_name = named ? std::optional(named->span) : std::nullopt;
     if (std::holds_alternative<Expr>(left) && std::holds_alternative<Expr>(right)) {
       if (along) throw Failure(along->key_span, "'along' goes with an equation of vectors, this is one of numbers");
-      add_constraint(name, std::get<Expr>(left) - std::get<Expr>(right), text, place);
+      add_constraint(name, std::get<Expr>(left) - std::get<Expr>(right), text, place, of_name);
       settle();
       return;
     }
@@ -118,7 +121,7 @@ void ConstraintReader::read(const Item& root) {
     if (kept.empty()) throw Failure(place, "this equation always holds: it constrains nothing");
     if (!dropped.empty())
       model_.notes.push_back("constraint '" + name + "': " + dropped + " vanishes identically and is dropped");
-    for (const auto& [full, phi] : kept) add_constraint(full, phi, text, place);
+    for (const auto& [full, phi] : kept) add_constraint(full, phi, text, place, of_name);
     settle();
   });
 }

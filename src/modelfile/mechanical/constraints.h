@@ -27,7 +27,9 @@ class ConstraintReader {
 
  private:
   int true_order(Expr& phi) const;
-  void add_constraint(const std::string& name, Expr phi, const std::string& equation, Span place);
+  // `named`: where the name stands, if the file gives it.
+  void add_constraint(const std::string& name, Expr phi, const std::string& equation, Span place,
+                      std::optional<Span> named = std::nullopt);
   // Takes the constraints from this one on out of the model: they hold while the formula is positive.
   void switch_by(const Item& active, std::size_t first);
   Vector evaluate_vector_side(const Value& side, const Syntax& s) const;

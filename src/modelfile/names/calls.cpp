@@ -10,14 +10,23 @@ namespace anholon {
 // The limit of calls of given functions over a whole file; more would expand without end.
 static constexpr std::size_t kMostCalls = 100'000;
 
+std::string Scope::what_is(std::size_t body) const {
+  return (is_particle(body) ? "the particle '" : "the body '") + body_names_[body] + "'";
+}
+
+std::string Scope::orientation_hint(std::size_t body) const {
+  return is_particle(body) ? "a particle is a point, and what acts on it acts at its place: on = \"" +
+                                 body_names_[body] + "\"; a [[body]] has an orientation"
+                           : "give it orientation = \"…\", or angle = \"…\" in the plane";
+}
+
 // vel(B, P): the velocity of the material point of B that coincides with P.
 Vector Scope::material_velocity(std::size_t body, const Vector& place, Span use) {
   const Vector c = center(body, use);
   const Vector v = total_derivative(c);
   if (!has_orientation(body)) {
     if (is_zero(place - c)) return v;
-    throw Failure(use, "the body '" + body_names_[body] + "' has no orientation: it has no material point there",
-                  "give it orientation = \"…\", or angle = \"…\" in the plane");
+    throw Failure(use, what_is(body) + " has no orientation: it has no material point there", orientation_hint(body));
   }
   // One after the other: nodes are numbered in the order of their creation, so that all compilers number them alike.
   const Vector rate = orientation(body, use).rate;

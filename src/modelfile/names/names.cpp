@@ -56,8 +56,17 @@ std::size_t Scope::body(const std::string& name, Span span) const {
   if (const std::string members = members_known(name, body_names_); !members.empty())
     throw Failure(span, "there is no body or particle '" + name + "'" + members);
   const std::string near = did_you_mean(name, body_names_);
+  // The nearest name first.
+  constexpr std::size_t kMostListed = 8;
+  std::string others;
+  for (std::size_t i = 0, listed = 0; i < body_names_.size() && listed <= kMostListed; ++i) {
+    if (body_names_[i] == near) continue;
+    others += listed == kMostListed ? ", …" : (others.empty() && near.empty() ? "" : ", ") + body_names_[i];
+    ++listed;
+  }
   throw Failure(span,
-                "there is no body or particle '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+                "there is no body or particle '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),
+                others.empty() ? "" : "the model has the bodies and particles " + near + others);
 }
 
 const std::size_t* Scope::find_body(const std::string& name) const {
@@ -458,9 +467,7 @@ void Scope::settle_orientation(std::size_t body, Span use) {
   BodyParts& p = parts_[body];
   if (p.orientation_value) return;
   if (p.orientation_failed) throw silent_failure();
-  if (!has_orientation(body))
-    throw Failure(use, "the body '" + body_names_[body] + "' has no orientation",
-                  "give it orientation = \"…\", or angle = \"…\" in the plane");
+  if (!has_orientation(body)) throw Failure(use, what_is(body) + " has no orientation", orientation_hint(body));
   if (p.orientation_open)
     throw Failure(use, "the orientation of '" + body_names_[body] + "' is defined through itself");
   if (depth_ > kDeepest)

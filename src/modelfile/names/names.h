@@ -59,6 +59,9 @@ class Scope final : public Names {
   BodyParts& parts(std::size_t body) { return parts_[body]; }
   Vector center(std::size_t body, Span use);
   bool is_particle(std::size_t body) const { return parts_[body].particle; }
+  // For messages: "the particle 'bob'", and what to do where it has no orientation.
+  std::string what_is(std::size_t body) const;
+  std::string orientation_hint(std::size_t body) const;
   bool has_orientation(std::size_t body) const { return parts_[body].orientation || parts_[body].angle; }
   const Rotation& orientation(std::size_t body, Span use);
   std::size_t body(const std::string& name, Span span) const;  // throws if there is none

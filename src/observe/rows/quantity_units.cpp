@@ -12,4 +12,9 @@ std::map<std::string, std::string> quantity_units(const Model& model, const std:
   return units;
 }
 
+void add_units(const Model& model, const std::vector<Conserved>& conserved, std::map<std::string, std::string>& units) {
+  for (const Conserved& c : conserved)
+    if (const std::string unit = unit_of(model, c); !unit.empty()) units["conserved " + c.name] = unit;
+}
+
 }  // namespace anholon

@@ -10,6 +10,9 @@ static constexpr double kNotRoundoff = 0x1p-26;
 // Differences up to this many round-offs of 1, or of a number, are noise.
 static constexpr double kNoiseOfDoubles = 64 * 0x1p-53;
 
+// Differences up to this many times what one round-off of the state makes are those of a state in doubles.
+static constexpr double kRoundoffsOfState = 64;
+
 static ColumnKind group(ColumnKind kind) {
   switch (kind) {
   case ColumnKind::acceleration:
@@ -30,25 +33,40 @@ static ColumnKind group(ColumnKind kind) {
   return kind;
 }
 
-void RowCheck::learn(const std::vector<long double>& solved) {
-  for (std::size_t j = 0; j < columns_.size(); ++j) {
-    double& greatest = greatest_[group(columns_[j].kind)];
-    greatest = std::max(greatest, std::abs(static_cast<double>(solved[j])));
-  }
-}
-
-void RowCheck::compare(double t, std::size_t column, double written, long double solved, double cancellation,
-                       double own) {
+// Of the measure of the column; 0 if it is noise of doubles.
+double RowCheck::difference(const RowTwice& row, std::size_t column) const {
+  const double written = row.written[column];
+  const long double solved = row.solved[column];
   // A monitor may have no value.
-  if (!std::isfinite(written) && !std::isfinite(solved)) return;
+  if (!std::isfinite(written) && !std::isfinite(solved)) return 0;
   const ColumnKind kind = group(columns_[column].kind);
   const double missed = static_cast<double>(std::abs(written - solved));
-  double scale = std::max(greatest_[kind], own);
-  if (kind == ColumnKind::acceleration) scale *= std::max(1.0, cancellation);
-  if (missed <= kNoiseOfDoubles * std::max(1.0, scale)) return;
-  const double difference = scale > 0 ? missed / scale : std::numeric_limits<double>::infinity();
-  // So that a NaN is a difference, too.
-  if (!(difference <= worst_.difference)) worst_ = {difference, t, column};
+  const auto greatest = greatest_.find(kind);
+  double scale = greatest == greatest_.end() ? 0 : greatest->second;
+  if (columns_[column].kind == ColumnKind::monitor) scale = std::max(scale, row.made_of[columns_[column].index]);
+  if (kind == ColumnKind::acceleration) scale *= std::max(1.0, row.cancellation);
+  if (missed <= kNoiseOfDoubles * std::max(1.0, scale)) return 0;
+  return scale > 0 ? missed / scale : std::numeric_limits<double>::infinity();
+}
+
+bool RowCheck::doubts(const RowTwice& row) {
+  for (std::size_t j = 0; j < columns_.size(); ++j) {
+    double& greatest = greatest_[group(columns_[j].kind)];
+    greatest = std::max(greatest, std::abs(static_cast<double>(row.solved[j])));
+  }
+  for (std::size_t j = 0; j < columns_.size(); ++j)
+    // So that a NaN is a difference, too.
+    if (!(difference(row, j) <= kNotRoundoff)) return true;
+  return false;
+}
+
+void RowCheck::count(const RowTwice& row, const std::vector<double>& of_state) {
+  for (std::size_t j = 0; j < columns_.size(); ++j) {
+    const double missed = static_cast<double>(std::abs(row.written[j] - row.solved[j]));
+    if (!of_state.empty() && missed <= kRoundoffsOfState * of_state[j]) continue;
+    const double found = difference(row, j);
+    if (!(found <= worst_.difference)) worst_ = {found, row.t, j};
+  }
 }
 
 std::optional<RowDifference> RowCheck::found() const {

@@ -12,6 +12,13 @@ void WaitingBlock::add(const Motion<double>& motion, long double t, const std::s
   ++count_;
 }
 
+void WaitingBlock::add(const RowPlace& place) {
+  if (count_ == 0) since_ = std::chrono::steady_clock::now();
+  Waiting& row = rows_[count_++];
+  row = {};
+  row.place = place;
+}
+
 std::unique_ptr<WaitingRows> WaitingRows::make(Workspace& s, const std::vector<Conserved>& conserved, int stages,
                                                const std::vector<long double>& parameters, const RowPlace& start,
                                                double end, std::size_t rows) {

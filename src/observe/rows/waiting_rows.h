@@ -25,6 +25,8 @@ class WaitingBlock {
 
   // Adds a time of the last step.
   void add(const Motion<double>& motion, long double t, const std::string& label);
+  // Adds a place.
+  void add(const RowPlace& place);
   bool full() const { return count_ == rows_.size(); }
   std::size_t size() const { return count_; }
   Waiting& operator[](std::size_t i) { return rows_[i]; }

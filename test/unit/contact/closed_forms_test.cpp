@@ -1,4 +1,5 @@
 // Motions with contacts that have closed forms. Each test has a mutant, a model of other constants, that does not fit.
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -407,6 +408,36 @@ conditions = ["O.z = R"]
   };
   EXPECT_GT(turn("0.03"), 2.9);
   EXPECT_LT(turn("0"), 2.9);  // the mutant
+}
+
+// Where a slip with two components ends, round-off tells its direction. The rows up to there are continuous, and none is
+// said to be wrong.
+TEST(ClosedForms, RowsUpToTheEndOfASlip) {
+  const std::string hoop = R"toml(
+coordinates = ["x", "y", "z", "psi", "theta", "phi"]
+gravity.field = "-9.81*ez"
+frame.lean = "rotz(psi)*rotx(theta)"
+body = [{name = "hoop", mass = 0.3, shape = "ring(0.2)", center = "x*ex + y*ey + z*ez", orientation = "lean*rotz(phi)"}]
+contact = [{name = "floor", body = "hoop", friction = 0.25}]
+[initial]
+z = "0.2*sin(1.3)"
+theta = 1.3
+"theta'" = 0
+)toml";
+  for (const char* velocities : {"\"x'\" = 0.423\n\"y'\" = -0.0906\n\"psi'\" = -1.42\n\"phi'\" = -1.57\n",
+                                 "\"x'\" = 0.856\n\"y'\" = 0.866\n\"psi'\" = -2.01\n\"phi'\" = -13.9\n"}) {
+    const auto m = contact_motion(hoop + velocities, Rational(7, 10));
+    EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    for (const Warning& w : m.report.warnings) EXPECT_EQ(w.message.find("rows differ"), std::string::npos) << w.message;
+    const std::vector<double> ends = times(m, "floor.sticks");
+    ASSERT_FALSE(ends.empty());
+    std::vector<std::array<double, 2>> seen;  // the time and the acceleration, while it slips
+    for (std::size_t k = 0; k < m.rows.rows().size() && m.number(k, "t") <= ends[0]; ++k)
+      if (m.number(k, "floor.mode") == 1) seen.push_back({m.number(k, "t"), m.number(k, "x''")});
+    ASSERT_GT(seen.size(), 3U);
+    const auto step = [&](std::size_t k) { return std::abs(seen[k][1] - seen[k - 1][1]); };
+    EXPECT_LT(step(seen.size() - 1), 3 * step(seen.size() - 2));
+  }
 }
 
 }  // namespace closed_forms_test

@@ -97,28 +97,41 @@ TEST(RowCheck, FindsEveryWrongNumber) {
   const auto columns = columns_after_time(*r.s, 2);
   std::vector<double> numbers(columns.size());
   for (std::size_t j = 0; j < numbers.size(); ++j) numbers[j] = 1 + 0.1 * static_cast<double>(j);
-  const std::vector<long double> solved(numbers.begin(), numbers.end());
-  const auto none = [](std::size_t) { return 0.0; };
+  RowTwice row{0.5, numbers, {numbers.begin(), numbers.end()}, 1, std::vector<double>(columns.size(), 0.0)};
   for (std::size_t j = 0; j < numbers.size(); ++j)
     for (const double change : {1e-15, 1e-6}) {
       RowCheck check(columns);
-      std::vector<double> written = numbers;
-      written[j] += change * 4;
-      check.see(0.5, written, solved, 1, none);
+      row.written = numbers;
+      row.written[j] += change * 4;
+      ASSERT_EQ(check.doubts(row), change > 1e-9);
+      check.count(row, {});
       const auto found = check.found();
       ASSERT_EQ(found.has_value(), change > 1e-9);
       if (found) {
         EXPECT_EQ(found->column, columns[j].name);
       }
+      // Of what the round-off of the state makes, it is one that may be.
+      RowCheck uncertain(columns);
+      std::vector<double> of_state(columns.size(), 0.0);
+      of_state[j] = 1e-7;
+      uncertain.doubts(row);
+      uncertain.count(row, of_state);
+      EXPECT_FALSE(uncertain.found());
+      of_state[j] = 1e-9;
+      uncertain.count(row, of_state);
+      EXPECT_EQ(uncertain.found().has_value(), change > 1e-9);
     }
   // What the reference itself loses by cancellation is no difference.
   RowCheck check(columns);
-  std::vector<double> written = numbers;
-  written.back() += 1e-6;
-  check.see(0.5, written, solved, 1e4, none);
+  row.written = numbers;
+  row.written.back() += 1e-6;
+  row.cancellation = 1e4;
+  EXPECT_FALSE(check.doubts(row));
+  check.count(row, {});
   EXPECT_FALSE(check.found());
-  written.back() = std::numeric_limits<double>::quiet_NaN();
-  check.see(0.5, written, solved, 1e4, none);
+  row.written.back() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(check.doubts(row));
+  check.count(row, {});
   EXPECT_TRUE(check.found());
 }
 
