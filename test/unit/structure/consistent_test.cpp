@@ -185,6 +185,18 @@ void same_with_memory(const MemoryCase& c) {
   EXPECT_TRUE(differs) << "the mutant: a memory for other parameters";
 }
 
+// All terms of the constraint are as small as the round-off of y', which is a double.
+TEST(ConsistentState, RoundOffOfDoublesIsNoClash) {
+  const auto found = [](const std::string& y) {
+    InitialState<long double> s;
+    return solve<long double>(
+        text(constraint("x*x' + y*y' = 0"), "x = 0.6828\ny = " + y + "\n\"x'\" = 2.4e-17\n\"y'\" = 0.2764\n"), s);
+  };
+  EXPECT_TRUE(found("-6.7e-17").ok());
+  // The mutant: a thousand round-offs.
+  EXPECT_EQ(found("-6.7e-14").kind, OutcomeKind::inconsistent);
+}
+
 TEST(ConsistentState, AMemoryLeavesTheBits) {
   const auto x = [](int number, int by) { return StateOverride{0, 0, Rational(number, by)}; };
   const auto rate = [](std::size_t of, int number, int by) { return StateOverride{1, of, Rational(number, by)}; };
