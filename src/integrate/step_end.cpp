@@ -216,7 +216,7 @@ Wider<N> StepEnd<N>::beyond(PresentStep<N>& step, const EventWatch<N>& events, c
   if (!exact || abs(W(*exact - t - where)) > past) return usual;
   if (!events.empty() && events.may_pass_near(convert<N>(t), convert<N>(where), convert<N>(past))) return usual;
   const W to = *exact - t;
-  if (!kink.enters || !sharp(*program_, *kink.slot) || !(abs(to) > roundoff))
+  if (!kink.enters || !has_exact_sign(*program_, *kink.slot) || !(abs(to) > roundoff))
     return roundoff > W(0) ? W(to + least) : usual;
   // At the time that is written, or at the first one that a step can end at behind it.
   const bool short_of = forward ? convert<W>(convert<N>(*exact)) < *exact : convert<W>(convert<N>(*exact)) > *exact;

@@ -15,6 +15,7 @@ namespace anholon::plot {
 
 #ifndef ANHOLON_CAIRO
 
+const char* const kCairoRemedy = "build it where libcairo2-dev is installed";
 const std::string& no_cairo() {
   static const std::string why = "this build of anholon draws no PDF and PNG";
   return why;
@@ -24,6 +25,7 @@ std::string draw_cairo(const Drawing&, const std::string&, CairoFormat, const st
 
 #else
 
+const char* const kCairoRemedy = "install cairo (on Debian libcairo2)";
 const std::string& no_cairo() { return cairo::load_cairo(); }
 
 namespace {

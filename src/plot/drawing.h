@@ -51,8 +51,9 @@ std::string draw_svg(const Drawing& drawing, const std::string& title);
 std::string draw_tex(const Figure& figure);
 
 enum class CairoFormat { pdf, png };
-// Why this program cannot draw them here; empty if it can.
+// Why this program cannot draw them here; empty if it can. What helps then.
 const std::string& no_cairo();
+extern const char* const kCairoRemedy;
 // Returns an empty string, or the reason why the file could not be written.
 std::string draw_cairo(const Figure& figure, CairoFormat format, const std::string& path);
 std::string draw_cairo(const Drawing& drawing, const std::string& title, CairoFormat format, const std::string& path);

@@ -191,8 +191,7 @@ std::optional<RunFile> drawn_sweep(const PlotCommand& o, Target t, FigureOptions
 int plot(const PlotCommand& o) {
   const Target t = target(o.output);
   if ((t == Target::pdf || t == Target::png) && !no_cairo().empty())
-    throw UsageError{"error: " + no_cairo() +
-                     "\nhint: -o figure.svg or -o figure.tex, or install cairo (on Debian libcairo2)\n"};
+    throw UsageError{"error: " + no_cairo() + "\nhint: -o figure.svg or -o figure.tex, or " + kCairoRemedy + "\n"};
   if (o.each && o.together) throw UsageError{"error: --together and --each exclude each other\n"};
   FigureOptions options;
   for (const std::string& name : split(o.columns)) options.names.push_back(name);

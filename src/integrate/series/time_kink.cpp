@@ -89,7 +89,7 @@ std::optional<N> passes_at(const Program& program, const std::vector<N>& paramet
   return is_finite(t) ? std::optional<N>(t) : std::nullopt;
 }
 
-bool sharp(const Program& program, std::uint32_t slot) {
+bool has_exact_sign(const Program& program, std::uint32_t slot) {
   const Tape& tape = program.tape;
   const auto is_time = [&](std::uint32_t s) {
     return tape.code[s].op == Op::input && program.inputs[tape.code[s].index].kind == ProgramInput::Kind::time;

@@ -11,6 +11,6 @@ std::optional<N> passes_at(const Program& program, const std::vector<N>& paramet
 
 // Whether the sign of the distance of such a slot from its value is right in any number type: the slot is the time, or
 // the time and one constant.
-bool sharp(const Program& program, std::uint32_t slot);
+bool has_exact_sign(const Program& program, std::uint32_t slot);
 
 }  // namespace anholon
