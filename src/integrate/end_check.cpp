@@ -9,6 +9,8 @@ namespace {
 // Steps end with up to so many times the tolerance, or so many round-offs (the shipped models: up to 10, mostly 0.5); a
 // defect that is so many times what there is near the start of the step is none of round-off.
 constexpr double kTolerances = 100, kRoundoffs = 4096, kAboveNoise = 64;
+// Of digits that are lost at its start, too, a step may lose so many; with more lost the motion is another one.
+constexpr double kMostLost = 0x1p-30;
 // A step that would have to be shorter than 2^-60 of what its series allow is not helped by shortening.
 constexpr int kMostShortened = 60;
 
@@ -25,7 +27,7 @@ void EndCheck<N>::begin(const N& length, const std::vector<N>& on_the_way) {
   on_the_way_ = on_the_way;
   index_ = 0;
   near_ = -1;
-  settled_ = false;
+  settled_ = loses_digits_ = false;
 }
 
 template <Number N>
@@ -43,13 +45,25 @@ typename EndCheck<N>::Next EndCheck<N>::seen(const N& rate) {
     if (++near_ < static_cast<int>(std::size(kNear))) return Next::look;
     near_ = -1;
     if (noise_ < N(0)) noise_ = N(0);
-    if (is_finite(rate_) && rate_ <= noise_ * N(kAboveNoise)) {
+    if (is_noise()) {
       // The last look is to be at the end.
       if (index_ >= on_the_way_.size()) return settled_ = true, Next::look;
       return go_on();
     }
   }
-  return (is_finite(rate_) && rate_ <= noise_ * N(kAboveNoise)) ? go_on() : refuse();
+  return is_noise() ? go_on() : refuse();
+}
+
+template <Number N>
+bool EndCheck<N>::is_noise() {
+  if (!is_finite(rate_) || !(rate_ <= noise_ * N(kAboveNoise))) return false;
+  note_loss();
+  return true;
+}
+
+template <Number N>
+void EndCheck<N>::note_loss() {
+  if (!(rate_ * abs(length_) <= N(kMostLost))) loses_digits_ = true;
 }
 
 template <Number N>
@@ -62,6 +76,7 @@ typename EndCheck<N>::Next EndCheck<N>::go_on() {
 template <Number N>
 typename EndCheck<N>::Next EndCheck<N>::refuse() {
   if (++shortened_ <= kMostShortened) return Next::shorten;
+  note_loss();
   const bool there = index_ >= on_the_way_.size() && near_ < 0;
   index_ = on_the_way_.size();
   near_ = -1;

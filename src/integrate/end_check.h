@@ -19,7 +19,10 @@ class EndCheck {
  public:
   explicit EndCheck(double log_tolerance);
   // Whether the first look at the end of a step over h, which finds that rate, is enough: nothing is on the way.
-  bool passes(const N& rate, const N& h) const { return rate * abs(h) <= allowed_; }
+  bool passes_at_once(const N& rate, const N& h) const { return passes(rate, h) && !(rate > N(kMostChange)); }
+  // Whether derivatives that change at such a rate may have jumped: series that reach so far do not lead there, however
+  // short the step is.
+  bool may_jump(const N& rate, const N& reach) const { return !(passes(rate, reach) && rate <= N(kMostChange)); }
   // A try of another length, with looks at these points on the way.
   void begin(const N& length, const std::vector<N>& on_the_way);
   // Where the next look is to be; the last one is at the end.
@@ -33,19 +36,26 @@ class EndCheck {
   Next seen(const N& rate);
   // The length is refused for another reason.
   Next refuse();
+  // Whether looks were passed where solutions for the leading derivatives have no digits that lead the motion further.
+  bool loses_digits() const { return loses_digits_; }
   // The next step is another one.
   void forget();
 
  private:
+  // A step of good series changes its leading derivatives by less, in relation to the size of the derivatives below.
+  static constexpr double kMostChange = 0x1p-10;
+  bool passes(const N& rate, const N& h) const { return rate * abs(h) <= allowed_; }
   // Parts of a step where nothing but round-off is left.
   static constexpr double kNear[] = {0x1p-12, 0x1p-24};
   Next go_on();
+  bool is_noise();
+  void note_loss();
 
   N allowed_, length_{0}, rate_{0}, noise_{-1};
   std::vector<N> on_the_way_;
   std::size_t index_ = 0;
   int near_ = -1, shortened_ = 0;
-  bool settled_ = false;
+  bool settled_ = false, loses_digits_ = false;
 };
 
 extern template class EndCheck<double>;

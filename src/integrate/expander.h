@@ -111,6 +111,7 @@ class GuardedExpander {
   // The reference is to make the expansion instead of the kernel, which has made it.
   void refuse_kernel(MotionTrack<double>& track) {
     kernel_->take_back_as_begun(track);
+    if (kernel_->mapped()) track.now.leading = kernel_->leading();
     maker_ = Maker::reference;
     --by_kernel_;
   }

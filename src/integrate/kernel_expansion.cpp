@@ -156,6 +156,7 @@ void KernelExpansion::take_back_as_begun(MotionTrack<double>& track) {
   track.now.state = track.begun().at.motion.state;
   track.now.leading = track.begun().at.motion.leading;
   track.now.own.clear();
+  track.begun().by_kernel = false;
 }
 
 std::vector<KernelExpansion::W> KernelExpansion::base(const W& begun) const {
@@ -236,6 +237,20 @@ void KernelExpansion::own_state_at(const W& h, std::vector<W>& own, std::vector<
 void KernelExpansion::send(double h, double t) {
   kernel_->set_step(lane_, h);
   kernel_->set_time(lane_, t);
+}
+
+VelocityJump KernelExpansion::velocity_jump(double t) const {
+  std::vector<W> own, foretold, state;
+  kernel_->fetch(lane_, Kernel::Moment::now, own, foretold);
+  kernel_->reader(lane_).motion(t, own, state);
+  VelocityJump jump;
+  for (const W& x : own) jump.size = std::max(jump.size, static_cast<double>(abs(x)));
+  for (std::size_t a = 0; a < kernel_->plan().map()->coordinates(); ++a) {
+    const W& velocity = state[2 * a + 1];
+    if (const double change(abs(W(velocity - foretold[a]))); !(change <= jump.most)) jump.most = change;
+    jump.speed = std::max(jump.speed, static_cast<double>(abs(foretold[a])));
+  }
+  return jump;
 }
 
 bool KernelExpansion::follow(MotionTrack<double>& track, const W& h) {

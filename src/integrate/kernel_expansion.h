@@ -12,6 +12,12 @@
 
 namespace anholon {
 
+// Velocities by the unknowns of a kernel against those that its series foretell: the largest difference, the largest
+// velocity, and the size of the kernel's state, at least 1. Infinite or no number where the unknowns give none.
+struct VelocityJump {
+  double most = 0, speed = 0, size = 1;
+};
+
 class KernelExpansion {
  public:
   using W = Wider<double>;
@@ -88,6 +94,8 @@ class KernelExpansion {
   void send(double h, double t);
   // There: what Newton's first step changes of the leading derivatives foretold, as a rate.
   double defect() const { return kernel_->defect(lane_); }
+  // … and how the velocities differ, of a kernel with unknowns of its own; `t`: the time there.
+  VelocityJump velocity_jump(double t) const;
   void show_advanced(bool advanced) { kernel_->show_advanced(advanced); }
   // Goes where it was sent, and begins the next expansion there. The kernel has no other lanes.
   void advance() {

@@ -272,12 +272,25 @@ LookAtEnd StepEnd<N>::send(KernelExpansion& kernel, const W& t, const W& h) {
   return LookAtEnd::elsewhere;
 }
 
+// Whether the kernel, where it was sent, gives other velocities than its series foretell, which a motion never does: at
+// a pole of a constraint, as that of y' = x' tan(u) where cos(u) changes its sign, its quasi-velocities stand for the
+// opposite velocities beyond it. A short step does not help.
+template <Number N>
+bool StepEnd<N>::velocities_jump(const KernelExpansion& kernel, const W& t, const N& horizon) const {
+  if (!kernel.mapped() || !check_.may_jump(N(kernel.defect()), horizon)) return false;
+  constexpr double kNone = 0x1p-10;
+  const VelocityJump jump = kernel.velocity_jump(to_double(W(t + sent_)));
+  return !(jump.most <= kNone * jump.speed) && check_.may_jump(N(jump.most / jump.size), horizon);
+}
+
 template <Number N>
 LookAtEnd StepEnd<N>::look(KernelExpansion& kernel, const W& t, const N& horizon) {
+  if (velocities_jump(kernel, t, horizon)) return LookAtEnd::by_reference;
   const W h = aimed_ - t;
   const N length = convert<N>(looked_);
   switch (looked_ == W(0) ? EndCheck<N>::Next::good : check_.seen(N(kernel.defect()))) {
   case EndCheck<N>::Next::good:
+    if (check_.loses_digits()) return LookAtEnd::by_reference;
     if (sent_ == h) return LookAtEnd::good;
     looked_ = W(0);
     return send(kernel, t, h);

@@ -10,8 +10,9 @@
 namespace anholon {
 
 // What is said of the end of a step after a look at the equations there: it is good, the next look is elsewhere, the
-// step has to be made shorter.
-enum class LookAtEnd : std::uint8_t { good, elsewhere, shorten };
+// step has to be made shorter, or by the reference: the velocities that the kernel's unknowns give there are others, or
+// its solutions have lost their digits.
+enum class LookAtEnd : std::uint8_t { good, elsewhere, shorten, by_reference };
 
 template <Number N>
 class StepEnd {
@@ -39,7 +40,7 @@ class StepEnd {
   bool free_of_kinks() const { return short_kinks_ == 0; }
   // Whether the next step may be made without this class: nothing is left to be looked at of the one before.
   bool idle() const { return short_kinks_ == 0 && limit_ == W(0); }
-  bool passes(const N& rate, const N& h) const { return check_.passes(rate, h); }
+  bool passes_at_once(const N& rate, const N& h) const { return check_.passes_at_once(rate, h); }
   // The step has no kink; its end is looked at. Or it begins at one.
   void set_free(const W& h);
   void set_one_sided();
@@ -71,6 +72,7 @@ class StepEnd {
   N defect(PresentStep<N>& step, const W& h);
   void find_hidden(PresentStep<N>& step, const W& h);
   LookAtEnd send(KernelExpansion& kernel, const W& t, const W& h);
+  bool velocities_jump(const KernelExpansion& kernel, const W& t, const N& horizon) const;
 
   const Program* program_;
   double log_tolerance_;

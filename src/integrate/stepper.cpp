@@ -92,7 +92,7 @@ EndOfStep Stepper<N>::look_at_end(const W& end) {
   KernelExpansion* kernel = expander_.kernel();
   if (!kernel) return EndOfStep::good;
   if (ordinary_) {
-    if (end_.passes(N(kernel->defect()), convert<N>(W(ordinary_end_ - time()))) && !kernel->blows_up())
+    if (end_.passes_at_once(N(kernel->defect()), convert<N>(W(ordinary_end_ - time()))) && !kernel->blows_up())
       return EndOfStep::good;
     ordinary_ = false;
     aim_at(ordinary_end_);
@@ -103,17 +103,45 @@ EndOfStep Stepper<N>::look_at_end(const W& end) {
   case LookAtEnd::elsewhere:
     return EndOfStep::elsewhere;
   case LookAtEnd::shorten:
+    return aim_again(*kernel, end) ? EndOfStep::elsewhere : EndOfStep::failed;
+  case LookAtEnd::by_reference:
     break;
   }
+  return aim_by_reference(*kernel, end) ? EndOfStep::good : EndOfStep::failed;
+}
+
+// What was chosen for the step that is aimed is taken back.
+template <Number N>
+void Stepper<N>::drop_aim() {
   guard_.set_singular_ahead(false);
   end_.again();
   events_.take_back();
   phase_ = Phase::expanded;
-  kernel->show_advanced(false);
+}
+
+template <Number N>
+bool Stepper<N>::aim_again(KernelExpansion& kernel, const W& end) {
+  drop_aim();
+  kernel.show_advanced(false);
   const bool good = aim(end);
   if (!good) leave_kernel();
-  kernel->show_advanced(true);
-  return good ? EndOfStep::elsewhere : EndOfStep::failed;
+  kernel.show_advanced(true);
+  return good;
+}
+
+// The reference makes the expansion of the step that is aimed, in place of the kernel.
+template <Number N>
+bool Stepper<N>::aim_by_reference(KernelExpansion& kernel, const W& end) {
+  drop_aim();
+  kernel.show_advanced(false);
+  expander_.refuse_kernel(track_);
+  kernel.show_advanced(true);
+  ++expansions_;
+  if (Outcome o = expand_by_reference(track_.now.leading); !o.ok()) {
+    phase_ = Phase::placed;
+    return fail(std::move(o));
+  }
+  return aim(end);
 }
 
 template <Number N>

@@ -187,6 +187,9 @@ class Stepper {
   bool aim_ordinarily(const W& end);
   bool aim_freely(const W& end);
   void aim_at(const W& to);
+  void drop_aim();
+  bool aim_again(KernelExpansion& kernel, const W& end);
+  bool aim_by_reference(KernelExpansion& kernel, const W& end);
   bool aim_with_care(const W& end);
   bool aim_one_sided(const W& left);
   bool shorten_at_singular_point(W& h, const W& floor);

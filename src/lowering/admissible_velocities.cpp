@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "system/cleared.h"
+
 namespace anholon {
 
 namespace {
@@ -17,49 +19,66 @@ bool AdmissibleVelocities::solve(const Column& constraints) {
   return true;
 }
 
-bool AdmissibleVelocities::solve(Expr constraint) {
-  const Expr by_names = tidy_(solved(constraint)), phi = written_out(by_names);
+// Returns nullopt if the constraint is not linear in what is free.
+std::optional<AdmissibleVelocities::Row> AdmissibleVelocities::row(Expr constraint) {
+  Row r{constraint, tidy_(solved(constraint)), {}, {}, g_.zero()};
+  const Expr phi = written_out(r.by_names);
   const Column by = gradient(phi, free);
-  if (std::any_of(by.begin(), by.end(), [&](Expr e) { return contains(e, free); })) {
+  if (std::any_of(by.begin(), by.end(), [&](Expr e) { return contains(e, free); })) return std::nullopt;
+  auto [a, rest] = linear(phi, free, tidy_);
+  r.a = std::move(a), r.rest = rest;
+  for (std::size_t i = 0; i < free.size(); ++i)
+    if (!is_zero(r.a[i])) r.in.push_back(i), r.largest = std::max(r.largest, std::abs(at_(r.a[i])));
+  for (const std::size_t i : r.in)
+    if (std::abs(at_(r.a[i])) >= kPivot * r.largest)
+      if (const std::size_t c = varying_nodes(r.a[i]); c < r.cost) r.best = i, r.cost = c;
+  return r;
+}
+
+bool AdmissibleVelocities::solve(Expr constraint) {
+  if (const Expr whole = cleared(constraint); whole != constraint)
+    if (const auto r = row(whole); r && r->largest > 0 && (r->cost == 0 || r->has_direction())) {
+      clears_poles = true;
+      solve(*r);
+      return true;
+    }
+  const auto r = row(constraint);
+  if (!r) {
     why = "is not linear in the velocities";
     return false;
   }
-  const auto [a, rest] = linear(phi, free, tidy_);
-  double largest = 0;
-  std::vector<std::size_t> in;
-  for (std::size_t i = 0; i < free.size(); ++i)
-    if (!is_zero(a[i])) in.push_back(i), largest = std::max(largest, std::abs(at_(a[i])));
-  if (!(largest > 0)) {
+  if (!(r->largest > 0)) {
     why = "determines no further velocity at the start";
     return false;
   }
-  std::size_t best = free.size(), cost = SIZE_MAX;
-  for (const std::size_t i : in)
-    if (std::abs(at_(a[i])) >= kPivot * largest)
-      if (const std::size_t c = varying_nodes(a[i]); c < cost) best = i, cost = c;
-  if (cost > 0 && in.size() == 2 && is_zero(rest)) {
+  solve(*r);
+  return true;
+}
+
+void AdmissibleVelocities::solve(const Row& r) {
+  const Column& a = r.a;
+  if (r.cost > 0 && r.has_direction()) {
     // a v + b w = 0 without division: v = b u, w = -a u.
-    const std::size_t v = in[0], w = in[1];
+    const std::size_t v = r.in[0], w = r.in[1];
     const Expr u = new_name(), u_by_velocity = (a[w] * free_by_velocity_[v] - a[v] * free_by_velocity_[w]) /
                                                tidy_(pow(a[v], 2) + pow(a[w], 2));
     remove(w, -a[v] * u);
     remove(v, a[w] * u);
     free.push_back(u);
     free_by_velocity_.push_back(u_by_velocity);
-    return true;
+    return;
   }
-  pivots.push_back(a[best]);
-  if (cost == 0)
-    if (const auto d = direction(constraint); d && partial(by_names, free[best]) == a[best]) {
-      define(best, tidy_(-put(by_names, {free[best]}, {g_.zero()}) / a[best]));
+  pivots.push_back(a[r.best]);
+  if (r.cost == 0)
+    if (const auto d = direction(r.constraint); d && partial(r.by_names, free[r.best]) == a[r.best]) {
+      define(r.best, tidy_(-put(r.by_names, {free[r.best]}, {g_.zero()}) / a[r.best]));
       name_speed(*d);
-      return true;
+      return;
     }
-  std::vector<Expr> terms{rest};
-  for (const std::size_t i : in)
-    if (i != best) terms.push_back(a[i] * free[i]);
-  remove(best, tidy_(-sum(terms) / a[best]));
-  return true;
+  std::vector<Expr> terms{r.rest};
+  for (const std::size_t i : r.in)
+    if (i != r.best) terms.push_back(a[i] * free[i]);
+  remove(r.best, tidy_(-sum(terms) / a[r.best]));
 }
 
 // Where X and Y stand as they are.

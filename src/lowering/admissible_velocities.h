@@ -23,6 +23,7 @@ class AdmissibleVelocities {
   Column free;                // those left: of coordinates, or names for others
   Column named, definitions;  // names for velocities that are used as they are, each given in `free` and those before
   Column pivots;              // what was divided by
+  bool clears_poles = false;  // a constraint has poles that the velocities do not have
 
   // What is given in q', in `free` and `named`; and what is given in `free`, in q'.
   Expr solved(Expr e) const { return eliminated(by_points(e)); }
@@ -33,7 +34,20 @@ class AdmissibleVelocities {
   struct Direction {
     Expr a, X, b, Y;
   };
+  // A constraint in what is free: sum_i a_i v_i + rest = 0.
+  struct Row {
+    Expr constraint, by_names;
+    Column a;
+    std::vector<std::size_t> in;  // where a is not zero
+    Expr rest;
+    double largest = 0;                     // of the a at the start
+    std::size_t best = 0, cost = SIZE_MAX;  // the pivot, and how many of its nodes vary
+
+    bool has_direction() const { return in.size() == 2 && is_zero(rest); }
+  };
+  std::optional<Row> row(Expr constraint);
   bool solve(Expr constraint);
+  void solve(const Row& r);
   std::optional<Direction> direction(Expr constraint) const;
   void name_speed(const Direction& d);
   Expr by_points(Expr e) const;

@@ -121,6 +121,7 @@ class Writer {
     QuasiVelocities r;
     r.count = l;
     r.inertia = energy_.inertia;
+    r.clears_poles = v_.clears_poles;
     Column ps;
     for (std::size_t i = 0; i < l; ++i)
       ps.push_back(p(i)), c_.model->names.states.push_back("p" + std::to_string(i + 1));

@@ -20,12 +20,13 @@ namespace anholon {
 struct QuasiVelocities {
   System
       system;  // unknowns: the coordinates, the model's states, then p, as states that follow those; all of first order
-  std::size_t count = 0;  // of p
-  Column inertia;         // I: T = 1/2 sum I_i p_i^2 + what is of lower degree in p
-  Column of_state;        // p in t, q, q'
-  Column velocities;      // q' in t, q, p
-  Column others;          // as given, on the manifold
-  Expr determinant;       // that of the system Jacobian of Routh's equations, up to a constant factor
+  std::size_t count = 0;      // of p
+  Column inertia;             // I: T = 1/2 sum I_i p_i^2 + what is of lower degree in p
+  Column of_state;            // p in t, q, q'
+  Column velocities;          // q' in t, q, p
+  Column others;              // as given, on the manifold
+  bool clears_poles = false;  // of constraints: the formulas have values there
+  Expr determinant;           // that of the system Jacobian of Routh's equations, up to a constant factor
 };
 
 // `symbol`: values near the motion, by which is chosen what to solve for. Returns nullopt if the equations are not of the

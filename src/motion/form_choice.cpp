@@ -47,14 +47,14 @@ FormCost cost_of(const Scenario& scenario, const StateChoice& choice, WritingEff
   const ToRepresent equations{derived, s.structure, {}, parameters, t, state, s.mechanics.get()};
   const bool stays = s.elimination.pivots().empty();
   for (const Representation& r : representations(equations, stays ? most : WritingEffort::at_once))
-    cost.writings.push_back({r.writing, work_of(*r.plan), {}, r.velocities});
+    cost.writings.push_back({r.writing, work_of(*r.plan), {}, r.velocities, r.clears_poles});
   // The writings of less effort come first.
   const std::size_t known[] = {4, 5, 6};
   for (const WritingEffort effort : kWritingEfforts) {
     WritingCost* best = nullptr;
     for (WritingCost& w : cost.writings)
       if (static_cast<std::size_t>(w.writing) < known[static_cast<std::size_t>(effort)] &&
-          (!best || w.work.total < best->work.total))
+          (!best || (w.clears_poles == best->clears_poles ? w.work.total < best->work.total : w.clears_poles)))
         best = &w;
     if (!best->after) best->after = steps_before(effort);
     if (effort <= WritingEffort::long_motion) cost.total = best->work.total;

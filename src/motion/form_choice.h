@@ -16,6 +16,7 @@ struct WritingCost {
   ExpansionWork work;
   std::optional<std::size_t> after;  // so many steps a motion takes it
   std::vector<std::string> velocities;
+  bool clears_poles = false;  // such a writing is taken whatever it costs
 };
 
 struct FormCost {

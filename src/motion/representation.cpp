@@ -149,7 +149,7 @@ std::optional<Representation> in_quasi_velocities(const ToRepresent& e, std::str
   std::optional<QuasiVelocities> q =
       quasi_velocities(s, *e.mechanics, e.quadratures, [&](const Node& n) { return value_at_start(e, n); }, why);
   if (!q) return std::nullopt;
-  Representation found{Writing::quasi, nullptr, {}};
+  Representation found{Writing::quasi, nullptr, {}, q->clears_poles};
   for (Expr p : q->of_state)
     found.velocities.push_back(
         print(written_out(p, s.coordinates, q->system.rates), q->system.model->names, Format::text));
@@ -261,7 +261,7 @@ std::size_t steps_with_effort(std::size_t steps) {
 
 const Representation& cheapest(const std::vector<Representation>& list) {
   return *std::min_element(list.begin(), list.end(), [](const Representation& a, const Representation& b) {
-    return a.plan->cost() < b.plan->cost();
+    return a.clears_poles != b.clears_poles ? a.clears_poles : a.plan->cost() < b.plan->cost();
   });
 }
 

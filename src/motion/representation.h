@@ -23,6 +23,7 @@ struct Representation {
   Writing writing = Writing::derived;
   std::shared_ptr<const KernelPlan> plan;
   std::vector<std::string> velocities;  // of quasi: what p are, in words of the model
+  bool clears_poles = false;            // constraints have poles, near which the other writings lose digits
 };
 
 // The equations as derived, and where their plan was made.
@@ -60,7 +61,7 @@ std::vector<Representation> representations(const ToRepresent& equations, Writin
 std::optional<Representation> in_independent_velocities(const ToRepresent& equations, std::string& why);
 // Adds to those that can be had at once what more effort finds.
 void add_representations(const ToRepresent& equations, WritingEffort effort, std::vector<Representation>& list);
-// The first of the cheapest.
+// The first of the cheapest of those that clear poles, if any does; else of all.
 const Representation& cheapest(const std::vector<Representation>& list);
 // … of those in the motion's own unknowns.
 const Representation& cheapest_unmapped(const std::vector<Representation>& list);
