@@ -61,7 +61,8 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
     return no("the form eliminates coordinates, whose choice holds in a part of the motion");
   const std::size_t n = s.system.coordinates, all = s.system.size(), mechanical = s.system.mechanical();
   std::unique_ptr<Dynamics> made(new Dynamics);
-  made->program_ = std::make_shared<const Program>(anholon::program(s.system, s.structure));
+  made->system_ = std::make_shared<const System>(s.system);
+  made->program_ = std::make_shared<const Program>(anholon::program(*made->system_, s.structure));
   Start<long double> here;
   if (const Outcome o = initial_state(s, choice, here); !o.ok()) return no(o.message);
   made->parameters_ = parameter_values<long double>(*s.model);
