@@ -391,7 +391,11 @@ class Dynamics:
         return np.array(self._core.from_motion(at, *([have.get(n, 0.0) for n in expected] for have, expected in zip(given, names, strict=True))))
 
     def motion(self, x: npt.ArrayLike, t: float | None = None) -> dict[str, float]:
-        """Coordinates, velocities (and higher derivatives of the state) and states of the model of one state x, by name."""
+        """Coordinates, velocities (and higher derivatives of the state) and states of the model of one state x, by name.
+
+        Raises:
+            ValueError: x is not one state.
+        """
         import numpy as np
 
         state = np.asarray(x, dtype=np.float64)

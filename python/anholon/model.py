@@ -303,7 +303,8 @@ class Model(Analysed):
         Raises:
             ModelError: an argument makes no sense; the folder holds another sweep or other files.
             OSError: a part could not be written.
-            TypeError: ``columns`` or ``reduce`` is a single name, no list.
+            TypeError: ``columns`` or ``reduce`` is a single name, no list; an argument that is a whole number is none.
+            ValueError: a value is not finite, a whole number is too small.
             MotionError: the initial values of the model are inconsistent.
             Interrupted: Ctrl-C; ``.result`` is the sweep as far as it came.
         """

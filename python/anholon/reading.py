@@ -39,6 +39,7 @@ def loads(text: str, *, case: str | Sequence[str] = (), set: Mapping[str, Number
 
     Raises:
         ModelError: all mistakes of the text at once; the text is the name of a file.
+        TypeError: `text` is no text.
 
     Example:
         >>> import anholon as an

@@ -168,6 +168,8 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
         Raises:
             KeyError: there is no such column.
+            TypeError: `conditions` is no mapping.
+            ValueError: a range is no pair.
         """
         import numpy as np
 

@@ -57,8 +57,8 @@ void bind_results(nb::module_& m) {
                                     d.length);
            })
       .def("__setstate__",
-           [](Diagnostic& d, const std::tuple<int, std::string, std::string, std::string, unsigned, unsigned,
-                                              unsigned>& state) {
+           [](Diagnostic& d,
+              const std::tuple<int, std::string, std::string, std::string, unsigned, unsigned, unsigned>& state) {
              const auto& [severity, message, hint, file, line, column, length] = state;
              new (&d) Diagnostic{static_cast<Severity>(severity), message, hint, file, line, column, length};
            })

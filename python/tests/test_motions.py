@@ -264,7 +264,7 @@ def test_a_run_is_called_with_times(disc: an.Model) -> None:
 
 def test_a_derivative_that_the_polynomials_do_not_have_is_refused(disc: an.Model) -> None:
     run = disc.simulate(to=1, every=0.5)
-    assert np.isfinite(run(0.3, order=np.int64(3))["theta"])
+    assert np.isfinite(run(0.3, order=3)["theta"])
     for order in (-1, 100, 1.5, True):
         with pytest.raises(an.ModelError, match="order is a whole number from 0 to"):
             run(0.3, order=order)  # type: ignore[arg-type]

@@ -114,7 +114,6 @@ class Dynamics {
 
   std::size_t coordinates_ = 0, model_states_ = 0, inputs_ = 0;
   std::size_t values_ = 0;  // how many states are coordinates or multipliers themselves
-  std::shared_ptr<const System> system_;  // of the programs, whose faults name its formulas
   std::shared_ptr<const Program> program_;
   std::shared_ptr<const StateMap> map_;
   std::shared_ptr<const KernelPlan> plan_;  // null where the reference computes
