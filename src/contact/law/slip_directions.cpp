@@ -67,25 +67,26 @@ class DirectionSearch {
     return false;
   }
 
+  // A slip that hardly begins does so at angles very near to one of them only.
   bool around() {
-    constexpr int kParts = 48, kHalves = 70;
+    constexpr int kParts = 48;
     const Real part = 2 * std::acos(-1.0L) / kParts;
     Real a = 0, fa = across(a);
-    bool slips_at_a = slips();
     for (int k = 1; k <= kParts; ++k) {
-      Real b = k * part, fb = across(b);
-      const bool slips_at_b = slips();
-      if ((slips_at_a || slips_at_b) && (fa < 0) != (fb < 0)) {
-        Real low = a, high = b;
-        for (int h = 0; h < kHalves; ++h) {
-          const Real middle = low + (high - low) / 2, fm = across(middle);
-          ((fm < 0) == (fa < 0) ? low : high) = middle;
-        }
-        if (std::abs(across(low)) <= kFound * std::hypot(v_[0], v_[1]) && slips()) return true;
-      }
-      a = b, fa = fb, slips_at_a = slips_at_b;
+      const Real b = k * part, fb = across(b);
+      if (std::isfinite(fa) && std::isfinite(fb) && (fa < 0) != (fb < 0) && slips_between(a, fa, b)) return true;
+      a = b, fa = fb;
     }
     return false;
+  }
+
+  bool slips_between(Real low, Real f_low, Real high) {
+    constexpr int kHalves = 70;
+    for (int h = 0; h < kHalves; ++h) {
+      const Real middle = low + (high - low) / 2;
+      ((across(middle) < 0) == (f_low < 0) ? low : high) = middle;
+    }
+    return std::abs(across(low)) <= kFound * std::hypot(v_[0], v_[1]) && slips();
   }
 
   const ContactProblem& p_;
