@@ -152,7 +152,7 @@ class Analysed(Described):
     @staticmethod
     def _linear(about: str, initial: Mapping[str, Number] | None, t: Number | None) -> dict[str, str]:
         if about not in ("state", "equilibrium"):
-            raise ModelError(f"about: {about!r}\nhint: 'state' or 'equilibrium'")
+            raise ModelError(f"about cannot be {about!r}\nhint: 'state' or 'equilibrium'")
         given = texts_of(initial)
         if t is not None:
             given["t"] = text_of(t)

@@ -35,6 +35,9 @@ class ModelError(ValueError):
         self.text = text
         self.diagnostics: list[Diagnostic] = diagnostics or []
 
+    def __reduce__(self) -> tuple[type[ModelError], tuple[str, list[Diagnostic]]]:
+        return type(self), (self.text, self.diagnostics)
+
     def __str__(self) -> str:
         return self.text
 
@@ -66,12 +69,15 @@ class ColumnError(KeyError):
     def __init__(self, name: str, columns: list[str], outcome: Outcome) -> None:
         import difflib
 
-        self.name, self.columns = name, columns
+        self.name, self.columns, self._outcome = name, columns, outcome
         near = difflib.get_close_matches(re.sub(r"_?(dot|d)$", "'", str(name)), columns, 2)
         asked = "; did you mean " + " or ".join(repr(n) for n in near) + "?" if near else ""
         there = f"the columns are {', '.join(columns)}" if columns else f"the motion has not begun: {outcome!r}"
         self.text = f"there is no column {name!r}{asked}\n{there}"
         super().__init__(self.text)
+
+    def __reduce__(self) -> tuple[type[ColumnError], tuple[str, list[str], Outcome]]:
+        return type(self), (self.name, self.columns, self._outcome)
 
     def __str__(self) -> str:
         return self.text
@@ -95,6 +101,9 @@ class MotionError(RuntimeError):
     def __init__(self, text: str, outcome: Outcome) -> None:
         super().__init__(text)
         self.outcome = outcome
+
+    def __reduce__(self) -> tuple[type[MotionError], tuple[str, Outcome]]:
+        return type(self), (str(self), self.outcome)
 
 
 class Interrupted(KeyboardInterrupt):

@@ -51,9 +51,25 @@ def texts_of(values: Mapping[str, Number] | None) -> dict[str, str]:
     for name, value in values.items():
         if not isinstance(name, str):
             raise TypeError(f"a name is a str, such as 'theta', not a {type(name).__name__}")
-        if not isinstance(value, (numbers.Real, str, Decimal)):
-            raise TypeError(f"{name}: a number is an int, float, Fraction, Decimal or str, not {type(value).__name__}")
+        try:
+            text_of(value)
+        except (TypeError, ValueError) as mistake:
+            raise type(mistake)(f"{name}: {mistake}") from None
     return {name: text_of(value) for name, value in values.items()}
+
+
+def whole(name: str, number: object, least: int) -> int:
+    """A whole number that is not below the least one.
+
+    Raises:
+        TypeError: `number` is none.
+        ValueError: it is below.
+    """
+    if isinstance(number, bool) or not isinstance(number, numbers.Integral):
+        raise TypeError(f"{name} is a whole number, not {number!r:.60}")
+    if number < least:
+        raise ValueError(f"{name} is {least} or more, not {int(number)}")
+    return int(number)
 
 
 def float_of(text: str | None) -> float | None:
@@ -72,6 +88,14 @@ def list_of(values: Number | Iterable[Number]) -> list[str]:
     return [text_of(value) for value in values] if isinstance(values, Iterable) else [text_of(values)]
 
 
+def varied_list(name: object, values: Number | Iterable[Number]) -> list[str]:
+    """The same of what a sweep varies. Raises TypeError or ValueError with the name for what is no number."""
+    try:
+        return list_of(values)
+    except (TypeError, ValueError) as mistake:
+        raise type(mistake)(f"{name}: {mistake}") from None
+
+
 def exact_numbers(texts: Sequence[str]) -> list[Any]:
     """Numbers with all digits of their texts: ``mpmath.mpf`` if mpmath is there, else the texts."""
     try:
@@ -84,8 +108,9 @@ def exact_numbers(texts: Sequence[str]) -> list[Any]:
 
 def spaced(low: Number, high: Number, n: int) -> list[str]:
     """n values from low to high, equally far apart, without rounding where both are decimals or fractions."""
+    ends = text_of(low), text_of(high)
     try:
-        first, last = Fraction(text_of(low)), Fraction(text_of(high))
+        first, last = Fraction(ends[0]), Fraction(ends[1])
     except ValueError:
         raise ValueError(f"{low!r} and {high!r} have to be decimals or fractions; give a list of other values") from None
     return [str(first + (last - first) * k / (n - 1)) for k in range(n)]

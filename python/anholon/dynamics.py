@@ -391,10 +391,17 @@ class Dynamics:
         return np.array(self._core.from_motion(at, *([have.get(n, 0.0) for n in expected] for have, expected in zip(given, names, strict=True))))
 
     def motion(self, x: npt.ArrayLike, t: float | None = None) -> dict[str, float]:
-        """Coordinates, velocities (and higher derivatives of the state) and states of the model of one state x, by name."""
+        """Coordinates, velocities (and higher derivatives of the state) and states of the model of one state x, by name.
+
+        Raises:
+            ValueError: x is not one state.
+        """
         import numpy as np
 
-        parts = self._core.to_motion(self.t0 if t is None else t, np.asarray(x, dtype=np.float64).tolist())
+        state = np.asarray(x, dtype=np.float64)
+        if state.shape != (self._count,):
+            raise ValueError(f"x has the shape {state.shape}; it has to be one state, ({self._count},)")
+        parts = self._core.to_motion(self.t0 if t is None else t, state.tolist())
         return {n: v for names, values in zip(self._names(), parts, strict=True) for n, v in zip(names, values, strict=True)}
 
     def _names(self) -> tuple[list[str], list[str], list[str]]:

@@ -11,7 +11,7 @@ from . import _core
 from ._analysed import Analysed
 from ._errors import Interrupted, ModelError, MotionError
 from ._names import names_of
-from ._numbers import Number, float_of, list_of, text_of, texts_of
+from ._numbers import Number, float_of, list_of, text_of, texts_of, varied_list, whole
 from ._progress import Progress, Shown
 from ._source import Source
 from ._sweep_case import runs_through_scenarios
@@ -303,12 +303,23 @@ class Model(Analysed):
         Raises:
             ModelError: an argument makes no sense; the folder holds another sweep or other files.
             OSError: a part could not be written.
-            TypeError: ``columns`` or ``reduce`` is a single name, no list.
+            TypeError: ``columns`` or ``reduce`` is a single name, no list; an argument that is a whole number is none.
+            ValueError: a value is not finite, a whole number is too small.
             MotionError: the initial values of the model are inconsistent.
             Interrupted: Ctrl-C; ``.result`` is the sweep as far as it came.
         """
+        if not hasattr(vary, "items"):
+            raise TypeError(f"what varies is given by name, as {{'m': [1, 2]}}, not as a {type(vary).__name__}")
+        if len(vary.keys()) == 0:
+            raise ModelError("nothing is varied\nhint: sweep({'m': [1, 2, 5], \"x'\": anholon.grid(0, 1, 11)}, to=10)")
         laws = {name: str(of) for name, of in vary.items() if is_law(of)}
-        values = [(str(name), [] if name in laws else list_of(of)) for name, of in vary.items()]
+        values = [(str(name), [] if name in laws else varied_list(name, of)) for name, of in vary.items()]
+        seed, threads, refine = whole("seed", seed, 0), whole("threads", threads, 0), whole("refine", refine, 0)
+        cases = None if cases is None else whole("cases", cases, 1)
+        chunk = None if chunk is None else whole("chunk", chunk, 1)
+        if not isinstance(share, (tuple, list)) or len(share) != 2:
+            raise TypeError(f"share is a pair (i, n), the i-th of n shares, such as (3, 8), not {share!r:.60}")
+        share = whole("the first number of share", share[0], 1), whole("the second number of share", share[1], 1)
         if isinstance(columns, str) or isinstance(reduce, str):
             raise TypeError('columns and reduce are lists of names: ["theta"]')
         end, relative = (None if number is None else text_of(number) for number in (to, tolerance))

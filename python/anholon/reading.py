@@ -39,6 +39,7 @@ def loads(text: str, *, case: str | Sequence[str] = (), set: Mapping[str, Number
 
     Raises:
         ModelError: all mistakes of the text at once; the text is the name of a file.
+        TypeError: `text` is no text.
 
     Example:
         >>> import anholon as an
@@ -50,6 +51,8 @@ def loads(text: str, *, case: str | Sequence[str] = (), set: Mapping[str, Number
         ... ''').coordinates[0].name
         'th'
     """
+    if not isinstance(text, str):
+        raise TypeError(f"loads takes the text of a model, a str, not a {type(text).__name__}")
     if text.strip() and not any(mark in text for mark in "\n=["):
         raise ModelError(f"loads: {text!r} is not the text of a model\nhint: anholon.load({text!r}) reads a file or a shipped model")
     return _read(Source(text, name), set, case)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+import os
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -207,7 +208,7 @@ class Run:
             An array of the shape of t for each coordinate and each state of the model; NaN outside of the motion.
 
         Raises:
-            ModelError: `t` holds what is no time; ``run["x"]`` is the column of a name.
+            ModelError: `t` holds what is no time (``run["x"]`` is the column of a name), or there is no such derivative.
             MotionError: the motion has not begun.
 
         Example:
@@ -227,6 +228,9 @@ class Run:
             if self._again is None:
                 raise MotionError(repr(self.outcome), self.outcome)
             self._dense = self._again()
+        most = self._dense.report.order
+        if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or not 0 <= order <= most:
+            raise ModelError(f"order is a whole number from 0 to {most}, the order of the polynomials of this run, not {order!r:.60}\nhint: run(t, order=1) has the rates")
         names = [c.name for c in self.model.coordinates] + self.model.states
         flat = np.ascontiguousarray(times.ravel())
         return {name: self._dense.at(name, flat, order).reshape(times.shape) for name in names}
@@ -298,13 +302,13 @@ class Run:
         """The columns as an Arrow stream of one batch, which reads the numbers where they are."""
         return _arrow.stream(self.to_dict(), self.units)
 
-    def save(self, path: str) -> str:
-        """Writes .csv, .json or .h5, by the end of the name. The file is there as a whole or stays as it was.
+    def save(self, path: str | os.PathLike[str]) -> str:
+        """Writes .csv, .json, .h5 or .parquet, by the end of the name. The file is there as a whole or stays as it was.
 
         Raises:
             ModelError: the name has another ending, or the file cannot be written.
         """
-        return self._required().write(path)
+        return self._required().write(os.fspath(path))
 
     def json(self) -> Any:
         """Columns, rows and the report, as ``anholon simulate --json`` prints them."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _arrow, _core, _display
 from ._errors import ModelError
-from ._numbers import Number, text_of
+from ._numbers import Number, text_of, whole
 from .run import Figure
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def grid(low: Number, high: Number, count: int) -> Law:
         >>> sweep.varied["phi'"].tolist()
         [5.0, 5.5, 6.0, 6.5, 7.0]
     """
-    return Law(f"{text_of(low)}:{text_of(high)}:{int(count)}")
+    return Law(f"{text_of(low)}:{text_of(high)}:{whole('count', count, 0)}")
 
 
 def scenarios_of(core: _core.Sweep) -> dict[str, npt.NDArray[Any]]:

@@ -168,12 +168,18 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
         Raises:
             KeyError: there is no such column.
+            TypeError: `conditions` is no mapping.
+            ValueError: a range is no pair.
         """
         import numpy as np
 
+        if not isinstance(conditions, Mapping):
+            raise TypeError(f"conditions are given by column, as {{'outcome': 'finished', 'theta': (1, 2)}}, not as a {type(conditions).__name__}")
         numbers = self["case"]
         chosen = np.ones(numbers.shape, dtype=bool)
         for name, wanted in conditions.items():
+            if isinstance(wanted, tuple) and len(wanted) != 2:
+                raise ValueError(f"{name}: a range is a pair (from, to), not {wanted!r:.60}")
             column = self["case_name" if name == "case" and isinstance(wanted, str) else name]
             chosen &= (column >= wanted[0]) & (column <= wanted[1]) if isinstance(wanted, tuple) else column == wanted
         return np.unique(numbers[chosen])

@@ -51,6 +51,17 @@ void bind_results(nb::module_& m) {
       .def_ro("line", &Diagnostic::line, "From 1; 0 stands for the text as a whole.")
       .def_ro("column", &Diagnostic::column, "From 1, in characters.")
       .def_ro("length", &Diagnostic::length, "In characters.")
+      .def("__getstate__",
+           [](const Diagnostic& d) {
+             return std::make_tuple(static_cast<int>(d.severity), d.message, d.hint, d.file, d.line, d.column,
+                                    d.length);
+           })
+      .def("__setstate__",
+           [](Diagnostic& d,
+              const std::tuple<int, std::string, std::string, std::string, unsigned, unsigned, unsigned>& state) {
+             const auto& [severity, message, hint, file, line, column, length] = state;
+             new (&d) Diagnostic{static_cast<Severity>(severity), message, hint, file, line, column, length};
+           })
       .def("__repr__", [](const Diagnostic& d) {
         return d.file + ":" + std::to_string(d.line) + ":" + std::to_string(d.column) + ": " + d.message;
       });
@@ -64,6 +75,13 @@ void bind_results(nb::module_& m) {
       .def_ro("hint", &Outcome::hint, "What to do.")
       .def_prop_ro("ok", &Outcome::ok)
       .def("__bool__", &Outcome::ok)
+      .def("__getstate__",
+           [](const Outcome& o) { return std::make_tuple(static_cast<int>(o.kind), o.message, o.hint); })
+      .def("__setstate__",
+           [](Outcome& o, const std::tuple<int, std::string, std::string>& state) {
+             const auto& [kind, message, hint] = state;
+             new (&o) Outcome{static_cast<OutcomeKind>(kind), message, hint};
+           })
       .def("__repr__", [](const Outcome& o) {
         return o.ok() ? std::string("finished") : std::string(name(o.kind)) + ": " + o.message + "\nhint: " + o.hint;
       });

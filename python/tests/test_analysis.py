@@ -297,3 +297,12 @@ def test_ctrl_c_ends_a_proof_of_the_command() -> None:
         if lists:
             return
     raise AssertionError("no request came during the proof")
+
+
+def test_the_number_of_digits_is_bounded(disc: an.Model) -> None:
+    for call in (disc.evaluate, disc.linearize):
+        for digits in (0, 2001, 10**7):
+            with pytest.raises(an.ModelError, match="digits is a whole number from 1 to 2000"):
+                call(digits=digits)
+    with pytest.raises(an.ModelError, match="about cannot be 'rest'"):
+        disc.linearize(about="rest")

@@ -427,3 +427,39 @@ def test_a_function_tells_why_velocities_are_not_independent(name: str, obstacle
     f = an.load(name).dynamics()
     assert f.obstacle == obstacle and f.minimal == (obstacle == "")
     assert an.load(name).dynamics(minimal=False).obstacle == "all velocities were asked for"
+
+
+def test_states_that_are_not_numbers_have_rates_that_are_none() -> None:
+    # The equations have no solution there, and the reference names the formula of the fault.
+    model = an.loads(
+        """
+        coordinates = ["x", "y", "th"]
+        body = [{name = "skate", mass = 2, inertia = 0.3, center = "x*ex + y*ey", angle = "th"}]
+        force = [{on = "skate", vector = "ex - norm(vel(skate.center))*vel(skate.center)"}]
+        constraint = [{name = "edge", equation = "dot(vel(skate.center), skate.y) = 0"}]
+        initial = {x = 0, y = 0, th = 0.4, "th'" = 2, conditions = ["x'*cos(th) + y'*sin(th) = 1"]}
+        """
+    )
+    for minimal in (True, False):
+        f = model.dynamics(minimal=minimal)
+        assert np.isnan(f(0, f.start * np.nan)[:3]).all()
+        many = np.tile(f.start[:, None], 3)
+        many[2, 1] = np.nan
+        rates = f(0, many)
+        assert np.isnan(rates[:, 1]).any()
+        np.testing.assert_array_equal(rates[:, [0, 2]], f(0, many[:, [0, 2]]))
+        with pytest.raises(ValueError, match="it has to be one state"):
+            f.motion(f.start[:2])
+
+
+def test_a_singular_state_has_no_rates() -> None:
+    model = an.loads(
+        """
+        coordinates = ["x", "y"]
+        particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
+        constraint = [{name = "rod", equation = "x^2 + y^2 = 1"}]
+        initial = {x = 1, "y'" = 1}
+        """
+    )
+    f = model.dynamics(minimal=False)
+    assert np.isnan(f(0, np.zeros(4))[2:]).all()

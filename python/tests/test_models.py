@@ -2,6 +2,7 @@
 
 import math
 import pickle
+from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
 
@@ -82,3 +83,30 @@ def test_equations_and_proofs(disc: an.Model) -> None:
 def test_exceptions_can_be_pickled() -> None:
     error = pickle.loads(pickle.dumps(an.ModelError("text")))
     assert str(error) == "text"
+
+
+def test_exceptions_of_the_library_can_be_pickled(disc: an.Model) -> None:
+    run = disc.simulate(to=0.1)
+    mistakes: list[Callable[[], object]] = [
+        lambda: disc.with_(mm=2),
+        lambda: run["thetadot"],
+        lambda: an.load("luo-zhao-example-2").simulate(to=1000).expect(),
+    ]
+    for mistake in mistakes:
+        with pytest.raises((an.ModelError, an.ColumnError, an.MotionError)) as raised:
+            mistake()
+        again = pickle.loads(pickle.dumps(raised.value))
+        assert type(again) is type(raised.value) and str(again) == str(raised.value)
+        if isinstance(again, an.ModelError) and isinstance(raised.value, an.ModelError):
+            assert again.diagnostics[0].message == raised.value.diagnostics[0].message
+        if isinstance(again, an.MotionError):
+            assert again.outcome.kind == "negative_mass"
+
+
+def test_a_text_that_is_none_and_numbers_that_are_not_finite_are_named(disc: an.Model) -> None:
+    with pytest.raises(TypeError, match="takes the text of a model"):
+        an.loads(None)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="m: nan is not a finite number"):
+        disc.with_(m=float("nan"))
+    with pytest.raises(ValueError, match="^nan is not a finite number"):
+        disc.stability("m", 1, float("nan"))

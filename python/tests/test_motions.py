@@ -8,6 +8,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable
+from typing import Any
 
 import anholon as an
 import numpy as np
@@ -259,3 +260,41 @@ def test_a_run_is_called_with_times(disc: an.Model) -> None:
     for what, hint in (("x", r"hint: run\['x'\] is the column of that name"), (["x", "y"], r"hint: run\(1.5\)"), ({"t": 1}, r"hint: run\(1.5\)"), (1j, r"hint: run\(1.5\)")):
         with pytest.raises(an.ModelError, match=r"run\(t\) takes times in seconds, one number or an array, not .*\n" + hint):
             run(what)  # type: ignore[arg-type]
+
+
+def test_a_derivative_that_the_polynomials_do_not_have_is_refused(disc: an.Model) -> None:
+    run = disc.simulate(to=1, every=0.5)
+    assert np.isfinite(run(0.3, order=3)["theta"])
+    for order in (-1, 100, 1.5, True):
+        with pytest.raises(an.ModelError, match="order is a whole number from 0 to"):
+            run(0.3, order=order)  # type: ignore[arg-type]
+
+
+def test_a_run_is_saved_under_a_path(disc: an.Model, tmp_path: pathlib.Path) -> None:
+    assert disc.simulate(to=0.1).save(tmp_path / "disc.csv") == str(tmp_path / "disc.csv")
+
+
+def test_wrong_arguments_of_a_sweep_are_named(disc: an.Model, tmp_path: pathlib.Path) -> None:
+    wrong: list[tuple[dict[str, Any], str]] = [
+        ({"vary": None}, "given by name"),
+        ({"vary": {}}, "nothing is varied\nhint: sweep"),
+        ({"vary": {"m": [1, float("nan")]}}, "m: nan is not a finite number"),
+        ({"vary": {"m": an.uniform(1, 2)}, "cases": -1}, "cases is 1 or more, not -1"),
+        ({"vary": {"m": an.uniform(1, 2)}, "cases": 2.5}, "cases is a whole number, not 2.5"),
+        ({"vary": {"m": an.uniform(1, 2)}}, "how many cases are to be drawn"),
+        ({"vary": {"m": an.uniform(1, 2)}, "cases": 4, "seed": -1}, "seed is 0 or more"),
+        ({"vary": {"m": [1, 2]}, "out": tmp_path / "f", "share": "1/2"}, "share is a pair"),
+        ({"vary": {"m": [1, 2]}, "out": tmp_path / "f", "share": (1, 2.5)}, "the second number of share is a whole number"),
+        ({"vary": {"m": [1, 2]}, "out": tmp_path / "f", "chunk": 0}, "chunk is 1 or more"),
+        ({"vary": {"m": [1, 2]}, "out": tmp_path / "f", "refine": "2"}, "refine is a whole number"),
+    ]
+    for options, text in wrong:
+        with pytest.raises((an.ModelError, TypeError, ValueError), match=text):
+            disc.sweep(to=1, **options)
+    with pytest.raises(TypeError, match="count is a whole number, not 2.5"):
+        an.grid(0, 1, 2.5)  # type: ignore[arg-type]
+    folder = disc.sweep({"m": [1, 2]}, to=0.1, out=tmp_path / "g")
+    with pytest.raises(TypeError, match="conditions are given by column"):
+        folder.where([])  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="a range is a pair"):
+        folder.where({"m": (1,)})

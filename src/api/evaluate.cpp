@@ -1,6 +1,7 @@
 #include "anholon/evaluate.h"
 
 #include "api/data.h"
+#include "model/motion_settings.h"
 #include "observe/evaluate.h"
 
 namespace anholon::v1 {
@@ -19,7 +20,8 @@ Result<StateReport> evaluate(const System& system, int digits) {
   const System::Data& of = system.data();
   return guarded(of.model->source, [&]() -> Result<StateReport> {
     of.model->without_contacts("evaluate");
-    if (digits < 1) return mistake("digits: " + std::to_string(digits) + " is not positive");
+    inner::MotionSettings checked;
+    inner::set(checked, inner::motion_option("digits"), inner::Rational(digits), "digits");
     inner::StateReport r;
     if (const inner::Outcome o = inner::evaluate(of.scenario, of.choice, digits, r); !o.ok()) return error_of(o);
     StateReport out;

@@ -2,6 +2,7 @@
 
 #include "api/data.h"
 #include "linear/study.h"
+#include "model/motion_settings.h"
 #include "setup/choice.h"
 
 namespace anholon::v1 {
@@ -58,8 +59,8 @@ LinearModel model_of(const inner::LinearModel& from, int digits) {
 }
 
 inner::LinearRequest request_of(const Model& model, const LinearOptions& options) {
-  if (options.digits < 1)
-    throw inner::Failure({}, "digits: " + std::to_string(options.digits) + " is not positive", "digits=16 or more");
+  inner::MotionSettings checked;
+  inner::set(checked, inner::motion_option("digits"), inner::Rational(options.digits), "digits");
   model.data().without_contacts("linearize");
   PrepareOptions state;
   state.initial = options.initial, state.eliminate = options.eliminate;

@@ -45,7 +45,7 @@ inner::Variation variation_of(const SweepOptions& asked, const inner::Model& mod
   if (of_scenario && v.varied().empty() && !asked.cases)
     v.finish_with_one();
   else
-    v.finish(asked.cases, "SweepOptions::cases");
+    v.finish(asked.cases, "cases");
   return v;
 }
 

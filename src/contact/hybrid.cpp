@@ -127,6 +127,7 @@ class HybridMotion {
     for (std::size_t k = 0; bodies_.shrinks() && k < kMostImpacts; ++k)
       if (Outcome o = impact(); !o.ok()) return o;
     land();
+    bodies_.stop_ended_slips();
     ContactProblem p = bodies_.with_touching();
     slips_->guess_directions(p);
     const std::vector<ContactSolution> list = consistent_modes(p);
@@ -161,6 +162,7 @@ class HybridMotion {
     bodies_.dynamics.go(bodies_.at);
     bodies_.stop(bodies_.modes);
     bodies_.drop_left_over();
+    bodies_.bound_rest();
     return {};
   }
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contact/law/consistent_modes.h"
+#include "contact/law/rows.h"
 #include "contact/law/shared_forces.h"
 
 namespace anholon {
@@ -76,8 +78,26 @@ void SlipStart::begin_together(const std::vector<std::size_t>& list, const std::
     if (const long double a = bodies_.dynamics.slip_acceleration(c, accelerations); a > 0)
       time = std::max(time, first_slip(c, accelerations) / a);
   std::vector<long double> jump;
-  for (std::size_t a = 0; a < accelerations.size(); ++a) jump.push_back(time * (accelerations[a] - held->x[a]));
+  for (std::size_t a = 0; a < accelerations.size(); ++a) jump.push_back(accelerations[a] - held->x[a]);
+  time = std::min(time, time_to_reverse(jump));
+  for (long double& v : jump) v *= time;
   bodies_.add_to_velocities(jump);
+}
+
+long double SlipStart::time_to_reverse(const std::vector<long double>& accelerations) const {
+  long double time = std::numeric_limits<long double>::infinity();
+  for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+    const ContactRows& rows = bodies_.dynamics.accelerations().contacts[c];
+    if (bodies_.modes[c].touch != Touch::slips || !rows.rough || !rows.moves) continue;
+    const auto& v = bodies_.dynamics.place(c).slip;
+    long double square = 0, against = 0;
+    for (std::size_t k = 0; k < rows.tangential.size(); ++k) {
+      square += v[k] * v[k];
+      against -= v[k] * dot(rows.tangential[k], accelerations);
+    }
+    if (against > 0) time = std::min(time, square / (2 * against));
+  }
+  return time;
 }
 
 bool SlipStart::share_anew(Outcome& outcome) {

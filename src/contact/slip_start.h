@@ -37,6 +37,8 @@ class SlipStart {
   long double first_slip(std::size_t c, const std::vector<long double>& accelerations) const;
   // Slips that begin at once on bodies that join them have velocities as their accelerations are.
   void begin_together(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations);
+  // How long these accelerations may act until a slip that goes on has half of its velocity: infinite if none becomes slower.
+  long double time_to_reverse(const std::vector<long double>& accelerations) const;
   // Where contacts share friction, one at its limit may leave the rest to the others. Then they share it anew, which is no
   // event; else they are held until those that begin to slip are told by their accelerations. Returns false if the motion
   // ends meanwhile.

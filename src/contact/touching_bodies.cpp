@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "contact/law/shared_forces.h"
 #include "numeric/number.h"
@@ -21,22 +22,37 @@ void TouchingBodies::look() {
 }
 
 ContactProblem TouchingBodies::with_touching() const {
-  // What a slip that has ended leaves of others, as bodies join them.
-  constexpr long double kLeft = 1e-11L;
-  const bool one_ended = std::any_of(excluded.begin(), excluded.end(), [](const Excluded& e) { return e.slips; });
   ContactProblem p = dynamics.accelerations();
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     ContactRows& rows = p.contacts[c];
     rows.may_touch = near.closed(c) && near.gap_rate(c) == 0 && !excluded[c].touch;
     rows.may_stick = !excluded[c].stick;
     if (excluded[c].touch) rows.before = before;
-    const ContactDynamics::Place& place = dynamics.place(c);
-    const bool left = one_ended && std::hypot(place.slip[0], place.slip[1]) <= kLeft * place.slip_scale;
-    rows.moves = rows.moves && !excluded[c].slips && !left;
+    rows.moves = rows.moves && !slip_has_ended(c);
     // A gap that is open, or opens, is not bounded by its acceleration.
     if (!near.closed(c) || near.gap_rate(c) > 0) rows.normal.assign(at.q.size(), 0), rows.normal_rate = 0;
   }
   return p;
+}
+
+bool TouchingBodies::slip_has_ended(std::size_t c) const {
+  constexpr long double kLeft = 1e-11L;
+  const bool one_ended = std::any_of(excluded.begin(), excluded.end(), [](const Excluded& e) { return e.slips; });
+  const ContactDynamics::Place& place = dynamics.place(c);
+  return excluded[c].slips || (one_ended && std::hypot(place.slip[0], place.slip[1]) <= kLeft * place.slip_scale);
+}
+
+void TouchingBodies::stop_ended_slips() {
+  ContactModes to(contacts.size());
+  bool any = false;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const std::size_t of = contacts[c].under.value_or(c);
+    if (!near.closed(of) || near.gap_rate(of) != 0) continue;
+    const bool ended = contacts[c].slip.size() == 2 && contacts[c].rough() && slip_has_ended(c);
+    to[c].touch = ended ? Touch::sticks : Touch::slips;
+    any = any || ended;
+  }
+  if (any) stop(to);
 }
 
 void TouchingBodies::come_to_rest() {
@@ -52,8 +68,12 @@ void TouchingBodies::come_to_rest() {
 void TouchingBodies::drop_left_over() {
   const std::vector<double> found = at.qd;
   const long double slipped = slip_of_what_sticks();
+  std::vector<bool> left_over;
   for (std::size_t a = 0; a < at.qd.size(); ++a)
-    if (std::abs(at.qd[a]) <= kLeftOver * dynamics.most(a)) at.qd[a] = 0;
+    left_over.push_back(std::abs(at.qd[a]) <= kLeftOver * dynamics.most(a));
+  keep_what_constraints_need(left_over);
+  for (std::size_t a = 0; a < at.qd.size(); ++a)
+    if (left_over[a]) at.qd[a] = 0;
   for (const std::vector<long double>& row : dynamics.accelerations().Phi) {
     long double now = 0, most = 0;
     for (std::size_t a = 0; a < row.size(); ++a)
@@ -66,6 +86,20 @@ void TouchingBodies::drop_left_over() {
   if (slip_of_what_sticks() <= std::max(slipped, kContradicts)) return;
   at.qd = found;
   dynamics.go(at);
+}
+
+void TouchingBodies::keep_what_constraints_need(std::vector<bool>& left_over) const {
+  constexpr long double kRounded = 1e-17L;
+  const std::vector<std::vector<long double>>& rows = dynamics.accelerations().Phi;
+  for (bool again = true; std::exchange(again, false);)
+    for (const std::vector<long double>& row : rows) {
+      long double kept = 0;
+      for (std::size_t a = 0; a < row.size(); ++a)
+        if (!left_over[a]) kept += std::abs(row[a] * at.qd[a]);
+      for (std::size_t a = 0; a < row.size(); ++a)
+        if (left_over[a] && kept > 0 && std::abs(row[a] * at.qd[a]) > kRounded * kept)
+          left_over[a] = false, again = true;
+    }
 }
 
 long double TouchingBodies::slip_of_what_sticks() const {
@@ -183,6 +217,15 @@ void TouchingBodies::set_slip(std::size_t c, const std::array<long double, 2>& d
   const auto jump = of_modes(p, alone);
   if (!jump) return;
   add_to_velocities(jump->x);
+}
+
+void TouchingBodies::bound_rest() {
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (modes[c].touch != Touch::slips || !contacts[c].rough() || contacts[c].slip.size() < 2) continue;
+    const auto &v = dynamics.place(c).slip, &d = modes[c].direction;
+    if (const long double along = v[0] * d[0] + v[1] * d[1]; along > 0)
+      modes[c].rest = std::min(modes[c].rest, along / 2);
+  }
 }
 
 void TouchingBodies::against_friction(ContactProblem& p, std::size_t c) const {

@@ -19,6 +19,11 @@ struct TouchingBodies {
   void look();
   // The accelerations, in which each contact may do what its gap and the event at which the last segment ended allow.
   ContactProblem with_touching() const;
+  // Whether a slip has ended, with the last segment or as bodies join it with one that has.
+  bool slip_has_ended(std::size_t c) const;
+  // Stops what slips with two components that have ended leave of their velocities, by the jump of least change: if they begin
+  // again, their directions are new ones.
+  void stop_ended_slips();
   // Velocities within round-off of those that the motion had are zero, and so are coordinates: where the modes leave no
   // motion, the remainders would contradict each other.
   void come_to_rest();
@@ -40,6 +45,8 @@ struct TouchingBodies {
   void add_to_velocities(const std::vector<long double>& jump);
   // The jump of least change that gives a contact the slip velocity v along d.
   void set_slip(std::size_t c, const std::array<long double, 2>& d, long double v);
+  // A slip with two components that begins below its `rest` ends below half of what it begins with: it would never pass the other.
+  void bound_rest();
   // A slip that begins where the friction that holds has become too large begins against this friction, which is that of
   // the mode before: resistance to rolling turns it.
   void against_friction(ContactProblem& p, std::size_t c) const;
@@ -51,6 +58,9 @@ struct TouchingBodies {
   // is none, whatever the residuals of its equations.
   std::optional<std::string> contradiction() const;
 
+  // Takes back velocities that are left over, but of which a constraint has terms among those of velocities that stay: without
+  // them it would not hold.
+  void keep_what_constraints_need(std::vector<bool>& left_over) const;
   // The largest slip velocity of a contact that sticks, as a part of its terms.
   long double slip_of_what_sticks() const;
 

@@ -51,6 +51,17 @@ bool contracts(Expansion<long double>& point, long double t, const std::vector<l
 
 }  // namespace
 
+// The program of a copy of the system, which lives as long: faults of the program name formulas of its system.
+static std::shared_ptr<const Program> with_own_system(const System& system, const Structure& structure) {
+  struct Owned {
+    System system;
+    Program program;
+  };
+  const auto owned = std::make_shared<Owned>(Owned{system, {}});
+  owned->program = anholon::program(owned->system, structure);
+  return {owned, &owned->program};
+}
+
 std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice, const Choice& wanted,
                                          std::string& why) {
   const auto no = [&](std::string reason) {
@@ -61,7 +72,7 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
     return no("the form eliminates coordinates, whose choice holds in a part of the motion");
   const std::size_t n = s.system.coordinates, all = s.system.size(), mechanical = s.system.mechanical();
   std::unique_ptr<Dynamics> made(new Dynamics);
-  made->program_ = std::make_shared<const Program>(anholon::program(s.system, s.structure));
+  made->program_ = with_own_system(s.system, s.structure);
   Start<long double> here;
   if (const Outcome o = initial_state(s, choice, here); !o.ok()) return no(o.message);
   made->parameters_ = parameter_values<long double>(*s.model);

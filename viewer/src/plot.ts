@@ -9,7 +9,7 @@ import { exact, with_unit } from './format.ts';
 import { nearest } from './interpolate.ts';
 import { Legend, type Entry } from './legend.ts';
 import { css_rgb, theme } from './theme.ts';
-import { offset_of, power_label, powers, tick_labels, type Offset } from './ticks.ts';
+import { beside, offset_of, power_label, powers, tick_labels, type Offset } from './ticks.ts';
 
 // Where the reader points: a time, and the row of a list of times where the keyboard chose one side of a jump.
 export interface Cursor { time: number; t?: Float64Array; row?: number }
@@ -264,9 +264,10 @@ export class Plot {
       ctx.lineTo(x, bbox.top + bbox.height);
       ctx.stroke();
       const text = name.length > 24 ? `${name.slice(0, 23)}\u2026` : name, width = ctx.measureText(text).width;
-      if (x < free || x + width + 6 * pixel > bbox.left + bbox.width) continue;
-      ctx.fillText(text, x + 4 * pixel, bbox.top + 2 * pixel);
-      free = x + width + 12 * pixel;
+      const at = beside(x, width, 4 * pixel, free, bbox.left + bbox.width);
+      if (at === null) continue;
+      ctx.fillText(text, at, bbox.top + 2 * pixel);
+      free = at + width + 8 * pixel;
     }
     ctx.restore();
   }

@@ -21,7 +21,8 @@ export function tick_labels(values: (number | null)[], step: number, offset: num
     if (v === null) return '';
     if (Math.abs(v) < 1e-3 * step) return '0';
     if (plain) return v.toFixed(needed(step, digits)).replace('-', '\u2212');
-    const significant = Math.max(0, Math.min(15, Math.ceil(Math.log10(Math.abs(v) / step) - 1e-6)));
+    const exponent = Math.floor(Math.log10(step) + 1e-9), further = needed(step, -exponent) + exponent;
+    const significant = Math.max(0, Math.min(15, Math.ceil(Math.log10(Math.abs(v) / step) - 1e-6) + further));
     return v.toExponential(significant).replace(/(\.\d*?)0+e/, '$1e').replace('.e', 'e').replace('e+', 'e').replace(/-/g, '\u2212');
   });
 }
@@ -48,4 +49,11 @@ export function power_label(v: number | null): string {
   const k = Math.log10(v), up = '\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079';
   if (Math.abs(k - Math.round(k)) > 1e-6) return '';
   return `10${String(Math.round(k)).replace('-', '\u207b').replace(/\d/g, (d) => up[Number(d)])}`;
+}
+
+// Where a text beside the line at x begins: on its right, or on its left where it would pass the edge, as at the event that
+// ends a motion. Null where it has no room behind `free`.
+export function beside(x: number, width: number, gap: number, free: number, edge: number): number | null {
+  const at = x + gap + width + gap / 2 > edge ? x - gap - width : x + gap;
+  return at < free ? null : at;
 }

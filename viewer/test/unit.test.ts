@@ -11,7 +11,7 @@ import { interpolate, interval, nearest, type Input } from '../src/interpolate.t
 import { compile, type Entry } from '../src/program.ts';
 import { place, placement } from '../src/rotation.ts';
 import { SceneModel, type Pose } from '../src/scene.ts';
-import { offset_of, power_label, powers, tick_labels } from '../src/ticks.ts';
+import { beside, offset_of, power_label, powers, tick_labels } from '../src/ticks.ts';
 import { car, decimated, disc, encode, range, steady, type DiscMotion } from './samples.ts';
 
 const samples = (t: number[], f: (t: number) => number, d1?: (t: number) => number, d2?: (t: number) => number): Input => ({
@@ -221,11 +221,20 @@ test('ranges of what is in view', () => {
   assert.deepEqual(rows_within(c.t, 1, 2), [0, 3]);
 });
 
+test('the name of an event stands on the other side of its line at the edge, and where there is room', () => {
+  assert.equal(beside(100, 40, 4, -Infinity, 500), 104);
+  assert.equal(beside(100, 40, 4, 120, 500), null);
+  assert.equal(beside(500, 40, 4, 400, 500), 456);
+  assert.equal(beside(500, 40, 4, 460, 500), null);
+});
+
 test('axis labels', () => {
   assert.deepEqual(tick_labels([-0.5, 0, 0.5], 0.5, 0), ['\u22120.5', '0', '0.5']);
   assert.deepEqual(tick_labels([2.5, 5, 7.5], 2.5, 0), ['2.5', '5.0', '7.5']);
   assert.deepEqual(tick_labels([20, 40], 20, 0), ['20', '40']);
   assert.deepEqual(tick_labels([0, 1e-12, 2e-12], 1e-12, 0), ['0', '1e\u221212', '2e\u221212']);
+  assert.deepEqual(tick_labels([0, 2.5e4, 5e4, 7.5e4, 1e5], 2.5e4, 0), ['0', '2.5e4', '5e4', '7.5e4', '1e5']);
+  assert.deepEqual(tick_labels([2.5e-9, 5e-9, 1.25e-8], 2.5e-9, 0), ['2.5e\u22129', '5e\u22129', '1.25e\u22128']);
   assert.deepEqual(tick_labels([9.81, 9.81 + 2 ** -40], 2 ** -40, 9.81)[0], '0');
   assert.equal(offset_of(9.81, 9.81 + 1e-12)?.text, '9.81');
   assert.equal(offset_of(-1, 5), null);

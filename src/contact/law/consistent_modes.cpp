@@ -126,6 +126,26 @@ bool is_part(const ContactProblem& p, const ContactSolution& a, const ContactSol
   return more;
 }
 
+// Whether what touches in one of two solutions stays closed in both.
+bool same_gaps_closed(const ContactProblem& p, const ContactSolution& a, const ContactSolution& b, Real free) {
+  for (std::size_t c = 0; c < a.modes.size(); ++c) {
+    const ContactRows& rows = p.contacts[c];
+    if (rows.under || (a.modes[c].touch == Touch::open) == (b.modes[c].touch == Touch::open)) continue;
+    const ContactSolution& open = a.modes[c].touch == Touch::open ? a : b;
+    const Real size = largest(rows.normal) * std::max(largest(open.x), free) + std::abs(rows.normal_rate);
+    if (std::abs(dot(rows.normal, open.x) + rows.normal_rate) > kSame * size) return false;
+  }
+  return true;
+}
+
+// Whether the loads of a have less that exerts nothing along the gaps than those of b, of contacts that touch in one of them.
+bool takes_less(const ContactProblem& p, const ContactSolution& a, const ContactSolution& b) {
+  std::vector<std::size_t> list;
+  for (std::size_t c = 0; c < p.contacts.size(); ++c)
+    if (!p.contacts[c].under && (a.modes[c].touch != Touch::open || b.modes[c].touch != Touch::open)) list.push_back(c);
+  return load_without_effect(p, list, a) < load_without_effect(p, list, b);
+}
+
 // Resistance is open where its contact is, unless a given force presses it.
 bool possible(const ContactProblem& p, const ContactModes& modes) {
   for (std::size_t c = 0; c < modes.size(); ++c)
@@ -163,9 +183,12 @@ class Solutions {
     return std::nullopt;
   }
   bool slips_by_round_off(const ContactSolution& f) const { return anholon::slips_by_round_off(p_, f, free_); }
+  // Solutions in which the same gaps stay closed differ in the loads of contacts that hold them together: the least are taken.
   void add(const ContactSolution& f) {
     if (known(f)) return;
-    std::erase_if(list_, [&](const ContactSolution& o) { return is_part(p_, o, f, free_); });
+    std::erase_if(list_, [&](const ContactSolution& o) {
+      return is_part(p_, o, f, free_) || (same_gaps_closed(p_, o, f, free_) && takes_less(p_, f, o));
+    });
     list_.push_back(f);
   }
 
@@ -177,7 +200,7 @@ class Solutions {
       Real difference = 0;
       for (std::size_t i = 0; i < o.x.size(); ++i) difference = std::max(difference, std::abs(o.x[i] - f.x[i]));
       return difference <= 100 * kSame * std::max({largest(o.x), largest(f.x), free_}) || !alternatives(o, f) ||
-             is_part(p_, f, o, free_);
+             is_part(p_, f, o, free_) || (same_gaps_closed(p_, o, f, free_) && !takes_less(p_, f, o));
     });
   }
 
@@ -203,7 +226,7 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
     count *= each.back().size();
   }
   Solutions solutions(p);
-  // By what touches: whether the principle of least constraint has found a solution.
+  // By what touches: whether a solution is found.
   std::map<std::vector<bool>, bool> found;
   for (std::size_t k = 0; k < count; ++k) {
     ContactModes modes;
@@ -219,7 +242,9 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
       if (const auto guess = modes_of_least_constraint(p, touches))
         if (const auto f = solutions.settle(*guess)) at->second = true, solutions.add(*f);
     if (at->second) continue;
-    if (const auto f = solutions.judge(modes); f && !solutions.slips_by_round_off(*f)) solutions.add(*f);
+    // A second solution with the same contacts is none beside it.
+    if (const auto f = solutions.judge(modes); f && !solutions.slips_by_round_off(*f))
+      at->second = true, solutions.add(*f);
   }
   return solutions.list();
 }

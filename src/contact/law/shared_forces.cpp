@@ -22,13 +22,18 @@ class GramSchmidt {
  public:
   explicit GramSchmidt(std::size_t most) : most_(most) {}
 
-  // What of a row no earlier one holds, as a part of it.
-  long double left_of(const Numbers& row) const {
+  // What of a row no earlier one holds.
+  Numbers rest_of(const Numbers& row) const {
     Numbers v = row;
     for (const Numbers& direction : directions_) {
       const Real d = dot(v, direction);
       for (std::size_t i = 0; i < v.size(); ++i) v[i] -= d * direction[i];
     }
+    return v;
+  }
+  // The same as a part of it.
+  long double left_of(const Numbers& row) const {
+    const Numbers v = rest_of(row);
     return std::sqrt(dot(v, v) / dot(row, row));
   }
 
@@ -276,6 +281,27 @@ void share_forces(const ContactProblem& p, ContactModes& modes) {
   const auto touches = [](const ContactMode& m) { return m.touch != Touch::open; };
   if (std::none_of(modes.begin(), modes.end(), touches)) return;
   Sharing(p, modes, in_order(modes.size())).weigh(Numbers(modes.size(), 1));
+}
+
+long double load_without_effect(const ContactProblem& p, const std::vector<std::size_t>& contacts,
+                                const ContactSolution& f) {
+  // Of the rows, as columns with one number of each contact, what the constraints leave.
+  GramSchmidt constraints(p.beta.size() + contacts.size());
+  for (const Numbers& r : p.Phi) constraints.add(r);
+  std::vector<Numbers> rows;
+  for (const std::size_t c : contacts) rows.push_back(constraints.rest_of(p.contacts[c].normal));
+  GramSchmidt columns(p.b.size());
+  Real size = 0;
+  for (const Numbers& r : rows) size = std::max(size, largest(r));
+  for (std::size_t i = 0; i < p.b.size(); ++i) {
+    Numbers column;
+    for (const Numbers& r : rows) column.push_back(r[i]);
+    if (largest(column) > kSame * size) columns.add(column);
+  }
+  Numbers loads;
+  for (const std::size_t c : contacts) loads.push_back(f.modes[c].touch == Touch::open ? 0 : f.normal[c]);
+  const Numbers rest = columns.rest_of(loads);
+  return std::sqrt(dot(rest, rest));
 }
 
 std::optional<ContactSolution> distributed(const ContactProblem& p, const ContactSolution& equal) {

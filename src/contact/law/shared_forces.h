@@ -13,6 +13,10 @@ namespace anholon {
 // each its part of the forces that hold: to gaps the least loads, to friction its part by equal creep.
 void share_forces(const ContactProblem& problem, ContactModes& modes);
 
+// The size of the part of the loads of these contacts that exerts nothing along their gaps, which is zero for the least loads.
+long double load_without_effect(const ContactProblem& problem, const std::vector<std::size_t>& contacts,
+                                const ContactSolution& solution);
+
 // The solution of modes that share friction with the distribution above, and what it spares. Returns nullopt if the
 // equations are singular.
 std::optional<ContactSolution> distributed(const ContactProblem& problem, const ContactSolution& equal);

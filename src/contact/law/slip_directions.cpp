@@ -21,19 +21,89 @@ bool has_direction_to_find(const ContactRows& rows, const ContactMode& mode) {
   return mode.touch == Touch::slips && !rows.moves && rows.tangential.size() == 2 && rows.rough;
 }
 
+// The loads and the slip rates of contacts whose slips begin, for any directions of them: both are linear in their friction, which
+// the loads determine.
+class BeginningSlips {
+ public:
+  BeginningSlips(const ContactProblem& p, const ContactModes& modes) : p_(p) {
+    ContactProblem without = p;
+    for (std::size_t c = 0; c < modes.size(); ++c)
+      if (has_direction_to_find(p.contacts[c], modes[c])) list_.push_back(c), without.contacts[c].friction = 0;
+    const auto f = of_modes(without, modes);
+    if (!f) return;
+    const Real force = size_of_forces(p, *f);
+    const auto loads_and_rates = [&](const ContactSolution& of) {
+      Numbers values;
+      for (const std::size_t c : list_) {
+        const auto v = slip_rate(p.contacts[c], of.x);
+        values.insert(values.end(), {of.normal[c], v[0], v[1]});
+      }
+      return values;
+    };
+    without_ = loads_and_rates(*f);
+    for (const std::size_t c : list_)
+      for (const Numbers& t : p.contacts[c].tangential) {
+        for (std::size_t i = 0; i < p.b.size(); ++i) without.b[i] = p.b[i] - force * t[i];
+        const auto pushed = of_modes(without, modes);
+        if (!pushed) return;
+        by_.push_back(loads_and_rates(*pushed));
+        for (std::size_t i = 0; i < without_.size(); ++i) by_.back()[i] = (by_.back()[i] - without_[i]) / force;
+      }
+    exist_ = true;
+  }
+
+  const std::vector<std::size_t>& list() const { return list_; }
+
+  // Puts in the directions of modes; returns false if the loads are not determined.
+  bool with(const ContactModes& modes) {
+    if (!exist_) return false;
+    const std::size_t n = list_.size();
+    // What a unit of each load exerts by its friction.
+    std::vector<Numbers> rubs(n);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Real mu = p_.contacts[list_[k]].friction;
+      const auto& d = modes[list_[k]].direction;
+      for (std::size_t i = 0; i < without_.size(); ++i)
+        rubs[k].push_back(-mu * (d[0] * by_[2 * k][i] + d[1] * by_[2 * k + 1][i]));
+    }
+    PivotedEquations m(n);
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t k = 0; k < n; ++k) m[j][k] = (j == k ? 1 : 0) - rubs[k][3 * j];
+      m.right()[j] = without_[3 * j];
+    }
+    const auto loads = m.solve();
+    if (!loads) return false;
+    now_ = without_;
+    for (std::size_t k = 0; k < n; ++k)
+      for (std::size_t i = 0; i < now_.size(); ++i) now_[i] += (*loads)[k] * rubs[k][i];
+    return true;
+  }
+  // Of contact k of the list.
+  Real load(std::size_t k) const { return now_[3 * k]; }
+  std::array<Real, 2> rate(std::size_t k) const { return {now_[3 * k + 1], now_[3 * k + 2]}; }
+
+ private:
+  const ContactProblem& p_;
+  std::vector<std::size_t> list_;
+  bool exist_ = false;
+  Numbers without_, now_;    // load and two rates of each contact, without their friction and with it
+  std::vector<Numbers> by_;  // by a unit of each component of friction
+};
+
 // The direction of one slip that begins with two components, with those of the others as they are: the angle at which its
 // rate has no part across. Where the slip hardly accelerates, the rate turns much faster than the direction, and the fixed
 // point repels; the secant method finds it, or else bisection between angles all around.
 class DirectionSearch {
  public:
-  DirectionSearch(const ContactProblem& p, ContactModes& modes, std::size_t contact)
-      : p_(p), modes_(modes), contact_(contact), first_(modes[contact].direction) {}
+  // `place`: of the contact in the list of those that begin to slip.
+  DirectionSearch(BeginningSlips& slips, ContactModes& modes, std::size_t place)
+      : slips_(slips), modes_(modes), place_(place), contact_(slips.list()[place]), first_(modes[contact_].direction) {}
 
-  // Leaves the direction in the modes; nullopt if no angle is found.
-  std::optional<ContactSolution> find() {
-    if (secant() || around()) return f_;
+  // Leaves the direction in the modes; returns false, and leaves the first one, if no angle is found.
+  bool find() {
+    if (secant() || around()) return true;
     modes_[contact_].direction = first_;
-    return std::nullopt;
+    return false;
   }
 
  private:
@@ -43,16 +113,16 @@ class DirectionSearch {
     auto& d = modes_[contact_].direction;
     d = {first_[0] * std::cos(angle) - first_[1] * std::sin(angle),
          first_[1] * std::cos(angle) + first_[0] * std::sin(angle)};
-    f_ = of_modes(p_, modes_);
-    if (!f_) return std::numeric_limits<Real>::quiet_NaN();
-    v_ = slip_rate(p_.contacts[contact_], f_->x);
+    determined_ = slips_.with(modes_);
+    if (!determined_) return std::numeric_limits<Real>::quiet_NaN();
+    v_ = slips_.rate(place_);
     return v_[1] * d[0] - v_[0] * d[1];
   }
 
   // Whether the contact is pressed and slips along its direction, at the angle that was tried last.
   bool slips() const {
     const auto& d = modes_[contact_].direction;
-    return f_ && f_->normal[contact_] >= 0 && v_[0] * d[0] + v_[1] * d[1] > 0;
+    return determined_ && slips_.load(place_) >= 0 && v_[0] * d[0] + v_[1] * d[1] > 0;
   }
 
   bool secant() {
@@ -67,32 +137,33 @@ class DirectionSearch {
     return false;
   }
 
+  // A slip that hardly begins does so at angles very near to one of them only.
   bool around() {
-    constexpr int kParts = 48, kHalves = 70;
+    constexpr int kParts = 48;
     const Real part = 2 * std::acos(-1.0L) / kParts;
     Real a = 0, fa = across(a);
-    bool slips_at_a = slips();
     for (int k = 1; k <= kParts; ++k) {
-      Real b = k * part, fb = across(b);
-      const bool slips_at_b = slips();
-      if ((slips_at_a || slips_at_b) && (fa < 0) != (fb < 0)) {
-        Real low = a, high = b;
-        for (int h = 0; h < kHalves; ++h) {
-          const Real middle = low + (high - low) / 2, fm = across(middle);
-          ((fm < 0) == (fa < 0) ? low : high) = middle;
-        }
-        if (std::abs(across(low)) <= kFound * std::hypot(v_[0], v_[1]) && slips()) return true;
-      }
-      a = b, fa = fb, slips_at_a = slips_at_b;
+      const Real b = k * part, fb = across(b);
+      if (std::isfinite(fa) && std::isfinite(fb) && (fa < 0) != (fb < 0) && slips_between(a, fa, b)) return true;
+      a = b, fa = fb;
     }
     return false;
   }
 
-  const ContactProblem& p_;
+  bool slips_between(Real low, Real f_low, Real high) {
+    constexpr int kHalves = 70;
+    for (int h = 0; h < kHalves; ++h) {
+      const Real middle = low + (high - low) / 2;
+      ((across(middle) < 0) == (f_low < 0) ? low : high) = middle;
+    }
+    return std::abs(across(low)) <= kFound * std::hypot(v_[0], v_[1]) && slips();
+  }
+
+  BeginningSlips& slips_;
   ContactModes& modes_;
-  std::size_t contact_;
+  std::size_t place_, contact_;
   std::array<Real, 2> first_;
-  std::optional<ContactSolution> f_;
+  bool determined_ = false;
   std::array<Real, 2> v_{};
 };
 
@@ -100,14 +171,14 @@ class DirectionSearch {
 // Newton's method with differences.
 class DirectionsTogether {
  public:
-  DirectionsTogether(const ContactProblem& p, const ContactModes& modes, const std::vector<std::size_t>& list)
-      : p_(p), modes_(modes), list_(list), first_(modes) {}
+  DirectionsTogether(BeginningSlips& slips, const ContactModes& modes)
+      : slips_(slips), modes_(modes), list_(slips.list()), first_(modes) {}
 
-  std::optional<ContactSolution> find() {
+  std::optional<ContactModes> find() {
     constexpr int kMost = 40;
     Numbers angles(list_.size(), 0), F = across(angles);
-    for (int k = 0; k < kMost && f_; ++k) {
-      if (found()) return f_;
+    for (int k = 0; k < kMost && determined_; ++k) {
+      if (found()) return modes_;
       const auto change = newton(angles, F);
       if (!change || !improve(angles, F, *change)) return std::nullopt;
     }
@@ -121,12 +192,12 @@ class DirectionsTogether {
       const Real cosine = std::cos(angles[i]), sine = std::sin(angles[i]);
       modes_[list_[i]].direction = {d[0] * cosine - d[1] * sine, d[1] * cosine + d[0] * sine};
     }
-    f_ = of_modes(p_, modes_);
+    determined_ = slips_.with(modes_);
     Numbers F;
     along_.clear();
-    for (const std::size_t c : list_) {
-      const auto v = f_ ? slip_rate(p_.contacts[c], f_->x) : std::array<Real, 2>{};
-      const auto& d = modes_[c].direction;
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      const auto v = determined_ ? slips_.rate(i) : std::array<Real, 2>{};
+      const auto& d = modes_[list_[i]].direction;
       F.push_back(v[1] * d[0] - v[0] * d[1]);
       along_.push_back(v[0] * d[0] + v[1] * d[1]);
     }
@@ -136,8 +207,8 @@ class DirectionsTogether {
   bool found() const {
     constexpr Real kFound = 1e-9L;
     for (std::size_t i = 0; i < list_.size(); ++i) {
-      const auto v = slip_rate(p_.contacts[list_[i]], f_->x);
-      if (!(along_[i] > 0) || f_->normal[list_[i]] < 0 ||
+      const auto v = slips_.rate(i);
+      if (!(along_[i] > 0) || slips_.load(i) < 0 ||
           !(std::hypot(v[0], v[1]) - along_[i] <= kFound * kFound * along_[i]))
         return false;
     }
@@ -151,7 +222,7 @@ class DirectionsTogether {
       Numbers turned = angles;
       turned[j] += kStep;
       const Numbers there = across(turned);
-      if (!f_) return std::nullopt;
+      if (!determined_) return std::nullopt;
       for (std::size_t i = 0; i < list_.size(); ++i) m[i][j] = (there[i] - F[i]) / kStep;
     }
     m.right() = F;
@@ -167,7 +238,7 @@ class DirectionsTogether {
       Numbers next = angles;
       for (std::size_t i = 0; i < next.size(); ++i) next[i] -= part * change[i];
       const Numbers there = across(next);
-      if (!f_ || !(largest(there) <= largest(F))) continue;
+      if (!determined_ || !(largest(there) <= largest(F))) continue;
       angles = std::move(next), F = there;
       return true;
     }
@@ -175,60 +246,51 @@ class DirectionsTogether {
     return false;
   }
 
-  const ContactProblem& p_;
+  BeginningSlips& slips_;
   ContactModes modes_;
   const std::vector<std::size_t>& list_;
   const ContactModes first_;
-  std::optional<ContactSolution> f_;
+  bool determined_ = false;
   Numbers along_;  // the parts of the slip rates along the directions
 };
 
-// The directions of slips that begin, by the two ways above: each with the others as they are until none turns.
-std::optional<ContactSolution> with_searched_directions(const ContactProblem& p, ContactModes modes) {
+// The modes with the directions of slips that begin, by the two ways above: each with the others as they are until none turns.
+std::optional<ContactModes> with_searched_directions(BeginningSlips& slips, ContactModes modes) {
   constexpr int kMost = 60;
   constexpr Real kSettled = 1e-12L;
-  std::vector<std::size_t> list;
-  for (std::size_t c = 0; c < modes.size(); ++c)
-    if (has_direction_to_find(p.contacts[c], modes[c])) list.push_back(c);
-  std::optional<ContactSolution> f;
+  const std::vector<std::size_t>& list = slips.list();
   if (list.size() > 1)
-    if (f = DirectionsTogether(p, modes, list).find(); f) return f;
+    if (auto found = DirectionsTogether(slips, modes).find()) return found;
   for (int k = 0; k < kMost; ++k) {
     Real change = 0;
-    for (const std::size_t c : list) {
-      const std::array<Real, 2> before = modes[c].direction;
-      f = DirectionSearch(p, modes, c).find();
-      if (!f) return f;
-      change = std::max(change, std::hypot(modes[c].direction[0] - before[0], modes[c].direction[1] - before[1]));
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const std::array<Real, 2> before = modes[list[i]].direction;
+      if (!DirectionSearch(slips, modes, i).find()) return std::nullopt;
+      const std::array<Real, 2>& now = modes[list[i]].direction;
+      change = std::max(change, std::hypot(now[0] - before[0], now[1] - before[1]));
     }
-    if (list.size() < 2 || change <= kSettled) return f;
+    if (list.size() < 2 || change <= kSettled) return modes;
   }
   return std::nullopt;
 }
 
-}  // namespace
-
-std::optional<ContactSolution> with_directions(const ContactProblem& p, ContactModes modes, long double free) {
+// Leaves the fixed point of the directions in the modes. Returns whether it is one of forces that push: beside it there may be
+// one of forces that pull.
+bool find_fixed_point(const ContactProblem& p, BeginningSlips& slips, ContactModes& modes, Real free) {
   // From kPlain on the steps are damped, as they may go to and fro about the fixed point.
   constexpr int kMost = 400, kPlain = 30, kSlow = 100;
   constexpr Real kFound = 1e-17L, kNear = 1e-9L;
-  const ContactModes first = modes;
-  // A fixed point may be one of a force that pulls, beside one of a force that pushes.
-  const auto pressed = [&](const ContactSolution& f) {
-    for (std::size_t c = 0; c < modes.size(); ++c)
-      if (has_direction_to_find(p.contacts[c], first[c]) && f.normal[c] < 0) return false;
-    return true;
-  };
   Real change = 0;
   for (int k = 0; k < kMost; ++k) {
-    auto f = of_modes(p, modes);
-    if (!f) return f;
+    if (!slips.with(modes)) return false;
     change = 0;
+    bool pressed = true;
     const Real step = k < kPlain ? 1 : k < kSlow ? 0.5L : 0.1L;
-    for (std::size_t c = 0; c < modes.size(); ++c) {
+    for (std::size_t i = 0; i < slips.list().size(); ++i) {
+      const std::size_t c = slips.list()[i];
+      pressed = pressed && slips.load(i) >= 0;
       const ContactRows& rows = p.contacts[c];
-      if (!has_direction_to_find(rows, modes[c])) continue;
-      const auto v = slip_rate(rows, f->x);
+      const auto v = slips.rate(i);
       const Real size = std::hypot(v[0], v[1]),
                  terms = std::max(largest(rows.tangential[0]), largest(rows.tangential[1]));
       if (!(size > kSame * terms * free)) continue;
@@ -239,10 +301,24 @@ std::optional<ContactSolution> with_directions(const ContactProblem& p, ContactM
       const Real length = std::hypot(next[0], next[1]);
       if (length > 0) d = {next[0] / length, next[1] / length};
     }
-    if (change <= kFound) return pressed(*f) ? f : with_searched_directions(p, first);
+    if (change <= kFound) return pressed;
   }
-  if (change > kNear) return with_searched_directions(p, first);
-  return of_modes(p, modes);
+  return change <= kNear;
+}
+
+}  // namespace
+
+std::optional<ContactSolution> with_directions(const ContactProblem& p, ContactModes modes, long double free) {
+  const auto begins = [&](std::size_t c) { return has_direction_to_find(p.contacts[c], modes[c]); };
+  bool any = false;
+  for (std::size_t c = 0; c < modes.size(); ++c) any = any || begins(c);
+  if (!any) return of_modes(p, modes);
+  BeginningSlips slips(p, modes);
+  const ContactModes first = modes;
+  if (find_fixed_point(p, slips, modes, free)) return of_modes(p, modes);
+  const auto found = with_searched_directions(slips, first);
+  if (!found) return std::nullopt;
+  return of_modes(p, *found);
 }
 
 }  // namespace anholon

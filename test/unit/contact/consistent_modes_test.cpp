@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -58,6 +59,108 @@ TEST(ContactLaw, BlockThatIsLiftedOpens) {
   const auto list = consistent_modes(p);
   ASSERT_EQ(list.size(), 1U);
   EXPECT_EQ(list[0].modes[0].touch, Touch::open);
+}
+
+// Contacts at rest in space, of coordinates in which the mass matrix is 1, with rates without forces.
+static ContactProblem at_rest_in_space(const std::vector<std::vector<long double>>& rows,
+                                       const std::vector<long double>& rates, long double friction) {
+  ContactProblem p;
+  const std::size_t n = rows[0].size();
+  p.A.assign(n, std::vector<long double>(n, 0));
+  for (std::size_t i = 0; i < n; ++i) p.A[i][i] = 1;
+  p.b.assign(n, 0);
+  for (std::size_t k = 0; k < rows.size(); k += 3) {
+    ContactRows c;
+    c.normal = rows[k];
+    c.tangential = {rows[k + 1], rows[k + 2]};
+    c.normal_rate = rates[k];
+    c.tangential_rate = {rates[k + 1], rates[k + 2]};
+    c.friction = c.static_friction = friction;
+    c.rough = true;
+    c.direction = {1, 0};
+    p.contacts.push_back(std::move(c));
+  }
+  return p;
+}
+
+// The corner of a box that hardly slips: only at angles very near to that of the slip does its rate have this direction. The
+// forces are those of an iteration that projects them on the cone of friction.
+TEST(ContactLaw, SlipThatHardlyBeginsIsFound) {
+  const auto list = consistent_modes(at_rest_in_space({{-2.401L, 0, 0}, {0.346L, 1.964L, 0}, {0.624L, -0.735L, 1.151L}},
+                                                      {-10, 0.875L, 0.26L}, 0.892L));
+  ASSERT_EQ(list.size(), 1U);
+  EXPECT_EQ(list[0].modes[0].touch, Touch::slips);
+  EXPECT_NEAR(static_cast<double>(list[0].normal[0]), 2.3573894314911823, 1e-14);
+  EXPECT_NEAR(static_cast<double>(list[0].modes[0].direction[0]), -0.004068133078026337 / 0.00990943, 1e-5);
+}
+
+// A rigid body that rests on one corner is struck at another one. Contacts at rest have a solution for each friction.
+TEST(ContactLaw, BodyThatRestsOnOneCornerIsStruckAtAnother) {
+  std::mt19937 random(5);
+  const auto number = [&](long double from, long double to) {
+    return from + (to - from) * static_cast<long double>(random()) / 4294967296.0L;
+  };
+  for (int k = 0; k < 200; ++k) {
+    std::array<long double, 3> root;
+    for (long double& r : root) r = number(1, 8);
+    const long double height = number(0.05L, 0.5L);
+    std::vector<std::vector<long double>> rows;
+    for (int c = 0; c < 2; ++c) {
+      const long double x = number(-0.5L, 0.5L), y = number(-0.5L, 0.5L), z = -height;
+      rows.push_back({0, 0, 1, y * root[0], -x * root[1], 0});
+      rows.push_back({1, 0, 0, 0, z * root[1], -y * root[2]});
+      rows.push_back({0, 1, 0, -z * root[0], 0, x * root[2]});
+    }
+    const auto list = consistent_modes(
+        at_rest_in_space(rows, {-1, number(-0.02L, 0.02L), number(-0.02L, 0.02L), 0, 0, 0}, k % 2 == 0 ? 0.9L : 0.6L));
+    EXPECT_EQ(list.size(), 1U) << k;
+  }
+}
+
+// A box of mass 1 that slides on one of its faces and turns. Its loads have one part that exerts nothing along the gaps; friction
+// makes the motion depend on it, and the least part is taken.
+static ContactProblem sliding_box(const std::array<long double, 3>& half, const std::array<long double, 3>& v,
+                                  long double friction) {
+  ContactProblem p;
+  p.A.assign(6, std::vector<long double>(6, 0));
+  for (std::size_t i = 0; i < 3; ++i) {
+    p.A[i][i] = 1;
+    p.A[3 + i][3 + i] = (half[0] * half[0] + half[1] * half[1] + half[2] * half[2] - half[i] * half[i]) / 3;
+  }
+  p.b = {0, 0, 10, 0, 0, 0};
+  for (int corner = 0; corner < 4; ++corner) {
+    const long double x = corner < 2 ? -half[0] : half[0], y = corner % 2 == 0 ? -half[1] : half[1], z = -half[2];
+    ContactRows c;
+    c.normal = {0, 0, 1, y, -x, 0};
+    c.tangential = {{1, 0, 0, 0, z, -y}, {0, 1, 0, -z, 0, x}};
+    const long double u[] = {v[0] - v[2] * y, v[1] + v[2] * x}, size = std::hypot(u[0], u[1]);
+    c.direction = {u[0] / size, u[1] / size};
+    c.friction = c.static_friction = friction;
+    c.rough = c.moves = true;
+    p.contacts.push_back(std::move(c));
+  }
+  return p;
+}
+
+TEST(ContactLaw, BoxThatSlidesOnItsFaceHasOneMotion) {
+  std::mt19937 random(3);
+  const auto number = [&](long double from, long double to) {
+    return from + (to - from) * static_cast<long double>(random()) / 4294967296.0L;
+  };
+  std::size_t on_three = 0;
+  for (int k = 0; k < 400; ++k) {
+    const std::array<long double, 3> half{number(0.1L, 0.5L), number(0.1L, 0.5L), number(0.1L, 0.3L)};
+    const std::array<long double, 3> v{number(-1, 1), number(-1, 1), number(-5, 5)};
+    const auto list = consistent_modes(sliding_box(half, v, number(0.1L, 0.9L)));
+    ASSERT_EQ(list.size(), 1U) << k;
+    const auto& N = list[0].normal;
+    // The part without effect has the sum of opposite corners against that of the others.
+    const long double part = std::abs(N[0] - N[1] - N[2] + N[3]);
+    if (part < 1e-12L) continue;
+    ++on_three;
+    EXPECT_TRUE(N[0] == 0 || N[1] == 0 || N[2] == 0 || N[3] == 0) << k;
+  }
+  EXPECT_GT(on_three, 5U);
 }
 
 // An impact in space on one contact has a solution for every friction (the rows are independent): the directions of slip
