@@ -53,7 +53,7 @@ void StepEnd<N>::set_slots(std::uint32_t end) {
 
 template <Number N>
 void StepEnd<N>::restart() {
-  short_kinks_ = 0;
+  short_kinks_ = met_again_ = 0;
   finish();
 }
 
@@ -180,10 +180,23 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
     refused = true;
   }
   at_kink_ = kink.at_start || kink.ahead;
+  met_again_ = at_kink_ && !(abs(where) > past * W(4)) ? met_again_ + 1 : 0;
   if (Outcome o = note_kink(kink.at_start, where, past); !o.ok() || !at_kink_) return o;
-  const W to = beyond(step, events, kink, where, past, forward);
+  const W to = beyond(step, events, kink, where, length_past(step, where, past, forward), forward);
   if (abs(to) < abs(h)) h = to, ++kinks_;
   return {};
+}
+
+// How far a step goes beyond a kink. A motion that begins at rest at a kink leaves it with the square of the time, and is
+// not past it by what the state resolves after a step as short as `past`: the kink is met again. Steps then grow, while
+// the equations hold at their ends.
+template <Number N>
+Wider<N> StepEnd<N>::length_past(PresentStep<N>& step, const W& where, const W& past, bool forward) {
+  constexpr double kLonger = 4;
+  if (!meets_again() || step.expander.kernel()) return past;
+  const W longer = past * W(std::pow(kLonger, met_again_ - 1)), h = where + (forward ? longer : W(-longer));
+  const N length = convert<N>(h);
+  return check_.passes_at_once(defect(step, h), length) ? longer : past;
 }
 
 // What the deciding slot passes, in the wider numbers.
@@ -241,7 +254,7 @@ void StepEnd<N>::set_free(const W& h) {
 
 template <Number N>
 void StepEnd<N>::set_one_sided() {
-  short_kinks_ = 0;
+  short_kinks_ = met_again_ = 0;
   at_kink_ = true;
   ++kinks_;
 }

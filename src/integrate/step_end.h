@@ -41,6 +41,9 @@ class StepEnd {
   // Whether the next step may be made without this class: nothing is left to be looked at of the one before.
   bool idle() const { return short_kinks_ == 0 && limit_ == W(0); }
   bool passes_at_once(const N& rate, const N& h) const { return check_.passes_at_once(rate, h); }
+  // Whether the step and the one before are cut by a kink at their start: the reference makes the next one, which looks at
+  // the ends of such steps.
+  bool meets_again() const { return met_again_ > 1; }
   // The step has no kink; its end is looked at. Or it begins at one.
   void set_free(const W& h);
   void set_one_sided();
@@ -62,6 +65,7 @@ class StepEnd {
     std::uint32_t slot;
     Hiding function;
   };
+  W length_past(PresentStep<N>& step, const W& where, const W& past, bool forward);
   // Where a step ends that meets the kink; `past`: what makes sure that it is past one.
   W beyond(PresentStep<N>& step, const EventWatch<N>& events, const Kink<N>& kink, const W& where, const W& past,
            bool forward) const;
@@ -89,7 +93,8 @@ class StepEnd {
   W looked_{0};  // how far the equations are looked at: to its end, or shortly before a kink; 0 where they are not
   W sent_{0};    // how far the kernel was sent to look
   std::size_t kinks_ = 0, kinks_before_ = 0;
-  int short_kinks_ = 0;  // steps in a row that were cut by a kink at their very start
+  int short_kinks_ = 0;  // steps in a row that were cut by a kink shortly after their start
+  int met_again_ = 0;    // steps in a row that were cut by a kink at their start or shortly after it
 };
 
 extern template class StepEnd<double>;

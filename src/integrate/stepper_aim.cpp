@@ -82,6 +82,7 @@ bool Stepper<N>::aim_with_care(const W& end) {
   if (!(h < abs(left))) h = abs(left);
   if (!forward) h = -h;
   if (Outcome o = end_.shorten(step, events_, h, whole); !o.ok()) return fail(std::move(o));
+  if (end_.meets_again()) record().careful = true;
   if (!shorten_at_singular_point(h, floor)) return fail(becomes_singular());
   shorten_at_event(h, end_.kink());
   // The step that t can show exactly: otherwise the time loses a round-off at every step.

@@ -105,7 +105,8 @@ void OrdinarySteps::go() {
 bool OrdinarySteps::arrives() const {
   const double *defect = kernel_->finding(&Findings::defect), *largest = kernel_->finding(&Findings::largest);
   for (std::size_t i = 0; i < lanes_.size(); ++i)
-    if (lanes_[i].sign != 0 && !(check_.passes_at_once(defect[i], lanes_[i].length) && largest[i] < kBlowUp)) return false;
+    if (lanes_[i].sign != 0 && !(check_.passes_at_once(defect[i], lanes_[i].length) && largest[i] < kBlowUp))
+      return false;
   return true;
 }
 

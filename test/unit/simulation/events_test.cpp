@@ -369,6 +369,34 @@ TEST(Kinks, AreThoseOfTheReferenceIfAKernelMakesTheSteps) {
   }
 }
 
+// From rest at the height of a kink z = 1 - t^2/2: what acts along x is known on the side to which the motion goes, and the
+// height leaves that of the kink by less than it resolves for a time.
+TEST(Kinks, OfAMotionAtRestAreLeft) {
+  for (const auto& [force, x] : {std::pair{"lines(z)", 1 - 1 / 12.0},
+                                 {"abs(z - 1)", 1 / 24.0},
+                                 {"1 - min(z, 1)", 1 / 24.0},
+                                 {"piecewise(z < 1, 1 - z, 2 - 2*z)", 1 / 24.0}}) {
+    const std::string text = std::string(R"(coordinates = ["x", "z"]
+table = [{name = "lines", x = [0, 1, 2], y = [0, 2, -1]}]
+particle = [{name = "p", mass = 1, position = "x*ex + z*ez"}]
+gravity.field = "-ez"
+force = [{on = "p", vector = "()") +
+                             force + R"()*ex"}]
+initial = {z = 1}
+)";
+    for (const bool kernel : {true, false}) {
+      const Result r = run(text, 1, "1/1000000000000", [&](SimulationOptions& o) {
+        o.kernel = kernel;
+        o.method = Method::taylor;
+        o.at = {1};
+      });
+      ASSERT_TRUE(r.report.outcome.ok()) << force << ": " << r.report.outcome.message;
+      EXPECT_NEAR(std::stod(r.rows.rows()[0][1]), x, 1e-13) << force;
+      EXPECT_LE(r.report.steps, 9U) << force;
+    }
+  }
+}
+
 TEST(Kinks, LeaveTheStepsToTheKernel) {
   for (const char* force :
        {"-abs(a)", "piecewise(a' > 1, 2, sin(t))", "sign(cos(3*t))", "curves(t)", "lines(2 + a')"}) {
