@@ -34,15 +34,18 @@ std::vector<std::string> external_forces(const Model& model) {
 
 std::vector<StateEntry> higher_state(const Scenario& s) {
   std::vector<StateEntry> list;
+  for (std::size_t i = 0; i < s.state.states.size(); ++i)
+    list.push_back({s.model->states[i].name, s.state.states[i], s.state.states_origin[i]});
   if (!s.routh) return list;
   for (int k = 0; k < *std::max_element(s.routh_structure.d.begin(), s.routh_structure.d.end()); ++k)
     for (std::size_t j = 0; j < s.routh->size(); ++j) {
       if (k >= s.routh_structure.d[j] || (j < s.routh->coordinates && k < 2)) continue;
       const Node n = s.routh->symbol_node(j, static_cast<unsigned>(k));
+      if (n.kind == Kind::state) continue;
       list.push_back({derivative_name(s.routh->variable_names[j], static_cast<unsigned>(k), Format::text),
                       *s.state.value(n), *s.state.origin(n), n.kind == Kind::multiplier});
     }
-  // Coordinates first, by order.
+  // States and coordinates first, by order.
   std::stable_partition(list.begin(), list.end(), [](const StateEntry& e) { return !e.multiplier; });
   return list;
 }

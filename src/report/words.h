@@ -17,7 +17,7 @@ std::string listed(const Model& model, const std::vector<std::size_t>& constrain
 // The hypothesis on the reactions: "ideal, no work in virtual displacements (d'Alembert, Lagrange)".
 const char* in_words(Hypothesis hypothesis);
 
-// An entry of the state beyond positions and velocities.
+// An entry of the state beyond positions and velocities: a state of the model, a higher derivative, a multiplier.
 struct StateEntry {
   std::string name;
   double value;
