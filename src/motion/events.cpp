@@ -56,21 +56,30 @@ const SetByEvent& Motion<N>::set_by(std::size_t event) {
   return *set;
 }
 
+// A bound that is met at the time `t`, in words.
+static Outcome beyond(const Bound& b, double t) {
+  return {OutcomeKind::not_a_number, b.fault + " at t = " + number_text(t, 12),
+          "end the motion before, give the table more knots, or outside = \"hold\" or \"linear\""};
+}
+
 template <Number N>
 Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on) {
   const std::vector<Fired<N>> fired = leg_->stepper.fired();
   const W start = leg_->stepper.before(), now = leg_->stepper.time();
   bool set = false;
   goes_on = true;
+  std::optional<N> changed;          // where an event changes or ends the motion
+  std::vector<std::size_t> touched;  // bounds that are met just there: the motion may turn back
   std::vector<W> state, parameters = parameters_;
   if (Outcome o = at(now); !o.ok()) return o;
   leg_->point.state(state);
   for (const Fired<N>& f : fired) {
     if (f.series >= s_.model->events.size()) {
-      const Bound& b = s_.model->bounds[f.series - s_.model->events.size()];
-      return {OutcomeKind::not_a_number,
-              b.fault + " at t = " + number_text(to_double(W(start + convert<W>(f.where))), 12),
-              "end the motion before, give the table more knots, or outside = \"hold\" or \"linear\""};
+      const std::size_t bound = f.series - s_.model->events.size();
+      if (!changed || f.where != *changed)
+        return beyond(s_.model->bounds[bound], to_double(W(start + convert<W>(f.where))));
+      touched.push_back(bound);
+      continue;
     }
     const Event& event = s_.model->events[f.series];
     Occurrence<W> occurrence{f.series, start + convert<W>(f.where), {}, W(0)};
@@ -79,6 +88,7 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
       if (Outcome o = set_by(f.series).put(leg_->point, state, parameters, occurrence.changes); !o.ok()) return o;
     }
     if (event.stop) goes_on = false;
+    if (event.ends_step()) changed = f.where;
     occurrences.push_back(std::move(occurrence));
   }
   if (!set) return {};
@@ -96,6 +106,10 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
   if (!o.ok()) {
     o.message = "after the event '" + s_.model->events[fired.back().series].name + "': " + o.message;
     return o;
+  }
+  for (const std::size_t i : touched) {
+    const N rate = leg_->stepper.quadrature_coefficient(quadratures_.size() + s_.model->events.size() + i, 1);
+    if (now > start ? rate < N(0) : rate > N(0)) return beyond(s_.model->bounds[i], to_double(now));
   }
   W correction(0);
   const std::vector<W>& consistent = leg_->stepper.state();

@@ -440,5 +440,22 @@ theta = 1.3
   }
 }
 
+// Impacts at t = 1 and 2 with the speeds 1 and 1/2, where the table ends; x'' = 2 z.
+TEST(ClosedForms, ABodyBouncesWhereATableEnds) {
+  const std::string text = R"toml(
+coordinates = ["x", "z"]
+table = [{name = "wind", x = [0, 1, 2], y = [0, 2, -1], outside = "error"}]
+particle = [{name = "p", mass = 1, position = "x*ex + z*ez"}]
+gravity.field = "-ez"
+force = [{on = "p", vector = "wind(z)*ex"}]
+contact = [{name = "floor", gap = "z", restitution = 0.5}]
+initial = {z = 0.5}
+)toml";
+  const auto m = contact_motion(text, Rational(3, 2), {}, {Rational(3, 2)});
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  EXPECT_NEAR(m.last("z"), 1 / 8.0, 1e-11);
+  EXPECT_NEAR(m.last("x'"), 2 / 3.0 + 1 / 12.0, 1e-11);
+}
+
 }  // namespace closed_forms_test
 }  // namespace anholon

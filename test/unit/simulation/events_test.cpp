@@ -369,6 +369,28 @@ TEST(Kinks, AreThoseOfTheReferenceIfAKernelMakesTheSteps) {
   }
 }
 
+// A table ends at the height of a floor: what bounces there stays within, what goes on does not.
+TEST(Bounds, AMotionMayTurnBackWhereATableEnds) {
+  const auto falls = [](const std::string& floor) {
+    return run(R"(coordinates = ["x", "z"]
+table = [{name = "wind", x = [0, 1, 2], y = [0, 2, -1], outside = "error"}]
+particle = [{name = "p", mass = 1, position = "x*ex + z*ez"}]
+gravity.field = "-ez"
+force = [{on = "p", vector = "wind(z)*ex"}]
+initial = {z = 0.5}
+)" + floor,
+               Rational(5, 2), "1/1000000000000", [](SimulationOptions& o) { o.at = {Rational(5, 2)}; });
+  };
+  const Result back = falls(R"(event = [{name = "floor", when = "z", direction = "down", set = {"z'" = "-z'/2"}}])");
+  ASSERT_TRUE(back.report.outcome.ok()) << back.report.outcome.message;
+  // Bounces at t = 1, 2 and 2.5 with the speeds 1/2 and 1/4.
+  EXPECT_NEAR(std::stod(back.rows.rows()[0][2]), 0, 1e-12);
+  const Result on = falls(R"(event = [{name = "slower", when = "z", direction = "down", set = {"z'" = "z'/2"}}])");
+  EXPECT_EQ(on.report.outcome.kind, OutcomeKind::not_a_number);
+  EXPECT_NE(on.report.outcome.message.find("below its first knot 0 at t = 1"), std::string::npos)
+      << on.report.outcome.message;
+}
+
 // From rest at the height of a kink z = 1 - t^2/2: what acts along x is known on the side to which the motion goes, and the
 // height leaves that of the kink by less than it resolves for a time.
 TEST(Kinks, OfAMotionAtRestAreLeft) {
