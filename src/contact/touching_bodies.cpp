@@ -89,7 +89,7 @@ void TouchingBodies::drop_left_over() {
 }
 
 void TouchingBodies::keep_what_constraints_need(std::vector<bool>& left_over) const {
-  constexpr long double kLeftOver = 1e-17L;
+  constexpr long double kOfTerms = 1e-17L;
   const std::vector<std::vector<long double>>& rows = dynamics.accelerations().Phi;
   for (bool again = true; std::exchange(again, false);)
     for (const std::vector<long double>& row : rows) {
@@ -97,7 +97,7 @@ void TouchingBodies::keep_what_constraints_need(std::vector<bool>& left_over) co
       for (std::size_t a = 0; a < row.size(); ++a)
         if (!left_over[a]) kept += std::abs(row[a] * at.qd[a]);
       for (std::size_t a = 0; a < row.size(); ++a)
-        if (left_over[a] && kept > 0 && std::abs(row[a] * at.qd[a]) > kLeftOver * kept)
+        if (left_over[a] && kept > 0 && std::abs(row[a] * at.qd[a]) > kOfTerms * kept)
           left_over[a] = false, again = true;
     }
 }
