@@ -334,17 +334,17 @@ Kernel::Kernel(std::shared_ptr<const KernelPlan> plan, int lanes, const Tier* ti
   for (const Plan::HidingSlot& slot : p.hiding)
     for (const Place& place : {slot.argument, slot.value})
       low_orders_.push_back({place.at, static_cast<std::uint32_t>(p.largest_lead) + 1});
-  // Removes overlaps.
+  // Unites parts that overlap, so that each series has all that is saved of it in one part.
   std::sort(low_orders_.begin(), low_orders_.end(), [](const LowOrders& a, const LowOrders& b) { return a.at < b.at; });
+  std::vector<LowOrders> united;
+  for (const LowOrders& low : low_orders_)
+    if (united.empty() || low.at >= united.back().at + united.back().count)
+      united.push_back(low);
+    else
+      united.back().count = std::max(united.back().count, low.at + low.count - united.back().at);
+  low_orders_ = std::move(united);
   std::size_t numbers = 0;
-  std::uint32_t end = 0;
-  for (LowOrders& low : low_orders_) {
-    const std::uint32_t to = std::max(end, low.at + low.count);
-    low.at = std::max(low.at, end);
-    low.count = to - low.at;
-    numbers += low.count;
-    end = to;
-  }
+  for (const LowOrders& low : low_orders_) numbers += low.count;
   aside_.resize(numbers * static_cast<std::size_t>(lanes_));
   if (lanes_ == 1)
     for (const LowOrders& low : low_orders_)

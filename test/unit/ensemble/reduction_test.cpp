@@ -104,6 +104,32 @@ TEST(Reduction, TheGreatestValueOfAPolynomialIsFound) {
     }
 }
 
+// x = sin t, and so many other formulas that series of several of them are parts of those of the unknowns.
+TEST(Reduction, AnyNumberOfFormulasIsFollowed) {
+  for (const int others : {0, 3, 13, 15, 20, 40}) {
+    std::vector<std::string> words{"last(x)", "mean(x)", "last(v)", "mean(v)"};
+    for (int k = 1; k <= others; ++k) words.push_back("max(x + " + std::to_string(k) + ")");
+    Sweep run(R"toml(
+coordinates = ["x", "y"]
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
+potential.V = "x^2/2"
+initial = {"x'" = 1}
+output.v = "x'"
+)toml",
+              words);
+    run.options.to = 20;
+    for (const bool kernel : {true, false}) {
+      run.options.kernel = kernel;
+      for (const CaseResult& r : run.go(9, 1)) {
+        ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
+        const double a = 0.5 + 0.01 * static_cast<double>(r.number % 100), s = std::sin(20), c = std::cos(20);
+        const double expected[] = {a * c + s, (a * s + 1 - c) / 20, c - a * s, (a * c + s - a) / 20};
+        for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(r.reduced[i], expected[i], 1e-11) << others << " " << words[i];
+      }
+    }
+  }
+}
+
 // The pendulum rises to the height of its start: y = -sqrt(l^2 - x^2). Between the ends of steps lie its lowest points.
 TEST(Reduction, ExtremesAreThoseOfTheMotion) {
   Sweep run(kPendulum, {"max(height)", "min(height)", "last(height)", "mean(x')", "max(abs(x))"});
