@@ -39,10 +39,23 @@ void Motion<N>::set_modes(const std::vector<W>& parameters) {
     if (s_.model->parameters[i].mode) narrow_parameters_[i] = convert<N>(parameters[i]);
 }
 
+// Whether the motion is beyond a bound, or on it and goes beyond it.
 template <Number N>
-Outcome Motion<N>::within_bounds() {
+bool Motion<N>::leaves(std::size_t bound, bool forward) const {
+  const Stepper<N>& stepper = leg_->stepper;
+  const std::size_t at = quadratures_.size() + s_.model->events.size() + bound;
+  const W value = stepper.quadrature(at, W(0));
+  if (value < W(0) || value > W(0)) return value < W(0);
+  for (int k = 1; k < stepper.order(); ++k)
+    if (const N c = stepper.quadrature_coefficient(at, k); c < N(0) || c > N(0))
+      return (forward || k % 2 == 0) ? c < N(0) : c > N(0);
+  return false;
+}
+
+template <Number N>
+Outcome Motion<N>::within_bounds(bool forward) {
   for (std::size_t i = 0; i < s_.model->bounds.size(); ++i)
-    if (leg_->stepper.quadrature(quadratures_.size() + s_.model->events.size() + i, W(0)) < W(0))
+    if (leaves(i, forward))
       return {OutcomeKind::not_a_number, s_.model->bounds[i].fault + " at the start",
               "give the table more knots, or outside = \"hold\" or \"linear\""};
   return {};
@@ -107,6 +120,10 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
     o.message = "after the event '" + s_.model->events[fired.back().series].name + "': " + o.message;
     return o;
   }
+  for (std::size_t i = 0; i < s_.model->bounds.size(); ++i)
+    if (leg_->stepper.quadrature(quadratures_.size() + s_.model->events.size() + i, W(0)) == W(0) &&
+        leaves(i, now > start))
+      return beyond(s_.model->bounds[i], to_double(now));
   for (const std::size_t i : touched) {
     const N rate = leg_->stepper.quadrature_coefficient(quadratures_.size() + s_.model->events.size() + i, 1);
     if (now > start ? rate < N(0) : rate > N(0)) return beyond(s_.model->bounds[i], to_double(now));
@@ -124,7 +141,8 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
 #define INSTANTIATE(N)                                                                                                 \
   template std::vector<Expr> Motion<N>::with_watched(Workspace&) const;                                                \
   template void Motion<N>::set_modes(const std::vector<Wider<N>>&);                                                    \
-  template Outcome Motion<N>::within_bounds();                                                                         \
+  template bool Motion<N>::leaves(std::size_t, bool) const;                                                            \
+  template Outcome Motion<N>::within_bounds(bool);                                                                     \
   template const SetByEvent& Motion<N>::set_by(std::size_t);                                                           \
   template Outcome Motion<N>::settle(std::vector<Occurrence<Wider<N>>>&, bool&);
 INSTANTIATE(double)

@@ -96,8 +96,8 @@ class Motion {
   // consistent one near.
   bool fired() const { return !leg_->stepper.fired().empty(); }
   Outcome settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on);
-  // Not ok if the argument of a table lies outside of it at the start.
-  Outcome within_bounds();
+  // Not ok if the argument of a table lies outside of it at the start, or leaves it there.
+  Outcome within_bounds(bool forward);
   // The formula of an event at the start.
   double at_start(std::size_t event) const {
     return to_double(leg_->stepper.quadrature(quadratures_.size() + event, W(0)));
@@ -117,6 +117,7 @@ class Motion {
   Outcome go_on(const StepperState<N>& from) { return leg_->stepper.resume(from); }
 
  private:
+  bool leaves(std::size_t bound, bool forward) const;
   // A stretch of the motion with one elimination: its system and what steps through it.
   struct Leg {
     // `own`: the workspace of the system and the elimination, null where it is that of the motion.

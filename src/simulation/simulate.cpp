@@ -106,7 +106,7 @@ class Run {
     if (o_.estimate != ErrorEstimate::never) motion().expect_second_run();
     rows_.begin_beside(plans_.rows);
     if (course_.at(schedule().start()).ok()) watch_.start(course_.point());
-    if (Outcome o = motion().within_bounds(); !o.ok()) return o;
+    if (Outcome o = motion().within_bounds(schedule().forward()); !o.ok()) return o;
     if (schedule().forward())
       for (const std::string& text : passed_limits(*s_.model, motion())) note(text);
     return {};

@@ -32,7 +32,7 @@ namespace {
 constexpr int kNoise = 64;  // values below so many round-offs of what they are made of are zero
 
 bool may_turn(const Instruction& in) {
-  return !in.constant && (in.op == Op::select || in.op == Op::lookup || turns_at_zero(in));
+  return !in.constant && (in.op == Op::select || in.op == Op::lookup || in.op == Op::arctan2 || turns_at_zero(in));
 }
 
 template <Number N>
@@ -63,6 +63,8 @@ class Search {
       leaves(c, !(c[0] < N(0)), {in.first, N(0), c[0] < N(0)});
     } else if (in.op == Op::lookup) {
       look_up(in, slot);
+    } else if (in.op == Op::arctan2) {
+      if (!tape.code[in.a].constant) passes_cut(machine_.series(in.a), machine_.series(in.b), in.a);
     } else if (in.op == Op::power && tape.rationals[in.index].has_even_denominator()) {
       touches_zero(machine_.series(in.a));
     }
@@ -88,6 +90,12 @@ class Search {
       else
         leaves(c_.data(), knot == below, {in.a, *knot, knot == above, &table});
     }
+  }
+
+  // The angle of (x, y) jumps where y passes zero beside a negative x. Where x may become negative within the step, y is
+  // not followed beyond its first zero.
+  void passes_cut(const N* y, const N* x, std::uint32_t slot) {
+    if (!(x[0] > N(0) && keeps_sign(x, degree_, h_))) leaves(y, !(y[0] < N(0)), {slot, N(0), y[0] < N(0)});
   }
 
   // Whether the value is the one from the knot on: the wider numbers of the state may lie on the other side of it.
@@ -154,6 +162,7 @@ std::vector<std::uint32_t> kink_arguments(const Tape& tape, std::uint32_t end) {
     const Instruction& in = tape.code[slot];
     const std::uint32_t argument = in.op == Op::select ? in.first : in.a;
     if (may_turn(in) && !tape.code[argument].constant) list.push_back(argument);
+    if (in.op == Op::arctan2 && !in.constant && !tape.code[in.b].constant) list.push_back(in.b);
   }
   return list;
 }
@@ -174,6 +183,9 @@ template bool stays_positive(const long double*, int, const long double&);
 template bool stays_positive(const Quad*, int, const Quad&);
 template bool stays_positive(const Multi*, int, const Multi&);
 template bool keeps_sign(const double*, int, const double&);
+template bool keeps_sign(const long double*, int, const long double&);
+template bool keeps_sign(const Quad*, int, const Quad&);
+template bool keeps_sign(const Multi*, int, const Multi&);
 template Kink<double> first_kink(const Machine<double>&, std::uint32_t, int, const double&, bool);
 template Kink<long double> first_kink(const Machine<long double>&, std::uint32_t, int, const long double&, bool);
 template Kink<Quad> first_kink(const Machine<Quad>&, std::uint32_t, int, const Quad&, bool);

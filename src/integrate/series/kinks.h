@@ -1,6 +1,6 @@
 // Where a function on the way of a step goes on as another one, of which its Taylor series knows nothing: abs and sign
 // where their argument passes zero, a choice where its condition changes, a table at its knots, a square root (a norm)
-// where its argument touches zero.
+// where its argument touches zero, an angle atan2(y, x) at its jump beside the negative x axis.
 #pragma once
 #include "tape/tape.h"
 

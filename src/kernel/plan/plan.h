@@ -138,7 +138,7 @@ struct Plan {
   std::vector<Beyond> beyond_double;  // of the angles of sines
   // Slots of the tape whose value decides which function holds, beyond them another one: the radicand of a root of even
   // power and the argument of abs or sign, which may pass zero, the condition of a choice, the argument of a step
-  // function `index`, which may pass a knot.
+  // function `index`, which may pass a knot, the arguments of an angle atan2.
   struct Deciding {
     enum class Kind : std::uint8_t { radicand, sign, knots } kind;
     std::uint32_t slot, index;

@@ -28,6 +28,7 @@ void note_watched(const Slots& slots, const PlanLayout& layout, Plan& plan) {
     if (turns_at_zero(in)) add(K::sign, in.a);
     if (in.op == Op::select) add(K::sign, in.first);
     if (in.op == Op::lookup) add(K::knots, in.a);
+    if (in.op == Op::arctan2) add(K::sign, in.a), add(K::sign, in.b);
   }
   for (std::uint32_t s = 0; s < tape.main_end; ++s)
     if (const auto function = slots.varies(s) ? may_hide(tape, tape.code[s]) : std::nullopt)

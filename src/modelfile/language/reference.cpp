@@ -70,7 +70,7 @@ monitor.a = "2x"
 error: an operator is missing before 'x'
 ```
 
-**Kinks.** `abs`, `sign`, `min`, `max`, `piecewise`, `choose` and tables switch where their conditions change sign along the motion. The switch is
+**Kinks.** `abs`, `sign`, `min`, `max`, `piecewise`, `choose` and tables switch where their conditions change sign along the motion, `atan2(y, x)` where y does beside a negative x. The switch is
 located and stepped to; at it the branch is the one that the motion enters. Where the argument of `sqrt`, `norm`, `unit` or of a
 power is zero, at the start (a ball with quadratic drag falls from rest) or on the way, the motion goes on one-sided as well. Where it is open how (dry friction
 that holds, a thrust along a velocity that is zero) it stops, and the outcome names the formula. What is recorded at exactly that moment is the value there:

@@ -350,8 +350,9 @@ initial = {a = 1}
 }
 
 TEST(Kinks, AreThoseOfTheReferenceIfAKernelMakesTheSteps) {
-  for (const char* force : {"0", "-abs(a)", "piecewise(a' > 1, 2, sin(t))", "max(a, max(a', -1/2))", "sign(cos(3*t))",
-                            "steps(t)", "lines(t)", "curves(t)", "lines(2 + a')"}) {
+  for (const char* force :
+       {"0", "-abs(a)", "piecewise(a' > 1, 2, sin(t))", "max(a, max(a', -1/2))", "sign(cos(3*t))", "steps(t)",
+        "lines(t)", "curves(t)", "lines(2 + a')", "atan2(sin(4*t), cos(4*t))", "atan2(sin(3*a), cos(3*a))"}) {
     const std::string text = driven(force);
     const auto by = [&](bool kernel) {
       return run(text, 5, "1/1000000000000000", [&](SimulationOptions& o) {
@@ -389,6 +390,48 @@ initial = {z = 0.5}
   EXPECT_EQ(on.report.outcome.kind, OutcomeKind::not_a_number);
   EXPECT_NE(on.report.outcome.message.find("below its first knot 0 at t = 1"), std::string::npos)
       << on.report.outcome.message;
+}
+
+// From a knot at which a table ends a motion may go inwards alone.
+TEST(Bounds, AMotionThatStartsWhereATableEndsAndLeavesItEnds) {
+  const auto from = [](const std::string& x, const std::string& event, const Rational& to) {
+    return run(R"(coordinates = ["x"]
+particle = [{name = "p", mass = 1, position = "x*ex"}]
+table = [{name = "F", x = [0, 1], y = [-1, 1], outside = "error"}]
+force = [{on = "p", vector = "F(x)*ex"}]
+initial = {x = )" + x +
+                   "}\n" + event,
+               to, "1/1000000000000", [&](SimulationOptions& o) { o.at = {to}; })
+        .report.outcome;
+  };
+  for (const Rational& to : {Rational(1, 10), Rational(-1, 10)})
+    for (const char* x : {"0", "1"}) {
+      const Outcome o = from(x, "", to);
+      EXPECT_EQ(o.kind, OutcomeKind::not_a_number) << x;
+      EXPECT_NE(o.message.find("at the start"), std::string::npos) << o.message;
+    }
+  const std::string set = "[[event]]\nname = \"set\"\nwhen = \"t - 0.05\"\nset = {x = 1}\n";
+  EXPECT_EQ(from("0.5", set, Rational(1, 10)).kind, OutcomeKind::not_a_number);
+  EXPECT_TRUE(from("0.5", "", Rational(1, 10)).ok());
+}
+
+// The angle of a direction that turns with the rate 1 jumps at t = pi. Its integral over a turn is 0.
+TEST(Kinks, AnAngleJumpsBesideTheNegativeAxis) {
+  for (const bool kernel : {true, false}) {
+    const Result r = run(R"(coordinates = ["x"]
+particle = [{name = "p", mass = 1, position = "x*ex"}]
+force = [{on = "p", vector = "atan2(sin(t), cos(t))*ex"}]
+)",
+                         5, "1/1000000000000", [&](SimulationOptions& o) {
+                           o.kernel = kernel;
+                           o.method = Method::taylor;
+                           o.at = {5};
+                         });
+    ASSERT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
+    const double pi = std::numbers::pi;
+    EXPECT_NEAR(std::stod(r.rows.rows()[0][2]), 12.5 - 2 * pi * (5 - pi), 1e-10);
+    EXPECT_NEAR(std::stod(r.rows.rows()[0][1]), 125 / 6.0 - pi * (5 - pi) * (5 - pi), 1e-10);
+  }
 }
 
 // From rest at the height of a kink z = 1 - t^2/2: what acts along x is known on the side to which the motion goes, and the
