@@ -8,6 +8,77 @@
 namespace anholon {
 
 template <Number N>
+bool Stepper<N>::aim(const W& end) {
+  ordinary_ = aim_ordinarily(end);
+  if (!ordinary_) {
+    if (phase_ == Phase::begun && !end_expansion()) return false;
+    ANHOLON_ASSERT(phase_ == Phase::expanded);
+    if (!aim_freely(end) && !aim_with_care(end)) return false;
+  }
+  phase_ = Phase::aimed;
+  return true;
+}
+
+// The kernel has gone where it was sent.
+template <Number N>
+EndOfStep Stepper<N>::look_at_end(const W& end) {
+  ANHOLON_ASSERT(phase_ == Phase::aimed);
+  KernelExpansion* kernel = expander_.kernel();
+  if (!kernel) return EndOfStep::good;
+  if (ordinary_) {
+    if (end_.passes_at_once(N(kernel->defect()), convert<N>(W(ordinary_end_ - time()))) && !kernel->blows_up())
+      return EndOfStep::good;
+    ordinary_ = false;
+    aim_at(ordinary_end_);
+  }
+  switch (end_.look(*kernel, time(), horizon_)) {
+  case LookAtEnd::good:
+    return EndOfStep::good;
+  case LookAtEnd::elsewhere:
+    return EndOfStep::elsewhere;
+  case LookAtEnd::shorten:
+    return aim_again(*kernel, end) ? EndOfStep::elsewhere : EndOfStep::failed;
+  case LookAtEnd::by_reference:
+    break;
+  }
+  return aim_by_reference(*kernel, end) ? EndOfStep::good : EndOfStep::failed;
+}
+
+// What was chosen for the step that is aimed is taken back.
+template <Number N>
+void Stepper<N>::drop_aim() {
+  guard_.set_singular_ahead(false);
+  end_.again();
+  events_.take_back();
+  phase_ = Phase::expanded;
+}
+
+template <Number N>
+bool Stepper<N>::aim_again(KernelExpansion& kernel, const W& end) {
+  drop_aim();
+  kernel.show_advanced(false);
+  const bool good = aim(end);
+  if (!good) leave_kernel();
+  kernel.show_advanced(true);
+  return good;
+}
+
+// The reference makes the expansion of the step that is aimed, in place of the kernel.
+template <Number N>
+bool Stepper<N>::aim_by_reference(KernelExpansion& kernel, const W& end) {
+  drop_aim();
+  kernel.show_advanced(false);
+  expander_.refuse_kernel(track_);
+  kernel.show_advanced(true);
+  ++expansions_;
+  if (Outcome o = expand_by_reference(track_.now.leading); !o.ok()) {
+    phase_ = Phase::placed;
+    return fail(std::move(o));
+  }
+  return aim(end);
+}
+
+template <Number N>
 bool Stepper<N>::may_be_ordinary() const
   requires std::same_as<N, double>
 {
@@ -178,6 +249,11 @@ void Stepper<N>::follow(const OrdinaryCourse& course)
 }
 
 #define INSTANTIATE(N)                                                                                                 \
+  template bool Stepper<N>::aim(const Wider<N>&);                                                                      \
+  template EndOfStep Stepper<N>::look_at_end(const Wider<N>&);                                                         \
+  template void Stepper<N>::drop_aim();                                                                                \
+  template bool Stepper<N>::aim_again(KernelExpansion&, const Wider<N>&);                                              \
+  template bool Stepper<N>::aim_by_reference(KernelExpansion&, const Wider<N>&);                                       \
   template bool Stepper<N>::aim_ordinarily(const Wider<N>&);                                                           \
   template bool Stepper<N>::aim_freely(const Wider<N>&);                                                               \
   template void Stepper<N>::aim_at(const Wider<N>&);                                                                   \

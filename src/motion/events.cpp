@@ -39,15 +39,18 @@ void Motion<N>::set_modes(const std::vector<W>& parameters) {
     if (s_.model->parameters[i].mode) narrow_parameters_[i] = convert<N>(parameters[i]);
 }
 
-// Whether the motion is beyond a bound, or on it and goes beyond it.
+// Whether the motion is beyond a bound, or on it and goes beyond it by more than round-off. `met`: it is on it.
 template <Number N>
-bool Motion<N>::leaves(std::size_t bound, bool forward) const {
+bool Motion<N>::leaves(std::size_t bound, bool met, bool forward) const {
+  constexpr int kRoundoffs = 64, kAboveNoise = 1024;
   const Stepper<N>& stepper = leg_->stepper;
   const std::size_t at = quadratures_.size() + s_.model->events.size() + bound;
-  const W value = stepper.quadrature(at, W(0));
-  if (value < W(0) || value > W(0)) return value < W(0);
+  N size(1);
+  for (const W& x : stepper.state()) size = std::max(size, convert<N>(abs(x)));
+  const N noise = unit_roundoff<N>() * N(kRoundoffs) * size, value = convert<N>(stepper.quadrature(at, W(0)));
+  if (!met && abs(value) > noise) return value < N(0);
   for (int k = 1; k < stepper.order(); ++k)
-    if (const N c = stepper.quadrature_coefficient(at, k); c < N(0) || c > N(0))
+    if (const N c = stepper.quadrature_coefficient(at, k); abs(c) > noise * N(kAboveNoise))
       return (forward || k % 2 == 0) ? c < N(0) : c > N(0);
   return false;
 }
@@ -55,7 +58,7 @@ bool Motion<N>::leaves(std::size_t bound, bool forward) const {
 template <Number N>
 Outcome Motion<N>::within_bounds(bool forward) {
   for (std::size_t i = 0; i < s_.model->bounds.size(); ++i)
-    if (leaves(i, forward))
+    if (leaves(i, false, forward))
       return {OutcomeKind::not_a_number, s_.model->bounds[i].fault + " at the start",
               "give the table more knots, or outside = \"hold\" or \"linear\""};
   return {};
@@ -81,8 +84,8 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
   const W start = leg_->stepper.before(), now = leg_->stepper.time();
   bool set = false;
   goes_on = true;
-  std::optional<N> changed;          // where an event changes or ends the motion
-  std::vector<std::size_t> touched;  // bounds that are met just there: the motion may turn back
+  std::optional<N> changed;                        // where an event changes or ends the motion
+  std::vector<bool> met(s_.model->bounds.size());  // the bounds just there: the motion may turn back
   std::vector<W> state, parameters = parameters_;
   if (Outcome o = at(now); !o.ok()) return o;
   leg_->point.state(state);
@@ -91,7 +94,7 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
       const std::size_t bound = f.series - s_.model->events.size();
       if (!changed || f.where != *changed)
         return beyond(s_.model->bounds[bound], to_double(W(start + convert<W>(f.where))));
-      touched.push_back(bound);
+      met[bound] = true;
       continue;
     }
     const Event& event = s_.model->events[f.series];
@@ -120,14 +123,8 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
     o.message = "after the event '" + s_.model->events[fired.back().series].name + "': " + o.message;
     return o;
   }
-  for (std::size_t i = 0; i < s_.model->bounds.size(); ++i)
-    if (leg_->stepper.quadrature(quadratures_.size() + s_.model->events.size() + i, W(0)) == W(0) &&
-        leaves(i, now > start))
-      return beyond(s_.model->bounds[i], to_double(now));
-  for (const std::size_t i : touched) {
-    const N rate = leg_->stepper.quadrature_coefficient(quadratures_.size() + s_.model->events.size() + i, 1);
-    if (now > start ? rate < N(0) : rate > N(0)) return beyond(s_.model->bounds[i], to_double(now));
-  }
+  for (std::size_t i = 0; i < met.size(); ++i)
+    if (leaves(i, met[i], now > start)) return beyond(s_.model->bounds[i], to_double(now));
   W correction(0);
   const std::vector<W>& consistent = leg_->stepper.state();
   for (std::size_t i = 0; i < state.size(); ++i)
@@ -141,7 +138,7 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
 #define INSTANTIATE(N)                                                                                                 \
   template std::vector<Expr> Motion<N>::with_watched(Workspace&) const;                                                \
   template void Motion<N>::set_modes(const std::vector<Wider<N>>&);                                                    \
-  template bool Motion<N>::leaves(std::size_t, bool) const;                                                            \
+  template bool Motion<N>::leaves(std::size_t, bool, bool) const;                                                      \
   template Outcome Motion<N>::within_bounds(bool);                                                                     \
   template const SetByEvent& Motion<N>::set_by(std::size_t);                                                           \
   template Outcome Motion<N>::settle(std::vector<Occurrence<Wider<N>>>&, bool&);

@@ -117,7 +117,7 @@ class Motion {
   Outcome go_on(const StepperState<N>& from) { return leg_->stepper.resume(from); }
 
  private:
-  bool leaves(std::size_t bound, bool forward) const;
+  bool leaves(std::size_t bound, bool met, bool forward) const;
   // A stretch of the motion with one elimination: its system and what steps through it.
   struct Leg {
     // `own`: the workspace of the system and the elimination, null where it is that of the motion.

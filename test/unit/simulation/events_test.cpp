@@ -413,6 +413,9 @@ initial = {x = )" + x +
   const std::string set = "[[event]]\nname = \"set\"\nwhen = \"t - 0.05\"\nset = {x = 1}\n";
   EXPECT_EQ(from("0.5", set, Rational(1, 10)).kind, OutcomeKind::not_a_number);
   EXPECT_TRUE(from("0.5", "", Rational(1, 10)).ok());
+  // An event that sets the motion beyond the table ends it.
+  const std::string beyond = "[[event]]\nname = \"set\"\nwhen = \"t - 0.05\"\nset = {x = 1.5}\n";
+  EXPECT_EQ(from("0.5", beyond, Rational(1, 10)).kind, OutcomeKind::not_a_number);
 }
 
 // The angle of a direction that turns with the rate 1 jumps at t = pi. Its integral over a turn is 0.
