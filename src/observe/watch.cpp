@@ -191,7 +191,9 @@ void Watch<W>::save(SavedRun& to) const {
 }
 
 template <Number W>
-void Watch<W>::resume(const SavedRun& from) {
+void Watch<W>::resume(const SavedRun& from, const std::vector<W>& parameters) {
+  outputs_.set_parameters(parameters);
+  redundant_.set_parameters(parameters);
   const std::vector<W> tracks = from.numbers<W>("tracks", 8 * tracks_.size()), energy = from.numbers<W>("energy", 3);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const W* t = &tracks[8 * i];

@@ -72,7 +72,7 @@ class Watch {
   const std::vector<Track<W>>& tracks() const { return tracks_; }
   // What was seen, for a run that goes on.
   void save(SavedRun& to) const;
-  void resume(const SavedRun& from);
+  void resume(const SavedRun& from, const std::vector<W>& parameters);
   // lambda of every constraint, N and the monitors at the point seen last.
   const W& multiplier(std::size_t constraint) const { return multipliers_[constraint]; }
   const W& reaction(std::size_t coordinate) const { return outputs_[coordinate]; }

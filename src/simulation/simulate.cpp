@@ -161,10 +161,11 @@ class Run {
       rows_.writer().go_on(static_cast<std::size_t>(given[0]), static_cast<std::size_t>(given[1]));
     }
     judge_.goes_on_from(given_until);
-    watch_.resume(from);
+    watch_.resume(from, motion().parameters());
     const std::vector<double*> residuals = carried();
     const std::vector<double> worst = from.numbers<double>("residuals", residuals.size());
     for (std::size_t i = 0; i < worst.size(); ++i) *residuals[i] = worst[i];
+    angles_.set_parameters(doubles(motion().parameters()));
     angles_.resume(from.numbers<double>("angles", angles_.saved()));
     rows_.begin(RowSchedule<W>(o_, start, given_until));
     rows_.begin_beside(plans_.rows);

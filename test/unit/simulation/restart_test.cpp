@@ -132,6 +132,57 @@ TEST(Restart, GoesOnFromEveryStep) {
   }
 }
 
+// An event sets a mode before the run is laid down; none sets it after.
+TEST(Restart, GoesOnWithTheModesThatEventsHaveSet) {
+  const auto motion = [](Precision precision, const Rational& to, const SavedRun* resume, std::string* saved) {
+    Scenario s;
+    EXPECT_TRUE(make_scenario(test::model_of(R"toml(
+coordinates = ["x"]
+mode.n = 1
+[[particle]]
+name = "p"
+mass = 1
+position = ["x", "0", "0"]
+[[force]]
+on = "p"
+vector = ["-4*n*x", "0", "0"]
+[[event]]
+name = "cross"
+when = "x"
+set = {n = "n + 1"}
+[monitor]
+gear = "n"
+[initial]
+x = 1
+"x'" = 0
+)toml"),
+                              *find_formulation("routh"), {}, s)
+                    .ok());
+    SimulationOptions o;
+    o.to = to;
+    o.every = Rational(1, 8);
+    o.precision = precision;
+    o.resume = resume;
+    o.save = [&](const SavedRun& run) { *saved = print(run); };
+    test::TextRows sink;
+    SimulationReport report = simulate(s, o, sink);
+    EXPECT_TRUE(report.outcome.ok()) << report.outcome.message;
+    return std::pair(sink.rows(), report);
+  };
+  for (const Precision precision : {Precision::real, Precision::long_real}) {
+    std::string middle, end;
+    motion(precision, Rational(1), nullptr, &middle);
+    const SavedRun saved = read_saved({"run.state", middle});
+    const auto [rows, report] = motion(precision, Rational(3, 2), &saved, &end);
+    const auto [all, whole] = motion(precision, Rational(3, 2), nullptr, &end);
+    ASSERT_EQ(whole.events.size(), 1U);
+    ASSERT_EQ(rows.size(), 4U);
+    EXPECT_EQ(rows, std::vector(all.end() - 4, all.end()));
+    EXPECT_EQ(report.power, whole.power);
+    EXPECT_TRUE(report.warnings.empty());
+  }
+}
+
 TEST(Restart, RefusesWhatDoesNotFit) {
   const Case c{"", "zoo/chaplygin-sleigh"};
   const std::string saved = run(c, 1, nullptr).saved;
