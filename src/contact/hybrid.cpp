@@ -234,6 +234,7 @@ class HybridMotion {
       if (rests || bodies_.near.gap_rate(c) == 0) stops[c].touch = Touch::slips;
       if (!rests) continue;
       any = true;
+      if (limit && bodies_.fast(c)) stops[c].direction = bodies_.dynamics.accelerations().contacts[c].direction;
       joined_.event(bodies_.contacts[c].name + ".rests", limit ? std::max(*limit, t) : t);
       accumulation_.forget(c);
     }

@@ -157,7 +157,7 @@ void TouchingBodies::first_alone(std::vector<bool>& touches) const {
 }
 
 void TouchingBodies::stop(const ContactModes& to) {
-  const ContactProblem p = dynamics.stop();
+  ContactProblem p = dynamics.stop();
   const auto leave_out_dependent = [](const ContactProblem& of, ContactModes& stopped) {
     share_forces(of, stopped);
     for (ContactMode& m : stopped)
@@ -167,9 +167,12 @@ void TouchingBodies::stop(const ContactModes& to) {
   std::optional<ContactSolution> jump;
   if (!p.beta.empty()) jump = of_modes(p, stopped);
   for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (to[c].direction != std::array<long double, 2>{})
+      p.contacts[c].friction = dynamics.accelerations().contacts[c].friction;
     for (const Touch touch : {Touch::sticks, Touch::slips}) {
       if (touch > to[c].touch) continue;
       stopped[c].touch = touch;
+      stopped[c].direction = to[c].direction;
       leave_out_dependent(p, stopped);
       if (auto further = of_modes(p, stopped)) {
         jump = std::move(further);

@@ -2,9 +2,8 @@
 
 #include "plot/cairo_library.h"
 
-#include <dlfcn.h>
-
 #include "base/assert.h"
+#include "base/shared_library.h"
 
 namespace anholon::plot::cairo {
 
@@ -15,16 +14,11 @@ struct Loaded {
   std::string trouble;
 
   Loaded() {
-    void* const file = dlopen(ANHOLON_CAIRO_FILE, RTLD_LAZY | RTLD_LOCAL);
-    if (!file) {
-      trouble = std::string("figures in PDF and PNG need cairo, which cannot be loaded: ") + dlerror();
-      return;
-    }
-#define FUNCTION(name)                                                                                                 \
-  found.name = reinterpret_cast<decltype(&::name)>(dlsym(file, #name));                                                \
-  if (!found.name && trouble.empty()) trouble = "this cairo has no " #name;
+    SharedLibrary file("cairo", ANHOLON_CAIRO_FILE);
+#define FUNCTION(name) found.name = reinterpret_cast<decltype(&::name)>(file.find(#name));
 #include "plot/cairo_functions.def"
 #undef FUNCTION
+    if (!file.trouble().empty()) trouble = "figures in PDF and PNG need cairo: " + file.trouble();
   }
 };
 

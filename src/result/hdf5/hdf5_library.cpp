@@ -2,9 +2,8 @@
 
 #include "result/hdf5/hdf5_library.h"
 
-#include <dlfcn.h>
-
 #include "base/assert.h"
+#include "base/shared_library.h"
 
 namespace anholon::hdf5 {
 
@@ -15,21 +14,17 @@ struct Loaded {
   std::string trouble;
 
   Loaded() {
-    void* const file = dlopen(ANHOLON_HDF5_FILE, RTLD_LAZY | RTLD_LOCAL);
-    if (!file) {
-      trouble = std::string("HDF5 cannot be loaded: ") + dlerror();
-      return;
-    }
-    const auto find = [&](const char* name) {
-      void* const address = dlsym(file, name);
-      if (!address && trouble.empty()) trouble = std::string("this HDF5 has no ") + name;
-      return address;
-    };
-#define FUNCTION(name) found.name = reinterpret_cast<decltype(&::name)>(find(#name));
+    SharedLibrary file("HDF5", ANHOLON_HDF5_FILE);
+    find_all(file);
+    if (trouble.empty()) trouble = file.trouble();
+  }
+
+  void find_all(SharedLibrary& file) {
+#define FUNCTION(name) found.name = reinterpret_cast<decltype(&::name)>(file.find(#name));
 #include "result/hdf5/hdf5_functions.def"
 #undef FUNCTION
-    const auto open = reinterpret_cast<herr_t (*)()>(find("H5open"));
-    if (!trouble.empty()) return;
+    const auto open = reinterpret_cast<herr_t (*)()>(file.find("H5open"));
+    if (!file.trouble().empty()) return;
     // HDF5's own clean-up at exit crashes after a failed write; all our files are closed by then.
     found.H5dont_atexit();
     if (open() < 0) {
@@ -37,7 +32,7 @@ struct Loaded {
       return;
     }
     const auto type = [&](const char* name) {
-      const void* const address = find(name);
+      const void* const address = file.find(name);
       return address ? *static_cast<const hid_t*>(address) : hid_t{-1};
     };
     found.c_string = type("H5T_C_S1_g");

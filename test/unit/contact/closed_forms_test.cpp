@@ -265,6 +265,32 @@ initial = {x = "h"}
   EXPECT_GT(misfit(contact_motion(text, 5, {{"e", "0.71"}})), 1e-3);  // the mutant
 }
 
+// A sliding body loses mu times all impulses of its impacts, those that are summed up included: (1 + e)/(1 - e) times its
+// first velocity. In two directions it keeps its direction.
+TEST(ClosedForms, FrictionOfImpactsThatAddUp) {
+  const std::string text = R"toml(coordinates = ["x", "y", "z"]
+parameters = {e = 0.5, mu = 0.2, g = 9.81}
+particle = [{name = "puck", mass = 2, position = ["x", "y", "z"]}]
+gravity.field = "-g*ez"
+contact = [{name = "floor", gap = "z", slip = "SLIP", along = ALONG, friction = "mu", restitution = "e"}]
+initial = {z = 1, "x'" = 4, "y'" = 3}
+)toml";
+  const double e = 0.5, mu = 0.2, g = 9.81, first = std::sqrt(2 * g), fall = first / g;
+  const auto misfit = [&](const std::string& slip, const std::string& along, double speed, double share,
+                          const char* friction) {
+    const auto m =
+        contact_motion(test::replaced(test::replaced(text, "SLIP", slip), "ALONG", along), 2, {{"mu", friction}});
+    EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    // All impulses of the floor carry the weight from the start to the end.
+    const double lost = mu * g * 2;
+    EXPECT_GT(2, fall * (1 + e) / (1 - e));
+    return std::abs(m.last("x'") - share * (speed - lost));
+  };
+  EXPECT_LT(misfit("x'*ex", "[\"ex\"]", 4, 1, "0.2"), 1e-14);
+  EXPECT_LT(misfit("x'*ex + y'*ey", "[\"ex\", \"ey\"]", 5, 0.8, "0.2"), 1e-14);
+  EXPECT_GT(misfit("x'*ex", "[\"ex\"]", 4, 1, "0.20001"), 1e-5);  // the mutant
+}
+
 // A box that rocks from corner to corner without rebound (Housner 1963): at each impact the spin changes by the factor r = 1
 // - 3 b^2/(2 (a^2 + b^2)) with the half width b, and half a swing lasts twice the time in which the box falls back.
 TEST(ClosedForms, RockingBoxComesToRest) {
