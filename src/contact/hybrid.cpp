@@ -124,6 +124,9 @@ class HybridMotion {
   Outcome choose() {
     bodies_.look();
     if (Outcome o = as_its_modes(); !o.ok()) return o;
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
+      if (bodies_.near.closed(c) && !bodies_.dynamics.has_derivatives(c))
+        return without_derivatives(bodies_.contacts[c].name, when());
     for (std::size_t k = 0; bodies_.shrinks() && k < kMostImpacts; ++k)
       if (Outcome o = impact(); !o.ok()) return o;
     land();

@@ -195,6 +195,15 @@ bool ContactDynamics::loses_rank(std::size_t c) const {
   return !of_modes(problem_, modes);
 }
 
+bool ContactDynamics::has_derivatives(std::size_t c) const {
+  const ContactRows& rows = problem_.contacts[c];
+  const auto finite = [](const std::vector<long double>& row) {
+    return std::all_of(row.begin(), row.end(), [](long double x) { return std::isfinite(x); });
+  };
+  return std::isfinite(places_[c].gap_rate) && finite(rows.normal) &&
+         std::all_of(rows.tangential.begin(), rows.tangential.end(), finite);
+}
+
 bool walls_move(const std::vector<Contact>& contacts) {
   return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) {
     const std::vector<NodeId> all = symbols({&c.gap, 1});

@@ -207,6 +207,36 @@ spin = "dot(angvel(disc), B.z)"
   EXPECT_GT(changes("0.1", Rational(1, 5))[0], 1e-4);  // the mutant
 }
 
+// A disc that falls flat has no point of its rim below the others, and does not fall through the floor.
+TEST(Shapes, ADiscThatLandsFlatEndsTheMotion) {
+  const auto falls = [](const char* tilt) {
+    return contact_motion(R"toml(coordinates = ["z", "e0", "e1"]
+parameters = {tilt = 0}
+gravity.field = "-9.81*ez"
+[[body]]
+name = "disc"
+mass = 1
+shape = "disc(0.5)"
+center = "z*ez"
+orientation = "quat(e0, e1, 0, 0)"
+[[contact]]
+name = "f"
+body = "disc"
+restitution = 0.5
+[initial]
+z = 1
+e0 = "cos(tilt/2)"
+e1 = "sin(tilt/2)"
+)toml",
+                          Rational(1, 2), {{"tilt", tilt}})
+        .report.outcome;
+  };
+  const Outcome flat = falls("0");
+  EXPECT_EQ(flat.kind, OutcomeKind::singular);
+  EXPECT_TRUE(flat.message.starts_with("the gap of contact 'f' has no derivatives at t = 0.45")) << flat.message;
+  EXPECT_TRUE(falls("0.1").ok()) << falls("0.1").message;  // the mutant
+}
+
 std::string ball(const std::string& contact, const std::string& start) {
   return R"toml(coordinates = ["x", "z", "phi"]
 parameters = {m = 1, r = 0.1, g = 9.81}
