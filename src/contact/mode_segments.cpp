@@ -124,6 +124,7 @@ SimulationOptions ModeSegments::asked(const Rational& to) const {
   if (!o.at.empty() && o.at.back() < to) o.at.push_back(to);
   o.estimate = ErrorEstimate::never;
   o.conserved.clear();
+  o.watches_floors = false;  // nobody reads the notes of a segment
   o.note = nullptr;
   o.state.t = bodies_.at.t;
   return o;

@@ -19,7 +19,7 @@ SimulationOptions options_of_case(const EnsembleOptions& o, const EnsembleCase& 
   options.tolerance = o.tolerance;
   options.most_steps = o.most_steps;
   options.cancelled = o.cancelled;
-  options.locate_pulls = false;  // nobody reads the notes of a case
+  options.watches_floors = false;  // nobody reads the notes of a case
   return options;
 }
 

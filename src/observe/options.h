@@ -52,7 +52,8 @@ struct SimulationOptions {
   std::size_t most_steps = 50'000'000;
   bool kernel = true;  // where there is one: its pivots, chosen at the start, are seen in the last digits
   ErrorEstimate estimate = ErrorEstimate::never;
-  bool locate_pulls = true;          // whether a further motion locates when a support begins to pull, if one does
+  // Whether the notes tell of supports that pull and of friction that is needed (observe/floors.h).
+  bool watches_floors = true;
   std::vector<Conserved> conserved;  // to be watched: expressions of the scenario
   // Called at the end, and every few seconds: what is needed to go on.
   std::function<void(const SavedRun&)> save;

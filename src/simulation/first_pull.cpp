@@ -27,7 +27,7 @@ std::optional<double> first_pull(const Scenario& s, const SimulationOptions& o, 
   own.state = o.state, own.tolerance = o.tolerance, own.order = o.order, own.most_steps = o.most_steps;
   own.cancelled = o.cancelled;
   own.at = {Rational(until)};
-  own.locate_pulls = false;
+  own.watches_floors = false;
   NoRowsOfPull rows;
   const SimulationReport r = simulate(scenario, own, rows);
   for (const EventReport& e : r.events)

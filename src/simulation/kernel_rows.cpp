@@ -111,7 +111,7 @@ Outcome KernelRows::take(const WaitingRows::Computed& row, bool judged) {
   const auto multiplier = [&](std::size_t r) {
     return good ? row.multiplier(r) : static_cast<double>(watch.multiplier(r));
   };
-  takers_.floors.see(static_cast<double>(place.t), multiplier, numbers_);
+  if (takers_.floors) takers_.floors->see(static_cast<double>(place.t), multiplier, numbers_);
   takers_.writer.row(place.t, row.label(), numbers_);
   ++takers_.report.rows;
   return {};

@@ -20,7 +20,7 @@ namespace anholon {
 struct RowTakers {
   Watch<long double>& watch;
   Judge<double>& judge;
-  FloorWatch& floors;
+  std::optional<FloorWatch>& floors;
   RowWriter<double>& writer;
   SimulationReport& report;  // without its outcome
 };

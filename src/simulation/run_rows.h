@@ -25,7 +25,7 @@ class RunRows {
     ShownMotion<N>& shown;
     Watch<W>& watch;
     Judge<N>& judge;
-    FloorWatch& floors;
+    std::optional<FloorWatch>& floors;
     SimulationReport& report;  // its outcome says why a row has no solution
   };
 
@@ -111,7 +111,8 @@ class RunRows {
     of_.report.outcome = of_.watch.see(of_.shown.point(), of_.report);
     row_values(of_.s, highest(), of_.shown.point(), of_.watch, numbers_);
     of_.judge.row(t, label, numbers_, of_.course);
-    of_.floors.see(to_double(t), [&](std::size_t r) { return to_double(of_.watch.multiplier(r)); }, numbers_);
+    if (of_.floors)
+      of_.floors->see(to_double(t), [&](std::size_t r) { return to_double(of_.watch.multiplier(r)); }, numbers_);
     writer_.row(t, label, numbers_);
     ++of_.report.rows;
     if (of_.options.rows_lost) of_.options.rows_lost();

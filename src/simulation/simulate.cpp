@@ -56,8 +56,8 @@ class Run {
         stages_(std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitored(*s.model)))),
         course_(s, step_settings(*s.model, o), method(o), quadratures(s, power_, o), stages_), shown_(course_),
         watch_(s, power_, o.conserved, motion().parameters()), angles_(s, doubles(motion().parameters())), judge_(s, o),
-        floors_(s), paces_(s.model->events),
-        rows_({s, o, stages_, course_, shown_, watch_, judge_, floors_, report_}, sink) {
+        paces_(s.model->events), rows_({s, o, stages_, course_, shown_, watch_, judge_, floors_, report_}, sink) {
+    if (o.watches_floors) floors_.emplace(s);
     report_.model = s.model->title;
     report_.form = s.system.form->name;
     report_.constraints_each = constraint_reports(s);
@@ -340,17 +340,21 @@ class Run {
     }
     if (defect_) report_.rigorous = defect_->report();
     report_watched();
-    if (o_.locate_pulls && !o_.resume)
-      floors_.supports.locate([&](const Support& support, double t) {
-        return first_pull(s_, o_, support, t, [](const Scenario& own, const SimulationOptions& o, RowSink& rows) {
-          return simulate(own, o, rows);
-        });
-      });
-    for (const std::string& text : floors_.notes()) note(text);
+    if (floors_) report_floors();
     const std::vector<Warning> more = warnings<N>(s_, course_, watch_, angles_);
     report_.warnings.insert(report_.warnings.end(), more.begin(), more.end());
     if (const auto warning = rows_.warning()) report_.warnings.push_back(*warning);
     judge_.estimate(course_, watched_quadratures(s_, power_), rows_.waiting(), report_);
+  }
+
+  void report_floors() {
+    if (!o_.resume)
+      floors_->supports.locate([&](const Support& support, double t) {
+        return first_pull(s_, o_, support, t, [](const Scenario& own, const SimulationOptions& o, RowSink& rows) {
+          return simulate(own, o, rows);
+        });
+      });
+    for (const std::string& text : floors_->notes()) note(text);
   }
 
   void report_watched() {
@@ -382,7 +386,7 @@ class Run {
   Watch<W> watch_;
   AngleWatch angles_;
   Judge<N> judge_;
-  FloorWatch floors_;
+  std::optional<FloorWatch> floors_;
   EventPaces<W> paces_;
   PacedStretch<W> stretch_;
   std::optional<Defect> defect_;

@@ -3,18 +3,15 @@
 namespace anholon {
 
 void WaitingBlock::add(const Motion<double>& motion, long double t, const std::string& label) {
-  if (count_ == 0) since_ = std::chrono::steady_clock::now();
-  Waiting& row = rows_[count_];
+  Waiting& row = next();
   row.place.t = t;
   motion.stepper().foretell(t, row.place.state, row.own, row.place.leading);
   if (!row.own.empty() && row.plan != motion.plan()) row.plan = motion.plan();
   row.label = label;
-  ++count_;
 }
 
 void WaitingBlock::add(const RowPlace& place) {
-  if (count_ == 0) since_ = std::chrono::steady_clock::now();
-  Waiting& row = rows_[count_++];
+  Waiting& row = next();
   row = {};
   row.place = place;
 }

@@ -21,13 +21,14 @@ class WaitingBlock {
     std::string label;                       // the time as it is to be written; empty for its number
   };
 
-  explicit WaitingBlock(std::size_t room) : rows_(room) {}
+  // `room`: how many rows fill it. It takes memory as they come.
+  explicit WaitingBlock(std::size_t room) : room_(room) {}
 
   // Adds a time of the last step.
   void add(const Motion<double>& motion, long double t, const std::string& label);
   // Adds a place.
   void add(const RowPlace& place);
-  bool full() const { return count_ == rows_.size(); }
+  bool full() const { return count_ == room_; }
   std::size_t size() const { return count_; }
   Waiting& operator[](std::size_t i) { return rows_[i]; }
   void clear() { count_ = 0; }
@@ -38,6 +39,13 @@ class WaitingBlock {
   }
 
  private:
+  Waiting& next() {
+    if (count_ == 0) since_ = std::chrono::steady_clock::now();
+    if (count_ == rows_.size()) rows_.emplace_back();
+    return rows_[count_++];
+  }
+
+  std::size_t room_;
   std::vector<Waiting> rows_;  // the first count_ of them wait; the others keep their memory
   std::size_t count_ = 0;
   std::chrono::steady_clock::time_point since_;  // when the first of them came

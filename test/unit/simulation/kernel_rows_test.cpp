@@ -52,7 +52,7 @@ TEST(KernelRows, FindNumbersThatAreNotThoseOfTheReference) {
     Rows r("zoo/disc", wrong);
     ASSERT_TRUE(r.waiting);
     KernelRows rows(*r.s, r.options, *r.motion, 0, std::move(r.waiting),
-                    {*r.watch, *r.judge, *r.floors, *r.writer, r.report});
+                    {*r.watch, *r.judge, r.floors, *r.writer, r.report});
     for (int k = 0; k < 20; ++k) {
       ASSERT_TRUE(r.motion->step(100).ok());
       rows.add(*r.motion, r.motion->stepper().time(), "", true);
