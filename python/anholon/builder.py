@@ -2,66 +2,15 @@
 
 from __future__ import annotations
 
-import json
-import linecache
-import re
-import sys
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Union
 
 from ._errors import ModelError
+from ._model_file import ModelFile, value_text
 from .expressions import Body, Equation, Expr, Place, Rotation, Term, _named, expr
 from .functions import norm, unit
 from .model import Model
 from .reading import loads
-
-_BARE = re.compile(r"[A-Za-z0-9_-]+\Z")
-
-
-@dataclass(frozen=True)
-class _Where:
-    """The line of Python that wrote an element."""
-
-    file: str
-    line: int
-
-    def __str__(self) -> str:
-        return f"{self.file}:{self.line}"
-
-
-def _caller() -> _Where:
-    """The nearest line outside of this file."""
-    frame = sys._getframe(1)
-    while frame.f_code.co_filename == __file__ and frame.f_back is not None:
-        frame = frame.f_back
-    return _Where(frame.f_code.co_filename, frame.f_lineno)
-
-
-@dataclass
-class _Line:
-    text: str
-    where: _Where | None
-
-
-def _key(name: str) -> str:
-    return name if _BARE.match(name) else json.dumps(name, ensure_ascii=False)
-
-
-def _text(value: object) -> str:
-    """A formula, an equation or a vector by its components as a value of TOML."""
-    if isinstance(value, Equation):
-        return json.dumps(value.text, ensure_ascii=False)
-    if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False)
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(_text(part) for part in value) + "]"
-    if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{_key(str(k))} = {_text(v)}" for k, v in value.items()) + "}"
-    return json.dumps(expr(value).text, ensure_ascii=False)
-
 
 On = Union[Expr, str, "tuple[Any, Any]"]
 """On what a force acts: a body or particle, at its centre, or ``(body, place)``. Three components are along the body's axes."""
@@ -110,28 +59,14 @@ class Builder:
 
     def __init__(self, title: str, *, source: str = "") -> None:
         self.title: str = title
-        self._head: list[_Line] = [_Line(f"title = {json.dumps(title, ensure_ascii=False)}", None)]
-        if source:
-            self._head.append(_Line(f"source = {json.dumps(source, ensure_ascii=False)}", None))
-        self._coordinates: list[str] = []
-        self._coordinates_at: _Where | None = None
-        self._tables: dict[str, list[_Line]] = {}  # sections of names
-        self._lists: list[_Line] = []  # [[body]], [[force]], …
-        self._forces = 0
+        self._file = ModelFile(title, source)
 
     # ---- what is written ----
 
     @property
     def text(self) -> str:
         """The model file, which ``anholon check`` reads."""
-        return "\n".join(line.text for line in self._lines()) + "\n"
-
-    def _lines(self) -> list[_Line]:
-        names = ", ".join(json.dumps(name, ensure_ascii=False) for name in self._coordinates)
-        lines = [*self._head, _Line(f"coordinates = [{names}]", self._coordinates_at), _Line("", None)]
-        for section, entries in self._tables.items():
-            lines += [_Line(f"[{section}]", None), *entries, _Line("", None)]
-        return lines + self._lists
+        return self._file.text
 
     def model(self, *, check: bool = False) -> Model:
         """The model.
@@ -158,42 +93,22 @@ class Builder:
         try:
             made = loads(self.text, name=self.title)
         except ModelError as error:
-            raise self._told(error) from None
+            raise self._file.in_python(error) from None
         if check:
             made.check()
         return made
 
-    def _told(self, error: ModelError) -> ModelError:
-        """The same mistakes at the lines of Python that wrote them."""
-        lines, parts = self._lines(), []
-        for d in error.diagnostics:
-            where = lines[d.line - 1].where if 0 < d.line <= len(lines) else None
-            if where is None:
-                parts.append(f"error: {d.message}" + (f"\nhint: {d.hint}" if d.hint else ""))
-                continue
-            python = linecache.getline(where.file, where.line).rstrip()
-            shown = f"\n  {where.line} | {python.strip()}" if python else ""
-            wrote = f"\n  it wrote: {lines[d.line - 1].text}\n            {' ' * max(d.column - 1, 0)}{'^' * max(d.length, 1)}"
-            parts.append(f"{where}: {d.severity.name}: {d.message}{shown}{wrote}" + (f"\nhint: {d.hint}" if d.hint else ""))
-        return ModelError("\n".join(parts), error.diagnostics)
-
-    def _entry(self, section: str, name: str, value: str) -> None:
-        self._tables.setdefault(section, []).append(_Line(f"{_key(name)} = {value}", _caller()))
+    def _entry(self, section: str, name: str, value: object) -> None:
+        self._file.add_entry(section, name, value_text(value))
 
     def _element(self, section: str, keys: Mapping[str, object]) -> None:
-        where = _caller()
-        self._lists.append(_Line(f"[[{section}]]", where))
-        for name, value in keys.items():
-            if value is not None:
-                self._lists.append(_Line(f"{name} = {_text(value)}", where))
-        self._lists.append(_Line("", None))
+        self._file.add_element(section, {name: value_text(value) for name, value in keys.items() if value is not None})
 
     # ---- names ----
 
     def coordinate(self, name: str) -> Expr:
         """Adds a coordinate."""
-        self._coordinates.append(name)
-        self._coordinates_at = _caller()
+        self._file.add_coordinate(name)
         return _named(name, "coordinate")
 
     def coordinates(self, names: str | Iterable[str]) -> tuple[Expr, ...]:
@@ -203,11 +118,11 @@ class Builder:
 
     def dependent(self, *coordinates: Term) -> None:
         """Coordinates that forms without multipliers eliminate; chosen without."""
-        self._head.append(_Line("dependent = [" + ", ".join(json.dumps(expr(q).text) for q in coordinates) + "]", _caller()))
+        self._file.add_to_head("dependent", value_text(coordinates))
 
     def parameter(self, name: str, value: Term, *, unit: str = "", doc: str = "") -> Expr:
         """Adds a constant: a number, a text with a unit ("8 cm"), or a formula of other parameters."""
-        self._entry("parameters", name, _text({"value": value, **_given(unit=unit, doc=doc)}) if unit or doc else _text(value))
+        self._entry("parameters", name, {"value": value, **_given(unit=unit, doc=doc)} if unit or doc else value)
         return _named(name)
 
     def parameters(self, **values: Term) -> tuple[Expr, ...]:
@@ -217,23 +132,23 @@ class Builder:
     def function(self, name: str, value: Term | None = None, *, arguments: Sequence[str] = ()) -> Expr:
         """Adds a function of time, or of arguments: then ``an.call(name, …)`` is its value. Without a value it is unknown, and
         nothing is integrated."""
-        self._entry("functions", f"{name}({', '.join(arguments)})" if arguments else name, "{}" if value is None else _text(value))
+        self._entry("functions", f"{name}({', '.join(arguments)})" if arguments else name, {} if value is None else value)
         return _named(name, "coordinate" if not arguments else "vector")
 
     def define(self, name: str, value: Term) -> Expr:
         """Gives a formula a name, which equations print. The type of the expression is that of the formula."""
-        self._entry("define", name, _text(value))
+        self._entry("define", name, value)
         of = value if isinstance(value, Expr) else expr(value)
         return type(of)(name, 4, ("name", name, "vector")) if isinstance(of, (Rotation, Place)) else _named(name)
 
     def frame(self, name: str, rotation: Term) -> Rotation:
         """Adds a frame, a rotation from the observer's axes."""
-        self._entry("frame", name, _text(rotation))
+        self._entry("frame", name, rotation)
         return Rotation(name, 4, ("name", name, "vector"))
 
     def point(self, name: str, position: Term) -> Place:
         """Adds a point by its position, a vector or three components."""
-        self._entry("point", name, _text(position))
+        self._entry("point", name, position)
         return Place(name, 4, ("name", name, "vector"))
 
     # ---- what has mass ----
@@ -331,34 +246,32 @@ class Builder:
             self._element("force", {"name": name, "on": _on(on), "vector": pull * unit(there - here)})
 
     def _has_mass(self, what: On) -> bool:
-        text = expr(what).text
-        sections = ("[[body]]", "[[particle]]")
-        return any(
-            line.text in sections and self._lists[k + 1].text == f"name = {json.dumps(text, ensure_ascii=False)}" for k, line in enumerate(self._lists)
-        )
+        name = expr(what).text
+        return self._file.has_element("body", name) or self._file.has_element("particle", name)
 
     def gravity(self, field: Term, *, gradient: bool = False) -> None:
         """The acceleration of gravity at the place ``an.here``, on every mass."""
-        self._entry("gravity", "field", _text(field))
+        self._entry("gravity", "field", field)
         if gradient:
-            self._entry("gravity", "gradient", "true")
+            self._entry("gravity", "gradient", True)
 
     def potential(self, name: str, energy: Term) -> None:
         """Adds a potential energy."""
-        self._entry("potential", name, _text(energy))
+        self._entry("potential", name, energy)
 
     def dissipation(self, name: str, power: Term) -> None:
         """Adds a dissipation function R; its forces are -dR/dq'."""
-        self._entry("dissipation", name, _text(power))
+        self._entry("dissipation", name, power)
 
     def table(self, name: str, x: Sequence[Term], y: Sequence[Term], *, fit: str | None = None, outside: str | None = None) -> None:
         """Adds a function by its values; ``an.call(name, at)`` calls it."""
-        where = _caller()
-        self._lists += [_Line("[[table]]", where), _Line(f"name = {_text(name)}", where)]
+        keys = {"name": value_text(name)}
         for key, values in (("x", x), ("y", y)):
-            self._lists.append(_Line(f"{key} = [{', '.join(expr(value).text for value in values)}]", where))
-        self._lists += [_Line(f"{key} = {_text(value)}", where) for key, value in (("fit", fit), ("outside", outside)) if value is not None]
-        self._lists.append(_Line("", None))
+            keys[key] = "[" + ", ".join(expr(value).text for value in values) + "]"
+        for key, word in (("fit", fit), ("outside", outside)):
+            if word is not None:
+                keys[key] = value_text(word)
+        self._file.add_element("table", keys)
 
     # ---- constraints, control, time ----
 
@@ -435,23 +348,23 @@ class Builder:
 
     def quasi(self, name: str, velocity: Term) -> Expr:
         """Adds a quasi-velocity."""
-        self._entry("quasi", name, _text(velocity))
+        self._entry("quasi", name, velocity)
         return _named(name)
 
     def observer(self, **motion: Term) -> None:
         """How the observer moves: ``spin`` or ``rotation``, and one of ``origin_acceleration``, ``origin_velocity``,
         ``origin_velocity_inertial``, ``origin_position_inertial``."""
         for key, value in motion.items():
-            self._entry("observer", key, _text(value))
+            self._entry("observer", key, value)
 
     def state(self, name: str, rate: Term, initial: Term = 0) -> Expr:
         """Adds a number with a rate of its own."""
-        self._entry("state", name, _text({"rate": rate, "initial": initial}))
+        self._entry("state", name, {"rate": rate, "initial": initial})
         return _named(name, "coordinate")
 
     def mode(self, name: str, value: Term) -> Expr:
         """Adds a number that only events change."""
-        self._entry("mode", name, expr(value).text)
+        self._file.add_entry("mode", name, expr(value).text)
         return _named(name)
 
     def event(
@@ -464,17 +377,17 @@ class Builder:
 
     def input(self, name: str, value: Term | None = None) -> Expr:
         """Adds a control with its formula; without one a constraint keeps it, ``by=``."""
-        self._entry("input", name, "{}" if value is None else _text(value))
+        self._entry("input", name, {} if value is None else value)
         return _named(name, "coordinate")
 
     def output(self, name: str, value: Term, *, unit: str = "", doc: str = "", conserved: bool = False) -> None:
         """Adds a column of runs: a number or a vector, also of multipliers."""
         more: dict[str, object] = {**_given(unit=unit, doc=doc), **({"conserved": True} if conserved else {})}
-        self._entry("output", name, _text({"value": value, **more}) if more else _text(value))
+        self._entry("output", name, {"value": value, **more} if more else value)
 
     def monitor(self, name: str, value: Term) -> None:
         """Adds a number to watch along the motion."""
-        self._entry("monitor", name, _text(value))
+        self._entry("monitor", name, value)
 
     def initial(
         self,
@@ -495,26 +408,27 @@ class Builder:
             t: the initial time, s.
         """
         if t is not None:
-            self._entry("initial", "t", _text(t))
+            self._entry("initial", "t", t)
         for q, value in (values or {}).items():
-            self._entry("initial", expr(q).text, _text(value))
+            self._entry("initial", expr(q).text, value)
         listed = list(conditions)
         for condition in listed:
             _must_be_equation(condition)
         if listed:
-            self._entry("initial", "conditions", _text(listed))
+            self._entry("initial", "conditions", listed)
         if guess:
-            self._entry("initial", "guess", _text({expr(q).text: value for q, value in guess.items()}))
+            self._entry("initial", "guess", {expr(q).text: value for q, value in guess.items()})
         if branch:
-            self._entry("initial", "branch", _text(branch))
+            self._entry("initial", "branch", branch)
 
     def simulate(self, **settings: object) -> None:
         """The settings of [simulate], which :meth:`Model.simulate` uses unless it is told otherwise: ``to=10, every=0.1``."""
         for key, value in settings.items():
-            self._entry("simulate", key.replace("_", "-"), _text(value) if isinstance(value, (str, bool, list, tuple)) else expr(value).text)
+            written = value_text(value) if isinstance(value, (str, bool, list, tuple)) else expr(value).text
+            self._file.add_entry("simulate", key.replace("_", "-"), written)
 
     def __repr__(self) -> str:
-        return f"<builder of {self.title!r}: coordinates {', '.join(self._coordinates) or 'none yet'}>"
+        return f"<builder of {self.title!r}: coordinates {', '.join(self._file.coordinates) or 'none yet'}>"
 
 
 def _given(**texts: str) -> dict[str, object]:
