@@ -37,6 +37,8 @@ void EnsemblePlan::make() {
   for (const Expr e : watched_formulas(model)) quadratures.push_back(e);
   for (const Event& e : model.events)
     sets.push_back(e.set.empty() ? std::nullopt : std::make_optional<SetByEvent>(s, e));
+  const bool any_sets = std::any_of(sets.begin(), sets.end(), [](const auto& set) { return set.has_value(); });
+  if (any_sets && !s.system.constraints.empty()) nearest.emplace(s, parameter_values<long double>(model));
   program = anholon::program(s.system, s.structure, quadratures);
   settings.measure = false;
   if (Start<long double> at; o.kernel && initial_state(s, o.state, at).ok()) {
@@ -240,6 +242,12 @@ CaseWay CaseWalk::take_events() {
       if (plan_->scenario.model->parameters[i].mode) narrow[i] = to_double(parameters[i]);
     equip(parameters, narrow);
     ready_ = false;  // for the next case
+  }
+  if (plan_->nearest) {
+    std::vector<W> leading;
+    point_->leading(leading);
+    if (!plan_->nearest->put(*plan_->program, stepper_->time(), parameters, leading, state).ok())
+      return stop(CaseWay::simulation);
   }
   return stepper_->restart(state, false).ok() ? CaseWay::plain : stop(CaseWay::simulation);
 }

@@ -41,7 +41,8 @@ class EnsemblePlan {
   mutable SweepLanes lanes;       // of the kernels of cases
   std::size_t first_reduced = 0;  // of the program's quadratures
   std::vector<WatchedSeries> watched;
-  std::vector<std::optional<SetByEvent>> sets;  // of each event, if it sets something
+  std::vector<std::optional<SetByEvent>> sets;       // of each event, if it sets something
+  std::optional<NearestState<long double>> nearest;  // with constraints, if an event sets something
   struct Outputs {
     Tape tape;
     struct Entry {

@@ -72,6 +72,16 @@ const SetByEvent& Motion<N>::set_by(std::size_t event) {
   return *set;
 }
 
+// Makes what an event has set consistent by the least change in the mass norm.
+template <Number N>
+Outcome Motion<N>::to_nearest(std::vector<W>& state) {
+  if (s_.system.constraints.empty()) return {};
+  if (!nearest_) nearest_.emplace(s_, parameters_);
+  std::vector<W> leading;
+  leg_->point.leading(leading);
+  return nearest_->put(leg_->program, leg_->stepper.time(), parameters_, leading, state);
+}
+
 // A bound that is met at the time `t`, in words.
 static Outcome beyond(const Bound& b, double t) {
   return {OutcomeKind::not_a_number, b.fault + " at t = " + number_text(t, 12),
@@ -117,7 +127,9 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
     leg_ = std::move(next);
     chosen_.clear();
   }
-  Outcome o = leg_->stepper.restart(state);
+  const std::vector<W> as_set = state;
+  Outcome o = to_nearest(state);
+  if (o.ok()) o = leg_->stepper.restart(state);
   begun_parameters_ = parameters_;
   if (!o.ok()) {
     o.message = "after the event '" + s_.model->events[fired.back().series].name + "': " + o.message;
@@ -128,7 +140,7 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
   W correction(0);
   const std::vector<W>& consistent = leg_->stepper.state();
   for (std::size_t i = 0; i < state.size(); ++i)
-    correction = std::max(correction, W(abs(W(consistent[i] - state[i])) / (W(1) + abs(state[i]))));
+    correction = std::max(correction, W(abs(W(consistent[i] - as_set[i])) / (W(1) + abs(as_set[i]))));
   if (correction > convert<W>(unit_roundoff<N>()) * W(1000))
     for (Occurrence<W>& each : occurrences)
       if (!each.changes.empty()) each.correction = correction;
@@ -140,6 +152,7 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
   template void Motion<N>::set_modes(const std::vector<Wider<N>>&);                                                    \
   template bool Motion<N>::leaves(std::size_t, bool, bool) const;                                                      \
   template Outcome Motion<N>::within_bounds(bool);                                                                     \
+  template Outcome Motion<N>::to_nearest(std::vector<Wider<N>>&);                                                      \
   template const SetByEvent& Motion<N>::set_by(std::size_t);                                                           \
   template Outcome Motion<N>::settle(std::vector<Occurrence<Wider<N>>>&, bool&);
 INSTANTIATE(double)

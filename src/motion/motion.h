@@ -15,6 +15,7 @@
 #include "motion/representation.h"
 #include "motion/saved.h"
 #include "motion/set_by_event.h"
+#include "setup/nearest_state.h"
 #include "setup/scenario.h"
 
 namespace anholon {
@@ -174,6 +175,7 @@ class Motion {
   StepSettings settings_;
   void set_modes(const std::vector<W>& parameters);
   const SetByEvent& set_by(std::size_t event);
+  Outcome to_nearest(std::vector<W>& state);
   std::vector<Expr> with_watched(Workspace& in) const;
   bool watches() const { return !s_.model->events.empty() || !s_.model->bounds.empty(); }
 
@@ -182,6 +184,7 @@ class Motion {
   std::vector<W> start_parameters_, parameters_;  // modes differ
   std::vector<N> narrow_parameters_;
   std::vector<std::optional<SetByEvent>> sets_;  // of the events that have fired
+  std::optional<NearestState<W>> nearest_;       // after an event, with constraints
   Start<W> start_;
   std::vector<W> begun_parameters_;  // where the last expansion was made
   std::unique_ptr<Leg> leg_;

@@ -14,10 +14,10 @@ namespace {
 using Result = test::Motion;
 
 Result run(const std::string& text, const Rational& to, const std::string& tolerance = "1/100000000000000",
-           const std::function<void(SimulationOptions&)>& more = {}) {
+           const std::function<void(SimulationOptions&)>& more = {}, const char* form = "routh") {
   Result r;
   Scenario s;
-  r.report.outcome = make_scenario(test::model_of(text), *find_formulation("routh"), {}, s);
+  r.report.outcome = make_scenario(test::model_of(text), *find_formulation(form), {}, s);
   if (!r.report.outcome.ok()) return r;
   SimulationOptions o;
   o.to = to;
@@ -267,6 +267,67 @@ TEST(Events, SetModesThatTheRowsAfterThemHave) {
   }
   ASSERT_TRUE(r.report.error) << r.report.no_error;
   EXPECT_GE(r.report.error->worst().digits, 14);
+}
+
+// Positions that an event sets beside a circle go to the nearest ones on it, and velocities to their tangents, in all forms.
+TEST(Events, PositionsAreMadeConsistentByTheLeastChange) {
+  const std::string text = R"toml(
+coordinates = ["x", "y"]
+particle = [{name = "bead", mass = 2, position = "x*ex + y*ey"}]
+constraint = [{name = "hoop", equation = "x^2 + y^2 = 1"}]
+event = [{name = "move", when = "t - 1/2", set = {x = "x + SHIFT"}}]
+initial = {x = 1, y = 0, "y'" = 1}
+)toml";
+  const auto misfit = [&](const char* shift, const char* form) {
+    const Result r = run(test::replaced(text, "SHIFT", shift), Rational(7, 10), "1/1000000000000", {}, form);
+    EXPECT_TRUE(r.report.outcome.ok()) << form << r.report.outcome.message;
+    const double x = std::cos(0.5) + 0.2, y = std::sin(0.5), angle = std::atan2(y, x),
+                 speed = std::cos(0.5) * std::cos(angle) + std::sin(0.5) * std::sin(angle), end = angle + 0.2 * speed;
+    return std::max(std::abs(r.last("x") - std::cos(end)), std::abs(r.last("y'") - speed * std::cos(end)));
+  };
+  for (const char* form : {"routh", "kane", "maggi", "chaplygin", "gauss"})
+    EXPECT_LT(misfit("0.2", form), 1e-14) << form;
+  EXPECT_GT(misfit("0.2001", "routh"), 1e-6);  // the mutant
+}
+
+// A velocity that an event sets against a constraint: the impulse of the constraint shares it by the masses, in all forms.
+// With a velocity constraint beside it, positions follow the constraints of position alone.
+TEST(Events, VelocitiesAreMadeConsistentInTheMassNorm) {
+  const std::string text = R"toml(
+coordinates = ["x", "y", "z"]
+[[particle]]
+name = "a"
+mass = 1
+position = "x*ex + z*ey"
+[[particle]]
+name = "b"
+mass = MASS
+position = "y*ex"
+[[constraint]]
+name = "rope"
+equation = "x - y = 0"
+[[constraint]]
+name = "blade"
+equation = "z' - x' = 0"
+[[event]]
+name = "hit"
+when = "t - 1/2"
+set = {"x'" = "x' + 1"}
+[[event]]
+name = "move"
+when = "t - 1"
+set = {x = "x + 1"}
+)toml";
+  for (const char* form : {"routh", "kane", "maggi", "udwadia-kalaba"}) {
+    const Result r = run(test::replaced(text, "MASS", "3"), Rational(3, 2), "1/1000000000000", {}, form);
+    ASSERT_TRUE(r.report.outcome.ok()) << form << r.report.outcome.message;
+    // Along (1, 1, 1) with the mass 1 + 3 + 1, then the masses 1 and 3 move by 1/4 to the middle of their rope.
+    EXPECT_NEAR(r.last("x'"), 0.2, 1e-15) << form;
+    EXPECT_NEAR(r.last("y"), 0.2 + 0.25, 1e-15) << form;
+    EXPECT_NEAR(r.last("z"), 0.2, 1e-15) << form;
+  }
+  const Result mutant = run(test::replaced(text, "MASS", "2"), Rational(3, 2));
+  EXPECT_GT(std::abs(mutant.last("x'") - 0.2), 1e-2);
 }
 
 // With modes, each of which begins with a stepper of its own.
