@@ -221,11 +221,10 @@ class HybridMotion {
     return {};
   }
 
-  // A gap comes to rest if its impacts add up to a limit less than kLeft away, or if it is pressed together and would
+  // A gap comes to rest if the time is near the limit to which its impacts add up, or if it is pressed together and would
   // rise, with its velocity after the impact, by round-off of its place only. Gaps that come to rest do so together, as
   // the impacts of each set the others in motion; and so does a slip that friction ends within round-off of the place.
   void land() {
-    constexpr double kLeft = 1e-7;
     const double t = bodies_.at.t.get_d();
     ContactModes stops(bodies_.contacts.size());
     bool any = false;
@@ -233,7 +232,7 @@ class HybridMotion {
       if (!bodies_.near.closed(c) || bodies_.contacts[c].under) continue;
       const std::optional<double> limit = accumulation_.limit(c);
       const bool rests =
-          bodies_.near.gap_rate(c) != 0 && ((limit && *limit - t < kLeft) || bodies_.near.hardly_rises(c));
+          bodies_.near.gap_rate(c) != 0 && (accumulation_.near_limit(c, t) || bodies_.near.hardly_rises(c));
       if (rests || bodies_.near.gap_rate(c) == 0) stops[c].touch = Touch::slips;
       if (!rests) continue;
       any = true;

@@ -255,9 +255,10 @@ CaseWay CaseWalk::take_events() {
 // Keeps the rows that lie in the last step.
 bool CaseWalk::rows() {
   const bool forward = !(end_ < stepper_->before());
+  const W until = stepper_->told_until();
   while (result_->rows.size() < times_.size()) {
     const W& t = times_[result_->rows.size()];
-    if (forward ? t > stepper_->time() : t < stepper_->time()) break;
+    if (forward ? t > until : t < until) break;
     std::vector<double> row = {to_double(t)};
     if (!keep(t, row)) return false;
     result_->rows.push_back(std::move(row));

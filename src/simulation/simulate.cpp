@@ -234,7 +234,8 @@ class Run {
     if (o_.dense && course_.by_taylor()) tell_polynomials(masses.t);
     if (defect_) defect_->step(dense_step(motion().stepper(), masses.t));
     if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
-    rows_.until(masses.t);
+    const bool whole = masses.t == course_.time() && course_.by_taylor();
+    rows_.until(whole ? motion().stepper().told_until() : masses.t);
     rows_.end_step(masses.t, stretch_.pace.read());
     if (report_.outcome.ok() && !(masses.t == course_.time())) {
       report_.outcome = negative_mass(*s_.model, masses.mass, to_double(masses.t));

@@ -12,6 +12,7 @@ void Accumulation::impact(std::size_t contact, double t) {
   const bool known = i.alike >= kAlike, alike = std::abs(ratio - i.ratio) < (known ? kNoise : kRatio);
   i.alike = i.count > 2 && ratio < 1 && alike ? i.alike + 1 : 0;
   i.ratio = known && alike ? i.ratio : ratio;
+  if (i.count == 0) i.first = t;
   i.last = t, i.interval = interval, ++i.count;
 }
 
@@ -19,6 +20,12 @@ std::optional<double> Accumulation::limit(std::size_t contact) const {
   const Impacts& i = impacts_[contact];
   if (i.alike < kAlike || !(i.ratio > 0 && i.ratio < 1)) return std::nullopt;
   return i.last + i.interval * i.ratio / (1 - i.ratio);
+}
+
+bool Accumulation::near_limit(std::size_t contact, double t) const {
+  constexpr double kPart = 1e-7;  // of the time from the first impact to the limit
+  const std::optional<double> end = limit(contact);
+  return end && *end - t < kPart * (*end - impacts_[contact].first);
 }
 
 }  // namespace anholon

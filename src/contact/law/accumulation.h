@@ -15,13 +15,15 @@ class Accumulation {
   void impact(std::size_t contact, double t);
   // The time to which the impacts add up; nullopt if their intervals do not shrink by one ratio.
   std::optional<double> limit(std::size_t contact) const;
+  // Whether there is such a limit and the time t has come so near to it that the impacts left over do not count.
+  bool near_limit(std::size_t contact, double t) const;
   // The contact has come to rest, and its impacts count no more.
   void forget(std::size_t contact) { impacts_[contact] = {}; }
 
  private:
   static constexpr std::size_t kAlike = 4;
   struct Impacts {
-    double last = 0, interval = 0, ratio = 0;
+    double first = 0, last = 0, interval = 0, ratio = 0;
     std::size_t alike = 0, count = 0;
   };
   std::vector<Impacts> impacts_;

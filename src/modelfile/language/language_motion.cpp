@@ -201,7 +201,8 @@ stop = true
 - Its time is located on the Taylor polynomial to round-off, whatever the tolerance. Events may hold `lambda.NAME`, `reaction(B)` and accelerations, also through `[define]`.
 - Several at one moment are taken in the order of the file. All formulas of one `set` use the values before this event; a later
   event at the same moment sees what the earlier ones have set.
-- Then velocities (and, where positions were set, positions) are made consistent with the constraints by the least change in the mass norm; the change is reported.
+- Then positions, where they were set, are made consistent with the constraints of position, and velocities with all constraints, by the least change in the mass norm; the change is reported.
+- A row at the time of an event shows the motion before it.
 - A jump of a mass gives no impulse: velocities stay. `expelled_velocity` counts between events only.
 - What constraints determine cannot be set. An event whose sets bring its formula to zero again and again ends the motion with an outcome.
 

@@ -291,6 +291,27 @@ initial = {z = 1, "x'" = 4, "y'" = 3}
   EXPECT_GT(misfit("x'*ex", "[\"ex\"]", 4, 1, "0.20001"), 1e-5);  // the mutant
 }
 
+// Times scaled by T: the same motion in other units has the same numbers of impacts and the same places.
+TEST(ClosedForms, ImpactsThatAddUpDoNotDependOnTheUnitOfTime) {
+  const auto falls = [](const char* T, const Rational& to) {
+    const auto m = contact_motion(R"toml(coordinates = ["x", "z"]
+parameters = {T = 1}
+particle = [{name = "puck", mass = 2, position = ["x", "0", "z"]}]
+gravity.field = "-9.81/T^2*ez"
+contact = [{name = "floor", gap = "z", slip = "x'*ex", along = ["ex"], friction = 0.2, restitution = 0.5}]
+initial = {z = 1, "x'" = "4/T"}
+)toml",
+                                  to, {{"T", T}});
+    EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    return std::pair(m.last("x"), times(m, "floor.hits").size());
+  };
+  const auto seconds = falls("1", 2), fast = falls("1e-6", Rational(2, 1'000'000)), slow = falls("1e6", 2'000'000);
+  EXPECT_EQ(seconds.second, fast.second);
+  EXPECT_EQ(seconds.second, slow.second);
+  EXPECT_NEAR(seconds.first, fast.first, 1e-13);
+  EXPECT_NEAR(seconds.first, slow.first, 1e-13);
+}
+
 // A box that rocks from corner to corner without rebound (Housner 1963): at each impact the spin changes by the factor r = 1
 // - 3 b^2/(2 (a^2 + b^2)) with the half width b, and half a swing lasts twice the time in which the box falls back.
 TEST(ClosedForms, RockingBoxComesToRest) {

@@ -269,6 +269,19 @@ TEST(Events, SetModesThatTheRowsAfterThemHave) {
   EXPECT_GE(r.report.error->worst().digits, 14);
 }
 
+// A row that is asked for at the time of an event shows the motion before it, whether the time is below or above that of the
+// event as a double.
+TEST(Events, RowsAtTheirTimeShowTheMotionBefore) {
+  for (const char* time : {"1/10", "1/5", "3/10", "3/5", "7/10", "9/10", "1/3"}) {
+    const Result r = run(mass_on_a_line("0", "event = [{name = \"kick\", when = \"t - " + std::string(time) +
+                                                 "\", set = {\"x'\" = \"x' + 10\"}}]\n"),
+                         1, "1/1000000000000", [&](SimulationOptions& o) { o.at = {Rational(time), Rational(1)}; });
+    ASSERT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
+    EXPECT_EQ(r.number(0, "x'"), 0) << time;
+    EXPECT_EQ(r.last("x'"), 10) << time;
+  }
+}
+
 // Positions that an event sets beside a circle go to the nearest ones on it, and velocities to their tangents, in all forms.
 TEST(Events, PositionsAreMadeConsistentByTheLeastChange) {
   const std::string text = R"toml(
