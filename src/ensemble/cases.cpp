@@ -255,7 +255,7 @@ CaseWay CaseWalk::take_events() {
 // Keeps the rows that lie in the last step.
 bool CaseWalk::rows() {
   const bool forward = !(end_ < stepper_->before());
-  const W until = stepper_->told_until();
+  const W until = told_until(*plan_->scenario.model, *stepper_);
   while (result_->rows.size() < times_.size()) {
     const W& t = times_[result_->rows.size()];
     if (forward ? t > until : t < until) break;

@@ -98,14 +98,6 @@ class Stepper {
   StepperState<N> begun() const { return expander_.begun(track_); }
   const W& before() const { return before_; }                    // the time where the last step began
   const std::vector<Fired<N>>& fired() const { return fired_; }  // in the last step, in order
-  // Up to which time the last step tells the motion: to its end, or, where events end it, as far beyond as the time of an
-  // event is round-off, so that what is asked for at this time is the motion before the event.
-  W told_until() const {
-    constexpr int kRoundoffs = 4;
-    if (fired_.empty()) return time();
-    const W beyond = convert<W>(unit_roundoff<N>()) * W(kRoundoffs) * abs(time());
-    return time() < before_ ? W(time() - beyond) : W(time() + beyond);
-  }
   // Integrals of the quadratures since the start.
   const std::vector<W>& integrals() const { return track_.now.integrals; }
 

@@ -56,6 +56,24 @@ std::vector<WatchedSeries> watched_series(const Scenario& scenario, std::size_t 
 // Whether multipliers stand in them: a kernel in unknowns of its own knows none.
 bool watches_multipliers(const Model& model);
 
+// Up to which time the last step tells the motion: to its end, or, if events there set something, as far beyond as the time
+// of an event is round-off, so that what is asked for at this time is the motion before the event.
+template <Number N>
+Wider<N> told_until(const Model& model, const Stepper<N>& stepper) {
+  using W = Wider<N>;
+  constexpr int kRoundoffs = 4;
+  const W end = stepper.time();
+  const bool set = std::any_of(stepper.fired().begin(), stepper.fired().end(), [&](const Fired<N>& f) {
+    return f.series < model.events.size() && !model.events[f.series].set.empty();
+  });
+  const bool stops = std::any_of(stepper.fired().begin(), stepper.fired().end(), [&](const Fired<N>& f) {
+    return f.series < model.events.size() && model.events[f.series].stop;
+  });
+  if (!set || stops) return end;
+  const W beyond = convert<W>(unit_roundoff<N>()) * W(kRoundoffs) * abs(end);
+  return end < stepper.before() ? W(end - beyond) : W(end + beyond);
+}
+
 // N: the numbers of the Taylor coefficients; W: those of the state and of everything written.
 template <Number N>
 class Motion {

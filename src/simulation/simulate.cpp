@@ -235,7 +235,7 @@ class Run {
     if (defect_) defect_->step(dense_step(motion().stepper(), masses.t));
     if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
     const bool whole = masses.t == course_.time() && course_.by_taylor();
-    rows_.until(whole ? motion().stepper().told_until() : masses.t);
+    rows_.until(whole ? told_until(*s_.model, motion().stepper()) : masses.t);
     rows_.end_step(masses.t, stretch_.pace.read());
     if (report_.outcome.ok() && !(masses.t == course_.time())) {
       report_.outcome = negative_mass(*s_.model, masses.mass, to_double(masses.t));
@@ -344,6 +344,10 @@ class Run {
     if (floors_) report_floors();
     const std::vector<Warning> more = warnings<N>(s_, course_, watch_, angles_);
     report_.warnings.insert(report_.warnings.end(), more.begin(), more.end());
+    const bool set = std::any_of(report_.events.begin(), report_.events.end(),
+                                 [](const EventReport& e) { return !e.changes.empty(); });
+    const std::vector<Warning> jumps = warnings_of_jumps<N>(course_, watch_, o_, set);
+    report_.warnings.insert(report_.warnings.end(), jumps.begin(), jumps.end());
     if (const auto warning = rows_.warning()) report_.warnings.push_back(*warning);
     judge_.estimate(course_, watched_quadratures(s_, power_), rows_.waiting(), report_);
   }
