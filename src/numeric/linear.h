@@ -26,24 +26,35 @@ struct Matrix {
   const N& operator()(std::size_t i, std::size_t j) const { return data[i * cols + j]; }
 };
 
-// An estimate of the smallest singular value of D^-1 A with the diagonal matrix D of `row_scale`, by `sweeps` of inverse
-// iteration from `direction`, which is kept for the next call. `lu`: solves with A by solve_once and solve_transposed.
+// The scales of a matrix: its rows divided by those of `row`, its columns multiplied by those of `column` (all 1 if empty).
+template <Number N>
+struct Scales {
+  std::vector<N> row, column;
+};
+
+// An estimate of the smallest singular value of the scaled matrix R^-1 A C, by `sweeps` of inverse iteration from
+// `direction`, in the unknowns of A, which is kept for the next call. `lu`: solves with A by solve_once and solve_transposed.
 template <Number N, class Factors>
-N smallest_singular_value_by(const Factors& lu, const std::vector<N>& row_scale, std::vector<N>& direction,
-                             int sweeps) {
-  const std::size_t n = row_scale.size();
+N smallest_singular_value_by(const Factors& lu, const Scales<N>& scales, std::vector<N>& direction, int sweeps) {
+  const std::size_t n = scales.row.size();
   if (n == 0) return N(1);
   if (direction.size() != n) {
     // The entries are uneven on purpose: no kernel of a mechanical system is orthogonal to them by symmetry.
     direction.assign(n, N(1));
     for (std::size_t i = 0; i < n; ++i) direction[i] += N(static_cast<int>((i * 37 + 11) % 17)) / N(23);
   }
+  const auto divide_by_columns = [&](std::vector<N>& v) {
+    for (std::size_t j = 0; j < scales.column.size(); ++j) v[j] /= scales.column[j];
+  };
+  divide_by_columns(direction);
   std::vector<N> y, scaled(n);
   N sigma(0);
   for (int k = 0; k < sweeps; ++k) {
-    lu.solve_transposed(direction, y);  // (D^-1 A)^T w = v  with  w = D y
-    for (std::size_t i = 0; i < n; ++i) scaled[i] = y[i] * row_scale[i] * row_scale[i];
-    lu.solve_once(scaled, direction);  // (D^-1 A) v' = w
+    divide_by_columns(direction);
+    lu.solve_transposed(direction, y);  // (R^-1 A C)^T w = v  with  w = R y
+    for (std::size_t i = 0; i < n; ++i) scaled[i] = y[i] * scales.row[i] * scales.row[i];
+    lu.solve_once(scaled, direction);  // (R^-1 A C) v' = w
+    divide_by_columns(direction);
     N norm2(0);
     for (const N& v : direction) addmul(norm2, v, v);
     const N length = sqrt(norm2);
@@ -51,6 +62,7 @@ N smallest_singular_value_by(const Factors& lu, const std::vector<N>& row_scale,
     for (N& v : direction) v /= length;
     sigma = N(1) / sqrt(length);
   }
+  for (std::size_t j = 0; j < scales.column.size(); ++j) direction[j] *= scales.column[j];
   return sigma;
 }
 
@@ -110,10 +122,11 @@ class Lu {
     for (std::size_t i = 0; i < n; ++i) x[order_[i]] = y[i];
   }
 
-  // An estimate of the smallest singular value of A with rows divided by their largest entry, by
+  // An estimate of the smallest singular value of A with rows divided by their largest entry, or scaled as told, by
   // `sweeps` of inverse iteration from `direction`, which is kept for the next call.
-  N smallest_singular_value(std::vector<N>& direction, int sweeps = 3) const {
-    return smallest_singular_value_by(*this, row_scale_, direction, sweeps);
+  N smallest_singular_value(std::vector<N>& direction, const Scales<N>& scales = {}, int sweeps = 3) const {
+    return smallest_singular_value_by(*this, scales.row.empty() ? Scales<N>{row_scale_, {}} : scales, direction,
+                                      sweeps);
   }
 
  private:

@@ -100,11 +100,12 @@ void SparseJacobian<N>::solve(const std::vector<N>& b, std::vector<N>& x) const 
 }
 
 template <Number N>
-N SparseJacobian<N>::smallest_singular_value(std::vector<N>& direction) const {
+N SparseJacobian<N>::smallest_singular_value(std::vector<N>& direction, const Scales<N>& scales) const {
   constexpr int kSweeps = 3;
-  std::vector<N> scale;
-  for (const double v : largest_[0]) scale.push_back(N(v));
-  return smallest_singular_value_by(*this, scale, direction, kSweeps);
+  Scales<N> by_rows;
+  if (scales.row.empty())
+    for (const double v : largest_[0]) by_rows.row.push_back(N(v));
+  return smallest_singular_value_by(*this, scales.row.empty() ? by_rows : scales, direction, kSweeps);
 }
 
 template <Number N>

@@ -44,7 +44,7 @@ class SparseJacobian {
   // x := J^-1 b with one step of iterative refinement.
   void solve(const std::vector<N>& b, std::vector<N>& x) const;
   // As Lu: the rows of J are divided by their largest entry.
-  N smallest_singular_value(std::vector<N>& direction) const;
+  N smallest_singular_value(std::vector<N>& direction, const Scales<N>& scales = {}) const;
 
   // y := J x.
   void multiply(const std::vector<N>& x, std::vector<N>& y) const { anholon::multiply(*linearized_, partials_, x, y); }

@@ -1,6 +1,7 @@
 #include "program/system_jacobian.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace anholon {
 
@@ -51,6 +52,38 @@ N SystemJacobian<N>::largest(std::size_t i, int level) const {
   for (std::size_t j = 0; j < j_.cols; ++j)
     if (N v = abs(j_(i, j)); program_->d[j] >= level && v > most) most = v;
   return most;
+}
+
+// The largest |J_ij| of the equations of motion in the columns from `begin` to `end`.
+template <Number N>
+static double largest_of_motion(const Matrix<N>& J, std::size_t equations, std::size_t begin, std::size_t end) {
+  double largest = 0;
+  for (std::size_t i = 0; i < equations; ++i)
+    for (std::size_t j = begin; j < end; ++j) largest = std::max(largest, std::abs(to_double(J(i, j))));
+  return largest;
+}
+
+template <Number N>
+Scales<N> SystemJacobian<N>::scales_of_far_sizes() const {
+  constexpr double kFar = 0x1p20;
+  const std::size_t n = program_->system->coordinates, mechanical = program_->system->mechanical();
+  if (is_sparse_ || n == mechanical) return {};
+  const double masses = largest_of_motion(j_, n, 0, n), forces = largest_of_motion(j_, n, n, mechanical),
+               ratio = masses / forces;
+  if (!(ratio > 0) || !std::isfinite(ratio) || (ratio < kFar && ratio * kFar > 1)) return {};
+  const double unit = std::exp2(std::round(std::log2(ratio)));
+  Scales<N> scales{std::vector<N>(j_.rows, N(0)), std::vector<N>(j_.cols, N(1))};
+  for (std::size_t j = n; j < mechanical; ++j) scales.column[j] = N(unit);
+  for (std::size_t i = 0; i < j_.rows; ++i)
+    for (std::size_t j = 0; j < j_.cols; ++j)
+      scales.row[i] = std::max(scales.row[i], N(abs(N(j_(i, j) * scales.column[j]))));
+  for (std::size_t j = 0; j < j_.cols; ++j) {
+    N largest(0);
+    for (std::size_t i = 0; i < j_.rows; ++i)
+      if (scales.row[i] > N(0)) largest = std::max(largest, N(abs(N(j_(i, j) * scales.column[j] / scales.row[i]))));
+    if (largest > N(0)) scales.column[j] = scales.column[j] / largest;
+  }
+  return scales;
 }
 
 template <Number N>

@@ -75,10 +75,12 @@ void SystemLu<N>::solve(const std::vector<N>& b, std::vector<N>& x) const {
 }
 
 template <Number N>
-N SystemLu<N>::smallest_singular_value(std::vector<N>& direction) const {
-  if (!in_double_) return lu_.smallest_singular_value(direction);
+N SystemLu<N>::smallest_singular_value(std::vector<N>& direction, const Scales<N>& scales) const {
+  if (!in_double_) return lu_.smallest_singular_value(direction, scales);
   narrow(direction, narrow_side_);
-  const double sigma = narrow_.smallest_singular_value(narrow_side_);
+  Scales<double> narrow_scales;
+  narrow(scales.row, narrow_scales.row), narrow(scales.column, narrow_scales.column);
+  const double sigma = narrow_.smallest_singular_value(narrow_side_, narrow_scales);
   widen(narrow_side_, direction);
   return N(sigma);
 }

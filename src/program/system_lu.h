@@ -24,7 +24,7 @@ class SystemLu {
   // How many solutions by solve_once, each of the residual of those before, have all digits of N, and refine them once.
   int passes() const { return in_double_ ? kPassesInDouble : 2; }
   // An estimate, as by Lu.
-  N smallest_singular_value(std::vector<N>& direction) const;
+  N smallest_singular_value(std::vector<N>& direction, const Scales<N>& scales = {}) const;
 
   bool in_double() const { return in_double_; }
 

@@ -140,9 +140,9 @@ TEST(SmallestSingularValue, DoesNotDependOnTheUnitsOfTheRows) {
   Lu<double> lu;
   std::vector<double> d1, d2;
   ASSERT_TRUE(lu.factor(a));
-  const double sigma = lu.smallest_singular_value(d1, 20);
+  const double sigma = lu.smallest_singular_value(d1, {}, 20);
   ASSERT_TRUE(lu.factor(scaled));
-  EXPECT_NEAR(lu.smallest_singular_value(d2, 20) / sigma, 1, 1e-9);
+  EXPECT_NEAR(lu.smallest_singular_value(d2, {}, 20) / sigma, 1, 1e-9);
 }
 
 TEST(SmallestSingularValue, SeesANearlySingularMatrixWhateverItsKernel) {

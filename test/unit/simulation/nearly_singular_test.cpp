@@ -57,6 +57,37 @@ std::string as_written(const nlohmann::json& data) {
   return text;
 }
 
+// Accelerations do not depend on the unit of mass: a sleigh of a micrometre and 1e-18 kg, or of a planet's mass, moves as one
+// of a metre and 1 kg, and its equations are as regular.
+TEST(Units, MassesOfAnySizeHaveOneMotion) {
+  const auto sleigh = [](const std::string& mass, const std::string& length) {
+    return "coordinates = [\"x\", \"y\", \"th\"]\nparameters = {M = " + mass + ", L = " + length + R"toml(}
+frame.S = "rotz(th)"
+body = [{name = "b", mass = "M", inertia = "0.4*M*L^2", center = "x*ex + y*ey + 0.3*L*S.x", orientation = "S"}]
+constraint = [{name = "blade", equation = "dot(vel(x*ex + y*ey), S.y) = 0"}]
+initial = {x = "L", y = "L/2", th = 0.3, "x'" = "L", "th'" = 0.7}
+)toml";
+  };
+  const Result usual = run(sleigh("1", "1"), 3);
+  ASSERT_TRUE(usual.report.outcome.ok()) << usual.report.outcome.message;
+  for (const auto& [mass, length] : {std::pair("1e-18", "1"), std::pair("1e-18", "1e-6"), std::pair("1e-8", "1"),
+                                     std::pair("1e15", "1"), std::pair("1e24", "1e7")}) {
+    const Result other = run(sleigh(mass, length), 3);
+    ASSERT_TRUE(other.report.outcome.ok()) << mass << other.report.outcome.message;
+    EXPECT_NEAR(other.last("th"), usual.last("th"), 1e-12) << mass;
+    EXPECT_NEAR(other.last("x") / std::stod(length), usual.last("x"), 1e-12) << mass;
+    EXPECT_GT(other.report.smallest_sigma, 0.1) << mass;
+    EXPECT_TRUE(other.report.warnings.empty()) << other.report.warnings.front().message;
+  }
+  // The mutant: a coordinate that no mass follows.
+  Scenario s;
+  EXPECT_EQ(make_scenario(test::model_of(test::replaced(sleigh("1e-18", "1"), "y*ey + 0.3*L*S.x", "0.3*L*ex")),
+                          *find_formulation("routh"), {}, s)
+                    .ok() &&
+                run(test::replaced(sleigh("1e-18", "1"), "y*ey + 0.3*L*S.x", "0.3*L*ex"), 3).report.outcome.ok(),
+            false);
+}
+
 // Euler's angles pass near theta = 0, where J has condition 1/theta^2. The shipped model has the same motion in other
 // words.
 TEST(NearlySingular, ARattlebackAsItsFormulasAreWritten) {
