@@ -1,6 +1,7 @@
 #include "simulation/request.h"
 
 #include <algorithm>
+#include <regex>
 
 #include "base/diagnostic.h"
 #include "numeric/number.h"
@@ -24,13 +25,20 @@ Rational start_of(const Scenario& s, const SimulationOptions& o) {
   return is_number(s.model->initial.t) ? number_value(s.model->initial.t) : Rational(s.state.t);
 }
 
+// Whether a text is one number that each format of results reads, such as 0.25 or -1e-3: a formula or a number with a unit
+// is none.
+bool is_number_as_written(const std::string& text) {
+  static const std::regex number(R"(-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][-+]?[0-9]+)?)");
+  return std::regex_match(text, number);
+}
+
 // Returns the time of the last row.
 Rational set_times(const MotionSettings& settings, const Scenario& s, const Asker& asker, SimulationOptions& o) {
   o.to = settings.to;
   o.every = settings.every;
   for (const WrittenTime& t : settings.at) o.at.push_back(t.value);
   if (std::any_of(settings.at.begin(), settings.at.end(), [](const WrittenTime& t) { return !t.text.empty(); }))
-    for (const WrittenTime& t : settings.at) o.at_text.push_back(t.text);
+    for (const WrittenTime& t : settings.at) o.at_text.push_back(is_number_as_written(t.text) ? t.text : "");
   const Rational start = start_of(s, o);
   if (!o.at.empty() && o.at.front() < start && o.at.back() > start)
     throw Failure({}, "the time " + o.at.front().get_str() + " lies before the start, t = " + start.get_str());
