@@ -184,6 +184,10 @@ CaseWay CaseWalk::after_step() {
     if (!plan_->scenario.model->masses[i].weight &&
         stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0))
       return stop(CaseWay::simulation);
+  // `simulate` names an event whose formula has no value.
+  for (const WatchedSeries& w : plan_->watched)
+    if (!stepper_->one_sided() && !is_finite(stepper_->quadrature_coefficient(w.quadrature, 0)))
+      return stop(CaseWay::simulation);
   if (!rows()) return stop(CaseWay::simulation);
   if (reducer_) {
     if (stepper_->one_sided() && !plan_->options.reductions.formulas.empty()) return stop(CaseWay::simulation);

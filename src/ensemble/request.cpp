@@ -17,16 +17,7 @@ void set_times(const MotionSettings& asked, const Scenario& s, const Asker& aske
                          : is_number(s.model->initial.t) ? number_value(s.model->initial.t)
                                                          : Rational(s.state.t);
   if (!asked.to) o.to = o.at.back() > start ? o.at.back() : o.at.front();
-  const Rational& low = std::min(start, o.to);
-  const Rational& high = std::max(start, o.to);
-  const Rational* outside = o.at.front() < low ? &o.at.front() : o.at.back() > high ? &o.at.back() : nullptr;
-  if (!outside) return;
-  const bool before_start = (*outside < start) == (start <= o.to);
-  throw Failure(
-      {},
-      "the time " + outside->get_str() + " lies " +
-          (before_start ? "before the start, t = " + start.get_str() : "beyond the end, t = " + o.to.get_str()),
-      asker.called("at") + " asks for rows between the start and the end of the motions");
+  must_lie_between(o.at, start, o.to, asker);
 }
 
 // Reductions follow Taylor's polynomials, which know derivatives up to those that are solved for.

@@ -222,6 +222,15 @@ void Stepper<N>::limit_by_events() {
 }
 
 template <Number N>
+std::optional<std::size_t> Stepper<N>::shortened_by() const {
+  constexpr double kMuchFarther = 1e3;
+  if (events_.empty() || phase_ != Phase::expanded) return std::nullopt;
+  const N known(std::exp(events_.log_reach(settings_.log_tolerance)));
+  if (known > horizon_ || !(expander_.reach() > known * N(kMuchFarther))) return std::nullopt;
+  return events_.least_known(settings_.log_tolerance);
+}
+
+template <Number N>
 void Stepper<N>::limit_by_quadratures() {
   if constexpr (std::same_as<N, double>)
     if (const KernelExpansion* kernel = expander_.kernel()) return limit_by_quadratures(*kernel);

@@ -138,6 +138,9 @@ class Stepper {
   // Whether it is known to be the same at all times.
   bool constant_quadrature(std::size_t i) const { return expander_.constant_quadrature(i); }
 
+  // The watched series that alone makes the present step short; nullopt if the motion itself does, or nothing.
+  std::optional<std::size_t> shortened_by() const;
+
   int order() const { return order_; }
   std::size_t steps() const { return record().steps; }
   std::size_t kinks() const { return end_.kinks(); }      // steps that one has cut short

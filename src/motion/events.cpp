@@ -55,8 +55,21 @@ bool Motion<N>::leaves(std::size_t bound, bool met, bool forward) const {
   return false;
 }
 
+// Says which event's formula has no value where the motion is; `when` in words. A motion that begins where formulas have
+// no derivatives knows no values of them yet. `first`: of the quadratures.
+template <Number N>
+static Outcome all_have_values(const Model& model, const Stepper<N>& stepper, std::size_t first,
+                               const std::string& when) {
+  for (std::size_t i = 0; i < model.events.size() && !stepper.one_sided(); ++i)
+    if (!is_finite(stepper.quadrature_coefficient(first + i, 0)))
+      return {OutcomeKind::not_a_number, "the formula of the event '" + model.events[i].name + "' has no value " + when,
+              kEventWithoutValue};
+  return {};
+}
+
 template <Number N>
 Outcome Motion<N>::within_bounds(bool forward) {
+  if (Outcome o = all_have_values(*s_.model, leg_->stepper, quadratures_.size(), "at the start"); !o.ok()) return o;
   for (std::size_t i = 0; i < s_.model->bounds.size(); ++i)
     if (leaves(i, false, forward))
       return {OutcomeKind::not_a_number, s_.model->bounds[i].fault + " at the start",
@@ -92,7 +105,7 @@ template <Number N>
 Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on) {
   const std::vector<Fired<N>> fired = leg_->stepper.fired();
   const W start = leg_->stepper.before(), now = leg_->stepper.time();
-  bool set = false;
+  const Event* set = nullptr;  // the last event that sets something
   goes_on = true;
   std::optional<N> changed;                        // where an event changes or ends the motion
   std::vector<bool> met(s_.model->bounds.size());  // the bounds just there: the motion may turn back
@@ -110,7 +123,7 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
     const Event& event = s_.model->events[f.series];
     Occurrence<W> occurrence{f.series, start + convert<W>(f.where), {}, W(0)};
     if (!event.set.empty()) {
-      set = true;
+      set = &event;
       if (Outcome o = set_by(f.series).put(leg_->point, state, parameters, occurrence.changes); !o.ok()) return o;
     }
     if (event.stop) goes_on = false;
@@ -132,9 +145,12 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
   if (o.ok()) o = leg_->stepper.restart(state);
   begun_parameters_ = parameters_;
   if (!o.ok()) {
-    o.message = "after the event '" + s_.model->events[fired.back().series].name + "': " + o.message;
+    o.message = "after the event '" + set->name + "': " + o.message;
     return o;
   }
+  const std::string after = "after the event '" + set->name + "', at t = " + number_text(to_double(now), 12);
+  if (goes_on)
+    if (o = all_have_values(*s_.model, leg_->stepper, quadratures_.size(), after); !o.ok()) return o;
   for (std::size_t i = 0; i < met.size(); ++i)
     if (leaves(i, met[i], now > start)) return beyond(s_.model->bounds[i], to_double(now));
   W correction(0);

@@ -52,6 +52,10 @@ struct MotionPlans {
 // The formulas that a motion watches: those of events, then of bounds. How it does, where they are the quadratures of its
 // program from `first` on.
 std::vector<Expr> watched_formulas(const Model& model);
+// What to do about an event whose formula has no value somewhere along the motion.
+inline constexpr const char* kEventWithoutValue = "write a formula that has a value all along the motion and the same "
+                                                  "zeros, such as x - 2 for log(x - 1), or end the "
+                                                  "motion before";
 std::vector<WatchedSeries> watched_series(const Scenario& scenario, std::size_t first);
 // Whether multipliers stand in them: a kernel in unknowns of its own knows none.
 bool watches_multipliers(const Model& model);
@@ -115,7 +119,8 @@ class Motion {
   // consistent one near.
   bool fired() const { return !leg_->stepper.fired().empty(); }
   Outcome settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on);
-  // Not ok if the argument of a table lies outside of it at the start, or leaves it there.
+  // Not ok if the formula of an event has no value at the start, or the argument of a table lies outside of it there or
+  // leaves it.
   Outcome within_bounds(bool forward);
   // The formula of an event at the start.
   double at_start(std::size_t event) const {

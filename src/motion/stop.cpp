@@ -133,6 +133,13 @@ void explain_stop(Workspace& s, const Motion<N>& motion, Outcome& outcome) {
     outcome.hint = "look at the last good state: end the motion before";
     return;
   }
+  if (const auto i = stepper.shortened_by();
+      i && *i < s.model->events.size() && outcome.kind == OutcomeKind::step_collapse) {
+    message +=
+        "; the formula of the event '" + s.model->events[*i].name + "' has no value there, or grows without bound";
+    outcome.hint = kEventWithoutValue;
+    return;
+  }
   const double first = to_double(stepper.first_sigma()), least = to_double(stepper.least_regular().sigma);
   const std::string lost = lost_hold(s, motion);
   // Not where the motion has passed a singular configuration long before.

@@ -1,6 +1,7 @@
 #include "setup/scenario.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "expr/degree.h"
 #include "expr/normal.h"
@@ -133,7 +134,41 @@ static void choose_constraints(const Model& model, const std::vector<double>& pa
   }
 }
 
-// No motion starts from a number beyond those of the machine, or with a negative mass.
+// By how much the axes of an orientation miss length 1, right angles or a right-handed order.
+static double missed_by(const Rotation& r, PointValues& at) {
+  double axes[3][3];
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < 3; ++i) axes[k][i] = at(r[k][i]);
+  double most = 0;
+  const auto miss = [&](double v) { most = std::isnan(v) || std::abs(v) > most ? std::abs(v) : most; };
+  for (int j = 0; j < 3; ++j)
+    for (int k = 0; k <= j; ++k)
+      miss(axes[j][0] * axes[k][0] + axes[j][1] * axes[k][1] + axes[j][2] * axes[k][2] - (j == k ? 1 : 0));
+  double volume = 0;
+  for (int i = 0; i < 3; ++i)
+    volume += axes[0][i] * (axes[1][(i + 1) % 3] * axes[2][(i + 2) % 3] - axes[1][(i + 2) % 3] * axes[2][(i + 1) % 3]);
+  miss(volume - 1);
+  return most;
+}
+
+// Orientations are rotations at the start. Constraints may hold there what holds identically in others; numbers of the
+// file may be rounded.
+static Outcome oriented(const Model& model, PointValues& at) {
+  constexpr double kRounded = 1e-9;
+  for (const Body& b : model.bodies) {
+    if (!b.orientation || b.orientation->by_turns) continue;
+    if (const double miss = missed_by(*b.orientation, at); !(miss <= kRounded))
+      return {OutcomeKind::inconsistent,
+              "the orientation of '" + b.name +
+                  "' is no rotation at the start: its axes miss length 1, right angles or " +
+                  "a right-handed order by " + number_text(miss, 3),
+              "the columns of matrix(…) are the new axes: give other initial values, or constraints that hold them at "
+              "length 1 and right angles"};
+  }
+  return {};
+}
+
+// No motion starts from a number beyond those of the machine, with a body that is deformed, or with a negative mass.
 static Outcome admissible(const Model& model, const std::vector<double>& parameters,
                           const InitialState<double>& state) {
   for (std::size_t a = 0; a < state.q.size(); ++a)
@@ -144,6 +179,7 @@ static Outcome admissible(const Model& model, const std::vector<double>& paramet
                     " has no value in double precision",
                 "give another initial value, or choose units in which it is of moderate size"};
   PointValues at = values_near(model, parameters, state);
+  if (Outcome o = oriented(model, at); !o.ok()) return o;
   for (const VaryingMass& m : model.masses) {
     if (m.weight || jet_order(m.value) > 1) continue;
     if (const double value = at(m.value); value < 0)

@@ -1,6 +1,7 @@
 #include "simulation/request.h"
 
 #include <algorithm>
+#include <regex>
 
 #include "base/diagnostic.h"
 #include "numeric/number.h"
@@ -24,19 +25,41 @@ Rational start_of(const Scenario& s, const SimulationOptions& o) {
   return is_number(s.model->initial.t) ? number_value(s.model->initial.t) : Rational(s.state.t);
 }
 
-// Returns the time of the last row.
+bool lies_between(const Rational& t, const Rational& start, const Rational& end) {
+  return std::min(start, end) <= t && t <= std::max(start, end);
+}
+
+// Whether times of rows are those of the file: others have a text.
+bool of_file(const std::vector<WrittenTime>& at) {
+  return std::all_of(at.begin(), at.end(), [](const WrittenTime& t) { return t.text.empty(); });
+}
+
+// Whether a text is one number that each format of results reads, such as 0.25 or -1e-3: a formula or a number with a unit
+// is none.
+bool is_number_as_written(const std::string& text) {
+  static const std::regex number(R"(-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][-+]?[0-9]+)?)");
+  return std::regex_match(text, number);
+}
+
+// Returns the time at which the motion ends.
 Rational set_times(const MotionSettings& settings, const Scenario& s, const Asker& asker, SimulationOptions& o) {
   o.to = settings.to;
   o.every = settings.every;
-  for (const WrittenTime& t : settings.at) o.at.push_back(t.value);
-  if (std::any_of(settings.at.begin(), settings.at.end(), [](const WrittenTime& t) { return !t.text.empty(); }))
-    for (const WrittenTime& t : settings.at) o.at_text.push_back(t.text);
   const Rational start = start_of(s, o);
+  std::vector<WrittenTime> at = settings.at;
+  // An end that somebody asks for takes the place of what the file asks for beyond it.
+  if (o.to && of_file(at) && o.to != s.model->simulate.to &&
+      std::erase_if(at, [&](const WrittenTime& t) { return !lies_between(t.value, start, *o.to); }) > 0)
+    asker.note("rows that the file asks for beyond t = " + number_text(o.to->get_d()) + " are left out");
+  for (const WrittenTime& t : at) o.at.push_back(t.value);
+  if (!of_file(at))
+    for (const WrittenTime& t : at) o.at_text.push_back(is_number_as_written(t.text) ? t.text : "");
   if (!o.at.empty() && o.at.front() < start && o.at.back() > start)
     throw Failure({}, "the time " + o.at.front().get_str() + " lies before the start, t = " + start.get_str());
   if (o.at.empty() && !o.to)
     throw Failure({}, "no end time", asker.example("to", "10") + ", or [simulate] to = 10 in the model file");
-  const Rational end = o.at.empty() ? *o.to : o.at.front() < start ? o.at.front() : o.at.back();
+  if (o.to) must_lie_between(o.at, start, *o.to, asker);
+  const Rational end = o.to ? *o.to : o.at.front() < start ? o.at.front() : o.at.back();
   if (end < start)
     asker.note("the end lies before the start, t = " + number_text(start.get_d()) +
                ": the motion is computed backwards");
@@ -141,6 +164,18 @@ ErrorEstimate error_estimate(const MotionSettings& settings) {
   return settings.error_estimate == "always"  ? ErrorEstimate::always
          : settings.error_estimate == "never" ? ErrorEstimate::never
                                               : ErrorEstimate::short_runs;
+}
+
+void must_lie_between(const std::vector<Rational>& at, const Rational& start, const Rational& end, const Asker& asker) {
+  const auto outside =
+      std::find_if(at.begin(), at.end(), [&](const Rational& t) { return !lies_between(t, start, end); });
+  if (outside == at.end()) return;
+  const bool before_start = (*outside < start) == (start <= end);
+  throw Failure({},
+                "the time " + number_text(outside->get_d()) + " lies " +
+                    (before_start ? "before the start, t = " + number_text(start.get_d())
+                                  : "beyond the end, t = " + number_text(end.get_d())),
+                asker.called("at") + " asks for rows between the start and the end of the motion");
 }
 
 void must_go_forwards(const Scenario& s, const Rational& start, const Rational& end) {

@@ -29,14 +29,16 @@ Precision precision(const MotionSettings& settings, Precision usual, const Asker
 Rational tolerance(const MotionSettings& settings, Precision precision, const Asker& asker);
 ErrorEstimate error_estimate(const MotionSettings& settings);
 std::size_t most_steps(const MotionSettings& settings);
+// Throws if one of these times of rows, in ascending order, lies before the start or beyond the end of a motion.
+void must_lie_between(const std::vector<Rational>& at, const Rational& start, const Rational& end, const Asker& asker);
 // Throws if events would have to be undone on the way from `start` to `end`.
 void must_go_forwards(const Scenario& scenario, const Rational& start, const Rational& end);
 // The method, which can meet what the options demand.
 Method method(const MotionSettings& settings, const Scenario& scenario, const SimulationOptions& options,
               const Asker& asker);
 
-// Fills the options from the settings, which are complete but for what the program chooses. Returns the time of the last
-// row.
+// Fills the options from the settings, which are complete but for what the program chooses. Returns the time at which the
+// motion ends.
 Rational ask(const MotionSettings& settings, const Scenario& scenario, const Asker& asker, SimulationOptions& options);
 
 // True if an event sets a value: such a motion goes forwards only, and conserves what it does between events alone.

@@ -26,12 +26,13 @@ class RowSchedule {
     for (const Rational& r : o.at) times_.push_back(from_rational<W>(r));
     labels_ = o.at_text;
     labels_.resize(times_.size());
-    end_ = o.to && (times_.empty() || *o.to > o.at.back()) ? from_rational<W>(*o.to) : times_.back();
-    if (!times_.empty() && times_.front() < start_ && !(times_.back() > start_)) {
+    const W to = o.to ? from_rational<W>(*o.to) : times_.back();
+    const bool backwards = !times_.empty() && !(times_.back() > start_) && (times_.front() < start_ || to < start_);
+    if (backwards) {
       std::reverse(times_.begin(), times_.end());
       std::reverse(labels_.begin(), labels_.end());
-      end_ = times_.back();
     }
+    end_ = times_.empty() || (backwards ? to < times_.back() : to > times_.back()) ? to : times_.back();
     forward_ = end_ > start_;
     if (o.every) evenly(*o.every);
     every_step_ = times_.empty();

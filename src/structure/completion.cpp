@@ -217,7 +217,10 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
       if (const auto j = s.variable(u.id); static_cast<int>(node(u).order) == t.d[*j])
         *state_.origin(node(u)) = Origin::derived;
     clash_is_told_ = false;
-    if (refused = solve(equations, unknowns, metric); refused.ok()) return {};
+    by_flow_ = lowest == 0;
+    refused = solve(equations, unknowns, metric);
+    by_flow_ = false;
+    if (refused.ok()) return {};
   }
   state_ = before;
   if (clash_is_told_) return refused;

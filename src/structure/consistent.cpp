@@ -117,7 +117,7 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
   std::size_t worst = 0;
   const auto failed = [&] { return Outcome{OutcomeKind::inconsistent, {}, {}}; };
   if (!tell && stage.linear() && stage.evaluate(state_) && stage.contradicts(free)) return failed();
-  if (!find_by_least_change(stage, state_, free, p_.near)) return no_value(stage);
+  if (!find_by_least_change(stage, state_, free, p_.near, by_flow_)) return no_value(stage);
   mark_derived(stage, before, free);
   mark_undetermined(stage, before, free);
   if (!(stage.worst(&worst) > stage_rounding<N>())) return {};

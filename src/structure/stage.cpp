@@ -8,6 +8,9 @@ namespace anholon {
 
 namespace {
 constexpr int kMostIterations = 60;
+// Steps along Newton's flow grow by a factor where it leaves a place at which the Jacobian is nearly singular, and a flow
+// that comes to an end needs fewer.
+constexpr int kMostFlowSteps = 100;
 // After this number of line searches in a row without improvement the iteration is given up.
 constexpr int kMostInVain = 3;
 }  // namespace
@@ -266,6 +269,9 @@ N Stage<N>::worst(const std::vector<N>& scales, std::size_t* which) const {
 
 namespace {
 
+// The smallest part of a step of Newton's method along its flow, a power of 4.
+constexpr double kLeastFlowPart = 0x1p-40;
+
 // Newton's method on a stage, in the free unknowns.
 template <Number N>
 class Iteration {
@@ -335,6 +341,22 @@ class Iteration {
     return true;
   }
 
+  // Follows Newton's flow from the point, along which all residuals fall in proportion: the solution at its end is that
+  // which belongs to the point, also where a full step of Newton's method would land near another one. Returns false if
+  // the flow ends before.
+  bool follow() {
+    if (!s_.evaluate(state_)) return false;
+    flow_part_ = kLeastFlowPart;
+    for (int k = 0; k < kMostFlowSteps; ++k) {
+      if (solved()) return true;
+      typename Stage<N>::Elimination& elimination = s_.elimination(free_);
+      if (elimination.rows.independent.empty() || !elimination.possible) return false;
+      least_step(elimination, false);
+      if (!flow()) return false;
+    }
+    return solved();
+  }
+
  private:
   bool flat(const RowChoice<N>& rows) const {
     return std::any_of(rows.dependent.begin(), rows.dependent.end(),
@@ -354,6 +376,40 @@ class Iteration {
     e.change.solve(right_, step_);
     if (nearest)
       for (std::size_t j = 0; j < n; ++j) step_[j] = N(guess_[j] + step_[j] - *x_[j]);
+  }
+
+  // Whether the residuals are those of Newton's flow at this part of the step: a part of them is gone, to the fraction
+  // kBent of that part.
+  bool flows(double part) const {
+    constexpr double kBent = 0.5;
+    N most(0), missed(0);
+    for (std::size_t i = 0; i < s_.size(); ++i) {
+      if (const N v = abs(old_residual_[i]) / scale_[i]; v > most) most = v;
+      if (const N v = abs(N(s_.residual[i] - N(1 - part) * old_residual_[i])) / scale_[i]; v > missed) missed = v;
+    }
+    return missed <= N(kBent * part) * most + stage_rounding<N>() * N(4);
+  }
+
+  // Goes along the step as far as Newton's flow does, found from smaller parts of the step to larger ones: a full step may
+  // end near a solution by chance. Returns false if the flow does not go along the step.
+  bool flow() {
+    constexpr double kTimes = 4, kFewer = 64;
+    scale_ = s_.scale;
+    old_residual_ = s_.residual;
+    old_.clear();
+    for (const N* v : x_) old_.push_back(*v);
+    const auto go = [&](double part) {
+      for (std::size_t j = 0; j < x_.size(); ++j) *x_[j] = old_[j] + N(part) * step_[j];
+      return s_.evaluate(state_);
+    };
+    double good = 0;
+    for (double part = std::max(kLeastFlowPart, flow_part_ / kFewer); part <= 1; part *= kTimes) {
+      if (!go(part) || !flows(part)) break;
+      good = part;
+    }
+    if (!go(good) || !(good > 0)) return false;
+    flow_part_ = good;
+    return true;
   }
 
   // Goes along the step as long as the residual decreases; `step_` is then the step made.
@@ -384,6 +440,8 @@ class Iteration {
   std::vector<N> guess_;
   std::vector<N> right_, step_;  // of a step: the right side, and the step itself
   std::vector<N> scale_, old_;   // at the start of a step
+  std::vector<N> old_residual_;  // of a step along Newton's flow
+  double flow_part_ = 1;         // the part of the last step that was made along the flow
   int in_vain_ = 0;              // searches in a row that found no improvement along their step
 };
 
@@ -403,7 +461,7 @@ std::vector<N> around(const std::vector<N>& guess, int k) {
 
 template <Number N>
 bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& free,
-                          const InitialState<double>* near) {
+                          const InitialState<double>* near, bool by_flow) {
   constexpr int kStarts = 12;
   Iteration<N> newton(s, state, free);
   if (near && !free.empty()) {
@@ -411,6 +469,16 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
     for (std::size_t j = 0; j < free.size(); ++j)
       if (const double* x = near->value(s.unknown(free[j]))) there[j] = N(*x);
     if (newton.go_to(there) && newton.run(true) && newton.solved()) return true;
+    newton.go_to(newton.guess());
+  }
+  if (by_flow && !free.empty()) {
+    if (newton.follow()) {
+      // Then to the nearest of a family of solutions, and to all digits. Another solution is farther by more than round-off.
+      const std::vector<N> there = newton.point();
+      const N farther = N(2) * newton.distance();
+      if (!newton.run(true) || !newton.solved() || newton.distance() > farther) newton.go_to(there);
+      return true;
+    }
     newton.go_to(newton.guess());
   }
   const bool value = newton.run(true);
@@ -434,13 +502,13 @@ template class Stage<long double>;
 template class Stage<Quad>;
 template class Stage<Multi>;
 template bool find_by_least_change<double>(Stage<double>&, InitialState<double>&, const std::vector<std::size_t>&,
-                                           const InitialState<double>*);
+                                           const InitialState<double>*, bool);
 template bool find_by_least_change<long double>(Stage<long double>&, InitialState<long double>&,
-                                                const std::vector<std::size_t>&, const InitialState<double>*);
+                                                const std::vector<std::size_t>&, const InitialState<double>*, bool);
 template bool find_by_least_change<Quad>(Stage<Quad>&, InitialState<Quad>&, const std::vector<std::size_t>&,
-                                         const InitialState<double>*);
+                                         const InitialState<double>*, bool);
 template bool find_by_least_change<Multi>(Stage<Multi>&, InitialState<Multi>&, const std::vector<std::size_t>&,
-                                          const InitialState<double>*);
+                                          const InitialState<double>*, bool);
 
 // A tape names the symbols of its inputs by their ids, which a clone of the graph has, too.
 template <>

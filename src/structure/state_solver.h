@@ -82,7 +82,8 @@ class StateSolver {
   StartNotes<N> own_notes_;  // without a memory
   StartNotes<N>& notes_;
   std::vector<Node> changed_least_;  // positions and velocities that the equations move but do not determine
-  bool clash_is_told_ = false;       // the message names the values and equations of the last stage that failed
+  bool by_flow_ = false;        // positions are searched along Newton's flow: conditions on accelerations move them
+  bool clash_is_told_ = false;  // the message names the values and equations of the last stage that failed
 };
 
 }  // namespace anholon

@@ -85,6 +85,15 @@ void motion(const anholon::System& system) {
   const auto unknown = anholon::simulate(system, wide);
   expect(!unknown && unknown.error().text.find("did you mean 'numbers'") != std::string::npos, "a wrong name is told");
 
+  anholon::MotionOptions beyond;
+  beyond.to = 2;
+  beyond.at = {0.5, 3};
+  const auto refused = anholon::simulate(system, beyond);
+  expect(!refused && refused.error().text.find("the time 3 lies beyond the end, t = 2") != std::string::npos,
+         "rows beyond the end are refused");
+  beyond.at.clear();
+  expect(bool(anholon::simulate(system, beyond)), "an end alone is not");
+
   // Two threads use one system, and get the bits of one.
   std::vector<double> first, second;
   const auto go = [&system](std::vector<double>& to) {

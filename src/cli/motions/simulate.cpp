@@ -125,6 +125,9 @@ void ask(MotionSettings& settings, const SimulateCommand& o, const Workspace& s,
   // An event that sets values does not conserve what is an integral between events.
   if (!sets_values(*s.model)) options.conserved = conserved(*s.mechanics);
   settings.tolerance = options.tolerance;
+  std::erase_if(settings.at, [&](const WrittenTime& t) {
+    return std::find(options.at.begin(), options.at.end(), t.value) == options.at.end();
+  });
   settings.form = s.system.form->name;
 }
 

@@ -97,13 +97,24 @@ EventWatch<N>::crossings(const N* c, int degree, const N& h, const N& floor, con
 }
 
 template <Number N>
+double EventWatch<N>::log_reach(std::size_t i, double log_tolerance) const {
+  const N floor = unit_roundoff<N>() * N(kNoise) * known_[i].terms;
+  return anholon::log_reach<N>(known_[i].c.data(), degree_, floor, log_tolerance);
+}
+
+template <Number N>
 double EventWatch<N>::log_reach(double log_tolerance) const {
   double reach = 300;
-  for (const Known& s : known_) {
-    const N floor = unit_roundoff<N>() * N(kNoise) * s.terms;
-    reach = std::min(reach, anholon::log_reach<N>(s.c.data(), degree_, floor, log_tolerance));
-  }
+  for (std::size_t i = 0; i < known_.size(); ++i) reach = std::min(reach, log_reach(i, log_tolerance));
   return reach;
+}
+
+template <Number N>
+std::size_t EventWatch<N>::least_known(double log_tolerance) const {
+  std::size_t least = 0;
+  for (std::size_t i = 1; i < known_.size(); ++i)
+    if (log_reach(i, log_tolerance) < log_reach(least, log_tolerance)) least = i;
+  return least;
 }
 
 template <Number N>

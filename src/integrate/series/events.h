@@ -58,6 +58,8 @@ class EventWatch {
   bool have_series() const;
   // The logarithm of how far all series are known from the present expansion.
   double log_reach(double log_tolerance) const;
+  // The series that is known least far. REQUIRES: there is one.
+  std::size_t least_known(double log_tolerance) const;
 
   // The value of a quadrature on the state at a time from the start of the step, where it has one.
   using Values = std::function<std::optional<N>(std::size_t quadrature, const N& where)>;
@@ -88,6 +90,7 @@ class EventWatch {
     N terms{0};
   };
   static bool has_series(const Known& known);
+  double log_reach(std::size_t i, double log_tolerance) const;
   // Values of a series below it are zero.
   N noise(std::size_t i, const N& t) const;
   static std::vector<Crossing> crossings_of_values(const WatchedSeries& s, int& side, const N& h, const Values& values);

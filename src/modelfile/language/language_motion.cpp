@@ -198,6 +198,8 @@ stop = true
 
 - An event happens where the formula strictly changes its sign. It does not happen at the start, nor right after an event where its formula
   is zero: the side on which the motion goes on counts. A formula that touches zero without changing sign does not fire.
+- The formula has a value all along the motion. A motion at whose start it has none ends there, with an outcome that names the event: write `x - 0.51` for
+  `sqrt(x - 0.5) - 0.1`. So does one along which it loses its value, or grows without bound, as `tan(x)` and `1/x` do.
 - Its time is located on the Taylor polynomial to round-off, whatever the tolerance. Events may hold `lambda.NAME`, `reaction(B)` and accelerations, also through `[define]`.
 - Several at one moment are taken in the order of the file. All formulas of one `set` use the values before this event; a later
   event at the same moment sees what the earlier ones have set.

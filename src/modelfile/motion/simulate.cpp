@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "modelfile/text/keys.h"
+#include "numeric/number.h"
 
 namespace anholon {
 
@@ -50,6 +51,15 @@ static void check_times(const Item& section, const Model& model) {
   if (side(-1) && side(1))
     throw Failure(section.find("at")->span, "some of these times lie before the start, others after it",
                   "one run goes one way");
+  if (!s.to) return;
+  const auto [low, high] = std::minmax(start, *s.to);
+  for (const WrittenTime& t : s.at)
+    if (t.value < low || t.value > high)
+      throw Failure(section.find("at")->span,
+                    "the time " + number_text(t.value.get_d()) + " lies " +
+                        ((t.value < low) == (start <= *s.to) ? "before the start, t = " + number_text(start.get_d())
+                                                             : "beyond the end, t = " + number_text(s.to->get_d())),
+                    "'at' asks for rows between the start and 'to'");
 }
 
 void read_simulate(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {

@@ -123,15 +123,38 @@ TEST(Events, AreFoundWhateverTheirFormula) {
 }
 
 TEST(Events, WithoutAnySeriesHoldNobodyUp) {
-  // Of what is at rest, of what has no value.
-  for (const char* when : {"sqrt(y) - 1", "norm(y*ey) - 1", "log(y) - 1", "1/y - 1"}) {
+  // Of what is at rest; of what has no value, which ends the motion at once.
+  for (const char* when : {"sqrt(y) - 1", "norm(y*ey) - 1", "log(y) - 1", "1/y - 1", "log(x - 0.1)"}) {
     const Result r = run("coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + "
                          "y*ey\"}]\nevent = [{name = \"e\", when = \"" +
                              std::string(when) + "\"}]\ninitial = {\"x'\" = 1}\n",
                          3);
+    if (std::string(when).find("log") == 0 || std::string(when).find("1/y") == 0) {
+      EXPECT_EQ(r.report.outcome.kind, OutcomeKind::not_a_number) << when;
+      EXPECT_EQ(r.report.outcome.message, "the formula of the event 'e' has no value at the start") << when;
+      EXPECT_EQ(r.report.steps, 0U) << when;
+      continue;
+    }
     EXPECT_TRUE(r.report.outcome.ok()) << when << " " << r.report.outcome.message;
     EXPECT_LT(r.report.steps, 10U) << when;
   }
+}
+
+// In all kinds of numbers a motion that ends for an event alone names the event, and no other one.
+TEST(Events, ThatEndAMotionAreNamed) {
+  for (const Precision precision : {Precision::real, Precision::long_real, Precision::quad, Precision::multi})
+    for (const char* when : {"1/(x - 0.55)", "tan(3*x)", "log(0.55 - x)"}) {
+      const Result r = run(mass_on_a_line("0", "initial = {x = 0, \"x'\" = 1}\nevent = [{name = \"other\", when = "
+                                               "\"x - 9\"}, {name = \"e\", when = \"" +
+                                                   std::string(when) + "\"}]\n"),
+                           3, "1/1000000000000", [&](SimulationOptions& o) {
+                             o.precision = precision;
+                             o.estimate = ErrorEstimate::never;
+                           });
+      EXPECT_FALSE(r.report.outcome.ok()) << when;
+      EXPECT_NE(r.report.outcome.message.find("the formula of the event 'e'"), std::string::npos)
+          << when << " " << r.report.outcome.message;
+    }
 }
 
 TEST(Events, DoNotFireWhereTheirFormulaOnlyTouches) {
