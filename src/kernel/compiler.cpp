@@ -4,7 +4,7 @@
 
 #include <dlfcn.h>
 
-#include "base/installed.h"
+#include "base/platform/installed.h"
 #include "kernel/code.h"
 
 namespace anholon {

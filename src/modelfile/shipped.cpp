@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/installed.h"
+#include "base/platform/installed.h"
 #include "base/read_file.h"
 
 namespace anholon {

@@ -3,7 +3,7 @@
 #include "plot/cairo_library.h"
 
 #include "base/assert.h"
-#include "base/shared_library.h"
+#include "base/platform/shared_library.h"
 
 namespace anholon::plot::cairo {
 

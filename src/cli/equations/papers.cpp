@@ -5,8 +5,8 @@
 
 #include <unistd.h>
 
-#include "base/installed.h"
 #include "base/json.h"
+#include "base/platform/installed.h"
 #include "base/read_file.h"
 #include "base/utf8.h"
 #include "cli/input.h"

@@ -7,7 +7,7 @@
 
 #include <spawn.h>
 
-#include "base/installed.h"
+#include "base/platform/installed.h"
 #include "cli/input.h"
 #include "cli/pictures/child.h"
 #include "cli/pictures/sweep_cases.h"

@@ -3,7 +3,7 @@
 #include "result/hdf5/hdf5_library.h"
 
 #include "base/assert.h"
-#include "base/shared_library.h"
+#include "base/platform/shared_library.h"
 
 namespace anholon::hdf5 {
 

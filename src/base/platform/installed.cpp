@@ -1,4 +1,4 @@
-#include "base/installed.h"
+#include "base/platform/installed.h"
 
 #include <dlfcn.h>
 #include <link.h>

@@ -1,4 +1,4 @@
-#include "base/shared_library.h"
+#include "base/platform/shared_library.h"
 
 #include <utility>
 
