@@ -51,6 +51,11 @@ def parts_of(method: Any) -> Parts:
     if isinstance(method, mechanics.LagrangesMethod):
         return _parts_of_lagrange(method)
     if isinstance(method, mechanics.System):
+        by_lagrange = _lagranges_method_of(method)
+        if by_lagrange is not None:
+            parts = _parts_of_lagrange(by_lagrange)
+            parts.u, parts.kinematic = _own_speeds(method)
+            return parts
         return Parts(
             method.frame,
             list(method.q),
@@ -63,6 +68,31 @@ def parts_of(method: Any) -> Parts:
             list(method.u_aux),
         )
     raise TypeError(f"from_sympy reads a KanesMethod, LagrangesMethod or System, not a {type(method).__name__}")
+
+
+def _own_speeds(system: Any) -> tuple[list[Any], list[Any]]:
+    """The speeds of a System that are not the rates of its coordinates, and the equations that tell them."""
+    derivative = sympy_module().Derivative
+    speeds = [u for u in system.u if not isinstance(u, derivative)]
+    return speeds, [e for e in system.kdes if any(e.has(u) for u in speeds)]
+
+
+def _lagranges_method_of(system: Any) -> Any:
+    """The LagrangesMethod of a System, which is also meant by speeds that are rates; None if it has Kane's equations."""
+    mechanics = mechanics_module()
+    if system.eom_method is not None:
+        return system.eom_method if isinstance(system.eom_method, mechanics.LagrangesMethod) else None
+    if not any(isinstance(u, sympy_module().Derivative) for u in system.u):
+        return None
+    return mechanics.LagrangesMethod(
+        mechanics.Lagrangian(system.frame, *system.bodies),
+        system.q,
+        forcelist=list(system.loads) + [load for actuator in system.actuators for load in actuator.to_loads()],
+        bodies=system.bodies,
+        frame=system.frame,
+        hol_coneqs=system.holonomic_constraints,
+        nonhol_coneqs=system.nonholonomic_constraints,
+    )
 
 
 def _parts_of_kane(method: Any) -> Parts:

@@ -1,0 +1,70 @@
+"""Terms of SymPy's equations that bodies and loads alone do not have come in: accelerations are those of SymPy's own matrices."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import anholon as an
+import pytest
+
+sm = pytest.importorskip("sympy")
+me = pytest.importorskip("sympy.physics.mechanics")
+
+t = me.dynamicsymbols._t
+x, z, vx, vz, y = me.dynamicsymbols("x z v_x v_z y")
+m, k, g, l = sm.symbols("m k g l")
+NUMBERS: dict[Any, Any] = {m: 1.5, k: 2, g: 9.8125, l: 0.75}
+
+
+def agree(method: Any, values: dict[Any, Any], state: Sequence[float], rates: Sequence[float], at: float = 0.375) -> an.Model:
+    """The accelerations of the model are those of SymPy at a state of ``method.q``, if speeds are the rates of coordinates in their order."""
+    functions = {f: e for f, e in values.items() if f.args}
+    numbers = {**{s: sm.sympify(e) for s, e in values.items() if not s.args}, t: sm.Float(at, 40)}
+    speeds = getattr(method, "u", None) or [q.diff(t) for q in method.q]
+    fast = {**dict(zip([q.diff(t) for q in method.q], rates, strict=True)), **dict(zip(speeds, rates, strict=True))}
+    slow = dict(zip(method.q, state, strict=True))
+
+    def numeric(matrix: Any) -> Any:
+        made = sm.Matrix(matrix).subs(functions).doit().xreplace(fast).xreplace(slow).xreplace(numbers)
+        return made.evalf(40)
+
+    solved = numeric(method.mass_matrix_full).LUsolve(numeric(method.forcing_full))
+    expected = list(solved)[len(state) : 2 * len(state)]
+    start = {str(q.func) + mark: v for of, mark in ((state, ""), (rates, "'")) for q, v in zip(method.q, of, strict=True)}
+    model = an.from_sympy(method, values=values, initial=start)
+    ours = model.evaluate(t=at).accelerations
+    for q, e in zip(method.q, expected, strict=True):
+        assert ours[f"{q.func}''"] == pytest.approx(float(e), rel=1e-12, abs=1e-12)
+    return model
+
+
+def cart_and_bob(constrained: bool, formed: bool) -> Any:
+    """A System of joints whose speeds are the rates of the coordinates, as Lagrange's equations need them."""
+    q, p = me.dynamicsymbols("q p")
+    M = sm.Symbol("M")
+    rail, cart, bob, frame = me.RigidBody("rail"), me.RigidBody("cart", mass=M), me.Particle("bob", mass=m), me.ReferenceFrame("frame")
+    system = me.System.from_newtonian(rail)
+    system.add_joints(
+        me.PrismaticJoint("slider", rail, cart, q, q.diff(t), joint_axis=rail.x),
+        me.PinJoint("pin", cart, bob, p, p.diff(t), joint_axis=cart.z, child_interframe=frame, child_point=l * frame.y),
+    )
+    for body in system.bodies:
+        body.potential_energy = body.mass * g * body.masscenter.pos_from(system.fixed_point).dot(system.y)
+    if constrained:
+        system.add_holonomic_constraints(bob.masscenter.pos_from(rail.masscenter).dot(system.x))
+    if formed:
+        system.form_eoms(me.LagrangesMethod)
+    return system
+
+
+@pytest.mark.parametrize("constrained", [False, True])
+def test_a_system_with_lagranges_equations(constrained: bool) -> None:
+    values = {sm.Symbol("M"): 3, m: 1.5, l: 0.75, g: 9.8125}
+    system = cart_and_bob(constrained, True)
+    state, rates = [0.2, 0.5], [0.7, -0.4]
+    if constrained:  # q + l sin(p) = 0
+        far = system.holonomic_constraints[0].subs({system.q[0]: 0, system.q[1]: 0.5, l: 0.75})
+        state[0] = -float(far)
+        rates[0] = -float(sm.diff(system.holonomic_constraints[0], system.q[1]).subs({system.q[1]: 0.5, l: 0.75})) * rates[1]
+    formed = agree(system, values, state, rates)
+    assert an.from_sympy(cart_and_bob(constrained, False), values=values).text == an.from_sympy(system, values=values).text
+    assert "g" in formed.text  # by the potential energies
