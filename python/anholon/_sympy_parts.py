@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import random
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -131,20 +131,70 @@ def _parts_of_lagrange(method: Any) -> Parts:
     return parts
 
 
+def atoms_of(expressions: Iterable[Any]) -> list[Any]:
+    """The symbols, functions of time and rates in expressions, and the time."""
+    sm = sympy_module()
+    atoms: set[Any] = {mechanics_module().dynamicsymbols._t}
+    for e in expressions:
+        atoms |= e.atoms(sm.Derivative) | e.atoms(sm.core.function.AppliedUndef) | e.free_symbols
+    return sorted(atoms, key=str)
+
+
+def numeric(arguments: Iterable[Any], what: Any) -> Any:
+    """A function of mpmath for an expression, a matrix or nested lists of them; rates are arguments of their own."""
+    sm = sympy_module()
+    dummies = {a: sm.Dummy() for a in arguments}
+
+    def replaced(x: Any) -> Any:
+        return [replaced(y) for y in x] if isinstance(x, list) else x.xreplace(dummies)
+
+    return sm.lambdify(list(dummies.values()), replaced(what), "mpmath", cse=True)
+
+
 def vanish(expressions: Iterable[Any], near: Mapping[Any, Any]) -> bool:
     """Whether expressions vanish, with 30 digits, at random values of all that is in them, and at those of ``near``."""
     import mpmath
 
-    sm, time, draw = sympy_module(), mechanics_module().dynamicsymbols._t, random.Random(1)
-    expressions = list(expressions)
-    atoms: set[Any] = {time}
-    for e in expressions:
-        atoms |= e.atoms(sm.Derivative) | e.atoms(sm.core.function.AppliedUndef) | e.free_symbols
-    listed = sorted(atoms, key=str)
+    draw, expressions = random.Random(1), list(expressions)
+    listed = atoms_of(expressions)
     with mpmath.workdps(40):
-        values = sm.lambdify(listed, expressions, "mpmath", cse=True, dummify=True)
+        values = numeric(listed, expressions)
         for _ in range(1 if near else 3):
             at = [near[a] if a in near else mpmath.mpf(draw.uniform(0.3, 1.3)) for a in listed]
             if any(abs(x) > 1e-20 for x in values(*at)):
                 return False
     return True
+
+
+def state_on(holonomic: list[Any], flows: list[Any], q: list[Any], rates: list[Any]) -> dict[Any, Any]:
+    """Random coordinates and rates, with 40 digits, that satisfy constraints, and the values of all else that is in these;
+    empty if Newton's method finds none. The ``flows`` are constraints of velocities and begin with the rates of the holonomic ones."""
+    import mpmath
+
+    sm, draw = sympy_module(), random.Random(7)
+    if not flows:
+        return {}
+    others = [a for a in atoms_of([*holonomic, *flows]) if a not in q and a not in rates]
+    values = {a: mpmath.mpf(draw.uniform(0.3, 1.3)) for a in others}
+    f = numeric([*q, *rates, *others], [holonomic, flows, sm.Matrix(flows).jacobian(rates).tolist()])
+
+    def satisfied(x: Any, of: Callable[[Any], tuple[Any, Any]]) -> Any:
+        """The zero near x of expressions that are given with their matrix, by steps of least length."""
+        for _ in range(60):
+            value, rows = of(x)
+            if not value or max(abs(v) for v in value) < mpmath.mpf(10) ** -45:
+                return x
+            j = mpmath.matrix(rows)
+            x = x - j.T * mpmath.lu_solve(j * j.T, mpmath.matrix(value))
+        return None
+
+    def positions(x: Any) -> tuple[Any, Any]:
+        value, _, rows = f(*x, *start, *values.values())
+        return value, rows[: len(value)]
+
+    start = mpmath.matrix([draw.uniform(-1, 1) for _ in q])
+    x = satisfied(mpmath.matrix([draw.uniform(0.3, 0.9) for _ in q]), positions)
+    if x is None:
+        return {}
+    v = satisfied(start, lambda v: f(*x, *v, *values.values())[1:])
+    return {} if v is None else {**dict(zip(q, x, strict=True)), **dict(zip(rates, v, strict=True)), **values}

@@ -20,7 +20,7 @@ from typing import Any
 
 from ._errors import ModelError
 from ._numbers import Number, text_of
-from ._sympy_parts import center_of, is_particle, mechanics_module, parts_of, sympy_module, vanish
+from ._sympy_parts import atoms_of, center_of, is_particle, mechanics_module, numeric, parts_of, state_on, sympy_module, vanish
 from ._sympy_writer import name_of, RESERVED, Writer
 from .model import Model
 from .reading import loads
@@ -60,8 +60,8 @@ class _Import:
         matrix = sm.Matrix([e.xreplace(dummies) for e in equations])
         a = matrix.jacobian(list(dummies.values()))
         b = matrix.xreplace(dict.fromkeys(dummies.values(), sm.Integer(0)))
-        atoms = sorted(a.atoms(sm.core.function.AppliedUndef) | a.free_symbols, key=str)
-        numbers = sm.lambdify(atoms, a, "mpmath", cse=True, dummify=True)(*(sm.Float(draw.uniform(0.3, 1.3), 30) for _ in atoms))
+        atoms = atoms_of(a)
+        numbers = numeric(atoms, a)(*(sm.Float(draw.uniform(0.3, 1.3), 30) for _ in atoms))
         rows: list[int] = []
         for k in sorted(range(len(equations)), key=lambda k: (sm.count_ops(equations[k]), k)):
             trial = sm.Matrix([[sm.Float(str(numbers[i, j]), 30) for j in range(a.cols)] for i in [*rows, k]])
@@ -194,41 +194,10 @@ class _Import:
         if not hasattr(self, "_drawn"):
             self._drawn: dict[Any, Any] = {}
             if self.parts.holonomic or self.parts.velocity:
+                flows = [self.in_rates(e.diff(self.time)) for e in self.parts.holonomic] + self.velocity_constraints()
                 with mpmath.workdps(50), contextlib.suppress(ZeroDivisionError):
-                    self._drawn = self._draw_on_constraints()
+                    self._drawn = state_on(self.parts.holonomic, flows, list(self.writer.q), list(self.writer.rates))
         return self._drawn
-
-    def _draw_on_constraints(self) -> dict[Any, Any]:
-        import mpmath
-
-        sm, holonomic, draw = self.sm, self.parts.holonomic, random.Random(7)
-        q, rates = list(self.writer.q), list(self.writer.rates)
-        fixed = dict.fromkeys(rates, sm.Integer(0))
-        flows = [self.in_rates(e.diff(self.time)) for e in holonomic] + self.velocity_constraints()
-        rows, rest = sm.Matrix(flows).jacobian(rates), [e.xreplace(fixed) for e in flows]
-        atoms: set[Any] = {self.time}
-        for e in [*holonomic, *flows]:
-            atoms |= e.xreplace(fixed).atoms(sm.core.function.AppliedUndef) | e.free_symbols
-        others = sorted(atoms - set(q), key=str)
-        values = {a: mpmath.mpf(draw.uniform(0.3, 1.3)) for a in others}
-        f = sm.lambdify([*q, *others], [holonomic, rows.tolist(), rest], "mpmath", cse=True, dummify=True)
-
-        def least(jacobian: Any, right: Any) -> Any:
-            j = mpmath.matrix(jacobian)
-            return j.T * mpmath.lu_solve(j * j.T, mpmath.matrix(right))
-
-        x = mpmath.matrix([draw.uniform(0.3, 0.9) for _ in q])
-        for _ in range(60):
-            value, j, _rest = f(*x, *values.values())
-            if not value or max(abs(v) for v in value) < mpmath.mpf(10) ** -45:
-                break
-            x = x - least(j[: len(value)], value)
-        else:
-            return {}
-        _value, j, rest = f(*x, *values.values())
-        v = mpmath.matrix([draw.uniform(-1, 1) for _ in q])
-        v = v - least(j, mpmath.matrix(j) * v + mpmath.matrix(rest))
-        return {**dict(zip(q, x, strict=True)), **dict(zip(rates, v, strict=True)), **values}
 
     def position(self, point: Any) -> list[Any] | None:
         """The position of a point in the inertial frame if its rate is the point's velocity, else None."""
@@ -354,11 +323,8 @@ class _Import:
         rates = self.writer.rates
         listed = [self.in_rates(e.diff(self.writer.time)) for e in self.parts.holonomic]
         rows, kept = [sm.Matrix([e]).jacobian(rates) for e in listed], []
-        atoms: set[Any] = set()
         wanted = [self.in_rates(e) for e in self.parts.velocity]
-        for e in [*listed, *wanted]:
-            atoms |= e.atoms(sm.core.function.AppliedUndef) | e.free_symbols
-        values = {a: sm.Float(draw.uniform(0.3, 1.3), 40) for a in atoms}
+        values = {a: sm.Float(draw.uniform(0.3, 1.3), 40) for a in atoms_of([*listed, *wanted])}
 
         def at_point(row: Any) -> list[Any]:
             return [sm.N(x.xreplace(values), 40) for x in row]

@@ -68,3 +68,56 @@ def test_a_system_with_lagranges_equations(constrained: bool) -> None:
     formed = agree(system, values, state, rates)
     assert an.from_sympy(cart_and_bob(constrained, False), values=values).text == an.from_sympy(system, values=values).text
     assert "g" in formed.text  # by the potential energies
+
+
+def driven_by_lagrange(holonomic: list[Any], nonholonomic: list[Any]) -> Any:
+    """A particle in the plane x, z."""
+    N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    P = O.locatenew("P", x * N.x + z * N.z)
+    P.set_vel(N, x.diff(t) * N.x + z.diff(t) * N.z)
+    bead = me.Particle("bead", P, m)
+    bead.potential_energy = m * g * z
+    method = me.LagrangesMethod(me.Lagrangian(N, bead), [x, z], hol_coneqs=holonomic, nonhol_coneqs=nonholonomic, bodies=[bead], frame=N)
+    method.form_lagranges_equations()
+    return method
+
+
+def driven_by_kane(velocity: Any, configuration: Any = None) -> Any:
+    N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    P = O.locatenew("P", x * N.x + z * N.z)
+    P.set_vel(N, vx * N.x + vz * N.z)
+    depends = {"q_dependent": [z], "configuration_constraints": [configuration]} if configuration is not None else {}
+    kinematic = [vx - x.diff(t), vz - z.diff(t)]
+    free = [x] if depends else [x, z]
+    method = me.KanesMethod(N, free, [vx], kd_eqs=kinematic, u_dependent=[vz], velocity_constraints=[velocity], **depends)
+    method.kanes_equations([me.Particle("bead", P, m)], [(P, -m * g * N.z)])
+    return method
+
+
+GIVEN = 1 + sm.sin(t) / 2
+# By the constraint: the method, and z and z' of x = 1/2, x' = 3/4, y and y'.
+DRIVEN: dict[str, tuple[Callable[[], Any], Callable[[Any, Any], tuple[Any, Any]]]] = {
+    "z = y(t)": (lambda: driven_by_lagrange([z - y], []), lambda y, dy: (y, dy)),
+    "z = y(t) x^2": (lambda: driven_by_lagrange([z - y * x**2], []), lambda y, dy: (y / 4, 3 * y / 4 + dy / 4)),
+    "z' = x y'(t) + x'": (lambda: driven_by_lagrange([], [z.diff(t) - x * y.diff(t) - x.diff(t)]), lambda y, dy: (0.25, dy / 2 + 0.75)),
+    "Kane, z = y(t) x^2": (
+        lambda: driven_by_kane(vz - 2 * y * x * vx - y.diff(t) * x**2, z - y * x**2),
+        lambda y, dy: (y / 4, 3 * y / 4 + dy / 4),
+    ),
+    "Kane, z' = x y'(t) + x'": (lambda: driven_by_kane(vz - x * y.diff(t) - vx), lambda y, dy: (0.25, dy / 2 + 0.75)),
+    "Kane, z' = x' x y'(t) + x'": (lambda: driven_by_kane(vz - x * vx * y.diff(t) - vx), lambda y, dy: (0.25, 3 * dy / 8 + 0.75)),
+}
+
+
+@pytest.mark.parametrize("name", DRIVEN)
+def test_constraints_with_rates_of_given_functions(name: str) -> None:
+    method, state = DRIVEN[name]
+    height, rise = state(GIVEN.subs(t, 0.375), GIVEN.diff(t).subs(t, 0.375))
+    agree(method(), {m: 1.5, g: 9.8125, y: GIVEN}, [0.5, float(height)], [0.75, float(rise)])
+
+
+def test_a_constraint_that_is_not_linear_in_rates() -> None:
+    method = driven_by_lagrange([], [x.diff(t) ** 2 + k * z.diff(t) ** 2 - l])
+    agree(method, NUMBERS, [0.5, 0.25], [0.5, 0.5])  # 1/4 + 2/4 = 3/4
