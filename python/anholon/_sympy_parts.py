@@ -125,7 +125,9 @@ def _parts_of_lagrange(method: Any) -> Parts:
         potential = sum((body.potential_energy for body in parts.bodies), sm.Integer(0))
         kinetic = sum((body.kinetic_energy(parts.frame) for body in parts.bodies), sm.Integer(0))
         if vanish([energy - kinetic + potential], {}):
-            parts.loads += [(q, -sm.diff(potential, q)) for q in parts.q]
+            # An energy of the velocities, as that of a charge in a magnetic field, has a force by its rate, too.
+            time = mechanics_module().dynamicsymbols._t
+            parts.loads += [(q, sm.diff(potential, q.diff(time)).diff(time) - sm.diff(potential, q)) for q in parts.q]
             return parts
     parts.bodies, parts.lagrangian = [], energy
     return parts

@@ -121,3 +121,24 @@ def test_constraints_with_rates_of_given_functions(name: str) -> None:
 def test_a_constraint_that_is_not_linear_in_rates() -> None:
     method = driven_by_lagrange([], [x.diff(t) ** 2 + k * z.diff(t) ** 2 - l])
     agree(method, NUMBERS, [0.5, 0.25], [0.5, 0.5])  # 1/4 + 2/4 = 3/4
+
+
+POTENTIALS: dict[str, Any] = {
+    "magnetic": k / 2 * (x**2 * z.diff(t) - z * x.diff(t)),
+    "magnetic, of time": g * z + sm.sin(t) * x**2 * z.diff(t),
+    "quadratic": g * z + k / 10 * x.diff(t) ** 2 * (1 + x**2),
+    "a given function": y * x * z.diff(t) + y.diff(t) * x,
+}
+
+
+@pytest.mark.parametrize("name", POTENTIALS)
+def test_potential_energies_of_velocities(name: str) -> None:
+    N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    P = O.locatenew("P", x * N.x + z * N.z)
+    P.set_vel(N, x.diff(t) * N.x + z.diff(t) * N.z)
+    charge = me.Particle("charge", P, m)
+    charge.potential_energy = POTENTIALS[name]
+    method = me.LagrangesMethod(me.Lagrangian(N, charge), [x, z], bodies=[charge], frame=N)
+    method.form_lagranges_equations()
+    agree(method, {m: 1.5, k: 2, g: 9.8125, y: GIVEN}, [0.5, 0.25], [1, 2])
