@@ -27,6 +27,11 @@ def center_of(body: Any) -> Any:
     return body.masscenter if hasattr(body, "masscenter") else body.point
 
 
+def _inertias_of(body: Any) -> list[Any]:
+    """The mass of a body and the components of its inertia."""
+    return [body.mass, *(part[0] for part in (() if is_particle(body) else body.central_inertia.args))]
+
+
 @dataclass
 class Parts:
     """What the objects of SymPy have in common."""
@@ -41,6 +46,7 @@ class Parts:
     velocity: list[Any] = field(default_factory=list)
     auxiliary: list[Any] = field(default_factory=list)  # speeds that are zero
     lagrangian: Any = None  # where no bodies tell the inertia
+    by_energies: bool = False  # whether the equations are Lagrange's of these bodies
 
 
 def parts_of(method: Any) -> Parts:
@@ -114,7 +120,7 @@ def _parts_of_kane(method: Any) -> Parts:
 
 
 def _parts_of_lagrange(method: Any) -> Parts:
-    sm = sympy_module()
+    sm, time = sympy_module(), mechanics_module().dynamicsymbols._t
 
     holonomic = list(method._hol_coneqs or [])
     # The velocity constraints of a LagrangesMethod begin with the rates of the holonomic ones.
@@ -124,9 +130,10 @@ def _parts_of_lagrange(method: Any) -> Parts:
     if parts.frame is not None and parts.bodies:
         potential = sum((body.potential_energy for body in parts.bodies), sm.Integer(0))
         kinetic = sum((body.kinetic_energy(parts.frame) for body in parts.bodies), sm.Integer(0))
-        if vanish([energy - kinetic + potential], {}):
+        inertias = [sm.sympify(x) for body in parts.bodies for x in _inertias_of(body)]
+        if not any(x.has(q.diff(time)) for x in inertias for q in parts.q) and vanish([energy - kinetic + potential], {}):
+            parts.by_energies = True
             # An energy of the velocities, as that of a charge in a magnetic field, has a force by its rate, too.
-            time = mechanics_module().dynamicsymbols._t
             parts.loads += [(q, sm.diff(potential, q.diff(time)).diff(time) - sm.diff(potential, q)) for q in parts.q]
             return parts
     parts.bodies, parts.lagrangian = [], energy

@@ -4,6 +4,7 @@ What is read is the mechanical system itself: bodies, velocities, loads and cons
 Generalized speeds are replaced by the rates of the coordinates, auxiliary speeds are zero, and loads become generalized forces. A mass centre whose
 position SymPy does not know (only its velocity was set) gets coordinates of its own, which follow its velocity by constraints,
 unless that velocity is the rate of an expression. A speed without a coordinate (the spin of a wheel) gets one whose rate it is.
+Where a mass or an inertia varies, the equations are those of SymPy, d/dt (m v) = F: the matter that leaves a body is at rest.
 A LagrangesMethod without bodies is read by its Lagrangian: particles stand in for the coordinates, and generalized forces bring
 the terms of Lagrange's equations that these lack; the energies in its reports are then those of the particles.
 """
@@ -257,7 +258,8 @@ class _Import:
                 return ""
             name = self.writer.new(str(body.name))
             center = json.dumps(self.center(point))
-            return f"[[particle]]\nname = {json.dumps(name)}\nmass = {json.dumps(self.writer.formula(body.mass))}\nposition = {center}\n"
+            mass = json.dumps(self.writer.formula(body.mass))
+            return f"[[particle]]\nname = {json.dumps(name)}\nmass = {mass}\nposition = {center}\n{self._expelled(body)}"
         name = self.writer.new(str(body.name))
         turn, tensor = self._turn(body)
         rows = tensor.tolist()
@@ -272,7 +274,37 @@ class _Import:
         return (
             f"[[body]]\nname = {json.dumps(name)}\nmass = {json.dumps(self.writer.formula(body.mass))}\n"
             f"inertia = {json.dumps(inertia)}\ncenter = {json.dumps(self.center(center_of(body)))}\norientation = {json.dumps(matrix)}\n"
+            f"{self._expelled(body)}"
         )
+
+    def _expelled(self, body: Any) -> str:
+        """The velocity of the matter that a body of varying mass loses: that matter rests, since SymPy's force is d/dt (m v)."""
+        velocity = self.components(center_of(body).vel(self.parts.frame))
+        if self.sm.sympify(body.mass).diff(self.time) == 0 or not any(velocity):
+            return ""
+        return f"expelled_velocity = {json.dumps([self.writer.formula(-v) for v in velocity])}\n"
+
+    def _add_varying(self, sums: dict[Any, Any]) -> None:
+        """Adds the generalized forces of varying inertia: the torque -I' w, since SymPy's torque is d/dt (I w), and under
+        Lagrange's equations the slopes of the kinetic energy by masses and inertias that depend on coordinates."""
+        sm = self.sm
+        for body in self.parts.bodies:
+            mass, velocity = sm.sympify(body.mass), sm.Matrix(self.components(center_of(body).vel(self.parts.frame)))
+            spin = [] if is_particle(body) else self.components(body.frame.ang_vel_in(self.parts.frame))
+            turn, inertia = self._turn(body) if any(spin) else (sm.eye(3), sm.zeros(3, 3))
+            own = turn.T * sm.Matrix(spin or [0, 0, 0])
+            rise = inertia.diff(self.time)
+            varies = any(rise) and not vanish(rise, {})
+            for q, rate in zip(self.writer.q, self.writer.rates, strict=True):
+                more = sm.Integer(0)
+                if varies:
+                    more -= own.diff(rate).dot(rise * own)
+                if varies and self.parts.by_energies:
+                    more += own.dot(inertia.diff(q) * own) / 2
+                if self.parts.by_energies:
+                    more += mass.diff(q) * velocity.dot(velocity) / 2
+                if more != 0:
+                    sums[q] = sums.get(q, 0) + more
 
     def _inertia_of(self, q: Any) -> Any:
         """What stands in for the inertia of a coordinate if only a Lagrangian is known: its constant part, else 1."""
@@ -315,6 +347,7 @@ class _Import:
                     sums[q] = sums.get(q, 0) + sum((f * sm.diff(v, rate) for f, v in zip(force, flow, strict=True)), sm.Integer(0))
             else:
                 sums[at] = sums.get(at, 0) + self.in_rates(what)
+        self._add_varying(sums)
         return {q: s for q, s in sums.items() if s != 0}
 
     def velocity_constraints(self) -> list[Any]:

@@ -142,3 +142,77 @@ def test_potential_energies_of_velocities(name: str) -> None:
     method = me.LagrangesMethod(me.Lagrangian(N, charge), [x, z], bodies=[charge], frame=N)
     method.form_lagranges_equations()
     agree(method, {m: 1.5, k: 2, g: 9.8125, y: GIVEN}, [0.5, 0.25], [1, 2])
+
+
+mass = me.dynamicsymbols("mu")
+MASSES: dict[str, Any] = {"of time": m * sm.exp(-t), "of a coordinate": m * (2 + sm.sin(x)), "a given function": mass}
+
+
+@pytest.mark.parametrize("name", MASSES)
+@pytest.mark.parametrize("by", ["Kane", "Lagrange"])
+def test_masses_that_vary(name: str, by: str) -> None:
+    """The force on a particle on a curve is d/dt (m v) in SymPy."""
+    N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    P = O.locatenew("P", x * N.x + (z + x**2) * N.z)
+    P.set_vel(N, P.pos_from(O).dt(N))
+    drop = me.Particle("drop", P, MASSES[name])
+    method: Any
+    if by == "Kane":
+        P.set_vel(N, vx * N.x + (vz + 2 * x * vx) * N.z)
+        method = me.KanesMethod(N, [x, z], [vx, vz], kd_eqs=[vx - x.diff(t), vz - z.diff(t)])
+        method.kanes_equations([drop], [(P, -g * N.z)])
+    else:
+        drop.potential_energy = g * z
+        method = me.LagrangesMethod(me.Lagrangian(N, drop), [x, z], bodies=[drop], frame=N)
+        method.form_lagranges_equations()
+    model = agree(method, {m: 1.5, g: 9.8125, mass: 2 + sm.sin(3 * t)}, [0.5, 0.25], [1, 2])
+    assert "expelled_velocity" in model.text
+
+
+INERTIAS: dict[str, Callable[[Any, Any], Any]] = {
+    "of time": lambda A, B: me.inertia(B, 3 + sm.sin(t), 4, 5 - t, 0.2 * t, 0.1, 0.3 * t),
+    "of a coordinate": lambda A, B: me.inertia(B, 3 + sm.sin(x), 4, 5 + z**2, 0.2 * z, 0.1, 0.3 * x),
+    # Along the axes of a frame in which the body turns: along its own axes it varies with the angle.
+    "along other axes": lambda A, B: me.inertia(A, 3, 4, 5, 0.1, 0.2, 0.3),
+}
+
+
+@pytest.mark.parametrize("name", INERTIAS)
+@pytest.mark.parametrize("by", ["Kane", "Lagrange"])
+def test_inertias_that_vary(name: str, by: str) -> None:
+    """The torque on a body that turns about two axes is d/dt (I w) in SymPy."""
+    N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    A = N.orientnew("A", "Axis", [x, N.x])
+    B = A.orientnew("B", "Axis", [z, A.y])
+    center = O.locatenew("G", l * B.z)
+    center.v2pt_theory(O, N, B)
+    method: Any
+    if by == "Kane":
+        A.set_ang_vel(N, vx * N.x)
+        B.set_ang_vel(A, vz * A.y)
+        center.v2pt_theory(O, N, B)
+    top = me.RigidBody("top", center, B, m + t / 4, (INERTIAS[name](A, B), center))
+    if by == "Kane":
+        method = me.KanesMethod(N, [x, z], [vx, vz], kd_eqs=[vx - x.diff(t), vz - z.diff(t)])
+        method.kanes_equations([top], [(B, -k * B.z)])
+    else:
+        method = me.LagrangesMethod(me.Lagrangian(N, top), [x, z], bodies=[top], forcelist=[(B, -k * B.z)], frame=N)
+        method.form_lagranges_equations()
+    agree(method, {m: 1.5, k: 2, l: 0.75}, [0.5, 0.25], [1, 2])
+
+
+def test_masses_that_are_constant_expel_nothing() -> None:
+    text = an.from_sympy(cart_and_bob(False, True), values={sm.Symbol("M"): 3, m: 1.5, l: 0.75, g: 9.8125}).text
+    assert "expelled" not in text
+
+
+def test_a_mass_of_the_velocity() -> None:
+    """The Lagrangian of a particle whose mass grows with its speed is read without the particle."""
+    N, P = me.ReferenceFrame("N"), me.Point("P")
+    P.set_vel(N, x.diff(t) * N.x)
+    fast = me.Particle("fast", P, m * (1 + x.diff(t) ** 2))
+    method = me.LagrangesMethod(me.Lagrangian(N, fast), [x], bodies=[fast], forcelist=[(P, -k * N.x)], frame=N)
+    method.form_lagranges_equations()
+    agree(method, NUMBERS, [0.5], [0.75])
