@@ -75,6 +75,11 @@ class Writer:
         if isinstance(e, sm.Symbol):
             return self.parameters.get(e) or self._parameter(e)
         if isinstance(e, sm.core.function.AppliedUndef):
+            if e.args != (self.time,):
+                raise ModelError(
+                    f"{e} is no function of the time {self.time} alone\n"
+                    f"hint: a given function has the argument {self.time}; put a formula in the place of {e}, as delays have no counterpart in a model"
+                )
             if e not in self.functions:
                 self.functions[e] = self.new(str(e.func))
             return self.functions[e]

@@ -16,7 +16,7 @@ import json
 import random
 import re
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from ._errors import ModelError
@@ -384,8 +384,8 @@ class _Import:
         constraints += [(name, w.formula(e)) for name, e in self.centers]
         forces = {w.names[q]: w.formula(s) for q, s in self.generalized_forces().items()}
         given, conditions = self._start(initial)
-        by_name = {name_of(key): self._value(value) for key, value in values.items()}
-        missing = sorted(symbol.name for symbol in w.parameters if symbol.name not in by_name)
+        value_of = self._values(values)
+        missing = sorted(symbol.name for symbol in w.parameters if value_of(symbol) is None)
         if missing:
             raise ModelError(f"values are missing for {', '.join(missing)}\nhint: from_sympy(…, values={{{missing[0]}: 1}})")
         lines = [f"title = {json.dumps(title)}", 'source = "imported from sympy.physics.mechanics"', ""]
@@ -393,12 +393,12 @@ class _Import:
         if w.parameters:
             lines.append("[parameters]")
             for symbol, name in w.parameters.items():
-                lines.append(f"{name} = {json.dumps(by_name[symbol.name])}")
+                lines.append(f"{name} = {json.dumps(value_of(symbol))}")
             lines.append("")
         if w.functions:
             lines.append("[functions]")
             for function, name in w.functions.items():
-                value = by_name.get(str(function.func))
+                value = value_of(function)
                 lines.append(f"{name} = {json.dumps(value) if value is not None else '{}'}")
             lines.append("")
         lines += bodies
@@ -411,6 +411,13 @@ class _Import:
         if conditions:
             lines.append(f"conditions = {json.dumps(conditions)}")
         return "\n".join(lines) + "\n"
+
+    def _values(self, values: Mapping[Any, Number]) -> Callable[[Any], str | None]:
+        """The formula that is given for a symbol or function: by itself, else by its name if no other one has this name."""
+        written = {key: self._value(value) for key, value in values.items()}
+        names = [name_of(x) for x in [*self.writer.parameters, *self.writer.functions]]
+        by_name = {name_of(key): value for key, value in written.items() if names.count(name_of(key)) < 2}
+        return lambda of: written.get(of, by_name.get(name_of(of)))
 
     def _start(self, initial: Mapping[Any, Number]) -> tuple[dict[str, str], list[str]]:
         """Initial values by the names of coordinates and rates, and conditions for generalized speeds."""

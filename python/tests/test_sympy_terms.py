@@ -1,5 +1,6 @@
 """Terms of SymPy's equations that bodies and loads alone do not have come in: accelerations are those of SymPy's own matrices."""
 
+import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -216,3 +217,30 @@ def test_a_mass_of_the_velocity() -> None:
     method = me.LagrangesMethod(me.Lagrangian(N, fast), [x], bodies=[fast], forcelist=[(P, -k * N.x)], frame=N)
     method.form_lagranges_equations()
     agree(method, NUMBERS, [0.5], [0.75])
+
+
+def pushed(force: Any, q: Any = x, u: Any = vx, weight: Any = m) -> Any:
+    """A particle on a line under a force."""
+    N, P = me.ReferenceFrame("N"), me.Point("P")
+    P.set_vel(N, u * N.x)
+    method = me.KanesMethod(N, [q], [u], kd_eqs=[u - q.diff(t)])
+    method.kanes_equations([me.Particle("p", P, weight)], [(P, force * N.x)])
+    return method
+
+
+F = sm.Function("F")
+
+
+@pytest.mark.parametrize("what", [F(t - 1), F(2 * t), F(3), F(x), F(x, t), x.subs(t, t - 1), x.subs(t, 0)], ids=str)
+def test_functions_of_other_arguments_are_refused(what: Any) -> None:
+    with pytest.raises(an.ModelError, match=re.escape(str(what)) + r" is no function of the time t alone\nhint"):
+        an.from_sympy(pushed(-what - 3 * F(t)), values={m: 1, F(t): sm.sin(t)}, initial={x: 1})
+
+
+def test_values_belong_to_symbols_not_to_names() -> None:
+    plain, positive = sm.Symbol("F"), sm.Symbol("F", positive=True)
+    model = an.from_sympy(pushed(-plain - 10 * positive - 100 * F(t)), values={"m": 1, plain: 2, positive: 3, F(t): 4})
+    assert model.evaluate().accelerations["x''"] == -432
+    with pytest.raises(an.ModelError, match="values are missing for F, F"):
+        an.from_sympy(pushed(-plain - 10 * positive), values={"m": 1, "F": 2})
+    assert an.from_sympy(pushed(-10 * positive), values={m: 1, plain: 2}).evaluate().accelerations["x''"] == -20
