@@ -244,3 +244,12 @@ def test_values_belong_to_symbols_not_to_names() -> None:
     with pytest.raises(an.ModelError, match="values are missing for F, F"):
         an.from_sympy(pushed(-plain - 10 * positive), values={"m": 1, "F": 2})
     assert an.from_sympy(pushed(-10 * positive), values={m: 1, plain: 2}).evaluate().accelerations["x''"] == -20
+
+
+def test_names_beyond_ascii() -> None:
+    angle, speed, force = me.dynamicsymbols("θ ω F̈")
+    weight, stiffness, sharp = sm.symbols("Μ κ é")
+    method = pushed(-stiffness * angle + sharp + force, angle, speed, weight)
+    model = an.from_sympy(method, values={weight: 2, "κ": 3, sharp: 5, force: 7}, initial={"θ": 2, speed: 1})
+    assert model.evaluate().accelerations == {"theta''": 3} and model.evaluate().qdot == {"theta'": 1}
+    assert set(model.parameters) == {"Mu", "kappa", "s_e"}
