@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ._errors import ModelError
+
 
 def sympy_module() -> Any:
     return importlib.import_module("sympy")
@@ -102,6 +104,8 @@ def _lagranges_method_of(system: Any) -> Any:
 
 
 def _parts_of_kane(method: Any) -> Parts:
+    if method.bodies is None:
+        raise ModelError("the KanesMethod has no bodies yet\nhint: call kane.kanes_equations(bodies, loads) before")
     velocity = list(method._k_nh * method.u + method._f_nh) if method._k_nh else []
     rates = sympy_module().Matrix([q.diff(mechanics_module().dynamicsymbols._t) for q in method.q])
     # The equations as they were written; solved for the rates they may have denominators.

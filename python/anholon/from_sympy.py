@@ -181,7 +181,13 @@ class _Import:
 
     def components(self, vector: Any) -> list[Any]:
         """Components along the inertial axes."""
-        return [self.in_rates(x) for x in vector.to_matrix(self.parts.frame)]
+        try:
+            return [self.in_rates(x) for x in vector.to_matrix(self.parts.frame)]
+        except ValueError as e:
+            raise ModelError(
+                f"a velocity or load is along a frame without an orientation: {str(e).rstrip('.')}\n"
+                "hint: orient the frame, as by B.orient_body_fixed(N, (q1, q2, q3), '123'), and take kinematic_equations for its speeds"
+            ) from None
 
     def _vanishes(self, expressions: Iterable[Any]) -> bool:
         """Whether expressions vanish with 30 digits where the constraints hold."""
@@ -456,7 +462,8 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
     Args:
         method: the object of SymPy.
         title: of the model.
-        values: of all symbols, and of given functions of time; without one of these nothing is simulated.
+        values: of all symbols, and of given functions of time. A symbol without a value is an error; a function without one
+            stands in equations, and nothing is simulated.
         initial: values of coordinates, their rates and generalized speeds, each by its symbol or name (``"q1'"``). Values, like those
             of symbols, are numbers, or formulas as texts or of SymPy.
 

@@ -253,3 +253,29 @@ def test_names_beyond_ascii() -> None:
     model = an.from_sympy(method, values={weight: 2, "κ": 3, sharp: 5, force: 7}, initial={"θ": 2, speed: 1})
     assert model.evaluate().accelerations == {"theta''": 3} and model.evaluate().qdot == {"theta'": 1}
     assert set(model.parameters) == {"Mu", "kappa", "s_e"}
+
+
+def turned_by_speeds() -> Any:
+    """A body whose frame has an angular velocity along its own axes, and no orientation: Euler's equations."""
+    u, q = me.dynamicsymbols("u1:4"), me.dynamicsymbols("q1:4")
+    N, B, O = me.ReferenceFrame("N"), me.ReferenceFrame("B"), me.Point("O")  # noqa: E741
+    B.set_ang_vel(N, u[0] * B.x + u[1] * B.y + u[2] * B.z)
+    O.set_vel(N, 0)
+    method = me.KanesMethod(N, q, u, kd_eqs=[a.diff(t) - b for a, b in zip(q, u, strict=True)])
+    method.kanes_equations([me.RigidBody("B", O, B, m, (me.inertia(B, 1, 2, 3), O))], [(B, -u[2] * B.x)])
+    return method
+
+
+def without_bodies() -> Any:
+    return me.KanesMethod(me.ReferenceFrame("N"), [x], [vx], kd_eqs=[vx - x.diff(t)])
+
+
+def test_what_a_method_lacks_is_named() -> None:
+    with pytest.raises(an.ModelError, match=r"a velocity or load is along a frame without an orientation: .* between N and B\nhint: orient the frame"):
+        an.from_sympy(turned_by_speeds(), values={m: 1})
+    with pytest.raises(an.ModelError, match=r"the KanesMethod has no bodies yet\nhint: call kane.kanes_equations"):
+        an.from_sympy(without_bodies())
+    model = an.from_sympy(pushed(-y), values={m: 1})
+    assert "y" in model.equations().text
+    with pytest.raises(an.ModelError, match="y"):
+        model.simulate(to=1)
