@@ -1,4 +1,7 @@
-"""What the objects of ``sympy.physics.mechanics`` have in common, read from a KanesMethod, LagrangesMethod or System."""
+"""What the objects of ``sympy.physics.mechanics`` have in common, read from a KanesMethod, LagrangesMethod or System.
+
+The functions behind decide with numbers of many digits: whether expressions vanish, where constraints hold, and whose rate a velocity is.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ._errors import ModelError
+
+_LONGEST = 1000  # operations of a velocity whose integral is looked for: to expand 1600 of a rolling disc takes minutes
 
 
 def sympy_module() -> Any:
@@ -211,3 +216,47 @@ def state_on(holonomic: list[Any], flows: list[Any], q: list[Any], rates: list[A
         return {}
     v = satisfied(start, lambda v: f(*x, *v, *values.values())[1:])
     return {} if v is None else {**dict(zip(q, x, strict=True)), **dict(zip(rates, v, strict=True)), **values}
+
+
+def integral_of(rate: Any, q: list[Any], rates: list[Any]) -> Any | None:
+    """An expression of coordinates and time whose rate this is, or None if none is found."""
+    sm, time = sympy_module(), mechanics_module().dynamicsymbols._t
+    if rate.atoms(sm.core.function.AppliedUndef) - set(q):
+        return None  # speeds that are not known yet, or given functions
+    if (sum_of_them := _sum_of_coordinates(rate, q, rates)) is not None or sm.count_ops(rate) > _LONGEST:
+        return sum_of_them
+    dummies = [sm.Dummy() for _ in q]
+    values = dict(zip(rates, dummies, strict=True))
+    e = sm.expand(rate.xreplace(values))
+    if any(e.has(sm.Derivative(c, time)) for c in q) or not all(sm.diff(e, d, f) == 0 for d in dummies for f in dummies):
+        return None
+    plain = {c: sm.Dummy() for c in q}
+    whole, done = sm.Integer(0), dict(plain)
+    for c, d in reversed(list(zip(q, dummies, strict=True))):
+        slope = sm.diff(e, d).xreplace(done)
+        if sm.count_ops(slope) > 60 or not slope.is_polynomial(plain[c]) and slope.has(sm.tan, sm.log, sm.Pow):
+            return None
+        part = sm.integrate(slope, plain[c])
+        if part.has(sm.Integral):
+            return None
+        whole += part - part.subs(plain[c], 0)
+        done[c] = sm.Integer(0)
+    whole = whole.xreplace({d: c for c, d in plain.items()})
+    return whole if vanish([whole.diff(time) - rate], {}) else None
+
+
+def _sum_of_coordinates(rate: Any, q: list[Any], rates: list[Any]) -> Any | None:
+    """The sum of whole multiples of coordinates whose rate this is, or None. It is found by numbers: a velocity along axes
+    that turn may have thousands of terms that cancel."""
+    import mpmath
+
+    listed, draw = atoms_of([rate]), random.Random(3)
+    at = {a: mpmath.mpf(draw.uniform(0.3, 1.3)) for a in listed}
+    f, whole = numeric(listed, [rate]), sympy_module().Integer(0)
+    here = f(*at.values())[0]
+    for c, r in zip(q, rates, strict=True):
+        slope = f(*{**at, r: at[r] + 1}.values())[0] - here if r in at else mpmath.mpf(0)
+        if not mpmath.isfinite(slope) or abs(slope - (factor := mpmath.nint(mpmath.re(slope)))) > 1e-9:
+            return None  # 1e-9: more than the rounding of 15 digits; the test of the sum has 30
+        whole += int(factor) * c
+    return whole if vanish([whole.diff(mechanics_module().dynamicsymbols._t) - rate], {}) else None

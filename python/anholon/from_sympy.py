@@ -21,7 +21,7 @@ from typing import Any
 
 from ._errors import ModelError
 from ._numbers import Number, text_of
-from ._sympy_parts import atoms_of, center_of, is_particle, mechanics_module, numeric, parts_of, state_on, sympy_module, vanish
+from ._sympy_parts import atoms_of, center_of, integral_of, is_particle, mechanics_module, numeric, parts_of, state_on, sympy_module, vanish
 from ._sympy_writer import name_of, RESERVED, Writer
 from .model import Model
 from .reading import loads
@@ -43,6 +43,7 @@ class _Import:
         self.centers: list[tuple[str, Any]] = []  # constraints that tie coordinates of mass centres to their velocities
         self.writer = Writer(parts)
         self._places: dict[Any, list[Any]] = {}
+        self._kept: tuple[Any, list[Any]] | None = None
         self._place_centers([u for u in parts.u if u not in known])
 
     def _without_auxiliary(self) -> None:
@@ -121,7 +122,7 @@ class _Import:
             if place is None:
                 place = []
                 for axis, rate in zip("xyz", velocity, strict=True):
-                    whole = self.sm.Integer(0) if rate == 0 else self._integral(rate)
+                    whole = self.sm.Integer(0) if rate == 0 else integral_of(rate, self.writer.q, self.writer.rates)
                     if whole is None:
                         whole = self._add_coordinate(f"{re.sub(r'[^A-Za-z0-9]+', '_', str(body.name)) or 'body'}_{axis}")
                         open_equations.append(whole.diff(self.time) - rate)
@@ -148,30 +149,6 @@ class _Import:
                 "the model follows the velocity, and SymPy's equations differ from its equations",
                 stacklevel=6,
             )
-
-    def _integral(self, rate: Any) -> Any | None:
-        """An expression of coordinates and time whose rate this is, or None if none is found."""
-        sm, q, rates = self.sm, self.writer.q, self.writer.rates
-        if rate.atoms(sm.core.function.AppliedUndef) - set(q):
-            return None  # speeds that are not known yet, or given functions
-        dummies = [sm.Dummy() for _ in q]
-        values = dict(zip(rates, dummies, strict=True))
-        e = sm.expand(rate.xreplace(values))
-        if any(e.has(sm.Derivative(c, self.time)) for c in q) or not all(sm.diff(e, d, f) == 0 for d in dummies for f in dummies):
-            return None
-        plain = {c: sm.Dummy() for c in q}
-        whole, done = sm.Integer(0), dict(plain)
-        for c, d in reversed(list(zip(q, dummies, strict=True))):
-            slope = sm.diff(e, d).xreplace(done)
-            if sm.count_ops(slope) > 60 or not slope.is_polynomial(plain[c]) and slope.has(sm.tan, sm.log, sm.Pow):
-                return None
-            part = sm.integrate(slope, plain[c])
-            if part.has(sm.Integral):
-                return None
-            whole += part - part.subs(plain[c], 0)
-            done[c] = sm.Integer(0)
-        whole = whole.xreplace({d: c for c, d in plain.items()})
-        return whole if vanish([whole.diff(self.time) - rate], {}) else None
 
     def in_rates(self, e: Any) -> Any:
         """An expression without generalized speeds, and without their rates."""
@@ -358,6 +335,9 @@ class _Import:
 
     def velocity_constraints(self) -> list[Any]:
         """Those that do not follow from the holonomic ones or from others, by the rank at random points."""
+        now = (list(self.writer.q), dict(self.speeds))  # the constraints are the same while these are
+        if self._kept is not None and self._kept[0] == now:
+            return self._kept[1]
         sm, draw = self.sm, random.Random(2)
         rates = self.writer.rates
         listed = [self.in_rates(e.diff(self.writer.time)) for e in self.parts.holonomic]
@@ -371,14 +351,15 @@ class _Import:
         numbers = [at_point(row) for row in rows]
         rank = sm.Matrix(numbers).rank(iszerofunc=lambda x: abs(x) < 1e-20) if numbers else 0
         for e in wanted:
+            numbers.append(at_point(sm.Matrix([e]).jacobian(rates)))
+            if sm.Matrix(numbers).rank(iszerofunc=lambda x: abs(x) < 1e-20) == rank:
+                numbers.pop()
+                continue
+            rank += 1
             if sm.count_ops(e) < 400 and any(x.exp.is_negative and x.base.has(*self.writer.q) for x in e.atoms(sm.Pow)):
                 e = sm.simplify(e)  # SymPy solves for speeds with pivots that vanish at the origin
-            numbers.append(at_point(sm.Matrix([e]).jacobian(rates)))
-            if sm.Matrix(numbers).rank(iszerofunc=lambda x: abs(x) < 1e-20) > rank:
-                rank += 1
-                kept.append(e)
-            else:
-                numbers.pop()
+            kept.append(e)
+        self._kept = now, kept
         return kept
 
     def text(self, title: str, values: Mapping[Any, Number], initial: Mapping[Any, Number]) -> str:

@@ -6,6 +6,8 @@ from typing import Any
 
 import anholon as an
 import pytest
+from anholon.from_sympy import _Import
+from test_sympy_own import deviation
 
 sm = pytest.importorskip("sympy")
 me = pytest.importorskip("sympy.physics.mechanics")
@@ -279,3 +281,39 @@ def test_what_a_method_lacks_is_named() -> None:
     assert "y" in model.equations().text
     with pytest.raises(an.ModelError, match="y"):
         model.simulate(to=1)
+
+
+def rolling_disc_with_six_speeds() -> Any:
+    """Of SymPy's test of linearization: the velocity of the centre is along axes of the disc, and has 1600 terms along those that rest."""
+    r = sm.Symbol("r")
+    q, u = me.dynamicsymbols("q1:7"), me.dynamicsymbols("u1:7")
+    N, NO = me.ReferenceFrame("N"), me.Point("NO")
+    A = N.orientnew("A", "Axis", [q[0], N.z])
+    B = A.orientnew("B", "Axis", [q[1], A.x])
+    C = B.orientnew("C", "Axis", [q[2], B.y])
+    center = NO.locatenew("CO", q[3] * N.x + q[4] * N.y + q[5] * N.z)
+    spin, velocity = C.ang_vel_in(N), center.pos_from(NO).dt(N)
+    C.set_ang_vel(N, u[0] * B.x + u[1] * B.y + u[2] * B.z)
+    center.set_vel(N, u[3] * C.x + u[4] * C.y + u[5] * C.z)
+    P = center.locatenew("P", r * B.z)
+    P.v2pt_theory(center, N, C)
+    method = me.KanesMethod(
+        N,
+        q[:5],
+        u[:3],
+        kd_eqs=[me.dot(spin - C.ang_vel_in(N), e) for e in B] + [me.dot(velocity - center.vel(N), e) for e in N],
+        q_dependent=[q[5]],
+        configuration_constraints=[q[5] - me.dot(center.pos_from(P), N.z)],
+        u_dependent=u[3:],
+        velocity_constraints=[me.dot(P.vel(N), e) for e in C],
+    )
+    disc = me.RigidBody("disc", center, C, m, (me.inertia(C, m * r**2 / 4, m * r**2 / 2, m * r**2 / 4), center))
+    method.kanes_equations([disc], [(center, m * g * A.z)])
+    return method
+
+
+def test_velocities_of_many_terms() -> None:
+    """The search for the integral of the velocity ends, and finds the coordinates of the centre without others beside them."""
+    method = rolling_disc_with_six_speeds()
+    assert len(_Import(method).writer.q) == 6
+    assert deviation(method) < 1e-12
