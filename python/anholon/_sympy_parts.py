@@ -1,12 +1,19 @@
-"""What the objects of ``sympy.physics.mechanics`` have in common, read from a KanesMethod, LagrangesMethod or System."""
+"""What the objects of ``sympy.physics.mechanics`` have in common, read from a KanesMethod, LagrangesMethod or System.
+
+The functions behind decide with numbers of many digits: whether expressions vanish, where constraints hold, and whose rate a velocity is.
+"""
 
 from __future__ import annotations
 
 import importlib
 import random
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
+
+from ._errors import ModelError
+
+_LONGEST = 1000  # operations of a velocity whose integral is looked for: to expand 1600 of a rolling disc takes minutes
 
 
 def sympy_module() -> Any:
@@ -27,6 +34,11 @@ def center_of(body: Any) -> Any:
     return body.masscenter if hasattr(body, "masscenter") else body.point
 
 
+def _inertias_of(body: Any) -> list[Any]:
+    """The mass of a body and the components of its inertia."""
+    return [body.mass, *(part[0] for part in (() if is_particle(body) else body.central_inertia.args))]
+
+
 @dataclass
 class Parts:
     """What the objects of SymPy have in common."""
@@ -41,6 +53,7 @@ class Parts:
     velocity: list[Any] = field(default_factory=list)
     auxiliary: list[Any] = field(default_factory=list)  # speeds that are zero
     lagrangian: Any = None  # where no bodies tell the inertia
+    by_energies: bool = False  # whether the equations are Lagrange's of these bodies
 
 
 def parts_of(method: Any) -> Parts:
@@ -51,6 +64,11 @@ def parts_of(method: Any) -> Parts:
     if isinstance(method, mechanics.LagrangesMethod):
         return _parts_of_lagrange(method)
     if isinstance(method, mechanics.System):
+        by_lagrange = _lagranges_method_of(method)
+        if by_lagrange is not None:
+            parts = _parts_of_lagrange(by_lagrange)
+            parts.u, parts.kinematic = _own_speeds(method)
+            return parts
         return Parts(
             method.frame,
             list(method.q),
@@ -65,7 +83,34 @@ def parts_of(method: Any) -> Parts:
     raise TypeError(f"from_sympy reads a KanesMethod, LagrangesMethod or System, not a {type(method).__name__}")
 
 
+def _own_speeds(system: Any) -> tuple[list[Any], list[Any]]:
+    """The speeds of a System that are not the rates of its coordinates, and the equations that tell them."""
+    derivative = sympy_module().Derivative
+    speeds = [u for u in system.u if not isinstance(u, derivative)]
+    return speeds, [e for e in system.kdes if any(e.has(u) for u in speeds)]
+
+
+def _lagranges_method_of(system: Any) -> Any:
+    """The LagrangesMethod of a System, which is also meant by speeds that are rates; None if it has Kane's equations."""
+    mechanics = mechanics_module()
+    if system.eom_method is not None:
+        return system.eom_method if isinstance(system.eom_method, mechanics.LagrangesMethod) else None
+    if not any(isinstance(u, sympy_module().Derivative) for u in system.u):
+        return None
+    return mechanics.LagrangesMethod(
+        mechanics.Lagrangian(system.frame, *system.bodies),
+        system.q,
+        forcelist=list(system.loads) + [load for actuator in system.actuators for load in actuator.to_loads()],
+        bodies=system.bodies,
+        frame=system.frame,
+        hol_coneqs=system.holonomic_constraints,
+        nonhol_coneqs=system.nonholonomic_constraints,
+    )
+
+
 def _parts_of_kane(method: Any) -> Parts:
+    if method.bodies is None:
+        raise ModelError("the KanesMethod has no bodies yet\nhint: call kane.kanes_equations(bodies, loads) before")
     velocity = list(method._k_nh * method.u + method._f_nh) if method._k_nh else []
     rates = sympy_module().Matrix([q.diff(mechanics_module().dynamicsymbols._t) for q in method.q])
     # The equations as they were written; solved for the rates they may have denominators.
@@ -84,7 +129,7 @@ def _parts_of_kane(method: Any) -> Parts:
 
 
 def _parts_of_lagrange(method: Any) -> Parts:
-    sm = sympy_module()
+    sm, time = sympy_module(), mechanics_module().dynamicsymbols._t
 
     holonomic = list(method._hol_coneqs or [])
     # The velocity constraints of a LagrangesMethod begin with the rates of the holonomic ones.
@@ -94,27 +139,124 @@ def _parts_of_lagrange(method: Any) -> Parts:
     if parts.frame is not None and parts.bodies:
         potential = sum((body.potential_energy for body in parts.bodies), sm.Integer(0))
         kinetic = sum((body.kinetic_energy(parts.frame) for body in parts.bodies), sm.Integer(0))
-        if vanish([energy - kinetic + potential], {}):
-            parts.loads += [(q, -sm.diff(potential, q)) for q in parts.q]
+        inertias = [sm.sympify(x) for body in parts.bodies for x in _inertias_of(body)]
+        if not any(x.has(q.diff(time)) for x in inertias for q in parts.q) and vanish([energy - kinetic + potential], {}):
+            parts.by_energies = True
+            # An energy of the velocities, as that of a charge in a magnetic field, has a force by its rate, too.
+            parts.loads += [(q, sm.diff(potential, q.diff(time)).diff(time) - sm.diff(potential, q)) for q in parts.q]
             return parts
     parts.bodies, parts.lagrangian = [], energy
     return parts
+
+
+def atoms_of(expressions: Iterable[Any]) -> list[Any]:
+    """The symbols, functions of time and rates in expressions, and the time."""
+    sm = sympy_module()
+    atoms: set[Any] = {mechanics_module().dynamicsymbols._t}
+    for e in expressions:
+        atoms |= e.atoms(sm.Derivative) | e.atoms(sm.core.function.AppliedUndef) | e.free_symbols
+    return sorted(atoms, key=str)
+
+
+def numeric(arguments: Iterable[Any], what: Any) -> Any:
+    """A function of mpmath for an expression, a matrix or nested lists of them; rates are arguments of their own."""
+    sm = sympy_module()
+    dummies = {a: sm.Dummy() for a in arguments}
+
+    def replaced(x: Any) -> Any:
+        return [replaced(y) for y in x] if isinstance(x, list) else x.xreplace(dummies)
+
+    return sm.lambdify(list(dummies.values()), replaced(what), "mpmath", cse=True)
 
 
 def vanish(expressions: Iterable[Any], near: Mapping[Any, Any]) -> bool:
     """Whether expressions vanish, with 30 digits, at random values of all that is in them, and at those of ``near``."""
     import mpmath
 
-    sm, time, draw = sympy_module(), mechanics_module().dynamicsymbols._t, random.Random(1)
-    expressions = list(expressions)
-    atoms: set[Any] = {time}
-    for e in expressions:
-        atoms |= e.atoms(sm.Derivative) | e.atoms(sm.core.function.AppliedUndef) | e.free_symbols
-    listed = sorted(atoms, key=str)
+    draw, expressions = random.Random(1), list(expressions)
+    listed = atoms_of(expressions)
     with mpmath.workdps(40):
-        values = sm.lambdify(listed, expressions, "mpmath", cse=True, dummify=True)
+        values = numeric(listed, expressions)
         for _ in range(1 if near else 3):
             at = [near[a] if a in near else mpmath.mpf(draw.uniform(0.3, 1.3)) for a in listed]
             if any(abs(x) > 1e-20 for x in values(*at)):
                 return False
     return True
+
+
+def state_on(holonomic: list[Any], flows: list[Any], q: list[Any], rates: list[Any]) -> dict[Any, Any]:
+    """Random coordinates and rates, with 40 digits, that satisfy constraints, and the values of all else that is in these;
+    empty if Newton's method finds none. The ``flows`` are constraints of velocities and begin with the rates of the holonomic ones."""
+    import mpmath
+
+    sm, draw = sympy_module(), random.Random(7)
+    if not flows:
+        return {}
+    others = [a for a in atoms_of([*holonomic, *flows]) if a not in q and a not in rates]
+    values = {a: mpmath.mpf(draw.uniform(0.3, 1.3)) for a in others}
+    f = numeric([*q, *rates, *others], [holonomic, flows, sm.Matrix(flows).jacobian(rates).tolist()])
+
+    def satisfied(x: Any, of: Callable[[Any], tuple[Any, Any]]) -> Any:
+        """The zero near x of expressions that are given with their matrix, by steps of least length."""
+        for _ in range(60):
+            value, rows = of(x)
+            if not value or max(abs(v) for v in value) < mpmath.mpf(10) ** -45:
+                return x
+            j = mpmath.matrix(rows)
+            x = x - j.T * mpmath.lu_solve(j * j.T, mpmath.matrix(value))
+        return None
+
+    def positions(x: Any) -> tuple[Any, Any]:
+        value, _, rows = f(*x, *start, *values.values())
+        return value, rows[: len(value)]
+
+    start = mpmath.matrix([draw.uniform(-1, 1) for _ in q])
+    x = satisfied(mpmath.matrix([draw.uniform(0.3, 0.9) for _ in q]), positions)
+    if x is None:
+        return {}
+    v = satisfied(start, lambda v: f(*x, *v, *values.values())[1:])
+    return {} if v is None else {**dict(zip(q, x, strict=True)), **dict(zip(rates, v, strict=True)), **values}
+
+
+def integral_of(rate: Any, q: list[Any], rates: list[Any]) -> Any | None:
+    """An expression of coordinates and time whose rate this is, or None if none is found."""
+    sm, time = sympy_module(), mechanics_module().dynamicsymbols._t
+    if rate.atoms(sm.core.function.AppliedUndef) - set(q):
+        return None  # speeds that are not known yet, or given functions
+    if (sum_of_them := _sum_of_coordinates(rate, q, rates)) is not None or sm.count_ops(rate) > _LONGEST:
+        return sum_of_them
+    dummies = [sm.Dummy() for _ in q]
+    values = dict(zip(rates, dummies, strict=True))
+    e = sm.expand(rate.xreplace(values))
+    if any(e.has(sm.Derivative(c, time)) for c in q) or not all(sm.diff(e, d, f) == 0 for d in dummies for f in dummies):
+        return None
+    plain = {c: sm.Dummy() for c in q}
+    whole, done = sm.Integer(0), dict(plain)
+    for c, d in reversed(list(zip(q, dummies, strict=True))):
+        slope = sm.diff(e, d).xreplace(done)
+        if sm.count_ops(slope) > 60 or not slope.is_polynomial(plain[c]) and slope.has(sm.tan, sm.log, sm.Pow):
+            return None
+        part = sm.integrate(slope, plain[c])
+        if part.has(sm.Integral):
+            return None
+        whole += part - part.subs(plain[c], 0)
+        done[c] = sm.Integer(0)
+    whole = whole.xreplace({d: c for c, d in plain.items()})
+    return whole if vanish([whole.diff(time) - rate], {}) else None
+
+
+def _sum_of_coordinates(rate: Any, q: list[Any], rates: list[Any]) -> Any | None:
+    """The sum of whole multiples of coordinates whose rate this is, or None. It is found by numbers: a velocity along axes
+    that turn may have thousands of terms that cancel."""
+    import mpmath
+
+    listed, draw = atoms_of([rate]), random.Random(3)
+    at = {a: mpmath.mpf(draw.uniform(0.3, 1.3)) for a in listed}
+    f, whole = numeric(listed, [rate]), sympy_module().Integer(0)
+    here = f(*at.values())[0]
+    for c, r in zip(q, rates, strict=True):
+        slope = f(*{**at, r: at[r] + 1}.values())[0] - here if r in at else mpmath.mpf(0)
+        if not mpmath.isfinite(slope) or abs(slope - (factor := mpmath.nint(mpmath.re(slope)))) > 1e-9:
+            return None  # 1e-9: more than the rounding of 15 digits; the test of the sum has 30
+        whole += int(factor) * c
+    return whole if vanish([whole.diff(mechanics_module().dynamicsymbols._t) - rate], {}) else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from typing import Any
 
 from ._errors import ModelError
@@ -14,6 +15,15 @@ _RECIPROCAL = {"cot": "tan", "sec": "cos", "csc": "sin", "coth": "tanh", "sech":
 _OTHER_NAMES = {"Abs": "abs", "Max": "max", "Min": "min"}
 
 RESERVED = {"t", "pi", "ex", "ey", "ez", "e", "i", "D", "lambda"}
+
+
+def _in_ascii(letter: str) -> str:
+    """A letter as names of a model have it: theta for θ, e for é; other letters stay, and are none of a name."""
+    greek = re.fullmatch(r"GREEK (SMALL|CAPITAL) LETTER (?:FINAL )?([A-Z]+)", unicodedata.name(letter, ""))
+    if greek:
+        return greek[2].lower() if greek[1] == "SMALL" else greek[2].capitalize()
+    plain = unicodedata.normalize("NFKD", letter)[0]
+    return plain if plain.isascii() and plain.isalnum() else letter
 
 
 class Writer:
@@ -41,7 +51,7 @@ class Writer:
 
     def new(self, wish: str) -> str:
         """A name that is not taken yet."""
-        name = re.sub(r"\W+", "_", wish).strip("_") or "s"
+        name = re.sub(r"\W+", "_", "".join(map(_in_ascii, wish)), flags=re.ASCII).strip("_") or "s"
         if name[0].isdigit() or name in self._taken:
             name = "s_" + name
         while name in self._taken:
@@ -75,6 +85,11 @@ class Writer:
         if isinstance(e, sm.Symbol):
             return self.parameters.get(e) or self._parameter(e)
         if isinstance(e, sm.core.function.AppliedUndef):
+            if e.args != (self.time,):
+                raise ModelError(
+                    f"{e} is no function of the time {self.time} alone\n"
+                    f"hint: a given function has the argument {self.time}; put a formula in the place of {e}, as delays have no counterpart in a model"
+                )
             if e not in self.functions:
                 self.functions[e] = self.new(str(e.func))
             return self.functions[e]

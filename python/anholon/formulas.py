@@ -193,7 +193,7 @@ class Formulas:
     def casadi(self, name: str = "f") -> Any:
         """A ``casadi.Function`` (t, x, u, p) -> (dx, y) of CasADi's own expressions, with all derivatives.
 
-        For long formulas :meth:`Dynamics.casadi_external` is faster.
+        For long formulas :meth:`Dynamics.casadi` is faster.
         """
         import casadi
 

@@ -4,6 +4,7 @@ What is read is the mechanical system itself: bodies, velocities, loads and cons
 Generalized speeds are replaced by the rates of the coordinates, auxiliary speeds are zero, and loads become generalized forces. A mass centre whose
 position SymPy does not know (only its velocity was set) gets coordinates of its own, which follow its velocity by constraints,
 unless that velocity is the rate of an expression. A speed without a coordinate (the spin of a wheel) gets one whose rate it is.
+Where a mass or an inertia varies, the equations are those of SymPy, d/dt (m v) = F: the matter that leaves a body is at rest.
 A LagrangesMethod without bodies is read by its Lagrangian: particles stand in for the coordinates, and generalized forces bring
 the terms of Lagrange's equations that these lack; the energies in its reports are then those of the particles.
 """
@@ -15,12 +16,12 @@ import json
 import random
 import re
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from ._errors import ModelError
 from ._numbers import Number, text_of
-from ._sympy_parts import center_of, is_particle, mechanics_module, parts_of, sympy_module, vanish
+from ._sympy_parts import atoms_of, center_of, integral_of, is_particle, mechanics_module, numeric, parts_of, state_on, sympy_module, vanish
 from ._sympy_writer import name_of, RESERVED, Writer
 from .model import Model
 from .reading import loads
@@ -42,6 +43,7 @@ class _Import:
         self.centers: list[tuple[str, Any]] = []  # constraints that tie coordinates of mass centres to their velocities
         self.writer = Writer(parts)
         self._places: dict[Any, list[Any]] = {}
+        self._kept: tuple[Any, list[Any]] | None = None
         self._place_centers([u for u in parts.u if u not in known])
 
     def _without_auxiliary(self) -> None:
@@ -60,8 +62,8 @@ class _Import:
         matrix = sm.Matrix([e.xreplace(dummies) for e in equations])
         a = matrix.jacobian(list(dummies.values()))
         b = matrix.xreplace(dict.fromkeys(dummies.values(), sm.Integer(0)))
-        atoms = sorted(a.atoms(sm.core.function.AppliedUndef) | a.free_symbols, key=str)
-        numbers = sm.lambdify(atoms, a, "mpmath", cse=True, dummify=True)(*(sm.Float(draw.uniform(0.3, 1.3), 30) for _ in atoms))
+        atoms = atoms_of(a)
+        numbers = numeric(atoms, a)(*(sm.Float(draw.uniform(0.3, 1.3), 30) for _ in atoms))
         rows: list[int] = []
         for k in sorted(range(len(equations)), key=lambda k: (sm.count_ops(equations[k]), k)):
             trial = sm.Matrix([[sm.Float(str(numbers[i, j]), 30) for j in range(a.cols)] for i in [*rows, k]])
@@ -120,7 +122,7 @@ class _Import:
             if place is None:
                 place = []
                 for axis, rate in zip("xyz", velocity, strict=True):
-                    whole = self.sm.Integer(0) if rate == 0 else self._integral(rate)
+                    whole = self.sm.Integer(0) if rate == 0 else integral_of(rate, self.writer.q, self.writer.rates)
                     if whole is None:
                         whole = self._add_coordinate(f"{re.sub(r'[^A-Za-z0-9]+', '_', str(body.name)) or 'body'}_{axis}")
                         open_equations.append(whole.diff(self.time) - rate)
@@ -148,30 +150,6 @@ class _Import:
                 stacklevel=6,
             )
 
-    def _integral(self, rate: Any) -> Any | None:
-        """An expression of coordinates and time whose rate this is, or None if none is found."""
-        sm, q, rates = self.sm, self.writer.q, self.writer.rates
-        if rate.atoms(sm.core.function.AppliedUndef) - set(q):
-            return None  # speeds that are not known yet, or given functions
-        dummies = [sm.Dummy() for _ in q]
-        values = dict(zip(rates, dummies, strict=True))
-        e = sm.expand(rate.xreplace(values))
-        if any(e.has(sm.Derivative(c, self.time)) for c in q) or not all(sm.diff(e, d, f) == 0 for d in dummies for f in dummies):
-            return None
-        plain = {c: sm.Dummy() for c in q}
-        whole, done = sm.Integer(0), dict(plain)
-        for c, d in reversed(list(zip(q, dummies, strict=True))):
-            slope = sm.diff(e, d).xreplace(done)
-            if sm.count_ops(slope) > 60 or not slope.is_polynomial(plain[c]) and slope.has(sm.tan, sm.log, sm.Pow):
-                return None
-            part = sm.integrate(slope, plain[c])
-            if part.has(sm.Integral):
-                return None
-            whole += part - part.subs(plain[c], 0)
-            done[c] = sm.Integer(0)
-        whole = whole.xreplace({d: c for c, d in plain.items()})
-        return whole if vanish([whole.diff(self.time) - rate], {}) else None
-
     def in_rates(self, e: Any) -> Any:
         """An expression without generalized speeds, and without their rates."""
         e = self.sm.sympify(e).xreplace(self._zero)
@@ -180,7 +158,13 @@ class _Import:
 
     def components(self, vector: Any) -> list[Any]:
         """Components along the inertial axes."""
-        return [self.in_rates(x) for x in vector.to_matrix(self.parts.frame)]
+        try:
+            return [self.in_rates(x) for x in vector.to_matrix(self.parts.frame)]
+        except ValueError as e:
+            raise ModelError(
+                f"a velocity or load is along a frame without an orientation: {str(e).rstrip('.')}\n"
+                "hint: orient the frame, as by B.orient_body_fixed(N, (q1, q2, q3), '123'), and take kinematic_equations for its speeds"
+            ) from None
 
     def _vanishes(self, expressions: Iterable[Any]) -> bool:
         """Whether expressions vanish with 30 digits where the constraints hold."""
@@ -194,41 +178,10 @@ class _Import:
         if not hasattr(self, "_drawn"):
             self._drawn: dict[Any, Any] = {}
             if self.parts.holonomic or self.parts.velocity:
+                flows = [self.in_rates(e.diff(self.time)) for e in self.parts.holonomic] + self.velocity_constraints()
                 with mpmath.workdps(50), contextlib.suppress(ZeroDivisionError):
-                    self._drawn = self._draw_on_constraints()
+                    self._drawn = state_on(self.parts.holonomic, flows, list(self.writer.q), list(self.writer.rates))
         return self._drawn
-
-    def _draw_on_constraints(self) -> dict[Any, Any]:
-        import mpmath
-
-        sm, holonomic, draw = self.sm, self.parts.holonomic, random.Random(7)
-        q, rates = list(self.writer.q), list(self.writer.rates)
-        fixed = dict.fromkeys(rates, sm.Integer(0))
-        flows = [self.in_rates(e.diff(self.time)) for e in holonomic] + self.velocity_constraints()
-        rows, rest = sm.Matrix(flows).jacobian(rates), [e.xreplace(fixed) for e in flows]
-        atoms: set[Any] = {self.time}
-        for e in [*holonomic, *flows]:
-            atoms |= e.xreplace(fixed).atoms(sm.core.function.AppliedUndef) | e.free_symbols
-        others = sorted(atoms - set(q), key=str)
-        values = {a: mpmath.mpf(draw.uniform(0.3, 1.3)) for a in others}
-        f = sm.lambdify([*q, *others], [holonomic, rows.tolist(), rest], "mpmath", cse=True, dummify=True)
-
-        def least(jacobian: Any, right: Any) -> Any:
-            j = mpmath.matrix(jacobian)
-            return j.T * mpmath.lu_solve(j * j.T, mpmath.matrix(right))
-
-        x = mpmath.matrix([draw.uniform(0.3, 0.9) for _ in q])
-        for _ in range(60):
-            value, j, _rest = f(*x, *values.values())
-            if not value or max(abs(v) for v in value) < mpmath.mpf(10) ** -45:
-                break
-            x = x - least(j[: len(value)], value)
-        else:
-            return {}
-        _value, j, rest = f(*x, *values.values())
-        v = mpmath.matrix([draw.uniform(-1, 1) for _ in q])
-        v = v - least(j, mpmath.matrix(j) * v + mpmath.matrix(rest))
-        return {**dict(zip(q, x, strict=True)), **dict(zip(rates, v, strict=True)), **values}
 
     def position(self, point: Any) -> list[Any] | None:
         """The position of a point in the inertial frame if its rate is the point's velocity, else None."""
@@ -288,7 +241,8 @@ class _Import:
                 return ""
             name = self.writer.new(str(body.name))
             center = json.dumps(self.center(point))
-            return f"[[particle]]\nname = {json.dumps(name)}\nmass = {json.dumps(self.writer.formula(body.mass))}\nposition = {center}\n"
+            mass = json.dumps(self.writer.formula(body.mass))
+            return f"[[particle]]\nname = {json.dumps(name)}\nmass = {mass}\nposition = {center}\n{self._expelled(body)}"
         name = self.writer.new(str(body.name))
         turn, tensor = self._turn(body)
         rows = tensor.tolist()
@@ -303,7 +257,37 @@ class _Import:
         return (
             f"[[body]]\nname = {json.dumps(name)}\nmass = {json.dumps(self.writer.formula(body.mass))}\n"
             f"inertia = {json.dumps(inertia)}\ncenter = {json.dumps(self.center(center_of(body)))}\norientation = {json.dumps(matrix)}\n"
+            f"{self._expelled(body)}"
         )
+
+    def _expelled(self, body: Any) -> str:
+        """The velocity of the matter that a body of varying mass loses: that matter rests, since SymPy's force is d/dt (m v)."""
+        velocity = self.components(center_of(body).vel(self.parts.frame))
+        if self.sm.sympify(body.mass).diff(self.time) == 0 or not any(velocity):
+            return ""
+        return f"expelled_velocity = {json.dumps([self.writer.formula(-v) for v in velocity])}\n"
+
+    def _add_varying(self, sums: dict[Any, Any]) -> None:
+        """Adds the generalized forces of varying inertia: the torque -I' w, since SymPy's torque is d/dt (I w), and under
+        Lagrange's equations the slopes of the kinetic energy by masses and inertias that depend on coordinates."""
+        sm = self.sm
+        for body in self.parts.bodies:
+            mass, velocity = sm.sympify(body.mass), sm.Matrix(self.components(center_of(body).vel(self.parts.frame)))
+            spin = [] if is_particle(body) else self.components(body.frame.ang_vel_in(self.parts.frame))
+            turn, inertia = self._turn(body) if any(spin) else (sm.eye(3), sm.zeros(3, 3))
+            own = turn.T * sm.Matrix(spin or [0, 0, 0])
+            rise = inertia.diff(self.time)
+            varies = any(rise) and not vanish(rise, {})
+            for q, rate in zip(self.writer.q, self.writer.rates, strict=True):
+                more = sm.Integer(0)
+                if varies:
+                    more -= own.diff(rate).dot(rise * own)
+                if varies and self.parts.by_energies:
+                    more += own.dot(inertia.diff(q) * own) / 2
+                if self.parts.by_energies:
+                    more += mass.diff(q) * velocity.dot(velocity) / 2
+                if more != 0:
+                    sums[q] = sums.get(q, 0) + more
 
     def _inertia_of(self, q: Any) -> Any:
         """What stands in for the inertia of a coordinate if only a Lagrangian is known: its constant part, else 1."""
@@ -346,19 +330,20 @@ class _Import:
                     sums[q] = sums.get(q, 0) + sum((f * sm.diff(v, rate) for f, v in zip(force, flow, strict=True)), sm.Integer(0))
             else:
                 sums[at] = sums.get(at, 0) + self.in_rates(what)
+        self._add_varying(sums)
         return {q: s for q, s in sums.items() if s != 0}
 
     def velocity_constraints(self) -> list[Any]:
         """Those that do not follow from the holonomic ones or from others, by the rank at random points."""
+        now = (list(self.writer.q), dict(self.speeds))  # the constraints are the same while these are
+        if self._kept is not None and self._kept[0] == now:
+            return self._kept[1]
         sm, draw = self.sm, random.Random(2)
         rates = self.writer.rates
         listed = [self.in_rates(e.diff(self.writer.time)) for e in self.parts.holonomic]
         rows, kept = [sm.Matrix([e]).jacobian(rates) for e in listed], []
-        atoms: set[Any] = set()
         wanted = [self.in_rates(e) for e in self.parts.velocity]
-        for e in [*listed, *wanted]:
-            atoms |= e.atoms(sm.core.function.AppliedUndef) | e.free_symbols
-        values = {a: sm.Float(draw.uniform(0.3, 1.3), 40) for a in atoms}
+        values = {a: sm.Float(draw.uniform(0.3, 1.3), 40) for a in atoms_of([*listed, *wanted])}
 
         def at_point(row: Any) -> list[Any]:
             return [sm.N(x.xreplace(values), 40) for x in row]
@@ -366,14 +351,15 @@ class _Import:
         numbers = [at_point(row) for row in rows]
         rank = sm.Matrix(numbers).rank(iszerofunc=lambda x: abs(x) < 1e-20) if numbers else 0
         for e in wanted:
+            numbers.append(at_point(sm.Matrix([e]).jacobian(rates)))
+            if sm.Matrix(numbers).rank(iszerofunc=lambda x: abs(x) < 1e-20) == rank:
+                numbers.pop()
+                continue
+            rank += 1
             if sm.count_ops(e) < 400 and any(x.exp.is_negative and x.base.has(*self.writer.q) for x in e.atoms(sm.Pow)):
                 e = sm.simplify(e)  # SymPy solves for speeds with pivots that vanish at the origin
-            numbers.append(at_point(sm.Matrix([e]).jacobian(rates)))
-            if sm.Matrix(numbers).rank(iszerofunc=lambda x: abs(x) < 1e-20) > rank:
-                rank += 1
-                kept.append(e)
-            else:
-                numbers.pop()
+            kept.append(e)
+        self._kept = now, kept
         return kept
 
     def text(self, title: str, values: Mapping[Any, Number], initial: Mapping[Any, Number]) -> str:
@@ -385,8 +371,8 @@ class _Import:
         constraints += [(name, w.formula(e)) for name, e in self.centers]
         forces = {w.names[q]: w.formula(s) for q, s in self.generalized_forces().items()}
         given, conditions = self._start(initial)
-        by_name = {name_of(key): self._value(value) for key, value in values.items()}
-        missing = sorted(symbol.name for symbol in w.parameters if symbol.name not in by_name)
+        value_of = self._values(values)
+        missing = sorted(symbol.name for symbol in w.parameters if value_of(symbol) is None)
         if missing:
             raise ModelError(f"values are missing for {', '.join(missing)}\nhint: from_sympy(…, values={{{missing[0]}: 1}})")
         lines = [f"title = {json.dumps(title)}", 'source = "imported from sympy.physics.mechanics"', ""]
@@ -394,12 +380,12 @@ class _Import:
         if w.parameters:
             lines.append("[parameters]")
             for symbol, name in w.parameters.items():
-                lines.append(f"{name} = {json.dumps(by_name[symbol.name])}")
+                lines.append(f"{name} = {json.dumps(value_of(symbol))}")
             lines.append("")
         if w.functions:
             lines.append("[functions]")
             for function, name in w.functions.items():
-                value = by_name.get(str(function.func))
+                value = value_of(function)
                 lines.append(f"{name} = {json.dumps(value) if value is not None else '{}'}")
             lines.append("")
         lines += bodies
@@ -412,6 +398,13 @@ class _Import:
         if conditions:
             lines.append(f"conditions = {json.dumps(conditions)}")
         return "\n".join(lines) + "\n"
+
+    def _values(self, values: Mapping[Any, Number]) -> Callable[[Any], str | None]:
+        """The formula that is given for a symbol or function: by itself, else by its name if no other one has this name."""
+        written = {key: self._value(value) for key, value in values.items()}
+        names = [name_of(x) for x in [*self.writer.parameters, *self.writer.functions]]
+        by_name = {name_of(key): value for key, value in written.items() if names.count(name_of(key)) < 2}
+        return lambda of: written.get(of, by_name.get(name_of(of)))
 
     def _start(self, initial: Mapping[Any, Number]) -> tuple[dict[str, str], list[str]]:
         """Initial values by the names of coordinates and rates, and conditions for generalized speeds."""
@@ -450,7 +443,8 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
     Args:
         method: the object of SymPy.
         title: of the model.
-        values: of all symbols, and of given functions of time; without one of these nothing is simulated.
+        values: of all symbols, and of given functions of time. A symbol without a value is an error; a function without one
+            stands in equations, and nothing is simulated.
         initial: values of coordinates, their rates and generalized speeds, each by its symbol or name (``"q1'"``). Values, like those
             of symbols, are numbers, or formulas as texts or of SymPy.
 

@@ -45,7 +45,7 @@ def tried(module: Any) -> Iterator[tuple[str, Callable[[], None]]]:
                     for before in ("_empty_system_setup", "_filled_system_setup", "setup_method"):
                         if hasattr(made, before):
                             with contextlib.suppress(TypeError):
-                                getattr(made, before)()
+                                inspect.unwrap(getattr(of, before))(made)  # some are fixtures
                     getattr(made, method)()
 
                 yield f"{name}.{method}", run
@@ -55,7 +55,7 @@ def systems(module: str, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, Any
     """What the tests of a module make, by the name of the test."""
     found: list[tuple[str, Any]] = []
     here = ""
-    for of, name in ((me.KanesMethod, "kanes_equations"), (me.LagrangesMethod, "form_lagranges_equations")):
+    for of, name in ((me.KanesMethod, "kanes_equations"), (me.LagrangesMethod, "form_lagranges_equations"), (me.System, "form_eoms")):
         original = getattr(of, name)
 
         def watched(self: Any, *args: Any, original: Any = original, **more: Any) -> Any:

@@ -79,8 +79,8 @@ Outcome Motion<N>::within_bounds(bool forward) {
 
 template <Number N>
 const SetByEvent& Motion<N>::set_by(std::size_t event) {
-  sets_.resize(s_.model->events.size());
-  std::optional<SetByEvent>& set = sets_[event];
+  effects_.sets.resize(s_.model->events.size());
+  std::optional<SetByEvent>& set = effects_.sets[event];
   if (!set) set.emplace(s_, s_.model->events[event]);
   return *set;
 }
@@ -89,10 +89,10 @@ const SetByEvent& Motion<N>::set_by(std::size_t event) {
 template <Number N>
 Outcome Motion<N>::to_nearest(std::vector<W>& state) {
   if (s_.system.constraints.empty()) return {};
-  if (!nearest_) nearest_.emplace(s_, parameters_);
+  if (!effects_.nearest) effects_.nearest.emplace(s_, parameters_);
   std::vector<W> leading;
   leg_->point.leading(leading);
-  return nearest_->put(leg_->program, leg_->stepper.time(), parameters_, leading, state);
+  return effects_.nearest->put(leg_->program, leg_->stepper.time(), parameters_, leading, state);
 }
 
 // A bound that is met at the time `t`, in words.

@@ -206,8 +206,12 @@ class Motion {
   int stages_;
   std::vector<W> start_parameters_, parameters_;  // modes differ
   std::vector<N> narrow_parameters_;
-  std::vector<std::optional<SetByEvent>> sets_;  // of the events that have fired
-  std::optional<NearestState<W>> nearest_;       // after an event, with constraints
+  // What events set, of those that have fired; with constraints, what makes it consistent.
+  struct EventEffects {
+    std::vector<std::optional<SetByEvent>> sets;
+    std::optional<NearestState<W>> nearest;
+  };
+  EventEffects effects_;
   Start<W> start_;
   std::vector<W> begun_parameters_;  // where the last expansion was made
   std::unique_ptr<Leg> leg_;

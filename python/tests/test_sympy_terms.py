@@ -1,0 +1,319 @@
+"""Terms of SymPy's equations that bodies and loads alone do not have come in: accelerations are those of SymPy's own matrices."""
+
+import re
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import anholon as an
+import pytest
+from anholon.from_sympy import _Import
+from test_sympy_own import deviation
+
+sm = pytest.importorskip("sympy")
+me = pytest.importorskip("sympy.physics.mechanics")
+
+t = me.dynamicsymbols._t
+x, z, vx, vz, y = me.dynamicsymbols("x z v_x v_z y")
+m, k, g, l = sm.symbols("m k g l")
+NUMBERS: dict[Any, Any] = {m: 1.5, k: 2, g: 9.8125, l: 0.75}
+
+
+def agree(method: Any, values: dict[Any, Any], state: Sequence[float], rates: Sequence[float], at: float = 0.375) -> an.Model:
+    """The accelerations of the model are those of SymPy at a state of ``method.q``, if speeds are the rates of coordinates in their order."""
+    functions = {f: e for f, e in values.items() if f.args}
+    numbers = {**{s: sm.sympify(e) for s, e in values.items() if not s.args}, t: sm.Float(at, 40)}
+    speeds = getattr(method, "u", None) or [q.diff(t) for q in method.q]
+    fast = {**dict(zip([q.diff(t) for q in method.q], rates, strict=True)), **dict(zip(speeds, rates, strict=True))}
+    slow = dict(zip(method.q, state, strict=True))
+
+    def numeric(matrix: Any) -> Any:
+        made = sm.Matrix(matrix).subs(functions).doit().xreplace(fast).xreplace(slow).xreplace(numbers)
+        return made.evalf(40)
+
+    solved = numeric(method.mass_matrix_full).LUsolve(numeric(method.forcing_full))
+    expected = list(solved)[len(state) : 2 * len(state)]
+    start = {str(q.func) + mark: v for of, mark in ((state, ""), (rates, "'")) for q, v in zip(method.q, of, strict=True)}
+    model = an.from_sympy(method, values=values, initial=start)
+    ours = model.evaluate(t=at).accelerations
+    for q, e in zip(method.q, expected, strict=True):
+        assert ours[f"{q.func}''"] == pytest.approx(float(e), rel=1e-12, abs=1e-12)
+    return model
+
+
+def cart_and_bob(constrained: bool, formed: bool) -> Any:
+    """A System of joints whose speeds are the rates of the coordinates, as Lagrange's equations need them."""
+    q, p = me.dynamicsymbols("q p")
+    M = sm.Symbol("M")
+    rail, cart, bob, frame = me.RigidBody("rail"), me.RigidBody("cart", mass=M), me.Particle("bob", mass=m), me.ReferenceFrame("frame")
+    system = me.System.from_newtonian(rail)
+    system.add_joints(
+        me.PrismaticJoint("slider", rail, cart, q, q.diff(t), joint_axis=rail.x),
+        me.PinJoint("pin", cart, bob, p, p.diff(t), joint_axis=cart.z, child_interframe=frame, child_point=l * frame.y),
+    )
+    for body in system.bodies:
+        body.potential_energy = body.mass * g * body.masscenter.pos_from(system.fixed_point).dot(system.y)
+    if constrained:
+        system.add_holonomic_constraints(bob.masscenter.pos_from(rail.masscenter).dot(system.x))
+    if formed:
+        system.form_eoms(me.LagrangesMethod)
+    return system
+
+
+@pytest.mark.parametrize("constrained", [False, True])
+def test_a_system_with_lagranges_equations(constrained: bool) -> None:
+    values = {sm.Symbol("M"): 3, m: 1.5, l: 0.75, g: 9.8125}
+    system = cart_and_bob(constrained, True)
+    state, rates = [0.2, 0.5], [0.7, -0.4]
+    if constrained:  # q + l sin(p) = 0
+        far = system.holonomic_constraints[0].subs({system.q[0]: 0, system.q[1]: 0.5, l: 0.75})
+        state[0] = -float(far)
+        rates[0] = -float(sm.diff(system.holonomic_constraints[0], system.q[1]).subs({system.q[1]: 0.5, l: 0.75})) * rates[1]
+    formed = agree(system, values, state, rates)
+    assert an.from_sympy(cart_and_bob(constrained, False), values=values).text == an.from_sympy(system, values=values).text
+    assert "g" in formed.text  # by the potential energies
+
+
+def driven_by_lagrange(holonomic: list[Any], nonholonomic: list[Any]) -> Any:
+    """A particle in the plane x, z."""
+    N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    P = O.locatenew("P", x * N.x + z * N.z)
+    P.set_vel(N, x.diff(t) * N.x + z.diff(t) * N.z)
+    bead = me.Particle("bead", P, m)
+    bead.potential_energy = m * g * z
+    method = me.LagrangesMethod(me.Lagrangian(N, bead), [x, z], hol_coneqs=holonomic, nonhol_coneqs=nonholonomic, bodies=[bead], frame=N)
+    method.form_lagranges_equations()
+    return method
+
+
+def driven_by_kane(velocity: Any, configuration: Any = None) -> Any:
+    N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    P = O.locatenew("P", x * N.x + z * N.z)
+    P.set_vel(N, vx * N.x + vz * N.z)
+    depends = {"q_dependent": [z], "configuration_constraints": [configuration]} if configuration is not None else {}
+    kinematic = [vx - x.diff(t), vz - z.diff(t)]
+    free = [x] if depends else [x, z]
+    method = me.KanesMethod(N, free, [vx], kd_eqs=kinematic, u_dependent=[vz], velocity_constraints=[velocity], **depends)
+    method.kanes_equations([me.Particle("bead", P, m)], [(P, -m * g * N.z)])
+    return method
+
+
+GIVEN = 1 + sm.sin(t) / 2
+# By the constraint: the method, and z and z' of x = 1/2, x' = 3/4, y and y'.
+DRIVEN: dict[str, tuple[Callable[[], Any], Callable[[Any, Any], tuple[Any, Any]]]] = {
+    "z = y(t)": (lambda: driven_by_lagrange([z - y], []), lambda y, dy: (y, dy)),
+    "z = y(t) x^2": (lambda: driven_by_lagrange([z - y * x**2], []), lambda y, dy: (y / 4, 3 * y / 4 + dy / 4)),
+    "z' = x y'(t) + x'": (lambda: driven_by_lagrange([], [z.diff(t) - x * y.diff(t) - x.diff(t)]), lambda y, dy: (0.25, dy / 2 + 0.75)),
+    "Kane, z = y(t) x^2": (
+        lambda: driven_by_kane(vz - 2 * y * x * vx - y.diff(t) * x**2, z - y * x**2),
+        lambda y, dy: (y / 4, 3 * y / 4 + dy / 4),
+    ),
+    "Kane, z' = x y'(t) + x'": (lambda: driven_by_kane(vz - x * y.diff(t) - vx), lambda y, dy: (0.25, dy / 2 + 0.75)),
+    "Kane, z' = x' x y'(t) + x'": (lambda: driven_by_kane(vz - x * vx * y.diff(t) - vx), lambda y, dy: (0.25, 3 * dy / 8 + 0.75)),
+}
+
+
+@pytest.mark.parametrize("name", DRIVEN)
+def test_constraints_with_rates_of_given_functions(name: str) -> None:
+    method, state = DRIVEN[name]
+    height, rise = state(GIVEN.subs(t, 0.375), GIVEN.diff(t).subs(t, 0.375))
+    agree(method(), {m: 1.5, g: 9.8125, y: GIVEN}, [0.5, float(height)], [0.75, float(rise)])
+
+
+def test_a_constraint_that_is_not_linear_in_rates() -> None:
+    method = driven_by_lagrange([], [x.diff(t) ** 2 + k * z.diff(t) ** 2 - l])
+    agree(method, NUMBERS, [0.5, 0.25], [0.5, 0.5])  # 1/4 + 2/4 = 3/4
+
+
+POTENTIALS: dict[str, Any] = {
+    "magnetic": k / 2 * (x**2 * z.diff(t) - z * x.diff(t)),
+    "magnetic, of time": g * z + sm.sin(t) * x**2 * z.diff(t),
+    "quadratic": g * z + k / 10 * x.diff(t) ** 2 * (1 + x**2),
+    "a given function": y * x * z.diff(t) + y.diff(t) * x,
+}
+
+
+@pytest.mark.parametrize("name", POTENTIALS)
+def test_potential_energies_of_velocities(name: str) -> None:
+    N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    P = O.locatenew("P", x * N.x + z * N.z)
+    P.set_vel(N, x.diff(t) * N.x + z.diff(t) * N.z)
+    charge = me.Particle("charge", P, m)
+    charge.potential_energy = POTENTIALS[name]
+    method = me.LagrangesMethod(me.Lagrangian(N, charge), [x, z], bodies=[charge], frame=N)
+    method.form_lagranges_equations()
+    agree(method, {m: 1.5, k: 2, g: 9.8125, y: GIVEN}, [0.5, 0.25], [1, 2])
+
+
+mass = me.dynamicsymbols("mu")
+MASSES: dict[str, Any] = {"of time": m * sm.exp(-t), "of a coordinate": m * (2 + sm.sin(x)), "a given function": mass}
+
+
+@pytest.mark.parametrize("name", MASSES)
+@pytest.mark.parametrize("by", ["Kane", "Lagrange"])
+def test_masses_that_vary(name: str, by: str) -> None:
+    """The force on a particle on a curve is d/dt (m v) in SymPy."""
+    N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    P = O.locatenew("P", x * N.x + (z + x**2) * N.z)
+    P.set_vel(N, P.pos_from(O).dt(N))
+    drop = me.Particle("drop", P, MASSES[name])
+    method: Any
+    if by == "Kane":
+        P.set_vel(N, vx * N.x + (vz + 2 * x * vx) * N.z)
+        method = me.KanesMethod(N, [x, z], [vx, vz], kd_eqs=[vx - x.diff(t), vz - z.diff(t)])
+        method.kanes_equations([drop], [(P, -g * N.z)])
+    else:
+        drop.potential_energy = g * z
+        method = me.LagrangesMethod(me.Lagrangian(N, drop), [x, z], bodies=[drop], frame=N)
+        method.form_lagranges_equations()
+    model = agree(method, {m: 1.5, g: 9.8125, mass: 2 + sm.sin(3 * t)}, [0.5, 0.25], [1, 2])
+    assert "expelled_velocity" in model.text
+
+
+INERTIAS: dict[str, Callable[[Any, Any], Any]] = {
+    "of time": lambda A, B: me.inertia(B, 3 + sm.sin(t), 4, 5 - t, 0.2 * t, 0.1, 0.3 * t),
+    "of a coordinate": lambda A, B: me.inertia(B, 3 + sm.sin(x), 4, 5 + z**2, 0.2 * z, 0.1, 0.3 * x),
+    # Along the axes of a frame in which the body turns: along its own axes it varies with the angle.
+    "along other axes": lambda A, B: me.inertia(A, 3, 4, 5, 0.1, 0.2, 0.3),
+}
+
+
+@pytest.mark.parametrize("name", INERTIAS)
+@pytest.mark.parametrize("by", ["Kane", "Lagrange"])
+def test_inertias_that_vary(name: str, by: str) -> None:
+    """The torque on a body that turns about two axes is d/dt (I w) in SymPy."""
+    N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    A = N.orientnew("A", "Axis", [x, N.x])
+    B = A.orientnew("B", "Axis", [z, A.y])
+    center = O.locatenew("G", l * B.z)
+    center.v2pt_theory(O, N, B)
+    method: Any
+    if by == "Kane":
+        A.set_ang_vel(N, vx * N.x)
+        B.set_ang_vel(A, vz * A.y)
+        center.v2pt_theory(O, N, B)
+    top = me.RigidBody("top", center, B, m + t / 4, (INERTIAS[name](A, B), center))
+    if by == "Kane":
+        method = me.KanesMethod(N, [x, z], [vx, vz], kd_eqs=[vx - x.diff(t), vz - z.diff(t)])
+        method.kanes_equations([top], [(B, -k * B.z)])
+    else:
+        method = me.LagrangesMethod(me.Lagrangian(N, top), [x, z], bodies=[top], forcelist=[(B, -k * B.z)], frame=N)
+        method.form_lagranges_equations()
+    agree(method, {m: 1.5, k: 2, l: 0.75}, [0.5, 0.25], [1, 2])
+
+
+def test_masses_that_are_constant_expel_nothing() -> None:
+    text = an.from_sympy(cart_and_bob(False, True), values={sm.Symbol("M"): 3, m: 1.5, l: 0.75, g: 9.8125}).text
+    assert "expelled" not in text
+
+
+def test_a_mass_of_the_velocity() -> None:
+    """The Lagrangian of a particle whose mass grows with its speed is read without the particle."""
+    N, P = me.ReferenceFrame("N"), me.Point("P")
+    P.set_vel(N, x.diff(t) * N.x)
+    fast = me.Particle("fast", P, m * (1 + x.diff(t) ** 2))
+    method = me.LagrangesMethod(me.Lagrangian(N, fast), [x], bodies=[fast], forcelist=[(P, -k * N.x)], frame=N)
+    method.form_lagranges_equations()
+    agree(method, NUMBERS, [0.5], [0.75])
+
+
+def pushed(force: Any, q: Any = x, u: Any = vx, weight: Any = m) -> Any:
+    """A particle on a line under a force."""
+    N, P = me.ReferenceFrame("N"), me.Point("P")
+    P.set_vel(N, u * N.x)
+    method = me.KanesMethod(N, [q], [u], kd_eqs=[u - q.diff(t)])
+    method.kanes_equations([me.Particle("p", P, weight)], [(P, force * N.x)])
+    return method
+
+
+F = sm.Function("F")
+
+
+@pytest.mark.parametrize("what", [F(t - 1), F(2 * t), F(3), F(x), F(x, t), x.subs(t, t - 1), x.subs(t, 0)], ids=str)
+def test_functions_of_other_arguments_are_refused(what: Any) -> None:
+    with pytest.raises(an.ModelError, match=re.escape(str(what)) + r" is no function of the time t alone\nhint"):
+        an.from_sympy(pushed(-what - 3 * F(t)), values={m: 1, F(t): sm.sin(t)}, initial={x: 1})
+
+
+def test_values_belong_to_symbols_not_to_names() -> None:
+    plain, positive = sm.Symbol("F"), sm.Symbol("F", positive=True)
+    model = an.from_sympy(pushed(-plain - 10 * positive - 100 * F(t)), values={"m": 1, plain: 2, positive: 3, F(t): 4})
+    assert model.evaluate().accelerations["x''"] == -432
+    with pytest.raises(an.ModelError, match="values are missing for F, F"):
+        an.from_sympy(pushed(-plain - 10 * positive), values={"m": 1, "F": 2})
+    assert an.from_sympy(pushed(-10 * positive), values={m: 1, plain: 2}).evaluate().accelerations["x''"] == -20
+
+
+def test_names_beyond_ascii() -> None:
+    angle, speed, force = me.dynamicsymbols("θ ω F̈")
+    weight, stiffness, sharp = sm.symbols("Μ κ é")
+    method = pushed(-stiffness * angle + sharp + force, angle, speed, weight)
+    model = an.from_sympy(method, values={weight: 2, "κ": 3, sharp: 5, force: 7}, initial={"θ": 2, speed: 1})
+    assert model.evaluate().accelerations == {"theta''": 3} and model.evaluate().qdot == {"theta'": 1}
+    assert set(model.parameters) == {"Mu", "kappa", "s_e"}
+
+
+def turned_by_speeds() -> Any:
+    """A body whose frame has an angular velocity along its own axes, and no orientation: Euler's equations."""
+    u, q = me.dynamicsymbols("u1:4"), me.dynamicsymbols("q1:4")
+    N, B, O = me.ReferenceFrame("N"), me.ReferenceFrame("B"), me.Point("O")  # noqa: E741
+    B.set_ang_vel(N, u[0] * B.x + u[1] * B.y + u[2] * B.z)
+    O.set_vel(N, 0)
+    method = me.KanesMethod(N, q, u, kd_eqs=[a.diff(t) - b for a, b in zip(q, u, strict=True)])
+    method.kanes_equations([me.RigidBody("B", O, B, m, (me.inertia(B, 1, 2, 3), O))], [(B, -u[2] * B.x)])
+    return method
+
+
+def without_bodies() -> Any:
+    return me.KanesMethod(me.ReferenceFrame("N"), [x], [vx], kd_eqs=[vx - x.diff(t)])
+
+
+def test_what_a_method_lacks_is_named() -> None:
+    with pytest.raises(an.ModelError, match=r"a velocity or load is along a frame without an orientation: .* between N and B\nhint: orient the frame"):
+        an.from_sympy(turned_by_speeds(), values={m: 1})
+    with pytest.raises(an.ModelError, match=r"the KanesMethod has no bodies yet\nhint: call kane.kanes_equations"):
+        an.from_sympy(without_bodies())
+    model = an.from_sympy(pushed(-y), values={m: 1})
+    assert "y" in model.equations().text
+    with pytest.raises(an.ModelError, match="y"):
+        model.simulate(to=1)
+
+
+def rolling_disc_with_six_speeds() -> Any:
+    """Of SymPy's test of linearization: the velocity of the centre is along axes of the disc, and has 1600 terms along those that rest."""
+    r = sm.Symbol("r")
+    q, u = me.dynamicsymbols("q1:7"), me.dynamicsymbols("u1:7")
+    N, NO = me.ReferenceFrame("N"), me.Point("NO")
+    A = N.orientnew("A", "Axis", [q[0], N.z])
+    B = A.orientnew("B", "Axis", [q[1], A.x])
+    C = B.orientnew("C", "Axis", [q[2], B.y])
+    center = NO.locatenew("CO", q[3] * N.x + q[4] * N.y + q[5] * N.z)
+    spin, velocity = C.ang_vel_in(N), center.pos_from(NO).dt(N)
+    C.set_ang_vel(N, u[0] * B.x + u[1] * B.y + u[2] * B.z)
+    center.set_vel(N, u[3] * C.x + u[4] * C.y + u[5] * C.z)
+    P = center.locatenew("P", r * B.z)
+    P.v2pt_theory(center, N, C)
+    method = me.KanesMethod(
+        N,
+        q[:5],
+        u[:3],
+        kd_eqs=[me.dot(spin - C.ang_vel_in(N), e) for e in B] + [me.dot(velocity - center.vel(N), e) for e in N],
+        q_dependent=[q[5]],
+        configuration_constraints=[q[5] - me.dot(center.pos_from(P), N.z)],
+        u_dependent=u[3:],
+        velocity_constraints=[me.dot(P.vel(N), e) for e in C],
+    )
+    disc = me.RigidBody("disc", center, C, m, (me.inertia(C, m * r**2 / 4, m * r**2 / 2, m * r**2 / 4), center))
+    method.kanes_equations([disc], [(center, m * g * A.z)])
+    return method
+
+
+def test_velocities_of_many_terms() -> None:
+    """The search for the integral of the velocity ends, and finds the coordinates of the centre without others beside them."""
+    method = rolling_disc_with_six_speeds()
+    assert len(_Import(method).writer.q) == 6
+    assert deviation(method) < 1e-12
