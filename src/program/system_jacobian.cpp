@@ -54,24 +54,24 @@ N SystemJacobian<N>::largest(std::size_t i, int level) const {
   return most;
 }
 
-// The largest |J_ij| of the equations of motion in the columns from `begin` to `end`.
+// The unit is the median of the largest inertia in each equation: moments of inertia are further from 1 than masses, as lengths
+// are.
 template <Number N>
-static double largest_of_motion(const Matrix<N>& J, std::size_t equations, std::size_t begin, std::size_t end) {
-  double largest = 0;
-  for (std::size_t i = 0; i < equations; ++i)
-    for (std::size_t j = begin; j < end; ++j) largest = std::max(largest, std::abs(to_double(J(i, j))));
-  return largest;
-}
-
-template <Number N>
-Scales<N> SystemJacobian<N>::scales_of_far_sizes() const {
+Scales<N> SystemJacobian<N>::scales_of_far_masses() const {
   constexpr double kFar = 0x1p20;
   const std::size_t n = program_->system->coordinates, mechanical = program_->system->mechanical();
   if (is_sparse_ || n == mechanical) return {};
-  const double masses = largest_of_motion(j_, n, 0, n), forces = largest_of_motion(j_, n, n, mechanical),
-               ratio = masses / forces;
-  if (!(ratio > 0) || !std::isfinite(ratio) || (ratio < kFar && ratio * kFar > 1)) return {};
-  const double unit = std::exp2(std::round(std::log2(ratio)));
+  std::vector<double> inertias;
+  for (std::size_t i = 0; i < n; ++i) {
+    double largest = 0;
+    for (std::size_t j = 0; j < n; ++j) largest = std::max(largest, std::abs(to_double(j_(i, j))));
+    if (largest > 0 && std::isfinite(largest)) inertias.push_back(largest);
+  }
+  if (inertias.empty()) return {};
+  const auto median = inertias.begin() + static_cast<std::ptrdiff_t>(inertias.size() / 2);
+  std::nth_element(inertias.begin(), median, inertias.end());
+  if (*median < kFar && *median * kFar > 1) return {};
+  const double unit = std::exp2(std::round(std::log2(*median)));
   Scales<N> scales{std::vector<N>(j_.rows, N(0)), std::vector<N>(j_.cols, N(1))};
   for (std::size_t j = n; j < mechanical; ++j) scales.column[j] = N(unit);
   for (std::size_t i = 0; i < j_.rows; ++i)

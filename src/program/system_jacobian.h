@@ -46,10 +46,10 @@ class SystemJacobian {
   }
   void solve(const std::vector<N>& b, std::vector<N>& x) const { is_sparse_ ? sparse_.solve(b, x) : lu_.solve(b, x); }
   int passes() const { return is_sparse_ ? 2 : lu_.passes(); }
-  // An estimate for J with rows divided by their largest entry. Where the inertia is far from the coefficients of the
-  // multipliers, as with masses of 1e-18, multipliers have another unit of force first, and columns are scaled as rows are.
+  // An estimate for J with rows divided by their largest entry. Where inertia is far from 1, as with masses of 1e-18, it is
+  // for another unit of mass, and columns are divided by their largest entries as well.
   N smallest_singular_value(std::vector<N>& direction) const {
-    const Scales<N> scales = scales_of_far_sizes();
+    const Scales<N> scales = scales_of_far_masses();
     return is_sparse_ ? sparse_.smallest_singular_value(direction, scales)
                       : lu_.smallest_singular_value(direction, scales);
   }
@@ -61,8 +61,8 @@ class SystemJacobian {
   const Balance& balance() const;
 
  private:
-  // Empty if the inertia is near the coefficients of the multipliers, or J is sparse.
-  Scales<N> scales_of_far_sizes() const;
+  // Empty if the inertia is not far from 1, or J is sparse.
+  Scales<N> scales_of_far_masses() const;
   // Where J is not needed, there is no memory for it.
   void make_room() {
     if (j_.data.empty()) j_ = Matrix<N>(program_->unknowns(), program_->unknowns());

@@ -154,10 +154,10 @@ static double missed_by(const Rotation& r, PointValues& at) {
 // Orientations are rotations at the start. Constraints may hold there what holds identically in others; numbers of the
 // file may be rounded.
 static Outcome oriented(const Model& model, PointValues& at) {
-  constexpr double kRounded = 1e-9;
+  constexpr double kOfRotation = 1e-9;
   for (const Body& b : model.bodies) {
     if (!b.orientation || b.orientation->by_turns) continue;
-    if (const double miss = missed_by(*b.orientation, at); !(miss <= kRounded))
+    if (const double miss = missed_by(*b.orientation, at); !(miss <= kOfRotation))
       return {OutcomeKind::inconsistent,
               "the orientation of '" + b.name +
                   "' is no rotation at the start: its axes miss length 1, right angles or " +

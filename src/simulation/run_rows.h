@@ -63,15 +63,17 @@ class RunRows {
 
   // ---- during the motion ---------------------------------------------------------------------------
 
-  // Those that lie in the last step, up to this time.
-  void until(const W& stop) {
-    while (of_.report.outcome.ok() && schedule_.due(stop)) {
+  // Those that lie in the last step, up to `stop`; of times that are asked for, those up to `told` (told_until).
+  void until(const W& stop, const W& told) {
+    W given = stop;
+    while (of_.report.outcome.ok() && schedule_.due(told)) {
       const auto due = schedule_.take();
       in_step(due.t, due.label);
+      if (schedule_.reaches(due.t, stop)) given = due.t;
     }
     if (schedule_.reaches(*schedule_.given(), stop)) return;
     if (schedule_.every_step() && of_.report.outcome.ok()) in_step(stop, "");
-    schedule_.set_given(stop);
+    schedule_.set_given(given);
   }
 
   // Tells the end of a step. While rows are under way, their thread tells it, after the rows before it.

@@ -235,7 +235,7 @@ class Run {
     if (defect_) defect_->step(dense_step(motion().stepper(), masses.t));
     if (o_.progress) o_.progress(to_double(course_.time()), course_.steps());
     const bool whole = masses.t == course_.time() && course_.by_taylor();
-    rows_.until(whole ? told_until(*s_.model, motion().stepper()) : masses.t);
+    rows_.until(masses.t, whole ? told_until(*s_.model, motion().stepper()) : masses.t);
     rows_.end_step(masses.t, stretch_.pace.read());
     if (report_.outcome.ok() && !(masses.t == course_.time())) {
       report_.outcome = negative_mass(*s_.model, masses.mass, to_double(masses.t));
