@@ -70,26 +70,28 @@ std::vector<std::string> passed_limits(const Model& model, const Motion<N>& moti
 }
 
 // Warnings of jumps that the equations do not hold: a potential, a position, the observer or a constraint that jumps, or whose
-// rate does, would need an impulse. They show in integrals of the motion that change, and in constraints that a step misses
-// where it begins.
+// rate does, would need an impulse. They show in integrals of the motion that change, and in constraints that a step after a
+// kink misses where it begins.
 template <Number N>
 std::vector<Warning> warnings_of_jumps(const Course<N>& course, const Watch<Wider<N>>& watch,
                                        const SimulationOptions& o, bool something_set) {
   constexpr double kLeast = 1e-6, kTolerances = 1e4;  // far above what integration leaves
   const double limit = std::max(kLeast, kTolerances * o.tolerance.get_d());
   std::vector<Warning> list;
+  if (!course.by_taylor()) return list;
   const auto warn = [&](const std::string& what, const std::string& of) {
-    list.push_back({what, "a formula that jumps on the way (sign, piecewise, a table), or whose rate does, stands in " +
-                              of +
-                              ", and the impulse that this needs is in no equation: take a smooth function, or let an "
-                              "event set what changes"});
+    list.push_back({what, "if a formula in " + of +
+                              " jumps on the way (sign, piecewise, a table), or its rate does, the impulse that this "
+                              "needs is in no equation: take a smooth function, or let an event set what changes; "
+                              "otherwise look at the digits to trust"});
   };
   const std::size_t first = watch.tracks().size() - o.conserved.size();
   for (std::size_t i = 0; i < o.conserved.size() && !something_set; ++i)
     if (const double change = watch.tracks()[first + i].relative_change(); change > limit)
       warn("the integral '" + o.conserved[i].name + "' changes by " + number_text(change, 3) + " of its terms",
            "a potential, a position or the motion of the observer");
-  if (const double missed = to_double(course.worst_constraint()); missed > limit && course.by_taylor())
+  if (const double missed = to_double(course.worst_constraint());
+      missed > limit && course.taylor().stepper().kinks() > 0)
     warn("a constraint is missed by " + number_text(missed, 3) + " where a step begins", "a constraint");
   return list;
 }

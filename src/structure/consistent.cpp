@@ -132,7 +132,8 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
           }
       return {};
     }
-    stage.worst(&worst);
+    // Data that overlap agree to their own digits only.
+    if (!(stage.worst(&worst) > N(stage_rounding<double>()))) return {};
   }
   return tell ? clash(stage, worst, before) : failed();
 }

@@ -515,6 +515,35 @@ initial = {x = )" + x +
   EXPECT_EQ(from("0.5", beyond, Rational(1, 10)).kind, OutcomeKind::not_a_number);
 }
 
+// A potential with a step, a position with a kink, a constraint whose velocity jumps: the motion goes on without the impulse that
+// this needs, and has a warning. A force that jumps has none.
+TEST(Kinks, ThatWouldNeedAnImpulseHaveAWarning) {
+  const auto warnings = [](const std::string& text) {
+    Result r;
+    Scenario s;
+    r.report.outcome = make_scenario(test::model_of(text), *find_formulation("routh"), {}, s);
+    EXPECT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
+    SimulationOptions o;
+    o.to = 3;
+    Workspace own(s);
+    o.conserved = conserved(*own.mechanics);
+    r.report = simulate_in(own, o, r.rows);
+    EXPECT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
+    return r.report.warnings.size();
+  };
+  const auto particle = [](const std::string& position, const std::string& more) {
+    return "coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"(" + position +
+           ")*ex + y*ey\"}]\ninitial = {x = 0, \"x'\" = 1, \"y'\" = 0.5}\n" + more;
+  };
+  EXPECT_EQ(warnings(particle("x", "")), 0U);
+  EXPECT_EQ(warnings(particle("x", "potential.V = \"abs(x - 1)\"\n")), 0U);
+  EXPECT_GT(warnings(particle("x", "potential.V = \"piecewise(x > 1, 3, 0)\"\n")), 0U);
+  EXPECT_GT(warnings(particle("x + max(x - 1, 0)", "")), 0U);
+  EXPECT_GT(warnings("coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + "
+                     "y*ey\"}]\nconstraint = [{name = \"drive\", equation = \"x' + y = sign(t - 1)\"}]\n"),
+            0U);
+}
+
 // The angle of a direction that turns with the rate 1 jumps at t = pi. Its integral over a turn is 0.
 TEST(Kinks, AnAngleJumpsBesideTheNegativeAxis) {
   for (const bool kernel : {true, false}) {

@@ -197,6 +197,21 @@ TEST(ConsistentState, RoundOffOfDoublesIsNoClash) {
   EXPECT_EQ(found("-6.7e-14").kind, OutcomeKind::inconsistent);
 }
 
+// Conditions that follow from each other, as decimals of 16 digits, agree to these digits, also in wider numbers.
+TEST(ConsistentState, DecimalsThatOverlapAreNoClash) {
+  const auto found = [](const std::string& sum) {
+    InitialState<long double> s;
+    return solve<long double>(text(constraint("y' = x'*sin(x)"), "x = 0.8680870319124994\nconditions = [\"x'*exp(x) = "
+                                                                 "-0.6775629798952102\", \"y'*cos(x) = "
+                                                                 "-0.1402645951958176\", \"x' + y' = " +
+                                                                     sum + "\"]\n"),
+                              s);
+  };
+  EXPECT_TRUE(found("-0.5014408728012463").ok()) << found("-0.5014408728012463").message;
+  // The mutant: the last digit but two.
+  EXPECT_EQ(found("-0.5014408728019463").kind, OutcomeKind::inconsistent);
+}
+
 TEST(ConsistentState, AMemoryLeavesTheBits) {
   const auto x = [](int number, int by) { return StateOverride{0, 0, Rational(number, by)}; };
   const auto rate = [](std::size_t of, int number, int by) { return StateOverride{1, of, Rational(number, by)}; };
