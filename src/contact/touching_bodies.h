@@ -38,8 +38,9 @@ struct TouchingBodies {
   // Impacts within round-off of one instant for which no mode is consistent follow each other: the least gap comes first.
   void first_alone(std::vector<bool>& touches) const;
   // The jump of least change after which what touches does not move along its normal, and what sticks does not slip. A
-  // contact that the others stop already is left out. One with a direction has friction against it: its impulse stands for
-  // the impulses that are still to come less the force of its rest until then, so that the friction of both is theirs.
+  // contact that the others stop already is left out. One with a direction slips along it with friction in proportion to the
+  // normal impulse, whichever sign this has: it stands for the impulses still to come, less the load of the rest until then
+  // (theory: contact).
   void stop(const ContactModes& to);
   // Moves what touches so that its gaps are zero, with the velocities that the modes leave there.
   void close_gaps();

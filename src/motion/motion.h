@@ -49,13 +49,14 @@ struct MotionPlans {
   WritingEffort effort = WritingEffort::at_once;
 };
 
-// The formulas that a motion watches: those of events, then of bounds. How it does, where they are the quadratures of its
-// program from `first` on.
-std::vector<Expr> watched_formulas(const Model& model);
 // What to do about an event whose formula has no value somewhere along the motion.
 inline constexpr const char* kEventWithoutValue = "write a formula that has a value all along the motion and the same "
                                                   "zeros, such as x - 2 for log(x - 1), or end the "
                                                   "motion before";
+
+// The formulas that a motion watches: those of events, then of bounds. How it does, where they are the quadratures of its
+// program from `first` on.
+std::vector<Expr> watched_formulas(const Model& model);
 std::vector<WatchedSeries> watched_series(const Scenario& scenario, std::size_t first);
 // Whether multipliers stand in them: a kernel in unknowns of its own knows none.
 bool watches_multipliers(const Model& model);
@@ -67,13 +68,11 @@ Wider<N> told_until(const Model& model, const Stepper<N>& stepper) {
   using W = Wider<N>;
   constexpr int kRoundoffs = 4;
   const W end = stepper.time();
-  const bool set = std::any_of(stepper.fired().begin(), stepper.fired().end(), [&](const Fired<N>& f) {
-    return f.series < model.events.size() && !model.events[f.series].set.empty();
-  });
-  const bool stops = std::any_of(stepper.fired().begin(), stepper.fired().end(), [&](const Fired<N>& f) {
-    return f.series < model.events.size() && model.events[f.series].stop;
-  });
-  if (!set || stops) return end;
+  const auto any = [&](auto is) {
+    return std::any_of(stepper.fired().begin(), stepper.fired().end(),
+                       [&](const Fired<N>& f) { return f.series < model.events.size() && is(model.events[f.series]); });
+  };
+  if (!any([](const Event& e) { return !e.set.empty(); }) || any([](const Event& e) { return e.stop; })) return end;
   const W beyond = convert<W>(unit_roundoff<N>()) * W(kRoundoffs) * abs(end);
   return end < stepper.before() ? W(end - beyond) : W(end + beyond);
 }

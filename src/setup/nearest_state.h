@@ -17,7 +17,7 @@ class NearestState {
   NearestState(const NearestState&) = delete;
   NearestState& operator=(const NearestState&) = delete;
 
-  // Puts the nearest state in place of the state of a program in another form. `leading`: the derivatives that this solves
+  // Puts the nearest state in place of the state of a program, whatever its form. `leading`: the derivatives that this solves
   // for, near the state. The state stays as it is if it has other entries than that of Routh's equations, as it may have with
   // constraints of order 2 and more.
   Outcome put(const Program& of, const W& t, const std::vector<W>& parameters, const std::vector<W>& leading,

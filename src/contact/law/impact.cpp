@@ -71,8 +71,7 @@ Outcome rank_lost(const std::string& contact, const std::string& when) {
 Outcome without_derivatives(const std::string& contact, const std::string& when) {
   return {OutcomeKind::singular, "the gap of contact '" + contact + "' has no derivatives" + when,
           "end the motion before, or start a little beside: a disc that lies flat touches with its whole rim, and no "
-          "point of "
-          "it is the one that is pushed"};
+          "point of it is the one that is pushed"};
 }
 
 std::vector<Jump> impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,

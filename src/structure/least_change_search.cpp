@@ -1,0 +1,253 @@
+// The search for the solution of a stage by Newton's method: with line searches, along its flow, and from points around.
+#include <algorithm>
+
+#include "structure/stage.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr int kMostIterations = 60;
+// Steps along Newton's flow grow by a factor where it leaves a place at which the Jacobian is nearly singular, and a flow
+// that comes to an end needs fewer.
+constexpr int kMostFlowSteps = 100;
+// After this number of line searches in a row without improvement the iteration is given up.
+constexpr int kMostInVain = 3;
+// The smallest part of a step of Newton's method along its flow, a power of 4.
+constexpr double kLeastFlowPart = 0x1p-40;
+
+// Newton's method on a stage, in the free unknowns.
+template <Number N>
+class Iteration {
+ public:
+  Iteration(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free)
+      : s_(stage), state_(state), free_(free) {
+    for (std::size_t j : free) x_.push_back(&s_.x(state, j)), guess_.push_back(*x_.back());
+  }
+
+  const std::vector<N>& guess() const { return guess_; }
+  std::vector<N> point() const {
+    std::vector<N> p;
+    for (const N* v : x_) p.push_back(*v);
+    return p;
+  }
+  // Returns false if the equations have no value there.
+  bool go_to(const std::vector<N>& point) {
+    for (std::size_t j = 0; j < x_.size(); ++j) *x_[j] = point[j];
+    return s_.evaluate(state_);
+  }
+  bool solved() const { return !(s_.worst() > stage_rounding<N>()); }
+
+  // The square of the distance from the guess, in the metric at the point.
+  N distance() const {
+    N sum(0);
+    for (std::size_t i = 0; i < x_.size(); ++i)
+      for (std::size_t j = 0; j < x_.size(); ++j)
+        sum += (*x_[i] - guess_[i]) * s_.metric(free_[i], free_[j]) * (*x_[j] - guess_[j]);
+    return sum;
+  }
+
+  // Goes towards the solution nearest to the guess or, if `nearest` is false, to any solution: every step is then the
+  // least one.
+  bool run(bool nearest) {
+    in_vain_ = 0;
+    const N rounding = stage_rounding<N>();
+    if (!s_.evaluate(state_)) return false;
+    N last_step(-1);
+    bool nudged = false;
+    for (int k = 0; k < kMostIterations && !free_.empty(); ++k) {
+      typename Stage<N>::Elimination& elimination = s_.elimination(free_);
+      const RowChoice<N>& rows = elimination.rows;
+      if (rows.dependent.size() && !nudged && s_.worst() > rounding && k == 0) {
+        // The guess may be a stationary point of a constraint (the centre of a circle): move away from it.
+        nudged = true;
+        if (flat(rows)) {
+          for (std::size_t j = 0; j < free_.size(); ++j) *x_[j] += N(0.1) + N(0.037) * N(static_cast<int>(j % 7));
+          if (!s_.evaluate(state_)) return false;
+          continue;
+        }
+      }
+      if (rows.independent.empty()) break;
+      if (!elimination.possible) return true;
+      least_step(elimination, nearest);
+      if (!search()) return false;
+      if (in_vain_ > kMostInVain) return true;
+      N moved(0), size(0);
+      for (std::size_t j = 0; j < free_.size(); ++j) {
+        if (N v = abs(step_[j]); v > moved) moved = v;
+        if (N v = abs(*x_[j]); v > size) size = v;
+      }
+      const N floor = unit_roundoff<N>() * N(8) * (size > N(1) ? size : N(1));
+      const bool settled = !(moved > floor) || (last_step >= N(0) && !(moved < last_step) && moved < floor * N(100));
+      last_step = moved;
+      if (settled) break;
+    }
+    return true;
+  }
+
+  // Follows Newton's flow from the point, along which all residuals fall in proportion: the solution at its end is that
+  // which belongs to the point, also where a full step of Newton's method would land near another one. Returns false if
+  // the flow ends before.
+  bool follow() {
+    if (!s_.evaluate(state_)) return false;
+    flow_part_ = kLeastFlowPart;
+    for (int k = 0; k < kMostFlowSteps; ++k) {
+      if (solved()) return true;
+      typename Stage<N>::Elimination& elimination = s_.elimination(free_);
+      if (elimination.rows.independent.empty() || !elimination.possible) return false;
+      least_step(elimination, false);
+      if (!flow()) return false;
+    }
+    return solved();
+  }
+
+ private:
+  bool flat(const RowChoice<N>& rows) const {
+    return std::any_of(rows.dependent.begin(), rows.dependent.end(),
+                       [&](std::size_t i) { return abs(s_.residual[i]) > stage_rounding<N>() * s_.scale[i]; });
+  }
+
+  // Computes the step that least changes the point, or the guess if `nearest`.
+  void least_step(typename Stage<N>::Elimination& e, bool nearest) {
+    const std::vector<std::size_t>& rows = e.rows.independent;
+    const std::size_t n = free_.size();
+    right_.resize(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      right_[i] = -s_.residual[rows[i]];
+      if (nearest)
+        for (std::size_t j = 0; j < n; ++j) right_[i] += e.a(rows[i], j) * (*x_[j] - guess_[j]);
+    }
+    e.change.solve(right_, step_);
+    if (nearest)
+      for (std::size_t j = 0; j < n; ++j) step_[j] = N(guess_[j] + step_[j] - *x_[j]);
+  }
+
+  // Whether the residuals are those of Newton's flow at this part of the step: a part of them is gone, to the fraction
+  // kBent of that part.
+  bool flows(double part) const {
+    constexpr double kBent = 0.5;
+    N most(0), missed(0);
+    for (std::size_t i = 0; i < s_.size(); ++i) {
+      if (const N v = abs(old_residual_[i]) / scale_[i]; v > most) most = v;
+      if (const N v = abs(N(s_.residual[i] - N(1 - part) * old_residual_[i])) / scale_[i]; v > missed) missed = v;
+    }
+    return missed <= N(kBent * part) * most + stage_rounding<N>() * N(4);
+  }
+
+  // Goes along the step as far as Newton's flow does, found from smaller parts of the step to larger ones: a full step may
+  // end near a solution by chance. Returns false if the flow does not go along the step.
+  bool flow() {
+    constexpr double kTimes = 4, kFewer = 64;
+    scale_ = s_.scale;
+    old_residual_ = s_.residual;
+    old_.clear();
+    for (const N* v : x_) old_.push_back(*v);
+    const auto go = [&](double part) {
+      for (std::size_t j = 0; j < x_.size(); ++j) *x_[j] = old_[j] + N(part) * step_[j];
+      return s_.evaluate(state_);
+    };
+    double good = 0;
+    for (double part = std::max(kLeastFlowPart, flow_part_ / kFewer); part <= 1; part *= kTimes) {
+      if (!go(part) || !flows(part)) break;
+      good = part;
+    }
+    if (!go(good) || !(good > 0)) return false;
+    flow_part_ = good;
+    return true;
+  }
+
+  // Goes along the step as long as the residual decreases; `step_` is then the step made.
+  bool search() {
+    // Progress is measured relative to the scales at the start of the step: those at its end grow with it.
+    scale_ = s_.scale;
+    old_.clear();
+    for (const N* v : x_) old_.push_back(*v);
+    const N now = s_.worst(scale_);
+    N fraction(1);
+    bool better = false;
+    for (int halvings = 0; halvings < 12 && !better; ++halvings) {
+      if (halvings > 0) fraction = fraction * N(0.5);
+      for (std::size_t j = 0; j < x_.size(); ++j) *x_[j] = old_[j] + fraction * step_[j];
+      if (!s_.evaluate(state_)) continue;
+      const bool less = s_.worst(scale_) <= now * N(0.9) + stage_rounding<N>() * N(4);
+      in_vain_ = less ? 0 : in_vain_ + (halvings == 11);
+      better = less || halvings == 11;
+    }
+    for (std::size_t j = 0; j < x_.size(); ++j) step_[j] = *x_[j] - old_[j];
+    return better || s_.evaluate(state_);
+  }
+
+  Stage<N>& s_;
+  InitialState<N>& state_;
+  const std::vector<std::size_t>& free_;
+  std::vector<N*> x_;
+  std::vector<N> guess_;
+  std::vector<N> right_, step_;  // of a step: the right side, and the step itself
+  std::vector<N> scale_, old_;   // at the start of a step
+  std::vector<N> old_residual_;  // of a step along Newton's flow
+  double flow_part_ = 1;         // the part of the last step that was made along the flow
+  int in_vain_ = 0;              // searches in a row that found no improvement along their step
+};
+
+// The k-th point around the guess, at increasing distance.
+template <Number N>
+std::vector<N> around(const std::vector<N>& guess, int k) {
+  std::vector<N> p = guess;
+  for (std::size_t j = 0; j < p.size(); ++j) {
+    const unsigned draw = (static_cast<unsigned>(k) * 2654435761U + static_cast<unsigned>(j + 1) * 2246822519U) >> 16;
+    const N size = abs(p[j]) > N(1) ? N(abs(p[j])) : N(1);
+    p[j] += size * N(k) * N(static_cast<int>(draw % 2001U) - 1000) / N(4000);
+  }
+  return p;
+}
+
+}  // namespace
+
+template <Number N>
+bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& free,
+                          const InitialState<double>* near, bool by_flow) {
+  constexpr int kStarts = 12;
+  Iteration<N> newton(s, state, free);
+  if (near && !free.empty()) {
+    std::vector<N> there = newton.guess();
+    for (std::size_t j = 0; j < free.size(); ++j)
+      if (const double* x = near->value(s.unknown(free[j]))) there[j] = N(*x);
+    if (newton.go_to(there) && newton.run(true) && newton.solved()) return true;
+    newton.go_to(newton.guess());
+  }
+  if (by_flow && !free.empty()) {
+    if (newton.follow()) {
+      // Then to the nearest of a family of solutions, and to all digits. Another solution is farther by more than round-off.
+      const std::vector<N> there = newton.point();
+      const N farther = N(2) * newton.distance();
+      if (!newton.run(true) || !newton.solved() || newton.distance() > farther) newton.go_to(there);
+      return true;
+    }
+    newton.go_to(newton.guess());
+  }
+  const bool value = newton.run(true);
+  if ((value && newton.solved()) || free.empty() || s.linear()) return value;
+  const InitialState<N> first = state;
+  std::vector<N> best;
+  N least(0);
+  for (int k = 0; k <= kStarts && (best.empty() || k < 3); ++k) {
+    if (!newton.go_to(around(newton.guess(), k)) || !newton.run(false) || !newton.solved()) continue;
+    const std::vector<N> there = newton.point();
+    if (!newton.run(true) || !newton.solved()) newton.go_to(there);
+    if (const N d = newton.distance(); best.empty() || d < least) least = d, best = newton.point();
+  }
+  if (!best.empty()) return newton.go_to(best);
+  state = first;
+  return value && s.evaluate(state);
+}
+
+template bool find_by_least_change<double>(Stage<double>&, InitialState<double>&, const std::vector<std::size_t>&,
+                                           const InitialState<double>*, bool);
+template bool find_by_least_change<long double>(Stage<long double>&, InitialState<long double>&,
+                                                const std::vector<std::size_t>&, const InitialState<double>*, bool);
+template bool find_by_least_change<Quad>(Stage<Quad>&, InitialState<Quad>&, const std::vector<std::size_t>&,
+                                         const InitialState<double>*, bool);
+template bool find_by_least_change<Multi>(Stage<Multi>&, InitialState<Multi>&, const std::vector<std::size_t>&,
+                                          const InitialState<double>*, bool);
+
+}  // namespace anholon
