@@ -1,5 +1,6 @@
 #include "ensemble/cases_error.h"
 
+#include "ensemble/case_parameters.h"
 #include "ensemble/case_scenario.h"
 #include "ensemble/columns.h"
 #include "observe/estimate.h"
@@ -32,25 +33,29 @@ class FurtherRuns {
   const Scenario& of_all_;
   const EnsembleOptions& o_;
   std::unique_ptr<Workspace> own_;
+  std::optional<CaseParameters> parameters_;  // of the workspace
   RunToJudge<long double>::Plans compared_;
   SimulationPlans looked_at_;
 };
 
-// Makes the workspace that of a case.
+// Makes the workspace that of a case: the one at hand with other numbers if its equations are those of the case, too.
 Outcome FurtherRuns::begin(const EnsembleCase& numbers) {
   StateChoice state = o_.state;
   state.overrides = overrides_of(o_, &numbers);
-  if (own_) {
+  if (own_ && parameters_->same_structure(parameters_->values<double>(numbers.values))) {
     for (std::size_t i = 0; i < o_.varied.size(); ++i)
       if (o_.varied[i].kind == Varied::Kind::parameter) own_->set_parameter(o_.varied[i].index, numbers.values[i]);
     if (const std::optional<Outcome> begun = begin_anew(*own_, state)) return *begun;
   }
   compared_ = {};
   looked_at_ = {};
+  parameters_.reset();
   own_.reset();
   Scenario of_case;
   const Outcome o = scenario_of_case(of_all_, o_, numbers, of_case);
-  if (o.ok()) own_ = std::make_unique<Workspace>(of_case);
+  if (!o.ok()) return o;
+  own_ = std::make_unique<Workspace>(of_case);
+  parameters_.emplace(*own_, o_.varied);
   return o;
 }
 

@@ -29,7 +29,8 @@ class ReferenceExpander {
   int order() const { return reference_.order(); }
   const std::vector<W>& wide_parameters() const { return point_.parameters(); }
   void restart() {}  // no expansion is made
-  void reset() {}    // nor counted
+  void go_on(const StepRecord<N>&) {}
+  void reset() {}  // nor counted
 
   void begin(MotionTrack<N>& track, const std::vector<W>& guess, bool again);
   static constexpr void expand_kernel() {}
@@ -101,6 +102,8 @@ class GuardedExpander {
   std::size_t expansions_by_kernel() const { return by_kernel_; }
   int order() const { return order_; }
   void restart();
+  // The motion goes on from a record of what was met before.
+  void go_on(const StepRecord<double>& record);
   void reset();
 
   void begin(MotionTrack<double>& track, const std::vector<W>& guess, bool again);

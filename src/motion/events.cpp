@@ -138,7 +138,7 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
     next->at_once = leg_->at_once;
     next->stepper.adopt(leg_->stepper);
     leg_ = std::move(next);
-    chosen_.clear();
+    choices_.pivots.clear();
   }
   const std::vector<W> as_set = state;
   Outcome o = to_nearest(state);

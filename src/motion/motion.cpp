@@ -5,6 +5,7 @@
 
 #include "expr/copy.h"
 #include "kernel/kernel.h"
+#include "structure/redundancy.h"
 
 namespace anholon {
 
@@ -13,7 +14,8 @@ namespace anholon {
 template <Number N>
 Motion<N>::Leg::Leg(const Motion& m, std::shared_ptr<Workspace> of_leg, Elimination by, System of, Structure structured)
     : own(std::move(of_leg)), elimination(std::move(by)), system(std::move(of)), structure(std::move(structured)),
-      quadratures(m.with_watched(m.workspace(*this))),
+      quadratures(m.s_.redundant.empty() ? m.with_watched(m.workspace(*this))
+                                         : taking_part(system, m.with_watched(m.workspace(*this)))),
       program(anholon::program(system, structure, quadratures, !std::same_as<N, double>)),
       stepper(program, m.narrow_parameters_, m.parameters_, m.settings_),
       point(program, m.parameters_, std::max(1, m.stages_)), present(program, m.parameters_, 1) {
@@ -21,9 +23,16 @@ Motion<N>::Leg::Leg(const Motion& m, std::shared_ptr<Workspace> of_leg, Eliminat
   m.watch_pivots(*this);
 }
 
+// Whether other independent constraints may be chosen on the way: not where multipliers belong to the state, or are asked
+// for as series.
+static bool chooses_rows(const Scenario& s, const StepSettings& settings) {
+  return !s.redundant.empty() && !settings.multipliers && multiplier_orders(s) == 0;
+}
+
 template <Number N>
 Motion<N>::Motion(Workspace& s, const StepSettings& settings, std::vector<Expr> quadratures, int stages)
-    : s_(s), base_(s.elimination.pivots().empty() ? nullptr : std::make_unique<const Workspace>(s)),
+    : s_(s), base_(s.elimination.pivots().empty() && !chooses_rows(s, settings) ? nullptr
+                                                                                : std::make_unique<const Workspace>(s)),
       settings_(settings), quadratures_(std::move(quadratures)), stages_(stages),
       start_parameters_(parameter_values<W>(*s.model)), parameters_(start_parameters_),
       narrow_parameters_(parameter_values<N>(*s.model)),
@@ -62,7 +71,7 @@ void Motion<N>::take(const MotionPlans& plans, Leg& leg) {
   leg.plan = plans.plan, leg.unmapped_plan = plans.unmapped_plan, leg.writing = plans.writing;
 }
 
-// Pivots are chosen at the start of the whole motion, with the modes there, so that a run that goes on has the same.
+// ChoiceWatch are chosen at the start of the whole motion, with the modes there, so that a run that goes on has the same.
 template <Number N>
 void Motion<N>::accelerate(Leg& leg) const {
   if constexpr (std::same_as<N, double>) {
@@ -120,7 +129,7 @@ void Motion<N>::write_anew() {
   accelerate(*next);
   if (next->writing == leg_->writing || !next->stepper.take_over(leg_->stepper).ok()) return;
   leg_ = std::move(next);
-  mark_ = {choices_.size(), chosen_};
+  choices_.begun = choices_.now();
   begun_parameters_ = parameters_;
 }
 
@@ -141,18 +150,18 @@ static double expected_end(const Model& m, double begin, double now, double end)
 // anew after fixed numbers of steps.
 template <Number N>
 Outcome Motion<N>::steps(const W& end, Stretch<W>& stretch) {
-  if (stepped_ && leg_->pivots && pivot_is_small(present())) eliminate_again();
+  if (stepped_ && leg_->pivots && pivot_is_small(present())) choose_again();
   if (stepped_) write_anew();
   stretch.limit(leg_->pivots ? 1 : steps_with_effort(leg_->stepper.steps()));
   const double now = to_double(leg_->stepper.time());
   code_.step(leg_->plan, now, expected_end(*s_.model, to_double(start_.t), now, to_double(end)));
-  const Mark before{choices_.size(), chosen_};
+  const typename Choices::Mark before = choices_.now();
   const std::size_t expansions = leg_->stepper.expansions(), steps = leg_->stepper.steps();
   Outcome o = leg_->stepper.steps(end, stretch);
   code_.count(leg_->stepper.steps() - steps);
-  if (leg_->stepper.expansions() != expansions) mark_ = before, begun_parameters_ = parameters_;
-  // Near a zero of a pivot the form of the equations fails, not the motion: another elimination goes on.
-  if (!o.ok() && leg_->pivots && can_go_on(o.kind) && eliminate_again()) o = leg_->stepper.step(end);
+  if (leg_->stepper.expansions() != expansions) choices_.begun = before, begun_parameters_ = parameters_;
+  // Near a zero of a pivot the form of the equations fails, not the motion: it goes on with another choice.
+  if (!o.ok() && leg_->pivots && can_go_on(o.kind) && choose_again()) o = leg_->stepper.step(end);
   // The next step begins with the state as a sum in the wider type: a lane may have it as another sum of two doubles.
   if (o.ok()) leg_->stepper.round_state();
   stepped_ = true;
@@ -161,6 +170,14 @@ Outcome Motion<N>::steps(const W& end, Stretch<W>& stretch) {
 
 template <Number N>
 Outcome Motion<N>::at(const W& t) {
+  beside_.shown = false;
+  if (leg_->pivots) {
+    Start<W> place;
+    place.t = t;
+    leg_->stepper.foretell(t, place.state, place.leading);
+    choose_beside(place);
+    if (beside_.shown) return anholon::settle_at(beside_.leg->point, place, stages_ > 0);
+  }
   if (Outcome o = leg_->stepper.at(t, leg_->point); !o.ok()) {
     o.message += " at t = " + number_text(to_double(t), 12);
     return o;
@@ -168,14 +185,13 @@ Outcome Motion<N>::at(const W& t) {
   return stages_ > 0 ? leg_->point.extend() : Outcome{};
 }
 
-// Keeps an eye on what the elimination divides by.
+// Keeps an eye on what the choices of a leg stand on.
 template <Number N>
 void Motion<N>::watch_pivots(Leg& leg) const {
-  const Elimination& e = leg.elimination;
-  if (e.pivots().empty()) return;
-  Workspace& in = workspace(leg);
-  leg.pivots =
-      std::make_unique<OutputTape<W>>(in, put_masses(*in.model, e.in_coordinates(e.on(e.pivots()))), parameters_);
+  if (!base_) return;
+  const std::vector<std::size_t> all;
+  leg.pivots = std::make_unique<ChoiceWatch<W>>(
+      workspace(leg), leg.elimination, chooses_rows(s_, settings_) ? leg.system.constraints : all, parameters_);
 }
 
 // The present leg once more, with the present parameters.
@@ -184,25 +200,30 @@ std::unique_ptr<typename Motion<N>::Leg> Motion<N>::same_leg() const {
   return std::make_unique<Leg>(*this, leg_->own, leg_->elimination, leg_->system, leg_->structure);
 }
 
+// A step begins with good pivots and may be so long that one of them vanishes on the way.
 template <Number N>
-bool Motion<N>::pivot_is_small(const Expansion<W>& at) {
-  constexpr double kSmall = 0.4;
+void Motion<N>::choose_beside(const Start<W>& place) {
+  beside_.shown = false;
+  if (!leg_->pivots || choices_.pivots.empty()) return;
+  leg_->present.load(place.t, place.state, place.leading);
+  if (!pivot_is_below(kBadPivot, leg_->present)) return;
+  if (auto other = derived_at(here(leg_->present))) beside_.leg = std::move(other), beside_.shown = true;
+}
+
+template <Number N>
+bool Motion<N>::pivot_is_below(double share, const Expansion<W>& at) {
   if (!leg_->pivots) return false;
-  leg_->pivots->evaluate(at);
-  bool small = false;
-  const bool first = chosen_.empty();
-  for (std::size_t i = 0; i < leg_->elimination.pivots().size(); ++i) {
-    const double v = std::abs(to_double((*leg_->pivots)[i]));
-    if (first) chosen_.push_back(v);
-    small = small || v < kSmall * chosen_[i];
-  }
-  return small;
+  const std::vector<double> now = leg_->pivots->at(at);
+  if (choices_.pivots.empty()) choices_.pivots = now;
+  for (std::size_t i = 0; i < now.size(); ++i)
+    if (now[i] < share * choices_.pivots[i]) return true;
+  return false;
 }
 
 // What the pivots are where they were chosen.
 template <Number N>
 void Motion<N>::note_pivots() {
-  chosen_.clear();
+  choices_.pivots.clear();
   if (leg_->pivots) pivot_is_small(present());
 }
 
@@ -215,9 +236,8 @@ const Expansion<typename Motion<N>::W>& Motion<N>::present() {
 }
 
 template <Number N>
-InitialState<double> Motion<N>::here() {
+InitialState<double> Motion<N>::here(const Expansion<W>& point) const {
   InitialState<double> here;
-  const Expansion<W>& point = present();
   here.t = to_double(point.time());
   const auto level = [&](std::size_t k) {
     std::vector<double> values;
@@ -243,7 +263,8 @@ static bool same(const Elimination& a, const Elimination& b) {
   return copied(a.pivots(), common) == copied(b.pivots(), common);
 }
 
-// The leg with the dependent coordinates that are best at a point; null if its equations cannot be made.
+// The leg with the dependent coordinates and independent constraints that are best at a point; null if its equations
+// cannot be made, or if another number of constraints is independent there.
 template <Number N>
 std::unique_ptr<typename Motion<N>::Leg> Motion<N>::derived_at(const InitialState<double>& here) const {
   try {
@@ -251,8 +272,16 @@ std::unique_ptr<typename Motion<N>::Leg> Motion<N>::derived_at(const InitialStat
     const Mechanics& m = *own->mechanics;
     std::vector<double> now;
     for (const W& p : parameters_) now.push_back(to_double(p));
-    const auto at = std::make_shared<PointValues>(values_near(*own->model, now, here));
-    Elimination e(m, choose_elimination(m, own->independent, own->system.form->unknowns, {}, *at), at);
+    if (chooses_rows(*own, settings_)) {
+      IndependentConstraints rows = independent_constraints(m, now, here);
+      if (rows.independent.size() != own->independent.size()) return nullptr;
+      own->independent = std::move(rows.independent), own->redundant = std::move(rows.redundant);
+    }
+    Elimination e;
+    if (own->system.form->eliminates()) {
+      const auto at = std::make_shared<PointValues>(values_near(*own->model, now, here));
+      e = Elimination(m, choose_elimination(m, own->independent, own->system.form->unknowns, {}, *at), at);
+    }
     System system = implicit_system(own->model, m, *own->system.form, own->independent, e);
     Structure structure;
     ProbeHints hints;
@@ -268,21 +297,22 @@ std::unique_ptr<typename Motion<N>::Leg> Motion<N>::derived_at(const InitialStat
   }
 }
 
-// Another choice of dependent coordinates where the motion has come to; false if there is none better.
+// Another choice where the motion has come to; false if there is none better.
 template <Number N>
-bool Motion<N>::eliminate_again() {
-  choices_.push_back({here(), false});
-  auto next = derived_at(choices_.back().here);
-  if (next && same(next->elimination, leg_->elimination)) next = nullptr;
+bool Motion<N>::choose_again() {
+  choices_.list.push_back({here(present()), false});
+  auto next = derived_at(choices_.list.back().here);
+  if (next && next->system.constraints == leg_->system.constraints && same(next->elimination, leg_->elimination))
+    next = nullptr;
   if (next) accelerate(*next);
   const bool taken = next && next->stepper.take_over(leg_->stepper).ok();
   if (taken) {
     leg_ = std::move(next);
-    choices_.back().taken = true;
-    ++eliminations_;
+    choices_.list.back().taken = true;
+    ++choices_.taken;
   }
   note_pivots();
-  if (taken) mark_ = {choices_.size(), chosen_};
+  if (taken) choices_.begun = choices_.now();
   return taken;
 }
 
@@ -293,7 +323,7 @@ void Motion<N>::save(SavedRun& to) const {
   const auto& [motion, direction, sides] = begun;
   const auto& [t, state, carry, leading, own, own_leading, integrals, integral_carry, record] = motion;
   const auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, least_regular, sigma_before,
-               last_step, least_health, careful] = record;
+               last_step, least_health, last_health, last_determinant, careful] = record;
   to.set_numbers<W>("t", {t});
   to.set_numbers("state", state);
   to.set_numbers("carry", carry);
@@ -303,12 +333,13 @@ void Motion<N>::save(SavedRun& to) const {
   to.set_numbers("integrals", integrals);
   to.set_numbers("integral_carry", integral_carry);
   to.set_numbers<W>("stepper", {branch_step, worst_constraint, worst_equation, least_regular.t, last_step});
-  to.set_numbers<N>("sigma", {first_sigma, least_regular.sigma, sigma_before, least_health});
+  to.set_numbers<N>("sigma",
+                    {first_sigma, least_regular.sigma, sigma_before, least_health, last_health, last_determinant});
   to.set_numbers("direction", direction);
   to.set("counts", {std::to_string(steps), std::to_string(least_regular.unknown), careful ? "1" : "0"});
   std::vector<double> choices;
-  for (std::size_t i = 0; i < mark_.choices; ++i) {
-    const Choice& c = choices_[i];
+  for (std::size_t i = 0; i < choices_.begun.choices; ++i) {
+    const typename Choices::Choice& c = choices_.list[i];
     choices.push_back(c.taken ? 1 : 0);
     choices.push_back(c.here.t);
     choices.insert(choices.end(), c.here.q.begin(), c.here.q.end());
@@ -318,7 +349,7 @@ void Motion<N>::save(SavedRun& to) const {
     choices.insert(choices.end(), c.here.state_rates.begin(), c.here.state_rates.end());
   }
   to.set_numbers("eliminations", choices);
-  to.set_numbers("pivots", mark_.chosen);
+  to.set_numbers("pivots", choices_.begun.pivots);
   to.set_numbers("sides", std::vector<W>(sides.begin(), sides.end()));
   to.set_numbers("modes", begun_parameters_);
 }
@@ -335,7 +366,7 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   const std::vector<double> choices = from.numbers<double>("eliminations");
   if (choices.size() % length != 0) SavedRun::unfit("eliminations");
   for (auto at = choices.begin(); at != choices.end();) {
-    Choice c;
+    typename Choices::Choice c;
     c.taken = *at++ != 0;
     c.here.t = *at++;
     const auto level = [&] {
@@ -348,31 +379,31 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
     for (std::size_t k = 2; k < levels(); ++k) c.here.higher.push_back({level(), {}});
     for (std::size_t i = 0; i < states; ++i) c.here.states.push_back(*at++);
     for (std::size_t i = 0; i < states; ++i) c.here.state_rates.push_back(*at++);
-    choices_.push_back(std::move(c));
+    choices_.list.push_back(std::move(c));
   }
-  eliminations_ = static_cast<std::size_t>(
-      std::count_if(choices_.begin(), choices_.end(), [](const Choice& c) { return c.taken; }));
-  const auto last = std::find_if(choices_.rbegin(), choices_.rend(), [](const Choice& c) { return c.taken; });
-  if (last != choices_.rend()) {
+  choices_.taken = static_cast<std::size_t>(
+      std::count_if(choices_.list.begin(), choices_.list.end(), [](const auto& c) { return c.taken; }));
+  const auto last = std::find_if(choices_.list.rbegin(), choices_.list.rend(), [](const auto& c) { return c.taken; });
+  if (last != choices_.list.rend()) {
     auto next = base_ ? derived_at(last->here) : nullptr;
     if (!next) SavedRun::unfit("eliminations");
     leg_ = std::move(next);
   }
   const std::vector<double> pivots = from.numbers<double>("pivots");
-  if (!pivots.empty() && pivots.size() != leg_->elimination.pivots().size()) SavedRun::unfit("pivots");
-  chosen_ = pivots;
-  mark_ = {choices_.size(), chosen_};
+  if (!pivots.empty() && pivots.size() != (leg_->pivots ? leg_->pivots->count() : 0)) SavedRun::unfit("pivots");
+  choices_.pivots = pivots;
+  choices_.begun = choices_.now();
 
   const Program& p = leg_->program;
   const std::size_t size = leg_->point.state_size();
   const std::vector<W> more = from.numbers<W>("stepper", 5);
-  const std::vector<N> sigma = from.numbers<N>("sigma", 4);
+  const std::vector<N> sigma = from.numbers<N>("sigma", 6);
   const std::vector<long double> counts = from.numbers<long double>("counts", 3);
   StepperState<N> b;
   auto& [motion, direction, sides] = b;
   auto& [t, state, carry, leading, own, own_leading, integrals, integral_carry, record] = motion;
   auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, least_regular, sigma_before, last_step,
-         least_health, careful] = record;
+         least_health, last_health, last_determinant, careful] = record;
   t = from.number<W>("t");
   state = from.numbers<W>("state", size);
   carry = from.numbers<W>("carry", size);
@@ -391,6 +422,8 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   least_regular.sigma = sigma[1];
   sigma_before = sigma[2];
   least_health = sigma[3];
+  last_health = sigma[4];
+  last_determinant = sigma[5];
   steps = static_cast<std::size_t>(counts[0]);
   least_regular.unknown = static_cast<std::size_t>(counts[1]);
   careful = counts[2] != 0;

@@ -1,10 +1,11 @@
-// One motion on its way: the steps, the events between them, and the elimination of coordinates on which its equations
-// stand.
+// One motion on its way: the steps, the events between them, and the choices on which its equations stand.
 //
 // A motion goes through legs. Forms without multipliers divide by pivots that may become small on the way; the
 // equations are then made again with other dependent coordinates, and the motion goes on from the same state (theory:
-// elimination). Each such leg is derived in a workspace of its own, a copy of that in which the motion was made: its bits
-// depend on the state where it begins, and not on the legs before it.
+// elimination). Where constraints are redundant, those that take part may come to depend on one another while one that is
+// left out takes their place: they are chosen again, too (theory: dae-view, redundant constraints). Each such leg is
+// derived in a workspace of its own, a copy of that in which the motion was made: its bits depend on the state where it
+// begins, and not on the legs before it.
 #pragma once
 #include <algorithm>
 #include <functional>
@@ -15,6 +16,7 @@
 #include "motion/representation.h"
 #include "motion/saved.h"
 #include "motion/set_by_event.h"
+#include "setup/choice_watch.h"
 #include "setup/nearest_state.h"
 #include "setup/scenario.h"
 
@@ -101,8 +103,12 @@ class Motion {
   // ended.
   void save(SavedRun& to) const;
   Outcome resume(const StateChoice& choice, const SavedRun& from);
-  // The solution at a place that was foretold (integrate/stepper.h), in `point()`.
-  Outcome settle_at(const Start<W>& place) { return anholon::settle_at(leg_->point, place, stages_ > 0); }
+  // The solution at a place that was foretold (integrate/stepper.h), in `point()`: by the equations of the leg, or by those
+  // of another choice where that of the leg is bad.
+  Outcome settle_at(const Start<W>& place) {
+    choose_beside(place);
+    return anholon::settle_at(shown().point, place, stages_ > 0);
+  }
   // A stretch of steps towards `end`, or one, with another elimination where this one fails or its pivots have become
   // small.
   Outcome steps(const W& end, Stretch<W>& stretch);
@@ -112,7 +118,7 @@ class Motion {
   }
   // The solution anywhere in the last step, with the orders beyond where there are any.
   Outcome at(const W& t);
-  const Expansion<W>& point() const { return leg_->point; }
+  const Expansion<W>& point() const { return shown().point; }
   // What fired in the last step. `settle` puts in what it sets, after which the motion goes on from the end of the
   // step; false in `goes_on` where an event ends the motion. Not ok if a table was left, or the state set has no
   // consistent one near.
@@ -130,18 +136,20 @@ class Motion {
   const Program& program() const { return leg_->program; }
   const std::vector<W>& parameters() const { return parameters_; }
   const std::vector<W>& start_parameters() const { return start_parameters_; }
-  std::size_t eliminations() const { return eliminations_; }  // how often other coordinates were eliminated on the way
-  // For another method (motion/course.h): the plan of the kernel, if there is one; whether other coordinates should be
-  // eliminated at a point; Taylor steps from where it has come to.
+  // How often other coordinates were eliminated, or other independent constraints were chosen, on the way.
+  std::size_t eliminations() const { return choices_.taken; }
+  // For another method (motion/course.h): the plan of the kernel, if there is one; whether the choices should be made
+  // anew at a point; Taylor steps from where it has come to.
   const std::shared_ptr<const KernelPlan>& plan() const { return leg_->plan; }
   // The same in the motion's unknowns, for other methods.
   const std::shared_ptr<const KernelPlan>& unmapped_plan() const { return leg_->unmapped_plan; }
-  bool pivot_is_small(const Expansion<W>& at);
+  bool pivot_is_small(const Expansion<W>& at) { return pivot_is_below(kSmallPivot, at); }
   Outcome go_on(const StepperState<N>& from) { return leg_->stepper.resume(from); }
 
  private:
   bool leaves(std::size_t bound, bool met, bool forward) const;
-  // A stretch of the motion with one elimination: its system and what steps through it.
+  // A stretch of the motion with one choice of dependent coordinates and of independent constraints: its system and what
+  // steps through it.
   struct Leg {
     // `own`: the workspace of the system and the elimination, null where it is that of the motion.
     Leg(const Motion& motion, std::shared_ptr<Workspace> own, Elimination by, System of, Structure structured);
@@ -156,26 +164,41 @@ class Motion {
     std::shared_ptr<const KernelPlan> plan;  // of the stepper's kernel, if it has one
     std::shared_ptr<const KernelPlan> unmapped_plan;
     Writing writing = Writing::derived;
-    std::vector<Representation> at_once;    // among which that was chosen without effort
-    std::unique_ptr<OutputTape<W>> pivots;  // of the elimination, where there are any
+    std::vector<Representation> at_once;     // among which that was chosen without effort
+    std::unique_ptr<ChoiceWatch<W>> pivots;  // null if there is nothing to choose
   };
 
-  // Every choice of dependent coordinates on the way: whoever resumes makes the last one that was taken again.
-  struct Choice {
-    InitialState<double> here;
-    bool taken = false;
+  // The choices on the way: whoever resumes makes the last one that was taken again.
+  struct Choices {
+    struct Choice {
+      InitialState<double> here;
+      bool taken = false;
+    };
+    std::vector<Choice> list;
+    std::size_t taken = 0;
+    std::vector<double> pivots;  // what they were when the present choice was made
+    // As they were before the last expansion.
+    struct Mark {
+      std::size_t choices = 0;
+      std::vector<double> pivots;
+    };
+    Mark now() const { return {list.size(), pivots}; }
+    Mark begun;
   };
-  // Those made before the last expansion, and what the pivots were at the last of them.
-  struct Mark {
-    std::size_t choices = 0;
-    std::vector<double> chosen;
+  // For a point at which the choice of the leg is bad: a leg with another one.
+  struct Beside {
+    std::unique_ptr<Leg> leg;
+    bool shown = false;
   };
 
+  Leg& shown() const { return beside_.shown ? *beside_.leg : *leg_; }
   Workspace& workspace(const Leg& leg) const { return leg.own ? *leg.own : s_; }
   void watch_pivots(Leg& leg) const;
   void note_pivots();
   const Expansion<W>& present();
-  InitialState<double> here();
+  InitialState<double> here(const Expansion<W>& point) const;
+  bool pivot_is_below(double share, const Expansion<W>& at);
+  void choose_beside(const Start<W>& place);
   void accelerate(Leg& leg) const;
   static void take(const MotionPlans& plans, Leg& leg);
   ToRepresent to_represent(const Leg& leg, std::shared_ptr<const KernelPlan> derived) const;
@@ -185,12 +208,15 @@ class Motion {
   void write_anew();
   std::unique_ptr<Leg> same_leg() const;
   std::unique_ptr<Leg> derived_at(const InitialState<double>& here) const;
-  bool eliminate_again();
+  bool choose_again();
   std::size_t levels() const {
     return 2 + static_cast<std::size_t>(s_.routh ? std::max(0, largest_order(s_, s_.structure.d) - 1) : 0);
   }
 
   static constexpr double kBothRuns = 2.25;
+  // Of its size where the choice was made: from there on the choice is made anew; a solution inside a step, which begins
+  // with good pivots, is found by another choice.
+  static constexpr double kSmallPivot = 0.4, kBadPivot = 0.1;
 
   Workspace& s_;
   std::unique_ptr<const Workspace> base_;  // as `s_` was when the motion was made, where legs may be derived from it
@@ -214,12 +240,10 @@ class Motion {
   Start<W> start_;
   std::vector<W> begun_parameters_;  // where the last expansion was made
   std::unique_ptr<Leg> leg_;
+  Beside beside_;
   bool stepped_ = false, other_digits_ = false;
   std::optional<MotionPlans> given_;
-  std::vector<double> chosen_;  // what the pivots were when the elimination was chosen
-  std::vector<Choice> choices_;
-  Mark mark_;
-  std::size_t eliminations_ = 0;
+  Choices choices_;
   CodeForLongRuns code_;
   WritingEffort effort_ = WritingEffort::at_once;  // that went into how the equations of the kernel are written
 };

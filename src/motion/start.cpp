@@ -33,8 +33,9 @@ Outcome regular_at_start(const Scenario& scenario) {
   if (!here.ok() || s.redundant.empty()) return here;
   Expansion<W> wide(p, parameters, 1);
   if (Outcome o = settle(s, wide); !o.ok()) return o;
-  double missed = 0;
-  return Redundant<W>(s, parameters).hold(wide, true, missed);
+  std::vector<typename Redundant<W>::Miss> misses;
+  if (Outcome o = Redundant<W>(s, parameters).hold(wide, true, misses); !o.ok()) return o;
+  return follow_beside_start(s);
 }
 
 }  // namespace anholon

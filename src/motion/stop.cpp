@@ -50,11 +50,12 @@ static std::string lost_hold(Workspace& s, const Motion<N>& motion) {
   using W = Wider<N>;
   constexpr double kLost = 1e-2;
   const Mechanics& m = *s.mechanics;
-  const std::size_t n = s.system.coordinates, rows = s.independent.size();
+  const std::vector<std::size_t>& taken = motion.program().system->constraints;
+  const std::size_t n = s.system.coordinates, rows = taken.size();
   if (rows == 0) return {};
   Column es;
   std::vector<int> order;
-  for (std::size_t r : s.independent) {
+  for (std::size_t r : taken) {
     order.push_back(m.order[r]);
     for (Expr e : m.Phi[r]) es.push_back(put_masses(*s.model, e));
   }
@@ -71,11 +72,11 @@ static std::string lost_hold(Workspace& s, const Motion<N>& motion) {
   };
   for (std::size_t i = 0; i < rows; ++i)
     if (size(phi, i) < kLost * size(at_start, i))
-      return "the partial derivatives of the constraint '" + s.model->constraints[s.independent[i]].name + "' vanish";
+      return "the partial derivatives of the constraint '" + s.model->constraints[taken[i]].name + "' vanish";
   const IndependentConstraints choice = choose_independent(phi, order);
   if (choice.weakest > kLost * choose_independent(at_start, order).weakest && choice.redundant.empty()) return {};
   const std::size_t which = choice.redundant.empty() ? choice.weakest_row : choice.redundant[0];
-  return "the constraint '" + s.model->constraints[s.independent[which]].name + "' becomes dependent on the others";
+  return "the constraint '" + s.model->constraints[taken[which]].name + "' becomes dependent on the others";
 }
 
 // Whether a mode switches a constraint: what is left of it may hold no unknown.
@@ -124,6 +125,7 @@ void explain_stop(Workspace& s, const Motion<N>& motion, Outcome& outcome) {
   constexpr double kVanished = 1e-9, kUnbounded = 1e9, kFallen = 1e-3, kFaint = 1e-3;
   constexpr int kRecentSteps = 8;
   const Stepper<N>& stepper = motion.stepper();
+  const System& system = *motion.program().system;
   const Expansion<W>& point = stepper.point();
   std::string& message = outcome.message;
   const std::string when = " at t = " + number_text(to_double(stepper.time()), 12);
@@ -146,8 +148,8 @@ void explain_stop(Workspace& s, const Motion<N>& motion, Outcome& outcome) {
   const Wider<N> steps = abs(W(stepper.time() - stepper.before())) * W(kRecentSteps);
   const bool here = abs(W(stepper.least_regular().t - stepper.time())) <= steps;
   const bool fallen = outcome.kind == OutcomeKind::singular || (here && least < kFallen * first) || !lost.empty();
-  for (std::size_t k = 0; k < s.system.constraints.size() && lost.empty(); ++k) {
-    const std::size_t r = s.system.constraints[k];
+  for (std::size_t k = 0; k < system.constraints.size() && lost.empty(); ++k) {
+    const std::size_t r = system.constraints[k];
     if (!may_branch(*s.mechanics, s.system, r)) continue;
     const double now = to_double(point.derivative(s.system.coordinates + k, 0)),
                  start = s.state.multipliers[0].value[r];
@@ -168,7 +170,7 @@ void explain_stop(Workspace& s, const Motion<N>& motion, Outcome& outcome) {
               (!lost.empty() ? lost
                              : (j < s.system.coordinates ? "the equations no longer determine the acceleration of "
                                                          : "the equations no longer determine the multiplier ") +
-                                   s.system.variable_names[j]);
+                                   system.variable_names[j]);
     if (outcome.hint.empty() || !lost.empty() || !s.redundant.empty())
       outcome.hint = switched(s)
                          ? "a mode switches a constraint off, and nothing is left to determine its multiplier: write "
@@ -181,9 +183,9 @@ void explain_stop(Workspace& s, const Motion<N>& motion, Outcome& outcome) {
     if (std::abs(to_double(stepper.quadrature(1 + i, W(0)))) < kVanished)
       message += "; the mass of '" + s.model->masses[i].name + "' vanishes there";
   std::vector<std::string> unbounded;
-  for (std::size_t k = 0; k < s.system.constraints.size(); ++k)
+  for (std::size_t k = 0; k < system.constraints.size(); ++k)
     if (std::abs(to_double(point.derivative(s.system.coordinates + k, 0))) > kUnbounded)
-      unbounded.push_back("'" + s.system.equation_names[s.system.coordinates + k] + "'");
+      unbounded.push_back("'" + system.equation_names[s.system.coordinates + k] + "'");
   if (unbounded.size() == 1)
     message += "; the multiplier of " + unbounded[0] + " grows without bound: the constraint loses its hold there";
   if (unbounded.size() > 1)

@@ -243,8 +243,9 @@ Outcome evaluate_in(Workspace& s, const StateChoice& choice, int digits, StateRe
   writer.coordinates(largest_order(s, prog.d));
   writer.forces();
   Redundant<N> redundant(s, parameters);
-  double missed = 0;
-  if (Outcome o = redundant.hold(point, true, missed); !o.ok()) return o;
+  std::vector<typename Redundant<N>::Miss> misses;
+  if (Outcome o = redundant.hold(point, true, misses); !o.ok()) return o;
+  if (Outcome o = follow_beside_start(s); !o.ok()) return o;
   writer.multipliers(redundant.multipliers(point));
   writer.numbers();
   writer.reactions();

@@ -2,8 +2,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace anholon {
+
+// The constraints that may take part along the motion, by their index in the model: with redundant ones which do may
+// change on the way, and each may.
+static std::vector<std::size_t> watched_rows(const Scenario& s) {
+  if (s.redundant.empty()) return s.system.constraints;
+  std::vector<std::size_t> all(s.model->constraints.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+// How many derivatives of a constraint, with itself, hold beside the state's: those that hide in the structure, or that
+// one of its order has.
+static int hidden_derivatives(const Scenario& s, std::size_t r) {
+  const auto row = std::find(s.system.constraints.begin(), s.system.constraints.end(), r);
+  if (row == s.system.constraints.end()) return std::max(0, 2 - s.mechanics->order[r]);
+  return s.structure.c[s.system.coordinates + static_cast<std::size_t>(row - s.system.constraints.begin())];
+}
 
 // The power of all forces for the energy balance. Constraints that do no work on the motion (first
 // order and homogeneous, holonomic without t) are left out: their power is zero, and its terms, which
@@ -12,7 +30,7 @@ static Expr balance_power(Workspace& s, const Power& p) {
   const Mechanics& m = *s.mechanics;
   Graph& g = m.graph();
   Expr total = p.noncons;
-  for (std::size_t r : s.system.constraints) {
+  for (std::size_t r : watched_rows(s)) {
     if (s.model->constraints[r].by || (m.order[r] == 1 && s.classes[r].homogeneous)) continue;
     Expr rate = g.zero();
     if (m.order[r] == 0)
@@ -32,9 +50,9 @@ std::vector<Expr> watched_quadratures(Workspace& s, const Power& p) {
 
 std::vector<ConstraintReport> constraint_reports(const Scenario& s) {
   std::vector<ConstraintReport> list;
-  for (std::size_t i = s.system.coordinates; i < s.system.mechanical(); ++i)
-    list.push_back({s.system.equation_names[i],
-                    std::vector<double>(static_cast<std::size_t>(std::max(1, s.structure.c[i])), 0.0)});
+  for (std::size_t r : watched_rows(s))
+    list.push_back({s.model->constraints[r].name,
+                    std::vector<double>(static_cast<std::size_t>(std::max(1, hidden_derivatives(s, r))), 0.0)});
   return list;
 }
 
@@ -74,7 +92,8 @@ void Track<W>::see_double(double value, double terms, double made_of) {
 template <Number W>
 Watch<W>::Watch(Workspace& s, const Power& power, const std::vector<Conserved>& conserved,
                 const std::vector<W>& parameters)
-    : s_(s), outputs_(s, expressions(power, conserved), parameters), redundant_(s, parameters) {}
+    : s_(s), rows_(watched_rows(s)), outputs_(s, expressions(power, conserved), parameters), redundant_(s, parameters) {
+}
 
 // N, then what the residual report needs: h, E, G, Phi; the terms of what is watched.
 template <Number W>
@@ -87,13 +106,13 @@ Column Watch<W>::expressions(const Power& power, const std::vector<Conserved>& c
   const Column force = put_masses(model, forces(m));
   es.insert(es.end(), inertia.begin(), inertia.end());
   es.insert(es.end(), force.begin(), force.end());
-  for (std::size_t k : s_.system.constraints)
+  for (std::size_t k : rows_)
     for (Expr e : m.Phi[k]) es.push_back(model.constraints[k].by ? m.graph().zero() : put_masses(model, e));
   first_open_ = es.size();
-  for (std::size_t i = 0; i < s_.system.constraints.size(); ++i)
-    if (s_.structure.c[s_.system.coordinates + i] == 0) {
+  for (std::size_t i = 0; i < rows_.size(); ++i)
+    if (hidden_derivatives(s_, rows_[i]) == 0) {
       open_.push_back(i);
-      es.push_back(put_masses(model, m.phi[s_.system.constraints[i]]));
+      es.push_back(put_masses(model, m.phi[rows_[i]]));
     }
   first_monitor_ = es.size();
   for (const Monitor& monitor : model.monitors) {
@@ -116,16 +135,18 @@ Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report) {
   outputs_.evaluate(point);
   const std::size_t n = s_.system.coordinates;
   std::vector<W> inertia(n), force(n), reaction(n);
-  Matrix<W> phi(s_.system.constraints.size(), n);
+  const std::vector<std::size_t> rows = rows_at(point);
+  Matrix<W> phi(rows.size(), n);
   for (std::size_t a = 0; a < n; ++a) {
     reaction[a] = outputs_[a];
     inertia[a] = outputs_[n + 1 + a];
     force[a] = outputs_[2 * n + 1 + a];
   }
-  for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = outputs_[3 * n + 1 + i];
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t a = 0; a < n; ++a) phi(i, a) = outputs_[(3 + rows[i]) * n + 1 + a];
   newton(certify(inertia, force, reaction, phi), report);
   turn_over(energy());
-  constraints(point, phi, report);
+  constraints(point, rows, phi, report);
   track();
   multipliers_ = redundant_.multipliers(point);
   return still_redundant(point, report);
@@ -150,28 +171,52 @@ W Watch<W>::made_of_forces() const {
 
 template <Number W>
 Outcome Watch<W>::still_redundant(const Expansion<W>& point, SimulationReport& report) {
-  double missed = 0;
-  Outcome o = redundant_.hold(point, !(point.time() != start_), missed);
-  report.constraints_kept = std::max(report.constraints_kept, missed);
+  std::vector<typename Redundant<W>::Miss> misses;
+  Outcome o = redundant_.hold(point, !(point.time() != start_), misses);
+  for (const auto& [constraint, miss] : misses) {
+    double& worst = report.constraints_each[constraint].residuals[0];
+    worst = std::max(worst, miss);
+    report.constraints_kept = std::max(report.constraints_kept, miss);
+  }
   return o;
 }
 
-// C3, and each constraint with its derivatives by itself.
+// The constraints that take part at a point: the places among those watched, in the order of their unknowns.
 template <Number W>
-void Watch<W>::constraints(const Expansion<W>& point, const Matrix<W>& phi, SimulationReport& report) const {
+std::vector<std::size_t> Watch<W>::rows_at(const Expansion<W>& point) const {
+  const std::vector<std::size_t>& kept = point.program().system->constraints;
+  std::vector<std::size_t> rows;
+  if (kept.size() == rows_.size()) {
+    rows.resize(kept.size());
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    return rows;
+  }
+  for (std::size_t r : kept)
+    rows.push_back(static_cast<std::size_t>(std::find(rows_.begin(), rows_.end(), r) - rows_.begin()));
+  return rows;
+}
+
+// C3, and each constraint that takes part with its derivatives by itself. `rows`: their places among those watched.
+template <Number W>
+void Watch<W>::constraints(const Expansion<W>& point, const std::vector<std::size_t>& rows, const Matrix<W>& phi,
+                           SimulationReport& report) const {
   const std::size_t n = s_.system.coordinates;
   report.constraints_kept = std::max(report.constraints_kept, to_double(point.constraint_residual()));
   const auto worse = [&](std::size_t i, int k, double residual) {
-    double& worst = report.constraints_each[i].residuals[static_cast<std::size_t>(k)];
+    std::vector<double>& residuals = report.constraints_each[rows[i]].residuals;
+    if (static_cast<std::size_t>(k) >= residuals.size()) return;
+    double& worst = residuals[static_cast<std::size_t>(k)];
     worst = std::max(worst, residual);
   };
-  for (std::size_t i = 0; i < s_.system.constraints.size(); ++i)
-    for (int k = 0; k < s_.structure.c[n + i]; ++k) worse(i, k, to_double(point.hidden_residual(n + i, k)));
-  for (std::size_t o = 0; o < open_.size(); ++o) {
-    const std::size_t i = open_[o];
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const int hidden = point.program().c[n + i];
+    for (int k = 0; k < hidden; ++k) worse(i, k, to_double(point.hidden_residual(n + i, k)));
+    const auto open = std::find(open_.begin(), open_.end(), rows[i]);
+    if (hidden > 0 || open == open_.end()) continue;
+    const std::size_t o = static_cast<std::size_t>(open - open_.begin());
     W terms(0);
     for (std::size_t a = 0; a < n; ++a)
-      terms += abs(W(phi(i, a) * point.derivative(a, s_.mechanics->order[s_.system.constraints[i]])));
+      terms += abs(W(phi(i, a) * point.derivative(a, s_.mechanics->order[rows_[rows[i]]])));
     const double residual = to_double(relative_miss(outputs_[first_open_ + o], terms, [&] {
       return std::max(outputs_.made_of(first_open_ + o), point.size_of_level(0, n + i));
     }));

@@ -95,11 +95,14 @@ class Watch {
   Column expressions(const Power& power, const std::vector<Conserved>& conserved);
   void track();
   W made_of_forces() const;
-  void constraints(const Expansion<W>& point, const Matrix<W>& phi, SimulationReport& report) const;
+  std::vector<std::size_t> rows_at(const Expansion<W>& point) const;
+  void constraints(const Expansion<W>& point, const std::vector<std::size_t>& rows, const Matrix<W>& phi,
+                   SimulationReport& report) const;
   void newton(const NewtonResidual<W>& c, SimulationReport& report);
   W energy() const { return outputs_[s_.system.coordinates]; }
 
   const Scenario& s_;
+  std::vector<std::size_t> rows_;  // the constraints that may take part, by their index in the model
   std::vector<Track<W>> tracks_;
   std::vector<std::size_t> terms_;  // of which each is the sum
   std::vector<bool> constant_;      // which ought to be

@@ -14,35 +14,35 @@ Redundant<W>::Redundant(Workspace& s, const std::vector<W>& parameters) : s_(s) 
   if (!s.redundant.empty()) outputs_.emplace(s, expressions(), parameters);
 }
 
-// The constraints left out, then Phi: the rows of those kept, the rows of those left out.
+// All constraints, then the rows of Phi.
 template <Number W>
 Column Redundant<W>::expressions() const {
   const Mechanics& m = *s_.mechanics;
-  Column es;
-  for (std::size_t r : s_.redundant) es.push_back(m.phi[r]);
-  for (const std::vector<std::size_t>* rows : {&s_.system.constraints, &s_.redundant})
-    for (std::size_t r : *rows) es.insert(es.end(), m.Phi[r].begin(), m.Phi[r].end());
+  Column es = m.phi;
+  for (const Column& row : m.Phi) es.insert(es.end(), row.begin(), row.end());
   return put_masses(*s_.model, es);
 }
 
 template <Number W>
-Outcome Redundant<W>::hold(const Expansion<W>& point, bool start, double& worst) {
-  worst = 0;
+Outcome Redundant<W>::hold(const Expansion<W>& point, bool start, std::vector<Miss>& misses) {
+  misses.clear();
   if (!outputs_) return {};
   outputs_->evaluate(point);
   W size(1);
   for (std::size_t a = 0; a < s_.system.coordinates; ++a)
     for (int k = 0; k <= point.program().d[a]; ++k)
       if (W v = abs(point.derivative(a, k)); v > size) size = v;
-  for (std::size_t i = 0; i < s_.redundant.size(); ++i) {
-    const double miss = to_double(W(abs((*outputs_)[i]) / size));
-    worst = std::max(worst, miss);
+  const std::vector<std::size_t>& kept = point.program().system->constraints;
+  for (std::size_t r = 0; r < s_.model->constraints.size(); ++r) {
+    if (std::find(kept.begin(), kept.end(), r) != kept.end()) continue;
+    const double miss = to_double(W(abs((*outputs_)[r]) / size));
+    misses.push_back({r, miss});
     if (!(miss <= kMiss)) {
-      const std::string name = "the constraint '" + s_.model->constraints[s_.redundant[i]].name + "' ";
+      const std::string name = "the constraint '" + s_.model->constraints[r].name + "' ";
       if (start)
         return {OutcomeKind::inconsistent,
                 name + "contradicts the others: it is missed by " +
-                    number_text(std::abs(to_double((*outputs_)[i])), 3) + " at the start",
+                    number_text(std::abs(to_double((*outputs_)[r])), 3) + " at the start",
                 "leave it out, or the one that it contradicts"};
       return {OutcomeKind::singular,
               name + "no longer follows from the others at t = " + number_text(to_double(point.time()), 12),
@@ -54,21 +54,47 @@ Outcome Redundant<W>::hold(const Expansion<W>& point, bool start, double& worst)
 
 template <Number W>
 std::vector<W> Redundant<W>::multipliers(const Expansion<W>& point) {
-  const std::size_t n = s_.system.coordinates, kept = s_.system.constraints.size(), rows = kept + s_.redundant.size();
-  std::vector<W> all(s_.model->constraints.size(), W(0)), independent;
-  for (std::size_t i = 0; i < kept; ++i) {
+  const std::vector<std::size_t>& kept = point.program().system->constraints;
+  const std::size_t n = s_.system.coordinates, rows = s_.model->constraints.size();
+  std::vector<W> all(rows, W(0)), independent;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
     independent.push_back(point.derivative(n + i, 0));
-    all[s_.system.constraints[i]] = independent[i];
+    all[kept[i]] = independent[i];
   }
   if (!outputs_ || multiplier_orders(s_) > 0) return all;
   outputs_->evaluate(point);
   Matrix<W> phi(rows, n);
-  for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = (*outputs_)[s_.redundant.size() + i];
-  std::vector<std::size_t> first;
-  for (std::size_t i = 0; i < kept; ++i) first.push_back(i);
-  const std::vector<W> least = least_multipliers(phi, first, independent);
-  for (std::size_t i = 0; i < rows; ++i) all[i < kept ? s_.system.constraints[i] : s_.redundant[i - kept]] = least[i];
-  return all;
+  for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = (*outputs_)[rows + i];
+  return least_multipliers(phi, kept, independent);
+}
+
+Outcome follow_beside_start(Workspace& s) {
+  using N = long double;
+  constexpr int kOrders = 4;
+  if (s.redundant.empty()) return {};
+  Column left_out;
+  for (std::size_t r : s.redundant) left_out.push_back(put_masses(*s.model, s.mechanics->phi[r]));
+  const Program p = program(s.system, s.structure, taking_part(s.system, left_out));
+  Expansion<N> point(p, parameter_values<N>(*s.model), kOrders);
+  const Start<double> start = start_of(s);
+  point.load(start.t, {start.state.begin(), start.state.end()}, {start.leading.begin(), start.leading.end()});
+  // What fails here is for others to tell.
+  if (!point.prepare().ok() || !point.project().ok() || !point.solve().ok() || !point.extend().ok()) return {};
+  N size(1);
+  for (std::size_t j = 0; j < p.unknowns(); ++j)
+    for (int k = 0; k <= p.d[j] + kOrders; ++k)
+      if (const N v = abs(point.coefficient(j, k)); v > size) size = v;
+  for (std::size_t i = 0; i < s.redundant.size(); ++i)
+    for (int k = 1; k <= kOrders; ++k)
+      if (const N v = point.quadrature(i)[k]; is_finite(v) && abs(v) > N(kMiss) * size)
+        return {
+            OutcomeKind::singular,
+            "the constraint '" + s.model->constraints[s.redundant[i]].name +
+                "' does not follow from the others: its row depends on theirs at the start, and the motion that they "
+                "make leaves it",
+            "start elsewhere, where the rows are independent; or, if the constraints agree in their highest "
+            "derivatives, write what they say together, such as their difference, in place of one of them"};
+  return {};
 }
 
 template class Redundant<long double>;

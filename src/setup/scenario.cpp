@@ -232,6 +232,20 @@ static void smooth_enough(const Scenario& s) {
   }
 }
 
+// Values given for coordinates without inertia, which follow from the equations. Forms that eliminate have lower orders
+// for their dependent coordinates, too.
+static void note_unused_values(const Formulation& form, Scenario& s) {
+  if (form.eliminates() || s.state.q_origin.empty()) return;
+  for (std::size_t a = 0; a < s.system.coordinates; ++a)
+    for (const unsigned k : {0U, 1U}) {
+      const Origin origin = k ? s.state.qd_origin[a] : s.state.q_origin[a];
+      if (static_cast<int>(k) < s.structure.d[a] || origin != Origin::given) continue;
+      const std::string& name = s.model->coordinates[a].name;
+      s.notes.push_back("the initial value of " + derivative_name(name, k, Format::text) + " is not used: " + name +
+                        " has no inertia here, and it follows from the equations");
+    }
+}
+
 static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
                        Scenario& s) {
   s.model = model;
@@ -279,6 +293,7 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
       std::any_of(s.structure.d.begin(), s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates),
                   [](int d) { return d > 2; });
   if (beyond && numbers && !s.routh) initial = complete(problem, s);
+  if (initial.ok()) note_unused_values(form, s);
   s.notes.insert(s.notes.end(), s.state.notes.begin(), s.state.notes.end());
   if (!large_angles.empty()) s.state.notes.push_back(large_angles);
   return initial;

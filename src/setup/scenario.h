@@ -1,6 +1,7 @@
 // One model made ready: mechanics, consistent state, independent constraints, implicit system in a
 // form, structure. The composition of the whole main line up to the stepping program.
 #pragma once
+#include <algorithm>
 #include <memory>
 #include <span>
 
@@ -139,19 +140,22 @@ struct ValueAt {
 };
 
 // Expressions evaluated at a point of the motion. evaluate() reads no graph, so that one thread may evaluate while
-// another builds expressions.
+// another builds expressions. Multipliers of constraints that are left out at the point are zero: which these are may
+// change on the way (motion/motion.h).
 template <Number N>
 class OutputTape {
  public:
   OutputTape(Workspace& s, const Column& es, const std::vector<N>& parameters)
-      : system_(s.system), tape_(compile(put(s, es))), machine_(tape_, 0, parameters) {
+      : system_(s.system), tape_(compile(s.redundant.empty() ? put(s, es) : es)), machine_(tape_, 0, parameters) {
     for (const Input& in : tape_.inputs) {
       const Node& n = s.model->graph->node(in.symbol);
       places_.push_back({n.kind == Kind::time, system_.variable(in.symbol), n.order, in.slot});
+      if (!s.redundant.empty() && n.kind == Kind::multiplier) multipliers_.push_back({places_.size() - 1, n.index});
     }
   }
   // As evaluate_at(ValueAt) does.
   void evaluate(const Expansion<N>& point) {
+    if (!multipliers_.empty()) find_multipliers(*point.program().system);
     for (const InputPlace& in : places_)
       machine_.series(in.slot)[0] = in.time       ? point.time()
                                     : in.variable ? point.derivative(*in.variable, in.order)
@@ -179,13 +183,7 @@ class OutputTape {
     machine_.set_parameters(parameters);
     sizes_.clear();
   }
-  // Multipliers of redundant constraints are zero.
-  static Column put(Workspace& s, const Column& es) {
-    Graph& g = *s.model->graph;
-    return substitute(es, [&](NodeId id) {
-      return g.node(id).kind == Kind::multiplier && !s.system.variable(id) ? g.zero() : Expr{};
-    });
-  }
+  static Column put(Workspace& s, const Column& es) { return taking_part(s.system, es); }
 
  private:
   struct InputPlace {
@@ -194,10 +192,24 @@ class OutputTape {
     int order;                            // of its derivative
     std::uint32_t slot;
   };
+  struct MultiplierPlace {
+    std::size_t input;       // among the places
+    std::size_t constraint;  // of the model
+  };
+  void find_multipliers(const System& of_point) {
+    for (const MultiplierPlace& m : multipliers_) {
+      const auto row = std::find(of_point.constraints.begin(), of_point.constraints.end(), m.constraint);
+      places_[m.input].variable = std::nullopt;
+      if (row != of_point.constraints.end())
+        places_[m.input].variable = of_point.coordinates + static_cast<std::size_t>(row - of_point.constraints.begin());
+    }
+  }
+
   const System& system_;
   Tape tape_;
   Machine<N> machine_;
-  std::vector<InputPlace> places_;  // of the inputs
+  std::vector<InputPlace> places_;            // of the inputs
+  std::vector<MultiplierPlace> multipliers_;  // among them, where constraints are redundant
   mutable std::vector<N> sizes_;
 };
 

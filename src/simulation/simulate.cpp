@@ -107,6 +107,7 @@ class Run {
     rows_.begin_beside(plans_.rows);
     if (course_.at(schedule().start()).ok()) watch_.start(course_.point());
     if (Outcome o = motion().within_bounds(schedule().forward()); !o.ok()) return o;
+    if (Outcome o = follow_beside_start(s_); !o.ok()) return o;
     if (schedule().forward())
       for (const std::string& text : passed_limits(*s_.model, motion())) note(text);
     return {};
@@ -335,6 +336,9 @@ class Run {
     report_.smallest_sigma = to_double(course_.smallest_sigma());
     report_.smallest_sigma_t = to_double(course_.smallest_sigma_time());
     if (s_.system.form->eliminates()) report_.eliminations = motion().eliminations();
+    if (const std::size_t times = motion().eliminations(); watch_.any_redundant() && times > 0)
+      note("other independent constraints are chosen " + (times == 1 ? "once" : std::to_string(times) + " times") +
+           " on the way: those at the initial state come to depend on one another");
     if (shown_.second()) {
       report_.second = shown_.second()->report();
       report_.constraints = report_.second->drift;

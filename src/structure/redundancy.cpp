@@ -11,8 +11,9 @@ namespace anholon {
 
 namespace {
 
-// A row this close to the span of others is taken only if no better one is left.
-constexpr double kNearlyDependent = 0.05;
+// A row this close to the span of others is taken only if no better one of its order is left, and one as close as the
+// second only if there is none of any order.
+constexpr double kFarFromDependent = 0.5, kNearlyDependent = 0.05;
 
 // The value of a symbol that the state does not hold: in (0.5, 1.5), different for each symbol, so that rows of
 // different constraints are not parallel by accident.
@@ -63,12 +64,11 @@ IndependentConstraints choose_independent(const Matrix<double>& phi, const std::
     for (double& x : rows[i]) x /= l;
     open.push_back(i);
   }
-  std::stable_sort(open.begin(), open.end(), [&](std::size_t i, std::size_t j) { return order[i] < order[j]; });
   OrthonormalRows span;
-  for (const double threshold : {kNearlyDependent, kDependent}) {
+  const auto take = [&](int of_order, double threshold) {
     std::vector<std::size_t> left;
     for (std::size_t i : open) {
-      std::vector<double> rest = span.beyond(rows[i]);
+      std::vector<double> rest = order[i] == of_order ? span.beyond(rows[i]) : std::vector<double>();
       const double sine = length(rest);
       if (!(sine > threshold)) {
         left.push_back(i);
@@ -79,7 +79,13 @@ IndependentConstraints choose_independent(const Matrix<double>& phi, const std::
       choice.independent.push_back(i);
     }
     open = std::move(left);
-  }
+  };
+  std::vector<int> orders;
+  for (std::size_t i : open) orders.push_back(order[i]);
+  std::sort(orders.begin(), orders.end());
+  orders.erase(std::unique(orders.begin(), orders.end()), orders.end());
+  for (int k : orders) take(k, kFarFromDependent), take(k, kNearlyDependent);
+  for (int k : orders) take(k, kDependent);
   choice.redundant = std::move(open);
   std::sort(choice.independent.begin(), choice.independent.end());
   std::sort(choice.redundant.begin(), choice.redundant.end());

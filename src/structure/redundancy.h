@@ -17,7 +17,7 @@ struct IndependentConstraints {
 };
 
 // Chooses independent rows: constraints of lower order before those of higher order, which may be their derivatives,
-// and otherwise in the order of the file; nearly dependent rows only if there is no better one. A row that vanishes is
+// and otherwise in the order of the file, rows far from the span of others first. A row that vanishes is
 // a singularity of its constraint, not a redundancy: it counts as independent, and the system Jacobian will show it.
 IndependentConstraints choose_independent(const Matrix<double>& phi, const std::vector<int>& order);
 

@@ -74,14 +74,14 @@ System implicit_system(std::shared_ptr<const Model> model, const Mechanics& m, c
     s.equation_names.push_back(z.name);
     s.variable_names.push_back(z.name);
   }
-  if (constraints.size() < model->constraints.size())
-    s.equations = substitute(s.equations, [&](NodeId id) {
-      const Node& n = g.node(id);
-      const bool out =
-          n.kind == Kind::multiplier && std::find(constraints.begin(), constraints.end(), n.index) == constraints.end();
-      return out ? g.zero() : Expr{};
-    });
+  if (constraints.size() < model->constraints.size()) s.equations = taking_part(s, s.equations);
   return s;
+}
+
+Column taking_part(const System& s, const Column& es) {
+  Graph& g = *s.model->graph;
+  return substitute(
+      es, [&](NodeId id) { return g.node(id).kind == Kind::multiplier && !s.variable(id) ? g.zero() : Expr{}; });
 }
 
 void for_each_expression(System& s, const ExprVisitor& f) {

@@ -32,6 +32,9 @@ struct System {
   std::optional<std::size_t> variable(NodeId symbol) const;
 };
 
+// Expressions of the system's model in which the multipliers of constraints that take no part are zero.
+Column taking_part(const System& s, const Column& es);
+
 // The handles of the system (expr/handles.h), without those of its model.
 void for_each_expression(System& s, const ExprVisitor& f);
 
