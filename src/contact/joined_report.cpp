@@ -15,6 +15,24 @@ static bool same_but_time(const Warning& a, const Warning& b) {
   return without_time(a.message) == without_time(b.message);
 }
 
+// The change is that from the start of the whole motion.
+static void join(std::vector<WatchedReport>& all, const std::vector<WatchedReport>& segment) {
+  for (const WatchedReport& m : segment) {
+    const auto known = std::find_if(all.begin(), all.end(), [&](const WatchedReport& o) { return o.name == m.name; });
+    if (known == all.end()) {
+      all.push_back(m);
+      continue;
+    }
+    known->last = m.last;
+    if (m.least.value < known->least.value) known->least = m.least;
+    if (m.greatest.value > known->greatest.value) known->greatest = m.greatest;
+    known->size = std::max(known->size, m.size);
+    const double change = std::max(known->greatest.value - known->first.value, known->first.value - known->least.value);
+    known->largest_change =
+        std::max({known->largest_change, m.largest_change, known->size > 0 ? change / known->size : 0});
+  }
+}
+
 JoinedReport::JoinedReport(const Model& model) {
   all_.model = model.title;
   all_.looks_for_events = true;
@@ -28,6 +46,7 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
     all_ = r;
     all_.model = first.model, all_.looks_for_events = true;
     all_.events = first.events, all_.constraints_each.clear(), all_.monitors.clear();
+    all_.conserved.clear();
   } else {
     all_.steps += r.steps;
     all_.rows_looked_at += r.rows_looked_at;
@@ -56,18 +75,8 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
     for (std::size_t k = 0; k < std::min(known->residuals.size(), c.residuals.size()); ++k)
       known->residuals[k] = std::max(known->residuals[k], c.residuals[k]);
   }
-  for (const WatchedReport& m : r.monitors) {
-    const auto known = std::find_if(all_.monitors.begin(), all_.monitors.end(),
-                                    [&](const WatchedReport& o) { return o.name == m.name; });
-    if (known == all_.monitors.end()) {
-      all_.monitors.push_back(m);
-      continue;
-    }
-    known->last = m.last;
-    if (m.least.value < known->least.value) known->least = m.least;
-    if (m.greatest.value > known->greatest.value) known->greatest = m.greatest;
-    known->largest_change = std::max(known->largest_change, m.largest_change);
-  }
+  join(all_.monitors, r.monitors);
+  join(all_.conserved, r.conserved);
   for (EventReport e : r.events) {
     const auto known = contacts.find(e.name);
     if (known == contacts.end() && e.stop) goes_on = false;
@@ -120,6 +129,14 @@ SimulationReport JoinedReport::report(Outcome outcome, double t, std::size_t row
   all_.t = t;
   all_.rows = rows;
   all_.power = power_miss_ / (all_.turned_over > 0 ? all_.turned_over : 1);
+  for (const WatchedReport& w : all_.conserved) {
+    if (w.largest_change <= kConserved) continue;
+    const Warning warning = not_conserved(w.name, w.largest_change);
+    // A mode has told of its own part.
+    const std::string beginning = warning.message.substr(0, warning.message.find(':'));
+    std::erase_if(all_.warnings, [&](const Warning& o) { return o.message.starts_with(beginning); });
+    all_.warnings.push_back(warning);
+  }
   all_.no_error = "a motion with contacts has no estimate of its error";
   return all_;
 }

@@ -23,6 +23,7 @@ struct StepSettings {
   std::size_t known_from = 0,
               known_to = 0;     // the series of these quadratures are known to the tolerance over each step
   bool other_rounding = false;  // of a kernel's coefficients (Rounding::other)
+  bool coarse_times = false;    // of events: multiples of two round-offs, for a run whose roundings are to differ
   bool ordinary_steps = true;   // are not looked at closely
   bool multipliers = false;     // their series are asked for (Stepper::dense): by kernels in the motion's unknowns
 };

@@ -1,5 +1,7 @@
 // Where a step of the stepper is to end.
 #include <cmath>
+#include <concepts>
+#include <limits>
 
 #include "base/assert.h"
 #include "integrate/step_budget.h"
@@ -133,6 +135,19 @@ void Stepper<N>::aim_at(const W& to) {
   end_.aim(step, to, false);
 }
 
+// The nearest number with one binary digit less; other types of numbers are left as they are.
+template <Number N>
+static N with_one_digit_less(const N& x) {
+  if constexpr (std::floating_point<N>) {
+    int exponent = 0;
+    std::frexp(x, &exponent);
+    const int last = exponent - std::numeric_limits<N>::digits + 1;
+    return std::ldexp(std::nearbyint(std::ldexp(x, -last)), last);
+  } else {
+    return x;
+  }
+}
+
 template <Number N>
 bool Stepper<N>::aim_with_care(const W& end) {
   const W left = end - time();
@@ -157,10 +172,12 @@ bool Stepper<N>::aim_with_care(const W& end) {
   if (!shorten_at_singular_point(h, floor)) return fail(becomes_singular());
   shorten_at_event(h, end_.kink());
   // The step that t can show exactly: otherwise the time loses a round-off at every step.
-  if (h == left)
+  if (h == left) {
     end_.aim(step, end, true);
-  else
-    end_.aim(step, convert<W>(convert<N>(W(time() + h))), false);
+  } else {
+    const N to = convert<N>(W(time() + h));
+    end_.aim(step, convert<W>(settings_.coarse_times && !fired_.empty() ? with_one_digit_less(to) : to), false);
+  }
   return true;
 }
 

@@ -42,12 +42,35 @@ Motion<N>::Motion(Workspace& s, const StepSettings& settings, std::vector<Expr> 
 
 // Each number by another multiple of a round-off: changes that are alike could be such as the constraints take back.
 template <Number W>
-static void change_last_digits(std::vector<W>& state, const W& roundoff) {
+static void change_last_digits(std::vector<W>& state, const std::vector<bool>& kept, const W& roundoff) {
   constexpr int kMost = 5, kPeriod = 2 * kMost + 1, kStride = 7, kFirst = 3;
   for (std::size_t i = 0; i < state.size(); ++i) {
+    if (kept[i]) continue;
     const int by = (static_cast<int>(i % kPeriod) * kStride + kFirst) % kPeriod - kMost;
     state[i] += state[i] * roundoff * W(by == 0 ? kMost : by);
   }
+}
+
+// Of each number of the state whether the formula of an event that is zero at the start holds it: changed by a round-off,
+// the start would lie before or behind the event.
+static std::vector<bool> on_events(const Scenario& s, std::size_t size) {
+  constexpr double kOnIt = 1e-9;
+  std::vector<bool> held(size, false);
+  if (s.model->events.empty()) return held;
+  double largest = 1;
+  for (const std::vector<double>* level : {&s.state.q, &s.state.qd})
+    for (double x : *level) largest = std::max(largest, std::abs(x));
+  PointValues at = values_near(*s.model, parameter_values<double>(*s.model), s.state);
+  for (const Event& e : s.model->events) {
+    if (std::abs(at(e.when)) > kOnIt * largest) continue;
+    std::size_t i = 0;
+    const std::vector<NodeId> symbols_of_event = symbols({&e.when, 1});
+    for (std::size_t j = 0; j < s.system.size(); ++j)
+      for (int k = 0; k < s.structure.d[j] && i < size; ++k, ++i)
+        for (NodeId id : symbols_of_event)
+          if (s.system.variable(id) == j && s.model->graph->node(id).order == k) held[i] = true;
+  }
+  return held;
 }
 
 template <Number N>
@@ -56,12 +79,16 @@ Outcome Motion<N>::start(const StateChoice& choice) {
   // Those of a motion in doubles may depend on the round-off of each, though its state is wider: a fifth of it here.
   constexpr double kOfKernel = 0.2;
   if (other_digits_)
-    change_last_digits(start_.state, settings_.other_rounding ? W(convert<W>(unit_roundoff<N>()) * W(kOfKernel))
-                                                              : unit_roundoff<W>());
+    change_last_digits(start_.state, on_events(s_, start_.state.size()),
+                       settings_.other_rounding ? W(convert<W>(unit_roundoff<N>()) * W(kOfKernel))
+                                                : unit_roundoff<W>());
+  if (leg_->pivots && start_.state.size() == leg_->present.state_size()) {
+    leg_->present.load(start_.t, start_.state, start_.leading);
+    choices_.pivots = leg_->pivots->at(leg_->present);
+  }
   accelerate(*leg_);
   Outcome o = leg_->stepper.start(start_.t, start_.state, start_.leading);
   if (o.kind == OutcomeKind::not_a_number) o.message += " at t = " + number_text(to_double(start_.t), 12);
-  note_pivots();
   return o;
 }
 
@@ -220,13 +247,6 @@ bool Motion<N>::pivot_is_below(double share, const Expansion<W>& at) {
   return false;
 }
 
-// What the pivots are where they were chosen.
-template <Number N>
-void Motion<N>::note_pivots() {
-  choices_.pivots.clear();
-  if (leg_->pivots) pivot_is_small(present());
-}
-
 // Where the motion has come to; what leads it is a guess.
 template <Number N>
 const Expansion<typename Motion<N>::W>& Motion<N>::present() {
@@ -305,13 +325,16 @@ bool Motion<N>::choose_again() {
   if (next && next->system.constraints == leg_->system.constraints && same(next->elimination, leg_->elimination))
     next = nullptr;
   if (next) accelerate(*next);
+  // Before the expansion, which a kernel goes on from.
+  const Expansion<W>& point = present();
+  std::vector<double> as_it_is = leg_->pivots->at(point), as_chosen = next ? next->pivots->at(point) : as_it_is;
   const bool taken = next && next->stepper.take_over(leg_->stepper).ok();
   if (taken) {
     leg_ = std::move(next);
     choices_.list.back().taken = true;
     ++choices_.taken;
   }
-  note_pivots();
+  choices_.pivots = taken ? std::move(as_chosen) : std::move(as_it_is);
   if (taken) choices_.begun = choices_.now();
   return taken;
 }

@@ -194,7 +194,6 @@ class Motion {
   Leg& shown() const { return beside_.shown ? *beside_.leg : *leg_; }
   Workspace& workspace(const Leg& leg) const { return leg.own ? *leg.own : s_; }
   void watch_pivots(Leg& leg) const;
-  void note_pivots();
   const Expansion<W>& present();
   InitialState<double> here(const Expansion<W>& point) const;
   bool pivot_is_below(double share, const Expansion<W>& at);

@@ -33,7 +33,7 @@ class SharperRun {
   // Until the last row, or as far as it goes.
   Outcome go() {
     // Both runs in one type of numbers would round their start alike, and grow alike from what is lost there.
-    motion_.start_in_other_digits(std::same_as<W, V> && s_.model->events.empty());
+    motion_.start_in_other_digits(std::same_as<W, V>);
     if constexpr (std::same_as<M, double>)
       if (const std::optional<MotionPlans> known = known_plans()) motion_.use(*known);
     if (Outcome o = motion_.start(o_.state); !o.ok()) return o;
@@ -452,7 +452,8 @@ void estimate_error(Workspace& s, const SimulationOptions& o, RunToJudge<Wider<N
   const bool doubles = std::same_as<N, double> && in_doubles(o, run.by_kernel, report.steps);
   if (doubles) tolerance = std::max(tolerance, Rational(1, 100'000'000'000'000));
   StepSettings settings{natural_logarithm(tolerance), 0, o.most_steps, o.cancelled};
-  settings.other_rounding = doubles;
+  // Both runs would round the times of events alike.
+  settings.other_rounding = settings.coarse_times = doubles;
   // A stiff motion that is short by another method is long for Taylor.
   if (o.estimate == ErrorEstimate::short_runs)
     settings.most_steps = std::min(settings.most_steps, kMostTimesLonger * kShortRun);
@@ -473,6 +474,7 @@ void estimate_error(Workspace& s, const SimulationOptions& o, RunToJudge<Wider<N
     bool wide_enough = true;
     if constexpr (std::same_as<N, long double>) wide_enough = !(tolerance.get_d() < to_double(unit_roundoff<N>()));
     numbers = wide_enough ? "in long double" : "in quadruple precision";
+    settings.coarse_times = std::same_as<N, long double> && wide_enough;
     if (wide_enough)
       compare<long double, N>(s, o, settings, run, report);
     else if constexpr (std::same_as<N, long double>)

@@ -13,6 +13,7 @@ struct WatchedReport {
   std::string name;
   WrittenNumber first, last, least, greatest;
   double largest_change = 0;  // from the start, in relation to the greatest of its terms
+  double size = 0;            // that greatest; 0 in reports that were read from a file
 };
 
 // Derivatives k = 0, 1, … of a constraint that have to vanish: the worst at the rows, in relation to their terms.
@@ -25,6 +26,14 @@ struct ConstraintReport {
 struct Warning {
   std::string message, hint;
 };
+
+// An output that is declared conserved changes by more than this, in relation to its size, if something changes it: far above
+// what integration and round-off leave.
+inline constexpr double kConserved = 1e-6;
+inline Warning not_conserved(const std::string& name, double change) {
+  return {"the output '" + name + "' is not conserved: it changes by " + number_text(change, 3) + " of its size",
+          "look for a force, an impact, an event or an observer that changes it, or leave out conserved = true"};
+}
 
 // Where an event fired, and what it changed: name, before, after.
 struct EventReport {

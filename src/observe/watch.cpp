@@ -251,9 +251,19 @@ void Watch<W>::resume(const SavedRun& from, const std::vector<W>& parameters) {
 }
 
 template <Number W>
-void Watch<W>::track() {
+void Watch<W>::look(const Expansion<W>& point) {
+  outputs_.evaluate(point);
+  track(true);
+}
+
+template <Number W>
+void Watch<W>::track(bool constants_only) {
   std::size_t at = first_monitor_;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    if (constants_only && !constant_[i]) {
+      at += terms_[i];
+      continue;
+    }
     W value(0), terms(0);
     for (std::size_t k = 0; k < terms_[i]; ++k, ++at) {
       value += outputs_[at];

@@ -64,6 +64,12 @@ class Watch {
         tracks_[i].see(W(sum));
     }
   }
+  // Whether outputs are declared conserved; sees what is to be constant alone, at a point between rows.
+  bool any_declared() const {
+    const auto end = constant_.begin() + static_cast<std::ptrdiff_t>(s_.model->monitors.size());
+    return std::find(constant_.begin(), end, true) != end;
+  }
+  void look(const Expansion<W>& point);
   // Whether constraints are left out that have to follow from the others.
   bool any_redundant() const { return redundant_.any(); }
   // Whether they do.
@@ -93,7 +99,7 @@ class Watch {
 
  private:
   Column expressions(const Power& power, const std::vector<Conserved>& conserved);
-  void track();
+  void track(bool constants_only = false);
   W made_of_forces() const;
   std::vector<std::size_t> rows_at(const Expansion<W>& point) const;
   void constraints(const Expansion<W>& point, const std::vector<std::size_t>& rows, const Matrix<W>& phi,

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "structure/redundancy.h"
-
 namespace anholon {
 
 // Missed by more than this of the size of the state a constraint no longer follows from the others.
@@ -11,16 +9,9 @@ static constexpr double kMiss = 1e-7;
 
 template <Number W>
 Redundant<W>::Redundant(Workspace& s, const std::vector<W>& parameters) : s_(s) {
-  if (!s.redundant.empty()) outputs_.emplace(s, expressions(), parameters);
-}
-
-// All constraints, then the rows of Phi.
-template <Number W>
-Column Redundant<W>::expressions() const {
-  const Mechanics& m = *s_.mechanics;
-  Column es = m.phi;
-  for (const Column& row : m.Phi) es.insert(es.end(), row.begin(), row.end());
-  return put_masses(*s_.model, es);
+  if (s.redundant.empty()) return;
+  outputs_.emplace(s, put_masses(*s.model, s.mechanics->phi), parameters);
+  least_.emplace(s, parameters);
 }
 
 template <Number W>
@@ -54,18 +45,11 @@ Outcome Redundant<W>::hold(const Expansion<W>& point, bool start, std::vector<Mi
 
 template <Number W>
 std::vector<W> Redundant<W>::multipliers(const Expansion<W>& point) {
+  if (least_ && multiplier_orders(s_) == 0) return least_->at(point);
   const std::vector<std::size_t>& kept = point.program().system->constraints;
-  const std::size_t n = s_.system.coordinates, rows = s_.model->constraints.size();
-  std::vector<W> all(rows, W(0)), independent;
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    independent.push_back(point.derivative(n + i, 0));
-    all[kept[i]] = independent[i];
-  }
-  if (!outputs_ || multiplier_orders(s_) > 0) return all;
-  outputs_->evaluate(point);
-  Matrix<W> phi(rows, n);
-  for (std::size_t i = 0; i < phi.data.size(); ++i) phi.data[i] = (*outputs_)[rows + i];
-  return least_multipliers(phi, kept, independent);
+  std::vector<W> all(s_.model->constraints.size(), W(0));
+  for (std::size_t i = 0; i < kept.size(); ++i) all[kept[i]] = point.derivative(s_.system.coordinates + i, 0);
+  return all;
 }
 
 Outcome follow_beside_start(Workspace& s) {

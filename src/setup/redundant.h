@@ -1,7 +1,7 @@
 // Constraints that are left out because they follow from the others: whether they go on to do so, and their
 // multipliers. Which are left out belongs to a point: a motion may choose others on its way (motion/motion.h).
 #pragma once
-#include "setup/scenario.h"
+#include "setup/least_multipliers.h"
 
 namespace anholon {
 
@@ -24,14 +24,13 @@ class Redundant {
   std::vector<W> multipliers(const Expansion<W>& point);
 
   void set_parameters(const std::vector<W>& parameters) {
-    if (outputs_) outputs_->set_parameters(parameters);
+    if (outputs_) outputs_->set_parameters(parameters), least_->set_parameters(parameters);
   }
 
  private:
-  Column expressions() const;
-
   const Scenario& s_;
-  std::optional<OutputTape<W>> outputs_;  // where there are any
+  std::optional<OutputTape<W>> outputs_;  // the constraints, where there are any
+  std::optional<LeastMultipliers<W>> least_;
 };
 
 // Whether the constraints that are left out at the start of a motion follow from the others beside it, too: by the series

@@ -139,9 +139,19 @@ struct ValueAt {
   }
 };
 
+// Multipliers where constraints are redundant (setup/least_multipliers.h).
+template <Number N>
+class LeastMultipliers;
+template <Number N>
+std::shared_ptr<LeastMultipliers<N>> least_multipliers_of(Workspace& s, const std::vector<N>& parameters);
+template <Number N>
+std::vector<N> multipliers_at(LeastMultipliers<N>& least, const Expansion<N>& point);
+template <Number N>
+void set_parameters(LeastMultipliers<N>& least, const std::vector<N>& parameters);
+
 // Expressions evaluated at a point of the motion. evaluate() reads no graph, so that one thread may evaluate while
-// another builds expressions. Multipliers of constraints that are left out at the point are zero: which these are may
-// change on the way (motion/motion.h).
+// another builds expressions. Where constraints are redundant multipliers are the least ones with the same forces; if
+// multipliers belong to the state, those of constraints that are left out are zero.
 template <Number N>
 class OutputTape {
  public:
@@ -152,6 +162,7 @@ class OutputTape {
       places_.push_back({n.kind == Kind::time, system_.variable(in.symbol), n.order, in.slot});
       if (!s.redundant.empty() && n.kind == Kind::multiplier) multipliers_.push_back({places_.size() - 1, n.index});
     }
+    if (!multipliers_.empty() && multiplier_orders(s) == 0) least_ = least_multipliers_of(s, parameters);
   }
   // As evaluate_at(ValueAt) does.
   void evaluate(const Expansion<N>& point) {
@@ -160,6 +171,11 @@ class OutputTape {
       machine_.series(in.slot)[0] = in.time       ? point.time()
                                     : in.variable ? point.derivative(*in.variable, in.order)
                                                   : N(0);
+    if (least_) {
+      const std::vector<N> all = multipliers_at(*least_, point);
+      for (const MultiplierPlace& m : multipliers_)
+        if (places_[m.input].order == 0) machine_.series(places_[m.input].slot)[0] = all[m.constraint];
+    }
     machine_.evaluate();
     sizes_.clear();
   }
@@ -181,6 +197,7 @@ class OutputTape {
   // Modes have changed.
   void set_parameters(const std::vector<N>& parameters) {
     machine_.set_parameters(parameters);
+    if (least_) anholon::set_parameters(*least_, parameters);
     sizes_.clear();
   }
   static Column put(Workspace& s, const Column& es) { return taking_part(s.system, es); }
@@ -208,8 +225,9 @@ class OutputTape {
   const System& system_;
   Tape tape_;
   Machine<N> machine_;
-  std::vector<InputPlace> places_;            // of the inputs
-  std::vector<MultiplierPlace> multipliers_;  // among them, where constraints are redundant
+  std::vector<InputPlace> places_;              // of the inputs
+  std::vector<MultiplierPlace> multipliers_;    // among them, where constraints are redundant
+  std::shared_ptr<LeastMultipliers<N>> least_;  // that gives them; null where there is nothing to choose
   mutable std::vector<N> sizes_;
 };
 

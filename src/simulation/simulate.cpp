@@ -238,11 +238,22 @@ class Run {
     const bool whole = masses.t == course_.time() && course_.by_taylor();
     rows_.until(masses.t, whole ? told_until(*s_.model, motion().stepper()) : masses.t);
     rows_.end_step(masses.t, stretch_.pace.read());
+    look_between();
     if (report_.outcome.ok() && !(masses.t == course_.time())) {
       report_.outcome = negative_mass(*s_.model, masses.mass, to_double(masses.t));
       reached_ = masses.t;
     }
     return !(report_.outcome.ok() && course_.by_taylor() && motion().fired()) || events();
+  }
+
+  // What is declared conserved is looked at between rows, too: a motion may be one step, and have rows at its ends alone.
+  void look_between() {
+    constexpr int kParts = 4;
+    constexpr std::size_t kMostLooks = 32;
+    if (!watch_.any_declared() || ++looks_ > kMostLooks) return;
+    const W begin = course_.before(), length = course_.time() - begin;
+    for (int k = 1; k < kParts; ++k)
+      if (course_.at(begin + length * W(k) / W(kParts)).ok()) watch_.look(course_.point());
   }
 
   void tell_polynomials(const W& end) const {
@@ -383,7 +394,8 @@ class Run {
             written().written(track.last),
             written().written(track.least),
             written().written(track.greatest),
-            track.relative_change()};
+            track.relative_change(),
+            to_double(track.size)};
   }
 
   Workspace& s_;
@@ -396,6 +408,7 @@ class Run {
   AngleWatch angles_;
   Judge<N> judge_;
   std::optional<FloorWatch> floors_;
+  std::size_t looks_ = 0;  // between rows
   EventPaces<W> paces_;
   PacedStretch<W> stretch_;
   std::optional<Defect> defect_;

@@ -102,8 +102,6 @@ template <Number N>
 std::vector<Warning> warnings(const Workspace& s, const Course<N>& course, const Watch<Wider<N>>& watch,
                               const AngleWatch& angles) {
   constexpr double kNearSingular = 1e-3;
-  // Far above what integration and round-off leave.
-  constexpr double kConserved = 1e-6;
   const Model& model = *s.model;
   std::vector<Warning> list;
   if (course.smallest_sigma() < course.first_sigma() * N(kNearSingular)) {
@@ -119,9 +117,7 @@ std::vector<Warning> warnings(const Workspace& s, const Course<N>& course, const
   for (std::size_t i = 0; i < model.monitors.size(); ++i)
     if (const double change = watch.tracks()[i].relative_change();
         declared_conserved(model, model.monitors[i]) && !(change <= kConserved))
-      list.push_back({"the output '" + model.monitors[i].name + "' is not conserved: it changes by " +
-                          number_text(change, 3) + " of its size",
-                      "look for a force, an event or an observer that changes it, or leave out conserved = true"});
+      list.push_back(not_conserved(model.monitors[i].name, change));
   for (std::size_t i = 0; i < angles.triples.size(); ++i)
     if (angles.least[i].value < kNearSingular)
       list.push_back(

@@ -68,7 +68,7 @@ set = {stage = "stage + 1"}
        {{"name", name, "for events and columns; `contact1`, … without it"},
         {"gap", formula, "the distance, a formula of coordinates and time that is not negative"},
         {"slip", any, "the relative tangential velocity: a number, a list of two, or a vector with `along`"},
-        {"along", any, "the tangential directions of a vector `slip`, as in a constraint"},
+        {"along", any, "the tangential directions of a vector `slip`, as in a constraint; they are made of length 1 and at right angles"},
         {"body", name, "instead of `gap` and `slip`: the body that touches, with its shape"},
         {"shape", text,
          "what touches: `point`, `ball(R)`, `disc(R)`, `box(a, b, c)`; the shape of the body without it"},
@@ -128,6 +128,7 @@ initial = {z = 1, "phi'" = 9}
 - A contact has one body. The plane has no border, and the corners of a box are points: edges and faces of two boxes do not touch each other. Of two bodies one is
   a point or a ball and the other a ball B, `on = "ball(R)"` with `through = "B.center"`, whose turning is not part of the slip velocity; others have `gap` and `slip` as formulas.
 - The normal of a plane does not turn; `through` may move. On a ball the directions of slip are those across `ey`.
+- The gap is a length, and a slip velocity a velocity: friction is that of the force along the gap, so that `gap = "5*z"` has a fifth of it.
 - A contact pushes and does not pull: it is open, sticks or slips. The normal force N acts along the gradient of the gap, friction against the slip velocity:
   μN while it slips, at most the static coefficient times N while it sticks. Without `slip` there is no friction.
 - Contacts of one body whose gaps or slip velocities depend on each other share their forces, each friction by its load: [two feet](contact.md#two-feet-on-a-floor).

@@ -131,7 +131,9 @@ constraint = [{name = "a", equation = "x' + y' = 0"}, {name = "b", equation = "x
                             *find_formulation("routh"), {}, s)
                   .ok());
   test::TextRows rows;
-  const SimulationReport report = simulate(s, {}, rows);
+  SimulationOptions o;
+  o.to = 1;
+  const SimulationReport report = simulate(s, o, rows);
   EXPECT_EQ(report.outcome.kind, OutcomeKind::singular);
   EXPECT_NE(report.outcome.message.find("'b' does not follow from the others"), std::string::npos)
       << report.outcome.message;

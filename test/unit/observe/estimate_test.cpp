@@ -351,5 +351,54 @@ TEST(SampledRows, KeepTheFastPhaseOfALongRun) {
   EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end(), [](const auto& a, const auto& b) { return a.t < b.t; }));
 }
 
+// Both steps and walls are without an error but round-off, and the motion forgets its start: a second run with the same
+// roundings would be the same run.
+const std::string kBilliard = R"toml(coordinates = ["x", "y"]
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
+event = [
+  {name = "side", when = "1 - x^2", direction = "down", set = {"x'" = "-x'"}},
+  {name = "end", when = "1 - y^2", direction = "down", set = {"y'" = "-y'"}},
+  {name = "disc", when = "x^2 + y^2 - 0.16", direction = "down", set = {"x'" = "x' - 2*(x*x' + y*y')*x/0.16", "y'" = "y' - 2*(x*x' + y*y')*y/0.16"}},
+]
+[initial]
+x = 0.7
+y = 0.1
+"x'" = 0.6
+"y'" = 0.8
+)toml";
+
+TEST(DigitsToTrust, OfABilliardAreThoseThatItsWallsLeave) {
+  for (const Precision precision : {Precision::real, Precision::long_real}) {
+    SimulationOptions o;
+    o.at = {Rational(35)};
+    o.precision = precision;
+    const Result r = until(kBilliard, Rational(35), o);
+    o.precision = Precision::multi;
+    o.digits = 40;
+    o.tolerance = Rational(1, mpz_class("10000000000000000000000000000000000"));
+    const Result exact = until(kBilliard, Rational(35), o);
+    double worst = 0;
+    for (std::size_t k = 1; k <= 2; ++k)
+      worst = std::max(worst, std::abs(std::stod(r.rows.rows().back()[k]) - std::stod(exact.rows.rows().back()[k])));
+    ASSERT_GT(worst, precision == Precision::real ? 1e-10 : 1e-14) << "the billiard is chaotic";
+    EXPECT_GT(10 * r.error(ColumnKind::coordinate), worst);
+  }
+}
+
+// The times of impacts are round-off of the time, which grows: it adds up.
+TEST(DigitsToTrust, OfABallThatBouncesForLong) {
+  const Result r = until("coordinates = [\"z\"]\ngravity.field = \"-10*ez\"\n"
+                         "particle = [{name = \"p\", mass = 1, position = \"z*ez\"}]\n"
+                         "event = [{name = \"b\", when = \"z\", direction = \"down\", set = {\"z'\" = \"-z'\"}}]\n"
+                         "[initial]\nz = 1\n",
+                         1000);
+  // sqrt(1/5) from the start to the floor, twice that from impact to impact.
+  const long double half = std::sqrt(0.2L), into = std::remainder(1000.0L, 2 * half);
+  const double z = static_cast<double>(1 - 5 * into * into);
+  const double miss = std::abs(std::stod(r.rows.rows().back()[1]) - z);
+  ASSERT_GT(miss, 1e-13);
+  EXPECT_GT(10 * r.error(ColumnKind::coordinate), miss);
+}
+
 }  // namespace
 }  // namespace anholon::estimate_test
