@@ -309,11 +309,12 @@ class Run {
     } else if (report_.outcome.kind != OutcomeKind::singular) {
       return;  // it has its row
     }
-    // The last good state is worth a row of its own.
-    if (course_.steps() > 0 && !schedule().every_step()) {
+    // The last good state is worth a row of its own: the one reached, unless the motion cannot go on from there.
+    const W last = report_.outcome.kind == OutcomeKind::interrupted ? course_.time() : course_.before();
+    if (course_.steps() > 0 && !schedule().every_step() && !rows_.has_passed(last)) {
       const Outcome why = report_.outcome;
       report_.outcome = {};
-      rows_.at(course_.before(), "");
+      rows_.at(last, "");
       // So near to where J is singular that it cannot be solved to all digits any more: the series reach as far back as
       // forward.
       if (!report_.outcome.ok() && course_.by_taylor())
