@@ -7,6 +7,8 @@
 #include "motion/course.h"
 #include "motion/representation.h"
 #include "observe/watch.h"
+#include "simulation/followed_value.h"
+#include "simulation/trust.h"
 
 namespace anholon {
 
@@ -32,7 +34,7 @@ void EnsemblePlan::make() {
   for (const VaryingMass& m : model.masses) quadratures.push_back(m.value);
   first_reduced = quadratures.size();
   for (const Expr e : o.reductions.formulas) quadratures.push_back(s.graph().own(e));
-  settings.known_from = first_reduced, settings.known_to = quadratures.size();
+  settings.known_from = 0, settings.known_to = quadratures.size();
   watched = watched_series(s, quadratures.size());
   for (const Expr e : watched_formulas(model)) quadratures.push_back(e);
   for (const Event& e : model.events)
@@ -182,7 +184,7 @@ CaseWay CaseWalk::step() {
 CaseWay CaseWalk::after_step() {
   for (std::size_t i = 0; i < plan_->first_reduced; ++i)
     if (!plan_->scenario.model->masses[i].weight &&
-        stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0))
+        (first_negative(*stepper_, i) || stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0)))
       return stop(CaseWay::simulation);
   // `simulate` names an event whose formula has no value.
   for (const WatchedSeries& w : plan_->watched)

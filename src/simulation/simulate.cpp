@@ -25,9 +25,9 @@ std::vector<Expr> quadratures(Workspace& s, const Power& power, const Simulation
 
 StepSettings step_settings(const Model& model, const SimulationOptions& o) {
   StepSettings s{natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
-  s.integrals = 1;  // the power
-  s.known_from = 1 + model.masses.size();
-  s.known_to = s.known_from + o.followed.size();
+  s.integrals = 1;   // the power
+  s.known_from = 1;  // the masses, whose sign is looked at
+  s.known_to = s.known_from + model.masses.size() + o.followed.size();
   s.multipliers = o.rigorous.has_value();
   return s;
 }
