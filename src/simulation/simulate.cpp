@@ -6,6 +6,7 @@
 
 #include "simulation/event_paces.h"
 #include "simulation/first_pull.h"
+#include "simulation/followed_value.h"
 #include "simulation/run_rows.h"
 #include "simulation/trust.h"
 
@@ -245,18 +246,22 @@ class Run {
     return !(report_.outcome.ok() && course_.by_taylor() && motion().fired()) || events();
   }
 
-  void tell_polynomials(const W& end) const {
+  void tell_polynomials(const W& end) {
     const Stepper<N>& stepper = motion().stepper();
-    const std::size_t n = s_.system.coordinates, mechanical = s_.system.mechanical();
+    const std::size_t n = s_.system.coordinates, mechanical = s_.system.mechanical(),
+                      first = 1 + s_.model->masses.size();
+    std::optional<Expansion<W>> point;
+    const auto value = [&](std::size_t i, double x) -> std::pair<double, double> {
+      if (!point) point.emplace(motion().program(), motion().parameters(), std::max(1, stages_));
+      return value_of_quadrature(stepper, W(stepper.before() + W(x)), first + i, *point);
+    };
     o_.dense({to_double(stepper.before()), to_double(end), stepper.order(),
               [&](std::size_t j, int k) {
                 const std::size_t unknown = j < n ? j : mechanical + j - n;
                 return k > stepper.degree(unknown) ? 0 : to_double(stepper.coefficient(unknown, k));
               },
-              [&](std::size_t i, int k) {
-                return to_double(stepper.quadrature_coefficient(1 + s_.model->masses.size() + i, k));
-              },
-              stepper.one_sided()});
+              [&](std::size_t i, int k) { return to_double(stepper.quadrature_coefficient(first + i, k)); },
+              stepper.one_sided(), value});
   }
 
   // Takes the events that fired in the last step; returns false if they end the motion.
