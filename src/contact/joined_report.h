@@ -21,6 +21,7 @@ class JoinedReport {
   // Gives the last event of this name another one.
   void rename(const std::string& name, const std::string& other);
   std::size_t segments() const { return segments_; }
+  std::size_t steps() const { return segments_ > 0 ? all_.steps : 0; }
   SimulationReport report(Outcome outcome, double t, std::size_t rows);
 
  private:

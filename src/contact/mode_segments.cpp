@@ -112,6 +112,7 @@ ReadyMode* ModeSegments::simulate_mode(const Rational& to, SimulationReport& rep
 
 SimulationOptions ModeSegments::asked(const Rational& to) const {
   SimulationOptions o = o_;
+  o.most_steps -= std::min(o.most_steps, joined_.steps());
   o.state = {};
   o.to = to;
   o.every.reset();
@@ -142,7 +143,7 @@ SimulationOptions ModeSegments::asked_of_stretch(const Rational& to, const Ratio
   o.dense = nullptr;
   o.followed.clear();
   o.tolerance = tolerance;
-  o.most_steps = kMostSteps;
+  o.most_steps = std::min(o.most_steps, kMostSteps);
   return o;
 }
 
@@ -191,7 +192,8 @@ bool ModeSegments::may_hold_others(const SimulationReport& r) const {
 }
 
 bool ModeSegments::gave_up(const SimulationReport& r) const {
-  return r.outcome.kind == OutcomeKind::interrupted && r.steps < o_.most_steps && !(o_.cancelled && o_.cancelled());
+  return r.outcome.kind == OutcomeKind::interrupted && joined_.steps() < o_.most_steps &&
+         !(o_.cancelled && o_.cancelled());
 }
 
 bool ModeSegments::slip_vanishes() {

@@ -210,6 +210,7 @@ class SwitchedMotion {
     if (!begin(setting, scenario, outcome)) return false;
     Workspace own(scenario);
     SimulationOptions o = o_;
+    o.most_steps -= std::min(o.most_steps, joined_.steps());
     o.state = {};
     o.state.t = at_.t;
     o.to = end_;

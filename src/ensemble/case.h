@@ -1,6 +1,7 @@
 // The values of an ensemble: its options, the result of a case, the report of all cases.
 #pragma once
 #include <functional>
+#include <map>
 
 #include "ensemble/reduction.h"
 #include "simulation/simulate.h"
@@ -87,8 +88,9 @@ struct CasesResiduals {
 struct EnsembleReport {
   Outcome outcome;  // interrupted, or finished; cases may have stopped in both
   std::size_t done = 0, finished = 0;
-  std::size_t in_workspaces = 0;  // cases that were not computed by the shared tapes
-  std::size_t most_held = 0;      // the largest number of results that were in memory at once
+  std::map<std::string, std::size_t> without_value;  // reduction of a formula -> finished cases in which it has none
+  std::size_t in_workspaces = 0;                     // cases that were not computed by the shared tapes
+  std::size_t most_held = 0;                         // the largest number of results that were in memory at once
   std::size_t threads = 0;
   double seconds = 0;
   CasesError error;

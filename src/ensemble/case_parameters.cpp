@@ -1,6 +1,8 @@
 #include "ensemble/case_parameters.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 
 namespace anholon {
 
@@ -38,6 +40,29 @@ bool may_go_beyond(const System& system, const Structure& t) {
   return false;
 }
 
+// Whether the equations can be assigned to the unknowns whose leading derivatives they hold.
+bool each_is_determined(const std::vector<std::vector<int>>& sigma, const Structure& t) {
+  const std::size_t n = sigma.size();
+  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> equation_of(n, kNone);
+  std::vector<bool> seen;
+  const std::function<bool(std::size_t)> assign = [&](std::size_t i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      if (seen[j] || sigma[i][j] == kAbsent || sigma[i][j] + t.c[i] != t.d[j]) continue;
+      seen[j] = true;
+      if (equation_of[j] != kNone && !assign(equation_of[j])) continue;
+      equation_of[j] = i;
+      return true;
+    }
+    return false;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    seen.assign(n, false);
+    if (!assign(i)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 CaseParameters::CaseParameters(Workspace& s, const std::vector<Varied>& varied) : s_(s), varied_(varied) {
@@ -66,7 +91,9 @@ CaseParameters::CaseParameters(Workspace& s, const std::vector<Varied>& varied) 
   }
   if (!es.empty()) bodies_ = compile(es);
   whole_ = implicit_system(s.model, *s.mechanics, *s.system.form, s.independent, s.elimination);
-  if (may_go_beyond(whole_, s.structure)) equations_ = compile(whole_.equations);
+  goes_beyond_ = may_go_beyond(whole_, s.structure);
+  equations_ = compile(whole_.equations);
+  of_scenario_ = parameter_values<double>(model);
 }
 
 template <Number N>
@@ -126,14 +153,22 @@ Outcome CaseParameters::possible(const std::vector<double>& parameters) const {
 }
 
 bool CaseParameters::same_structure(const std::vector<double>& parameters) const {
-  if (!equations_) return true;
+  // Equations may lose what determines an unknown where a factor vanishes that does not in the scenario.
+  constexpr double kVanishes = 1e-100;
+  bool vanishes = false;
+  for (std::size_t i = 0; i < std::min(parameters.size(), of_scenario_.size()); ++i) {
+    if (!(std::abs(parameters[i]) < kVanishes) || std::abs(of_scenario_[i]) < kVanishes) continue;
+    if (parameters[i] != 0) return false;  // the scale of an equation decides
+    vanishes = true;
+  }
+  if (!equations_ || !(goes_beyond_ || vanishes)) return true;
   const auto sigma = signature(whole_, *equations_, parameters, hints_at(s_.state));
   if (!sigma) return false;
   const Structure& t = s_.structure;
   for (std::size_t i = 0; i < sigma->size(); ++i)
     for (std::size_t j = 0; j < sigma->size(); ++j)
       if ((*sigma)[i][j] + t.c[i] > t.d[j] && (*sigma)[i][j] != kAbsent) return false;
-  return true;
+  return each_is_determined(*sigma, t);
 }
 
 }  // namespace anholon

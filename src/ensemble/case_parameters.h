@@ -18,7 +18,8 @@ class CaseParameters {
   // inertia greater than the sum of the two others. (The reader refuses such numbers in a file.)
   Outcome possible(const std::vector<double>& parameters) const;
   // Whether the equations hold no derivative beyond those that are solved for (sigma_ij <= d_j - c_i). They may hold
-  // one if a mass or a coefficient is zero in the file and not in the case.
+  // one if a mass or a coefficient is zero in the file and not in the case. If a parameter vanishes, whether they still
+  // determine each unknown.
   bool same_structure(const std::vector<double>& parameters) const;
 
  private:
@@ -27,8 +28,10 @@ class CaseParameters {
   bool any_ = false;  // whether a parameter is varied
   Tape tape_;
   std::optional<Tape> bodies_;
-  std::optional<Tape> equations_;  // only where some parameters may give them another structure
-  struct Check {                   // one condition on the roots of `bodies_`
+  std::optional<Tape> equations_;    // of whose structure the parameters decide
+  std::vector<double> of_scenario_;  // parameters
+  bool goes_beyond_ = false;         // whether some parameters may give them derivatives beyond
+  struct Check {                     // one condition on the roots of `bodies_`
     std::string what;
     std::size_t root = 0;
     std::vector<Column> axes;  // of an inertia: the body's axes, whose weights are the roots; empty for a single number

@@ -7,6 +7,8 @@
 #include "motion/course.h"
 #include "motion/representation.h"
 #include "observe/watch.h"
+#include "simulation/followed_value.h"
+#include "simulation/trust.h"
 
 namespace anholon {
 
@@ -32,7 +34,7 @@ void EnsemblePlan::make() {
   for (const VaryingMass& m : model.masses) quadratures.push_back(m.value);
   first_reduced = quadratures.size();
   for (const Expr e : o.reductions.formulas) quadratures.push_back(s.graph().own(e));
-  settings.known_from = first_reduced, settings.known_to = quadratures.size();
+  settings.known_from = 0, settings.known_to = quadratures.size();
   watched = watched_series(s, quadratures.size());
   for (const Expr e : watched_formulas(model)) quadratures.push_back(e);
   for (const Event& e : model.events)
@@ -94,7 +96,8 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
     kernel_ = kernel, lane_ = lane;
     equip(parameters_, narrow_parameters_);
     starts_.emplace(*plan.scenario.mechanics, *plan.start, parameters_);
-    if (!reducer_ && !plan.options.reductions.list.empty()) reducer_.emplace(plan.options.reductions);
+    if (!reducer_ && !plan.options.reductions.list.empty())
+      reducer_.emplace(plan.options.reductions, plan.options.tolerance.get_d());
     ready_ = true;
   }
   if (reducer_) reducer_->restart();
@@ -182,24 +185,38 @@ CaseWay CaseWalk::step() {
 CaseWay CaseWalk::after_step() {
   for (std::size_t i = 0; i < plan_->first_reduced; ++i)
     if (!plan_->scenario.model->masses[i].weight &&
-        stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0))
+        (first_negative(*stepper_, i) || stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0)))
       return stop(CaseWay::simulation);
   // `simulate` names an event whose formula has no value.
   for (const WatchedSeries& w : plan_->watched)
     if (!stepper_->one_sided() && !is_finite(stepper_->quadrature_coefficient(w.quadrature, 0)))
       return stop(CaseWay::simulation);
   if (!rows()) return stop(CaseWay::simulation);
-  if (reducer_) {
-    if (stepper_->one_sided() && !plan_->options.reductions.formulas.empty()) return stop(CaseWay::simulation);
-    reducer_->step(stepper_->order() - 1, to_double(W(stepper_->time() - stepper_->before())),
-                   [&](std::size_t i, int k) { return stepper_->quadrature_coefficient(plan_->first_reduced + i, k); });
-    for (const Fired<double>& f : stepper_->fired())
-      reducer_->event(plan_->scenario.model->events[f.series].name, to_double(W(stepper_->before() + W(f.where))));
-    reducer_->values(result_->reduced);
-  }
+  if (reducer_ && !reduce()) return stop(CaseWay::simulation);
   if (!stepper_->fired().empty()) return take_events();
   if (stepper_->time() == end_) return arrive();
   return another_method_pays() ? stop(CaseWay::simulation) : CaseWay::plain;
+}
+
+// False if the polynomials of a formula are not good, which `simulate` looks at more closely.
+bool CaseWalk::reduce() {
+  if (stepper_->one_sided() && !plan_->options.reductions.formulas.empty()) return false;
+  const auto coefficient = [&](std::size_t i, int k) {
+    return stepper_->quadrature_coefficient(plan_->first_reduced + i, k);
+  };
+  const auto value = [&](std::size_t i, double x) {
+    if (!stepper_->arrived()) stepper_->leave_kernel();
+    const auto [is, made_of] =
+        value_of_quadrature(*stepper_, W(stepper_->before() + W(x)), plan_->first_reduced + i, *point_);
+    return FormulaValue{is, made_of};
+  };
+  const bool last = !stepper_->fired().empty() || stepper_->time() == end_;
+  const bool good = reducer_->step({to_double(W(stepper_->time() - stepper_->before())), stepper_->order() - 1,
+                                    coefficient, value, last, stepper_->kinks()});
+  for (const Fired<double>& f : stepper_->fired())
+    reducer_->event(plan_->scenario.model->events[f.series].name, to_double(W(stepper_->before() + W(f.where))));
+  reducer_->values(result_->reduced);
+  return good;
 }
 
 // `simulate`, which then makes the case, comes to the same conclusion.
@@ -432,11 +449,15 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
   options.order = o.order;
   options.method = o.method;
   options.kernel = o.kernel;
-  Reducer reducer(o.reductions);
+  Reducer reducer(o.reductions, o.tolerance.get_d());
   if (!o.reductions.formulas.empty()) {
     options.followed = o.reductions.formulas;
     options.dense = [&](const StepPolynomials& step) {
-      reducer.step(step.one_sided ? 0 : step.order - 1, step.end - step.begin, step.followed);
+      (void)reducer.step(
+          {step.end - step.begin, step.one_sided ? 0 : step.order - 1, step.followed, [&](std::size_t i, double x) {
+             const auto [value, made_of] = step.followed_value(i, x);
+             return FormulaValue{value, made_of};
+           }});
     };
   }
   EnsembleRowFilter rows(o.at, r);

@@ -98,6 +98,7 @@ class CaseWalk {
   CaseWay stopped(const Outcome& why);
   CaseWay stop(CaseWay way);
   bool another_method_pays();
+  bool reduce();
   bool rows();
   bool keep(const W& t, std::vector<double>& values);
 

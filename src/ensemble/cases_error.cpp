@@ -97,7 +97,10 @@ std::vector<const CaseResult*> fit_for_judgement(const EnsembleOptions& o, std::
   return fit;
 }
 
-std::string none_is_fit(const EnsembleOptions& o) {
+std::string none_is_fit(const EnsembleOptions& o, std::span<const CaseResult> results) {
+  if (!results.empty() &&
+      std::all_of(results.begin(), results.end(), [](const CaseResult& r) { return r.outcome.ok() && r.steps == 0; }))
+    return "the motions of the cases looked at end where they begin";
   return "none of the cases looked at has finished" +
          std::string(o.estimate == ErrorEstimate::always ? "" : " within " + std::to_string(kShortRun) + " steps");
 }
@@ -201,8 +204,8 @@ void judge_cases(const Scenario& scenario, const EnsembleOptions& o, std::span<c
   });
   report.error = error_of(fit, judged);
   report.residuals = residuals_of(fit, judged);
-  if (!report.error.error && report.error.none.empty()) report.error.none = none_is_fit(o);
-  if (report.residuals.cases.empty() && report.residuals.none.empty()) report.residuals.none = none_is_fit(o);
+  if (!report.error.error && report.error.none.empty()) report.error.none = none_is_fit(o, results);
+  if (report.residuals.cases.empty() && report.residuals.none.empty()) report.residuals.none = none_is_fit(o, results);
 }
 
 }  // namespace anholon

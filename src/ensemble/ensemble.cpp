@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <mutex>
 #include <thread>
 
@@ -108,7 +109,11 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
       sink.result(r);
       if (std::binary_search(to_compare.begin(), to_compare.end(), r.number)) compared.push_back(r);
       ++report.done;
-      if (r.outcome.ok()) ++report.finished;
+      if (!r.outcome.ok()) continue;
+      ++report.finished;
+      for (std::size_t k = 0; k < r.reduced.size(); ++k)
+        if (const Reduction& of = o.reductions.list[k]; !of.of_event() && std::isnan(r.reduced[k]))
+          ++report.without_value[of.name];
     }
     held -= g->cases.size();
     if (o.progress) o.progress(report.done);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "contact/mode_model.h"
 #include "ensemble/mistake_in_word.h"
@@ -201,97 +201,12 @@ void Reductions::add(const std::string& word, const OpenModel& model, const std:
   if (same == formulas.end()) formulas.push_back(e);
 }
 
-// ---- extremes of a polynomial -----------------------------------------------------------------------------------------
-
-namespace {
-
-// A polynomial on [0, 1], whose pieces are in Bernstein form.
-class Highest {
- public:
-  Highest(const std::vector<double>& c, double known) : c_(c), best_(known) {}
-
-  double find() {
-    see(c_[0]);
-    see(value_at(c_.data(), degree(), 1.0));
-    // The sum of what each term adds at most.
-    double bound = c_[0];
-    for (std::size_t k = 1; k < c_.size(); ++k) bound += std::max(c_[k], 0.0);
-    if (!(bound > best_) || monotonic()) return best_;
-    search(bernstein(c_), 0, 1, kDeepest);
-    return best_;
-  }
-
- private:
-  static constexpr int kDeepest = 40, kBisections = 60;
-
-  int degree() const { return static_cast<int>(c_.size()) - 1; }
-  void see(double x) { best_ = x > best_ ? x : best_; }
-  double slope(double x) const {
-    double s = 0;
-    for (int k = degree(); k >= 1; --k) s = s * x + k * c_[static_cast<std::size_t>(k)];
-    return s;
-  }
-  // Whether the first term of the derivative outweighs the others.
-  bool monotonic() const {
-    double others = 0;
-    for (std::size_t k = 2; k < c_.size(); ++k) others += static_cast<double>(k) * std::abs(c_[k]);
-    return c_.size() < 2 || std::abs(c_[1]) > others;
-  }
-
-  // The piece [from, to] lies below the greatest of its Bernstein coefficients, and its derivative has at most as many
-  // zeros as their differences have changes of sign.
-  void search(std::vector<double> b, double from, double to, int depth) {
-    if (!(*std::max_element(b.begin(), b.end()) > best_)) return;
-    int changes = 0, first = 0, sign = 0;
-    for (std::size_t j = 0; j + 1 < b.size(); ++j) {
-      const double d = b[j + 1] - b[j];
-      const int now = (d > 0) - (d < 0);
-      if (now != 0 && sign != 0 && now != sign) ++changes;
-      if (now != 0) sign = now;
-      if (first == 0) first = now;
-    }
-    see(value_at(c_.data(), degree(), from));
-    see(value_at(c_.data(), degree(), to));
-    if (changes == 0 || depth == 0) return;
-    if (changes == 1 && first < 0) return;  // the zero of the slope is a minimum
-    if (changes == 1) return see(value_at(c_.data(), degree(), end_of_rise(from, to)));
-    std::vector<double> left = b;
-    for (std::size_t k = 1; k < b.size(); ++k) {
-      for (std::size_t j = 0; j + k < b.size(); ++j) b[j] = (b[j] + b[j + 1]) / 2;
-      left[k] = b[0];
-    }
-    const double middle = (from + to) / 2;
-    search(std::move(left), from, middle, depth - 1);
-    search(std::move(b), middle, to, depth - 1);
-  }
-
-  // The piece rises from its beginning up to there.
-  double end_of_rise(double from, double to) const {
-    for (int k = 0; k < kBisections; ++k) {
-      const double middle = (from + to) / 2;
-      if (middle == from || middle == to) break;
-      (slope(middle) > 0 ? from : to) = middle;
-    }
-    return from;
-  }
-
-  const std::vector<double>& c_;
-  double best_;
-};
-
-}  // namespace
-
-double greatest_on(const double* c, int degree, double h, double known) {
-  std::vector<double> scaled;
-  double power = 1;
-  for (int k = 0; k <= degree; ++k, power *= h) {
-    scaled.push_back(c[k] * power);
-    if (!std::isfinite(scaled.back())) return known;
-  }
-  return Highest(scaled, known).find();
-}
-
 // ---- over the steps -----------------------------------------------------------------------------------------------------
+
+Reducer::Reducer(const Reductions& of, double tolerance)
+    : of_(&of), tolerance_(std::max(tolerance, 4 * std::numeric_limits<double>::epsilon())) {
+  restart();
+}
 
 void Reducer::restart() {
   constexpr double kInfinity = std::numeric_limits<double>::infinity(),
@@ -308,22 +223,123 @@ void Reducer::restart() {
     s.mean = s.mean || r.kind == Reduction::Kind::mean;
   }
   length_ = 0;
+  kinks_ = 0;
+  foretold_ = false;
 }
 
-void Reducer::see(std::size_t formula, double h) {
-  Seen& s = seen_[formula];
+bool Reducer::step(const ReducedStep& step) {
+  bool good = true;
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    Seen& s = seen_[i];
+    polynomial_.resize(static_cast<std::size_t>(step.degree) + 1);
+    for (int k = 0; k <= step.degree; ++k) polynomial_[static_cast<std::size_t>(k)] = step.coefficient(i, k);
+    if (foretold_ && std::isfinite(polynomial_[0]) && !agrees(polynomial_[0], s.last, std::abs(polynomial_[0])))
+      good = false;
+    if (holds(step, i))
+      see(s, step.h, 1);
+    else
+      see_by_values(step, i);
+  }
+  length_ += step.h;
+  const bool kink = std::exchange(kinks_, step.kinks) != step.kinks;
+  foretold_ = !step.look && !kink;
+  return good;
+}
+
+// As good as a polynomial can be told from a wrong one, in formulas whose terms cancel, too.
+bool Reducer::agrees(double is, double foretold, double size) const {
+  constexpr double kRelative = 1e3, kLeast = 1e-9, kAbsolute = 10;
+  return std::abs(is - foretold) <= std::max(kRelative * tolerance_, kLeast) * size + kAbsolute * tolerance_;
+}
+
+// Whether the polynomial is the formula over the step: by its last two terms, which tell nothing if they are zero or do
+// not fall below the others; by values.
+bool Reducer::holds(const ReducedStep& step, std::size_t formula) const {
+  constexpr double kFalls = 1e-3, kTolerances = 100, kNearEnd = 31.0 / 32;
+  constexpr int kPoints = 7, kNoise = 4096;
+  const int degree = step.degree;
+  if (degree < 2 || step.h == 0) return step.h == 0 && std::isfinite(polynomial_[0]);
+  double power = 1, most = 0, end = 0;
+  for (int k = 0; k <= degree; ++k, power *= step.h) {
+    const double term = std::abs(polynomial_[static_cast<std::size_t>(k)] * power);
+    if (!std::isfinite(term)) return false;
+    (k < degree - 1 ? most : end) = std::max(k < degree - 1 ? most : end, term);
+  }
+  if (!(end <= kFalls * most) && end > 0) return false;
+  if (!(end <= kTolerances * tolerance_ * std::max(1.0, most))) return false;
+  const auto shows = [&](double part) {
+    const double x = part * step.h;
+    const FormulaValue there = step.value(formula, x);
+    const double foretold = value_at(polynomial_.data(), degree, x);
+    return agrees(there.value, foretold, std::max(most, std::abs(there.value))) ||
+           std::abs(there.value - foretold) <= kNoise * std::numeric_limits<double>::epsilon() * there.made_of;
+  };
+  if (step.look && !shows(kNearEnd)) return false;
+  for (int k = 1; end == 0 && k <= kPoints; ++k)
+    if (!shows((k - 0.5) / kPoints)) return false;
+  return true;
+}
+
+// polynomial_ over [0, h], in units of `scale`.
+void Reducer::see(Seen& s, double h, double scale) {
   std::vector<double>& c = polynomial_;
   const int degree = static_cast<int>(c.size()) - 1;
   s.last = value_at(c.data(), degree, h);
   if (s.mean) {
     double over = 0;
     for (int k = degree; k >= 0; --k) over = over * h + c[static_cast<std::size_t>(k)] / (k + 1);
-    add_compensated(s.integral, s.carry, over * h);
+    add_compensated(s.integral, s.carry, over * h * scale);
   }
   if (s.greatest) s.most = greatest_on(c.data(), degree, h, s.most);
   if (!s.least) return;
   for (double& x : c) x = -x;
   s.fewest = -greatest_on(c.data(), degree, h, -s.fewest);
+}
+
+// Halves the step until an interpolation of its values is as good as the tolerance. At a moment where the formula has no
+// value, or no derivatives, the pieces become as short as the time can show, and their values stand for theirs.
+void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
+  constexpr int kFirst = 2, kDeepest = 48, kTiny = 30, kLongWithout = 8, kMostPieces = 1000;
+  Seen& s = seen_[formula];
+  const std::function<FormulaValue(double)> f = [&](double x) { return step.value(formula, x); };
+  struct Piece {
+    double from, to;
+    int depth;
+  };
+  std::vector<Piece> left = {{0, step.h, 0}};
+  double size = 0;
+  for (int pieces = 0; !left.empty() && !s.lost;) {
+    const Piece p = left.back();
+    left.pop_back();
+    const double middle = p.from + (p.to - p.from) / 2;
+    const bool divisible = p.depth < kDeepest && middle != p.from && middle != p.to && pieces < kMostPieces;
+    if (p.depth < kFirst && divisible) {
+      left.push_back({middle, p.to, p.depth + 1}), left.push_back({p.from, middle, p.depth + 1});
+      continue;
+    }
+    ++pieces;
+    const Interpolation there(f, p.from, p.to);
+    size = std::max(size, there.size());
+    if (there.without_value() > 0) {
+      if (p.depth >= kTiny) continue;
+      s.lost = !divisible || (p.depth >= kLongWithout && there.without_value() == Interpolation::kPoints);
+    }
+    const bool good = there.good(tolerance_ * size);
+    if (!good && divisible) {
+      left.push_back({middle, p.to, p.depth + 1}), left.push_back({p.from, middle, p.depth + 1});
+      continue;
+    }
+    if (s.lost) break;
+    if (good) {
+      there.polynomial(polynomial_);
+      see(s, 1, p.to - p.from);
+      continue;
+    }
+    add_compensated(s.integral, s.carry, there.mean() * (p.to - p.from));
+    for (const double v : there.values()) s.most = std::max(s.most, v), s.fewest = std::min(s.fewest, v);
+    s.last = there.values().back();
+  }
+  if (const double end = f(step.h).value; std::isfinite(end)) s.last = end;
 }
 
 void Reducer::event(const std::string& name, double t) {
@@ -332,7 +348,7 @@ void Reducer::event(const std::string& name, double t) {
 }
 
 void Reducer::lose_formulas() {
-  for (Seen& s : seen_) s.last = std::numeric_limits<double>::quiet_NaN();
+  for (Seen& s : seen_) s.lost = true;
 }
 
 void Reducer::values(std::vector<double>& to) const {
@@ -343,19 +359,20 @@ void Reducer::values(std::vector<double>& to) const {
       continue;
     }
     const Seen& s = seen_[r.of];
-    const bool none = std::isnan(s.last);
+    const bool none = s.lost || std::isnan(s.last);
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     switch (r.kind) {
     case Reduction::Kind::greatest:
-      to.push_back(none ? s.last : s.most);
+      to.push_back(none ? kNone : s.most);
       break;
     case Reduction::Kind::least:
-      to.push_back(none ? s.last : s.fewest);
+      to.push_back(none ? kNone : s.fewest);
       break;
     case Reduction::Kind::mean:
-      to.push_back(none || length_ == 0 ? s.last : (s.integral + s.carry) / length_);
+      to.push_back(none ? kNone : length_ == 0 ? s.last : (s.integral + s.carry) / length_);
       break;
     case Reduction::Kind::last:
-      to.push_back(s.last);
+      to.push_back(none ? kNone : s.last);
       break;
     case Reduction::Kind::count:
     case Reduction::Kind::first:

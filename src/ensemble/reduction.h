@@ -2,13 +2,14 @@
 // fired, and when first.
 //
 // Those of a formula are those of its Taylor polynomials, step by step, not of its values at some times. The steps are
-// as short as the tolerance asks for the series of these formulas (StepSettings::known). A step whose polynomials end
-// with the leading derivatives (integrate/one_sided_start.h) shows the formula at its beginning alone.
+// as short as the tolerance asks for the series of these formulas (StepSettings::known). Where a polynomial is not the
+// formula over the whole step (the radius of convergence of the formula is shorter than that of the motion, or the formula
+// has no series, as a norm that is zero), pieces of the step get polynomials of their own, through values of the formula.
 #pragma once
-#include <array>
 #include <string>
 #include <vector>
 
+#include "ensemble/reduce/pieces.h"
 #include "modelfile/contacts.h"
 #include "modelfile/read.h"
 #include "setup/scenario.h"
@@ -33,46 +34,51 @@ struct Reductions {
   void add(const std::string& word, const OpenModel& model, const std::vector<Contact>& moving = {});
 };
 
-// The greatest value of sum c_k x^k, k <= degree, for x from 0 to h, h of either sign; `known` if no value is greater. A
-// value is found wherever the derivative changes its sign.
-double greatest_on(const double* c, int degree, double h, double known);
+// A step of length h in which the reductions see the formulas.
+struct ReducedStep {
+  double h = 0;
+  int degree = 0;                                           // of the polynomials; 0: they hold at the beginning alone
+  std::function<double(std::size_t i, int k)> coefficient;  // of formula i, k <= degree
+  std::function<FormulaValue(std::size_t i, double x)> value;  // of formula i at x from the beginning
+  bool look = true;       // whether the polynomials are compared with values; else the next step tells
+  std::size_t kinks = 0;  // met in the motion so far, at which formulas may jump
+};
 
 // Collects the values of the reductions over the steps and events of a motion.
 class Reducer {
  public:
-  explicit Reducer(const Reductions& of) : of_(&of) { restart(); }
+  explicit Reducer(const Reductions& of, double tolerance = 1e-12);
   void restart();
-  // A step of length h: coefficient(i, k) of formula i, k <= degree.
-  template <class Coefficient>
-  void step(int degree, double h, const Coefficient& coefficient) {
-    for (std::size_t i = 0; i < seen_.size(); ++i) {
-      polynomial_.resize(static_cast<std::size_t>(degree) + 1);
-      for (int k = 0; k <= degree; ++k) polynomial_[static_cast<std::size_t>(k)] = coefficient(i, k);
-      see(i, h);
-    }
-    length_ += h;
-  }
+  // False if a formula begins elsewhere than its polynomial in the step before has ended, which nobody has looked at:
+  // what was collected is wrong.
+  [[nodiscard]] bool step(const ReducedStep& step);
   void event(const std::string& name, double t);
   // The motion has stretches without polynomials: no formula has a value.
   void lose_formulas();
-  // Of a formula NaN without a step, of first(EVENT) NaN without an occurrence.
+  // Of a formula NaN without a step or without a value on the way, of first(EVENT) NaN without an occurrence.
   void values(std::vector<double>& to) const;
 
  private:
   struct Seen {
-    bool greatest = false, least = false, mean = false;  // what is asked for
+    bool greatest = false, least = false, mean = false, lost = false;  // what is asked for; whether a value is missing
     double most = 0, fewest = 0, last = 0, integral = 0, carry = 0;
   };
   struct Fired {
     double times = 0, first = 0;
   };
-  void see(std::size_t formula, double h);
+  bool agrees(double is, double foretold, double size) const;
+  bool holds(const ReducedStep& step, std::size_t formula) const;
+  void see(Seen& s, double h, double scale);
+  void see_by_values(const ReducedStep& step, std::size_t formula);
 
   const Reductions* of_;
+  double tolerance_;
   std::vector<Seen> seen_;
   std::vector<Fired> fired_;
   std::vector<double> polynomial_;
   double length_ = 0;
+  std::size_t kinks_ = 0;
+  bool foretold_ = false;  // whether the last values are those of polynomials that nobody has looked at
 };
 
 }  // namespace anholon

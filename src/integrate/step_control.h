@@ -78,14 +78,21 @@ N limited_by_quadrature(const N& horizon, int order, const Tolerance& tolerance,
   if (tail <= tolerance.value * std::max(whole, first)) return horizon;
   // Closely; what leaves the range of double has a logarithm.
   constexpr double kNothing = -1e300;
-  const double log_h = to_double(N(log(horizon)));
+  double log_h = to_double(N(log(horizon)));
   const auto term = [&](int k) {
     const N c = abs(coefficient(k));
     return c > N(0) ? to_double(N(log(c))) + (k + 1) * log_h - std::log(k + 1) : kNothing;
   };
-  const double excess = std::max(term(order - 1), term(order - 2)) - tolerance.logarithm -
-                        std::max({std::log(whole), term(0), term(1), term(2)});
-  return excess > 0 ? N(horizon * N(std::exp(-excess / order))) : horizon;
+  // The first three grow with the horizon, too: one far beyond the series is shortened again.
+  N limited = horizon;
+  for (;;) {
+    const double excess = std::max(term(order - 1), term(order - 2)) - tolerance.logarithm -
+                          std::max({std::log(whole), term(0), term(1), term(2)});
+    if (!(excess > 0)) return limited;
+    limited = limited * N(std::exp(-excess / order));
+    if (!(excess > order)) return limited;
+    log_h -= excess / order;
+  }
 }
 
 // Returns `horizon`, or less: there the value of a quadrature is known to the tolerance, as an integral of its rate.

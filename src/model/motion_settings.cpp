@@ -281,7 +281,7 @@ MotionSettings merged(const MotionSettings& asked, const MotionSettings& file) {
   for (const MotionOption& o : motion_options())
     if (!is_set(asked, o)) std::visit([&](auto member) { all.*member = file.*member; }, o.member);
   if (!asked.form) all.form_span = file.form_span;
-  if (!asked.at.empty()) all.to = asked.to, all.every.reset();
+  if (!asked.at.empty()) all.to = asked.to, all.every = asked.every;
   if (asked.at.empty() && asked.every) all.at.clear();
   // The file's tolerance is meant for the file's numbers.
   if (asked.digits.value_or(16) > 16 || asked.numbers == "quad") all.tolerance = asked.tolerance;

@@ -1,6 +1,7 @@
 // What is asked of one motion: its span, rows and accuracy, and what is watched on the way.
 #pragma once
 #include <functional>
+#include <utility>
 
 #include "mechanics/conserved.h"
 #include "motion/course.h"
@@ -22,6 +23,8 @@ struct StepPolynomials {
   // The same of SimulationOptions::followed, k < order; those of the beginning alone if `one_sided`.
   std::function<double(std::size_t i, int k)> followed;
   bool one_sided;
+  // The value of one of them at begin + x, which is NaN where it has none, and the magnitude of all that it is made of.
+  std::function<std::pair<double, double>(std::size_t i, double x)> followed_value;
 };
 
 struct SimulationOptions {

@@ -56,6 +56,9 @@ Rational set_times(const MotionSettings& settings, const Scenario& s, const Aske
     for (const WrittenTime& t : at) o.at_text.push_back(is_number_as_written(t.text) ? t.text : "");
   if (!o.at.empty() && o.at.front() < start && o.at.back() > start)
     throw Failure({}, "the time " + o.at.front().get_str() + " lies before the start, t = " + start.get_str());
+  if (!o.at.empty() && o.every)
+    throw Failure({}, asker.called("at") + " and " + asker.called("every") + " exclude each other",
+                  "leave out one of them: rows are written at exactly the times of " + asker.called("at"));
   if (o.at.empty() && !o.to)
     throw Failure({}, "no end time", asker.example("to", "10") + ", or [simulate] to = 10 in the model file");
   if (o.to) must_lie_between(o.at, start, *o.to, asker);

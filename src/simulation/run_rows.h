@@ -109,6 +109,7 @@ class RunRows {
   void at(const W& t, const std::string& label) {
     of_.report.outcome = of_.shown.at(t);
     if (!of_.report.outcome.ok()) return;
+    last_ = t;
     ++of_.report.rows_looked_at;
     of_.report.outcome = of_.watch.see(of_.shown.point(), of_.report);
     row_values(of_.s, highest(), of_.shown.point(), of_.watch, numbers_);
@@ -119,6 +120,9 @@ class RunRows {
     ++of_.report.rows;
     if (of_.options.rows_lost) of_.options.rows_lost();
   }
+
+  // Whether rows have been given up to t or beyond it.
+  bool has_passed(const W& t) const { return last_ && schedule_.reaches(*last_, t); }
 
   // ---- for the report, after settle() --------------------------------------------------------------
 
@@ -134,6 +138,7 @@ class RunRows {
       if (const Motion<N>& motion = of_.course.taylor();
           beside_ && of_.course.by_taylor() && !motion.stepper().one_sided()) {
         beside_->add(motion, t, label, of_.judge.wanted(of_.course));
+        last_ = t;
         if (beside_->failed()) settle();
         return;
       }
@@ -143,6 +148,7 @@ class RunRows {
 
   Parts of_;
   RowSchedule<W> schedule_;
+  std::optional<W> last_;   // the time of the last row
   std::vector<W> numbers_;  // of a row
   RowWriter<N> writer_;
   std::unique_ptr<KernelRows> beside_;  // null if rows are made by the reference; the last: uses the others

@@ -6,6 +6,7 @@
 
 #include "simulation/event_paces.h"
 #include "simulation/first_pull.h"
+#include "simulation/followed_value.h"
 #include "simulation/run_rows.h"
 #include "simulation/trust.h"
 
@@ -25,9 +26,9 @@ std::vector<Expr> quadratures(Workspace& s, const Power& power, const Simulation
 
 StepSettings step_settings(const Model& model, const SimulationOptions& o) {
   StepSettings s{natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
-  s.integrals = 1;  // the power
-  s.known_from = 1 + model.masses.size();
-  s.known_to = s.known_from + o.followed.size();
+  s.integrals = 1;   // the power
+  s.known_from = 1;  // the masses, whose sign is looked at
+  s.known_to = s.known_from + model.masses.size() + o.followed.size();
   s.multipliers = o.rigorous.has_value();
   return s;
 }
@@ -256,18 +257,22 @@ class Run {
       if (course_.at(begin + length * W(k) / W(kParts)).ok()) watch_.look(course_.point());
   }
 
-  void tell_polynomials(const W& end) const {
+  void tell_polynomials(const W& end) {
     const Stepper<N>& stepper = motion().stepper();
-    const std::size_t n = s_.system.coordinates, mechanical = s_.system.mechanical();
+    const std::size_t n = s_.system.coordinates, mechanical = s_.system.mechanical(),
+                      first = 1 + s_.model->masses.size();
+    std::optional<Expansion<W>> point;
+    const auto value = [&](std::size_t i, double x) -> std::pair<double, double> {
+      if (!point) point.emplace(motion().program(), motion().parameters(), std::max(1, stages_));
+      return value_of_quadrature(stepper, W(stepper.before() + W(x)), first + i, *point);
+    };
     o_.dense({to_double(stepper.before()), to_double(end), stepper.order(),
               [&](std::size_t j, int k) {
                 const std::size_t unknown = j < n ? j : mechanical + j - n;
                 return k > stepper.degree(unknown) ? 0 : to_double(stepper.coefficient(unknown, k));
               },
-              [&](std::size_t i, int k) {
-                return to_double(stepper.quadrature_coefficient(1 + s_.model->masses.size() + i, k));
-              },
-              stepper.one_sided()});
+              [&](std::size_t i, int k) { return to_double(stepper.quadrature_coefficient(first + i, k)); },
+              stepper.one_sided(), value});
   }
 
   // Takes the events that fired in the last step; returns false if they end the motion.
@@ -320,11 +325,12 @@ class Run {
     } else if (report_.outcome.kind != OutcomeKind::singular) {
       return;  // it has its row
     }
-    // The last good state is worth a row of its own.
-    if (course_.steps() > 0 && !schedule().every_step()) {
+    // The last good state is worth a row of its own: the one reached, unless the motion cannot go on from there.
+    const W last = report_.outcome.kind == OutcomeKind::interrupted ? course_.time() : course_.before();
+    if (course_.steps() > 0 && !schedule().every_step() && !rows_.has_passed(last)) {
       const Outcome why = report_.outcome;
       report_.outcome = {};
-      rows_.at(course_.before(), "");
+      rows_.at(last, "");
       // So near to where J is singular that it cannot be solved to all digits any more: the series reach as far back as
       // forward.
       if (!report_.outcome.ok() && course_.by_taylor())

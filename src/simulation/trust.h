@@ -1,5 +1,6 @@
 // What limits the trust in a motion that has been computed: warnings, limits of events, masses that become negative.
 #pragma once
+#include "integrate/series/sign_change.h"
 #include "motion/course.h"
 #include "observe/angles.h"
 #include "observe/report.h"
@@ -23,6 +24,24 @@ bool masses_vary(const Model& model, const Stepper<N>& stepper) {
   return false;
 }
 
+// Where a quadrature is first below zero before the end of the last step, by more than round-off: from the start of the
+// step; nullopt if that is nowhere.
+template <Number N>
+std::optional<Wider<N>> first_negative(const Stepper<N>& stepper, std::size_t quadrature) {
+  using W = Wider<N>;
+  constexpr int kNoise = 64;
+  constexpr double kSurelyBefore = 1 - 0x1p-20;
+  const N h = convert<N>(W(stepper.time() - stepper.before()));
+  std::vector<N> c;
+  N most(0), power(1);
+  for (int k = 0; k < stepper.order(); ++k, power *= h) {
+    c.push_back(stepper.quadrature_coefficient(quadrature, k));
+    if (const N size = abs(N(c.back() * power)); size > most) most = size;
+  }
+  const auto found = first_below<N>(c.data(), stepper.order() - 1, h, N(unit_roundoff<N>() * N(kNoise) * most));
+  return found && abs(*found) < abs(h) * N(kSurelyBefore) ? std::optional<W>(convert<W>(*found)) : std::nullopt;
+}
+
 template <Number N>
 MassLimit<Wider<N>> masses_positive_until(const Model& model, const Course<N>& course) {
   using W = Wider<N>;
@@ -32,8 +51,14 @@ MassLimit<Wider<N>> masses_positive_until(const Model& model, const Course<N>& c
   W good = whole;
   std::size_t negative = 0;
   for (std::size_t i = 0; i < model.masses.size(); ++i) {
-    if (model.masses[i].weight || stepper.constant_quadrature(1 + i) || !(stepper.quadrature(1 + i, good) < W(0)))
+    if (model.masses[i].weight || stepper.constant_quadrature(1 + i)) continue;
+    const std::optional<W> first = first_negative(stepper, 1 + i);
+    if (first && abs(*first) < abs(good)) {
+      good = *first;
+      negative = i;
       continue;
+    }
+    if (!(stepper.quadrature(1 + i, good) < W(0))) continue;
     W low(0), high = good;
     for (int k = 0; k < 200 && !(low == high); ++k) {
       const W middle = low + (high - low) * W(0.5);

@@ -43,6 +43,12 @@ void report_sweep(const EnsembleReport& r, std::size_t cases, const SweepOutput&
   for (const std::string& line : judgement_lines(r)) say(stderr, "%s\n", line.c_str());
 }
 
+void report_without_value(const EnsembleReport& r) {
+  for (const auto& [name, cases] : r.without_value)
+    say(stderr, "note: %s has no value in %zu of the finished cases: the formula has none on a part of their motions\n",
+        name.c_str(), cases);
+}
+
 void report_stopped(const SweepOutput& out) {
   for (const auto& [kind, stopped] : out.stopped())
     say(stderr, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,

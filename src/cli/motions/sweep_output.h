@@ -38,5 +38,7 @@ const ResultFormat& sweep_format(const std::string& output, bool json);
 // On stderr: how many cases finished, how far they can be trusted; why the others stopped.
 void report_sweep(const EnsembleReport& report, std::size_t cases, const SweepOutput& output);
 void report_stopped(const SweepOutput& output);
+// Which formulas of reductions have no value, and in how many of the finished cases.
+void report_without_value(const EnsembleReport& report);
 
 }  // namespace anholon::cli

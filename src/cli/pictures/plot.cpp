@@ -177,6 +177,9 @@ std::optional<RunFile> drawn_sweep(const PlotCommand& o, Target t, FigureOptions
     must_be_written(write_drawing(lay_out(drawn), o.title, t, o.output));
   };
   if (picture.map || picture.histogram) {
+    if (o.log)
+      throw UsageError{"error: --log belongs to curves: a map and a histogram have no logarithmic scale\n"
+                       "hint: leave out --log\n"};
     picture.map ? draw(*picture.map) : draw(*picture.histogram);
     return std::nullopt;
   }
@@ -223,6 +226,9 @@ int plot(const PlotCommand& o) {
   if (o.motions > 0 && t != Target::html)
     throw UsageError{
         "error: --motions belongs to a page of a sweep\nhint: anholon plot falls/ -o falls.html --motions 24\n"};
+  if (t == Target::html && o.log)
+    throw UsageError{
+        "error: --log belongs to curves: a page of a sweep has no logarithmic scale\nhint: leave out --log\n"};
   if (t == Target::html) return write_page_of_sweep(o);
   RunFile run;
   if (of_sweep) {

@@ -18,9 +18,9 @@ constexpr std::size_t kMostAxes = 6;  // 3^6 points around a cell
 class Kinds {
  public:
   std::uint32_t of(const std::string& words) {
-    const auto at = std::find(list_.begin(), list_.end(), words);
-    if (at == list_.end()) list_.push_back(words);
-    return static_cast<std::uint32_t>(at - list_.begin());
+    const auto at = std::find(list_.begin(), list_.end(), words) - list_.begin();
+    if (at == std::ssize(list_)) list_.push_back(words);
+    return static_cast<std::uint32_t>(at);
   }
 
  private:

@@ -130,6 +130,59 @@ output.v = "x'"
   }
 }
 
+// The motion is a polynomial, and one step is the whole of it: formulas have series that converge less far, or none.
+TEST(Reduction, FormulasNeedNotConvergeWithTheMotion) {
+  Sweep run(R"toml(
+coordinates = ["x", "z"]
+gravity.field = "-10*ez"
+particle = [{name = "p", mass = 1, position = "x*ex + z*ez"}]
+initial = {"z'" = 10}
+)toml",
+            {"last(cos(5*x))", "mean(sin(5*x))", "max(norm(vel(p)))", "min(norm(vel(p)))", "mean(exp(-x^2))",
+             "mean(abs(z'))", "mean(cos(x^3))"});
+  run.options.varied = {{Varied::Kind::initial, 0, 1, "x'"}};
+  for (const CaseResult& r : run.go(4, 1)) {
+    ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
+    const double v = r.values[0], end = 3 * v;
+    EXPECT_NEAR(r.reduced[0], std::cos(5 * end), 1e-10);
+    EXPECT_NEAR(r.reduced[1], (1 - std::cos(5 * end)) / (5 * end), 1e-10);
+    EXPECT_NEAR(r.reduced[2], std::hypot(v, 20), 1e-9);
+    EXPECT_NEAR(r.reduced[3], v, 1e-9);
+    EXPECT_NEAR(r.reduced[4], std::sqrt(std::atan(1)) * std::erf(end) / end, 1e-10);
+    EXPECT_NEAR(r.reduced[5], 25.0 / 3, 1e-9);
+    double sum = 0;
+    constexpr int kParts = 20000;
+    for (int k = 0; k < kParts; ++k) sum += std::cos(std::pow(end * (k + 0.5) / kParts, 3));
+    EXPECT_NEAR(r.reduced[6], sum / kParts, 1e-6);
+  }
+  EXPECT_EQ(run.report.in_workspaces, 0U);
+}
+
+// A norm at rest, and an angle at the ends of its range: values beside them stand for theirs.
+TEST(Reduction, FormulasMayHaveNoDerivativesOnTheWay) {
+  Sweep run(R"toml(
+coordinates = ["x"]
+particle = [{name = "p", mass = 1, position = "x*ex"}]
+potential.V = "x^2/2"
+initial = {x = 1}
+)toml",
+            {"mean(norm(vel(p)))", "max(norm(vel(p)))", "max(acos(x))", "mean(acos(x))"});
+  run.options.to = 4;
+  run.options.varied = {{Varied::Kind::initial, 0, 1, "x'"}};
+  run.options.numbers = [](std::size_t) { return EnsembleCase{{Rational(0)}, {}}; };
+  run.options.cases = 1;
+  Results results;
+  const EnsembleReport report = ensemble(run.scenario, run.options, results);
+  const CaseResult& r = results.list.at(0);
+  ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
+  const double pi = 4 * std::atan(1);
+  EXPECT_NEAR(r.reduced[0], (3 + std::cos(4)) / 4, 1e-10);
+  EXPECT_NEAR(r.reduced[1], 1, 1e-10);
+  EXPECT_NEAR(r.reduced[2], pi, 1e-8);
+  EXPECT_NEAR(r.reduced[3], (pi * pi - (2 * pi - 4) * (2 * pi - 4) / 2) / 4, 1e-8);
+  EXPECT_TRUE(report.without_value.empty());
+}
+
 // The pendulum rises to the height of its start: y = -sqrt(l^2 - x^2). Between the ends of steps lie its lowest points.
 TEST(Reduction, ExtremesAreThoseOfTheMotion) {
   Sweep run(kPendulum, {"max(height)", "min(height)", "last(height)", "mean(x')", "max(abs(x))"});

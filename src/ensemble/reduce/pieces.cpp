@@ -1,0 +1,138 @@
+#include "ensemble/reduce/pieces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/series/sign_change.h"
+
+namespace anholon {
+
+// ---- extremes of a polynomial -----------------------------------------------------------------------------------------
+
+namespace {
+
+// A polynomial on [0, 1], whose pieces are in Bernstein form.
+class Highest {
+ public:
+  Highest(const std::vector<double>& c, double known) : c_(c), best_(known) {}
+
+  double find() {
+    see(c_[0]);
+    see(value_at(c_.data(), degree(), 1.0));
+    // The sum of what each term adds at most.
+    double bound = c_[0];
+    for (std::size_t k = 1; k < c_.size(); ++k) bound += std::max(c_[k], 0.0);
+    if (!(bound > best_) || monotonic()) return best_;
+    search(bernstein(c_), 0, 1, kDeepest);
+    return best_;
+  }
+
+ private:
+  static constexpr int kDeepest = 40, kBisections = 60;
+
+  int degree() const { return static_cast<int>(c_.size()) - 1; }
+  void see(double x) { best_ = x > best_ ? x : best_; }
+  double slope(double x) const {
+    double s = 0;
+    for (int k = degree(); k >= 1; --k) s = s * x + k * c_[static_cast<std::size_t>(k)];
+    return s;
+  }
+  // Whether the first term of the derivative outweighs the others.
+  bool monotonic() const {
+    double others = 0;
+    for (std::size_t k = 2; k < c_.size(); ++k) others += static_cast<double>(k) * std::abs(c_[k]);
+    return c_.size() < 2 || std::abs(c_[1]) > others;
+  }
+
+  // The piece [from, to] lies below the greatest of its Bernstein coefficients, and its derivative has at most as many
+  // zeros as their differences have changes of sign.
+  void search(std::vector<double> b, double from, double to, int depth) {
+    if (!(*std::max_element(b.begin(), b.end()) > best_)) return;
+    int changes = 0, first = 0, sign = 0;
+    for (std::size_t j = 0; j + 1 < b.size(); ++j) {
+      const double d = b[j + 1] - b[j];
+      const int now = (d > 0) - (d < 0);
+      if (now != 0 && sign != 0 && now != sign) ++changes;
+      if (now != 0) sign = now;
+      if (first == 0) first = now;
+    }
+    see(value_at(c_.data(), degree(), from));
+    see(value_at(c_.data(), degree(), to));
+    if (changes == 0 || depth == 0) return;
+    if (changes == 1 && first < 0) return;  // the zero of the slope is a minimum
+    if (changes == 1) return see(value_at(c_.data(), degree(), end_of_rise(from, to)));
+    std::vector<double> left = b;
+    for (std::size_t k = 1; k < b.size(); ++k) {
+      for (std::size_t j = 0; j + k < b.size(); ++j) b[j] = (b[j] + b[j + 1]) / 2;
+      left[k] = b[0];
+    }
+    const double middle = (from + to) / 2;
+    search(std::move(left), from, middle, depth - 1);
+    search(std::move(b), middle, to, depth - 1);
+  }
+
+  // The piece rises from its beginning up to there.
+  double end_of_rise(double from, double to) const {
+    for (int k = 0; k < kBisections; ++k) {
+      const double middle = (from + to) / 2;
+      if (middle == from || middle == to) break;
+      (slope(middle) > 0 ? from : to) = middle;
+    }
+    return from;
+  }
+
+  const std::vector<double>& c_;
+  double best_;
+};
+
+}  // namespace
+
+double greatest_on(const double* c, int degree, double h, double known) {
+  std::vector<double> scaled;
+  double power = 1;
+  for (int k = 0; k <= degree; ++k, power *= h) {
+    scaled.push_back(c[k] * power);
+    if (!std::isfinite(scaled.back())) return known;
+  }
+  return Highest(scaled, known).find();
+}
+
+// ---- interpolation --------------------------------------------------------------------------------------------------
+
+static double angle(int j) { return 3.14159265358979323846 * (j + 0.5) / Interpolation::kPoints; }
+
+Interpolation::Interpolation(const std::function<FormulaValue(double)>& f, double from, double to) {
+  constexpr int kNoise = 64;
+  for (int j = 0; j < kPoints; ++j) {
+    const FormulaValue v = f(from + (to - from) * (1 - std::cos(angle(j))) / 2);
+    values_[static_cast<std::size_t>(j)] = v.value;
+    if (!std::isfinite(v.value)) ++without_value_;
+    size_ = std::max(size_, std::abs(v.value));
+    noise_ = std::max(noise_, kNoise * std::numeric_limits<double>::epsilon() * v.made_of);
+  }
+  for (int k = 0; k < kPoints; ++k) {
+    double sum = 0;
+    for (int j = 0; j < kPoints; ++j) sum += values_[static_cast<std::size_t>(j)] * std::cos(k * angle(j));
+    terms_[static_cast<std::size_t>(k)] = sum * (k == 0 ? 1 : k % 2 == 0 ? 2 : -2) / kPoints;
+  }
+}
+
+bool Interpolation::good(double allowed) const {
+  constexpr int kLast = 3;
+  return without_value_ == 0 &&
+         std::all_of(terms_.end() - kLast, terms_.end(), [&](double x) { return std::abs(x) <= allowed + noise_; });
+}
+
+void Interpolation::polynomial(std::vector<double>& c) const {
+  c.assign(kPoints, 0);
+  std::array<double, kPoints> before{}, now{}, next{};  // T_k(2 u - 1)
+  before[0] = 1, now[0] = -1, now[1] = 2;
+  for (std::size_t i = 0; i < kPoints; ++i) c[i] = terms_[0] * before[i] + terms_[1] * now[i];
+  for (std::size_t k = 2; k < kPoints; ++k) {
+    for (std::size_t i = 0; i < kPoints; ++i)
+      next[i] = 4 * (i > 0 ? now[i - 1] : 0) - 2 * now[i] - before[i], c[i] += terms_[k] * next[i];
+    before = now, now = next;
+  }
+}
+
+}  // namespace anholon

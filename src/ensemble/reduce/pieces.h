@@ -1,0 +1,40 @@
+// A formula on a piece of a motion as a polynomial: its extremes, and a polynomial through values.
+#pragma once
+#include <array>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace anholon {
+
+// The greatest value of sum c_k x^k, k <= degree, for x from 0 to h, h of either sign; `known` if no value is greater. A
+// value is found wherever the derivative changes its sign.
+double greatest_on(const double* c, int degree, double h, double known);
+
+// A formula at a moment: NaN where it has no value; the magnitude of all that the value is made of.
+struct FormulaValue {
+  double value = std::numeric_limits<double>::quiet_NaN(), made_of = 0;
+};
+
+// Chebyshev's interpolation of a formula on [from, to], at points within.
+class Interpolation {
+ public:
+  static constexpr int kPoints = 13;
+
+  Interpolation(const std::function<FormulaValue(double)>& f, double from, double to);
+  const std::array<double, kPoints>& values() const { return values_; }
+  int without_value() const { return without_value_; }  // points
+  double size() const { return size_; }                 // the greatest magnitude of a value
+  double mean() const { return terms_[0]; }
+  // Whether the last terms are below the allowed error and the round-off of the values.
+  bool good(double allowed) const;
+  // The coefficients of u^k for u from 0 to 1.
+  void polynomial(std::vector<double>& c) const;
+
+ private:
+  std::array<double, kPoints> values_{}, terms_{};
+  double noise_ = 0, size_ = 0;
+  int without_value_ = 0;
+};
+
+}  // namespace anholon
