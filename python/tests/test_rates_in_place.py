@@ -5,6 +5,35 @@ import numpy as np
 import pytest
 
 
+@pytest.mark.parametrize("name", ["trailers", "snakeboard", "two-wheeled-pendulum", "roller-racer", "snake", "car-three-trailers", "disc"])
+def test_accelerations_as_outputs_in_independent_velocities(name: str) -> None:
+    model = an.load(name)
+    outputs = {f"a{k}": f"{c.name}'' + {c.name}'*{c.name}''" for k, c in enumerate(model.coordinates)}
+    f, full = model.dynamics(outputs=outputs), model.dynamics(minimal=False, outputs=outputs)
+    assert f.minimal
+    for shift in (0, 0.05):
+        x = f.start + shift
+        motion = f.motion(x, t=0.3)
+        names = [state.name for state in full.states]
+        y = np.array([motion[state] for state in names])
+        expected = full.output(0.3, y)
+        np.testing.assert_allclose(f.output(0.3, x), expected, rtol=1e-9, atol=1e-9 * (1 + np.abs(expected).max()))
+
+
+def test_an_output_beyond_accelerations_is_named() -> None:
+    text = (
+        'coordinates = ["x", "y", "th"]\nbody = [{name = "b", mass = 2, inertia = 0.5, center = "x*ex + y*ey", angle = "th"}]\n'
+        "constraint = [{name = \"e\", equation = \"y'*cos(th) = x'*sin(th)\"}]\nforce = [{on = \"b\", vector = \"ex\"}]\n"
+        "monitor = {jerk = \"x'''\", a = \"x''\"}\ninitial = {\"x'\" = 1, \"th'\" = 0.4}\n"
+    )
+    model = an.loads(text)
+    f = model.dynamics()
+    assert f.minimal and f.outputs == ["a"] and "jerk" in f.formulas.left_out
+    with pytest.raises(an.ModelError, match="the output 'jerk' holds what the equations are not solved for"):
+        model.dynamics(outputs=["jerk"])
+    assert "jerk" in model.python_code()
+
+
 def test_rates_are_put_into_an_array_of_any_layout() -> None:
     f = an.load("disc").dynamics()
     n = len(f.start)

@@ -129,8 +129,12 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
     if (options.outputs && !data->values().formulas().left_out.empty())
       return mistake("the output '" + data->values().formulas().left_out[0] +
                          "' holds what the equations are not solved for" +
-                         (data->function->minimal() ? ": in independent velocities there are no multipliers" : ""),
-                     data->function->minimal() ? "take all velocities, minimal=False" : "leave it out");
+                         (data->function->minimal()
+                              ? ": in independent velocities these are multipliers and derivatives beyond accelerations"
+                              : ""),
+                     data->function->minimal() ? "take all velocities, minimal=False, for multipliers; leave out "
+                                                 "derivatives beyond accelerations"
+                                               : "leave it out");
     return Dynamics(data);
   });
 }

@@ -84,14 +84,14 @@ class Builder {
     f_.input_formulas = input_formulas_;
   }
 
-  // x = q, p, z with explicit rates. What holds multipliers is left out.
+  // x = q, p, z with explicit rates. What holds multipliers or derivatives beyond accelerations is left out.
   void in_independent_velocities() {
     const System& s = s_.system;
     const std::size_t n = s.coordinates, z = s_.model->states.size();
     Column others;
     std::vector<std::size_t> kept;
     for (std::size_t i = 0; i < f_.outputs.size(); ++i)
-      if (!holds_multipliers(f_.outputs[i])) others.push_back(f_.outputs[i]), kept.push_back(i);
+      if (known_in_independent_velocities(f_.outputs[i])) others.push_back(f_.outputs[i]), kept.push_back(i);
     others.insert(others.end(), input_formulas_.begin(), input_formulas_.end());
     std::string unused;
     const auto q =
@@ -114,7 +114,9 @@ class Builder {
     for (const auto& [from, to] : {std::pair{z, z + q->count}, std::pair{std::size_t{0}, z}})
       for (std::size_t i = from; i < to; ++i) f_.x.symbols.push_back(unknown(i, 0)), f_.rates.push_back(rates[i]);
     Column values;
-    for (Expr e : q->others) values.push_back(put(written(e), derivatives, rates));
+    const Column qd = jets(*f_.model, 1),
+                 velocities(f_.rates.begin(), f_.rates.begin() + static_cast<std::ptrdiff_t>(n));
+    for (Expr e : q->others) values.push_back(put(put(written(e), qd, velocities), derivatives, rates));
     std::vector<std::string> names;
     std::size_t next = 0;
     f_.outputs.clear();
@@ -127,10 +129,11 @@ class Builder {
     f_.input_formulas.assign(values.begin() + static_cast<std::ptrdiff_t>(next), values.end());
   }
 
-  static bool holds_multipliers(Expr e) {
+  static bool known_in_independent_velocities(Expr e) {
     for (const NodeId id : symbols({&e, 1}))
-      if (e.graph->node(id).kind == Kind::multiplier) return true;
-    return false;
+      if (const Node& n = e.graph->node(id); n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 2))
+        return false;
+    return true;
   }
 
   // Parameters that follow from others, by their formulas.
