@@ -56,3 +56,24 @@ def test_rates_are_put_into_an_array_of_any_layout() -> None:
     locked.flags.writeable = False
     with pytest.raises(ValueError, match="cannot be written to"):
         f(0, x, out=locked)
+
+
+@pytest.mark.parametrize("name", ["abs", "len", "range", "matrix", "right", "sum", "zip", "enumerate", "print"])
+def test_names_of_generated_programs_are_free_for_models(name: str) -> None:
+    text = (
+        f'coordinates = ["x", "y"]\nparameters = {{{name} = 0.7}}\nparticle = [{{name = "p", mass = 1, position = "x*ex + y*ey"}}]\n'
+        f"force = [{{on = \"p\", vector = \"{name}*abs(x)*ex\"}}]\nconstraint = [{{name = \"c\", equation = \"x' = {name}*x*y'\"}}]\n"
+        "monitor.m = \"lambda.c\"\ninitial = {x = 0.3, \"y'\" = 1}\n"
+    )
+    model = an.loads(text)
+    f = model.dynamics(minimal=False)
+    np.testing.assert_allclose(f.formulas.numpy()(0.0, f.start, f.u0, f.p0)[0], f(0, f.start), rtol=1e-13)
+    made: dict[str, object] = {"__name__": "program"}
+    exec(compile(model.python_code(), "program.py", "exec"), made)
+    start, rhs = np.asarray(made["START"]), made["rhs"]
+    assert callable(rhs)
+    one = rhs(0, start)
+    np.testing.assert_allclose(np.asarray(rhs(0, np.tile(start[:, None], (1, 3))))[:, 1], one, rtol=1e-13)
+    for function, arguments in {"residual": (start, np.zeros(3)), "hidden": (start,)}.items():
+        if callable(call := made.get(function)):
+            call(0, *arguments)
