@@ -58,6 +58,12 @@ def test_rates_are_put_into_an_array_of_any_layout() -> None:
         f(0, x, out=locked)
 
 
+def test_a_search_for_an_equilibrium_tells_that_states_are_kept() -> None:
+    held = line("f - x' - 9.81", 'state.f = {rate = "(-50*x - f)/0.1", initial = 0}')
+    with pytest.raises(an.MotionError, match="the states keep their initial values: f "):
+        held.linearize(about="equilibrium")
+
+
 @pytest.mark.parametrize("name", ["abs", "len", "range", "matrix", "right", "sum", "zip", "enumerate", "print"])
 def test_names_of_generated_programs_are_free_for_models(name: str) -> None:
     text = (

@@ -90,7 +90,7 @@ std::shared_ptr<const Model> held_at_start(const Model& at_rest, const std::vect
   return m;
 }
 
-void say_no_rest(Outcome& o) {
+void say_no_rest(const std::vector<std::string>& states, Outcome& o) {
   if (o.kind != OutcomeKind::inconsistent) return;
   o.message = "no equilibrium was found near the initial positions";
   o.hint = "there may be none, also where a rounded number stands for a formula; the search begins at other positions "
@@ -98,3 +98,8 @@ void say_no_rest(Outcome& o) {
 }
 
 }  // namespace anholon
+  if (states.empty()) return;
+  std::string names;
+  for (const std::string& z : states) names += (names.empty() ? "" : ", ") + z;
+  o.hint += "; positions alone are searched for, and the states keep their initial values: " + names +
+            " of [state] need those of the equilibrium";
