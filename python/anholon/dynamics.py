@@ -270,7 +270,8 @@ class Dynamics:
             by: "x", "u" or "p": shape (rows, states, …), (rows, inputs, …) or (rows, parameters, …).
             of: "x'": the rates; "y": the outputs.
 
-        NaN where the equations have no solution. A state has the same bits alone and among others.
+        NaN where the equations have no solution, and where a formula has no derivative: at a kink or a jump of abs, min,
+        max, sign, piecewise or a table. A state has the same bits alone and among others.
 
         Raises:
             ValueError: a shape does not fit, or `by` or `of` is something else.

@@ -58,6 +58,45 @@ def test_rates_are_put_into_an_array_of_any_layout() -> None:
         f(0, x, out=locked)
 
 
+@pytest.mark.parametrize("minimal", [True, False])
+@pytest.mark.parametrize(("force", "kink"), [("-4*min(x,0) - 9*max(x,0)", True), ("-abs(x)", True), ("sign(x)", True), ("F(x)", True), ("-x*abs(x)", False), ("G(x)", False)])
+def test_a_kink_has_no_derivative(force: str, kink: bool, minimal: bool) -> None:
+    tables = 'table = [{name = "F", x = [-1, 0, 1], y = [4, 0, -9]}, {name = "G", x = [-1, 0, 1], y = [4, 0, -9], fit = "spline"}]'
+    model = an.loads(f'coordinates = ["x", "y"]\nparticle = [{{name = "p", mass = 1, position = "x*ex + y*ey"}}]\n{tables}\nforce = [{{on = "p", vector = "({force})*ex - y*ey"}}]\n')
+    f = model.dynamics(minimal=minimal)
+    at, beside = f.jac(0, f.start), f.jac(0, f.start + 0.1)
+    assert np.isfinite(beside).all()
+    assert np.isnan(at[2, 0]) == kink and np.isfinite(at[:, 1:]).all()
+    assert at[3, 1] == pytest.approx(-1)
+
+
+def line(force: str, more: str = "") -> an.Model:
+    return an.loads(f'coordinates = ["x"]\nparticle = [{{name = "p", mass = 1, position = "x*ex"}}]\nforce = [{{on = "p", vector = "({force})*ex"}}]\n{more}\n')
+
+
+@pytest.mark.parametrize(
+    ("model", "place"),
+    [
+        (line("-4*min(x,0) - 9*max(x,0)"), "where -x passes 0|where x passes 0"),
+        (line("-x - sign(x')"), "where -?x' passes 0"),
+        (line("F(x)", 'table = [{name = "F", x = [-1, 0, 1], y = [4, 0, -9]}]'), "where x passes a knot of the table 'F'"),
+        (line("-piecewise(x > 0, 9*x, 4*x)"), "where -?x passes 0"),
+    ],
+)
+def test_no_linear_model_at_a_kink(model: an.Model, place: str) -> None:
+    with pytest.raises(an.MotionError, match=f"the equation of x has a kink or a jump ({place})"):
+        model.linearize()
+    beside = model.linearize(initial={"x": 0.5, "x'": 0.5})
+    assert np.isfinite(np.array(beside.A)).all()
+
+
+def test_sides_that_agree_have_a_linear_model() -> None:
+    linear = line("-x - abs(x')*x'", 'output = {distance = "abs(x)", place = "2*x"}').linearize()
+    np.testing.assert_allclose(linear.A, [[0, 1], [-1, 0]])
+    assert linear.outputs == ["place"] and np.array(linear.C).tolist() == [[2, 0]] and np.array(linear.D).shape[0] == 1
+    assert any("the output 'distance' has a kink or a jump" in note for note in linear.notes)
+
+
 def test_a_search_for_an_equilibrium_tells_that_states_are_kept() -> None:
     held = line("f - x' - 9.81", 'state.f = {rate = "(-50*x - f)/0.1", initial = 0}')
     with pytest.raises(an.MotionError, match="the states keep their initial values: f "):
