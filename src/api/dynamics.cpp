@@ -113,6 +113,9 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
     }
     if (options.inputs || !options.input_names.empty()) {
       const inner::InputsAsParameters inputs = inner::inputs_as_parameters(*data->scenario, options.input_names);
+      if (options.outputs && !inputs.left_out.empty())
+        return mistake("the output '" + inputs.left_out[0] + "' holds the rate of an input, which is no argument",
+                       "leave the output out, or the input among the arguments");
       data->inputs = inputs.names, data->formulas = inputs.formulas;
       inner::Scenario opened;
       if (const inner::Outcome o = make_system(inputs.model, form, of.choice, opened); !o.ok()) return error_of(o);

@@ -52,6 +52,7 @@ const char* name(LinearModel::Motion motion) {
 Linearizer::Linearizer(Workspace& scenario, const StateChoice& choice, Signals signals)
     : s_(scenario), choice_(choice), signals_(std::move(signals)), mass_(mass_matrix(*scenario.mechanics)) {
   const Graph& g = *s_.model->graph;
+  notes_ = signals_.notes;
   Column columns, es;
   for (std::size_t j = 0; j < s_.system.size(); ++j) {
     first_.push_back(entries_.size());
@@ -91,8 +92,8 @@ Linearizer::Linearizer(Workspace& scenario, const StateChoice& choice, Signals s
   const Column outputs = put_masses(*s_.model, signals_.y);
   es.insert(es.end(), outputs.begin(), outputs.end());
   const std::size_t rows = es.size();
-  for (std::size_t r = 0; r < rows; ++r) {
   sides_ = {es, columns, s_.model->parameters.size()};
+  for (std::size_t r = 0; r < rows; ++r) {
     const Column d = gradient(es[r], columns);
     for (std::size_t c = 0; c < d.size(); ++c) {
       if (is_zero(d[c])) continue;
@@ -129,12 +130,12 @@ class LinearPoint {
       const bool known = j && n.order <= l_.s_.structure.d[*j];  // others are multipliers of redundant constraints
       return known ? x[l_.entry(*j, n.order)] : Multi(0);
     });
-    machine_.evaluate();
   }
 
   // Values of all equations, and the partial derivatives; false if a formula has no value here.
   bool evaluate() {
     set(machine_);
+    machine_.evaluate();
     residual.clear();
     const std::size_t all = l_.rows_.size() + l_.signals_.y.size();
     jacobian = Matrix<Multi>(all, x.size() + l_.signals_.u.size());
@@ -422,7 +423,6 @@ static void look_for_steadiness(const LinearPoint& point, bool check, LinearMode
   if (along.motion != LinearModel::Motion::unsteady) out = std::move(along);
 }
 
-Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const {
 static std::string text_of(const Branch& b, const SymbolNames& names) {
   const std::string condition = print(b.condition, names, Format::text);
   return b.table.empty() ? "where " + condition + " passes 0"
@@ -470,6 +470,7 @@ static void leave_out(const std::vector<std::string>& rough, LinearModel& m) {
   }
 }
 
+Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const {
   const InitialProblem<Multi> problem{s_.mechanics.get(), parameters, choice_.overrides, choice_.t, &mass_, nullptr,
                                       &s_.state};
   InitialState<Multi> state;
@@ -485,11 +486,11 @@ static void leave_out(const std::vector<std::string>& rough, LinearModel& m) {
     return {OutcomeKind::not_a_number, "a derivative of the equations has no value at this state",
             "choose another state"};
   if (!point.choose() || !point.settle()) return singular;
-  point.linear(out);
   std::vector<std::string> rough(signals_.y.size());
   if (Outcome o = look_for_kinks(point, parameters, rough); !o.ok()) return o;
-
+  point.linear(out);
   leave_out(rough, out);
+
   look_for_steadiness(point, check, out);
   Matrix<Multi> core(out.core.size(), out.core.size());
   for (std::size_t i = 0; i < core.rows; ++i)

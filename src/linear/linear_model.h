@@ -21,6 +21,7 @@ namespace anholon {
 struct Signals {
   std::vector<std::string> inputs, outputs;
   Column u, y;
+  std::vector<std::string> notes;  // about them
 };
 
 // z' = A z + B u,  y = C z + D u.
@@ -48,8 +49,8 @@ const char* name(LinearModel::Motion motion);
 
 // Derivatives and their tape, made once for all parameter values. The precision of the thread must be that of its
 // construction.
-class Linearizer {
 class LinearPoint;
+class Linearizer {
  public:
   Linearizer(Workspace& scenario, const StateChoice& choice, Signals signals = {});
   // With other values of the parameters; the initial data are solved anew. Only if `check` it is found out whether the
@@ -70,11 +71,11 @@ class LinearPoint;
   }
   bool leading(std::size_t e) const { return entries_[e].order == s_.structure.d[entries_[e].variable]; }
   std::string entry_name(std::size_t e) const;
-
   // Looks for rows that have no derivative at the point. Returns an outcome that names an equation among them, and marks
   // outputs in `rough` by the place where they have none.
   Outcome look_for_kinks(const LinearPoint& point, const std::vector<Multi>& parameters,
                          std::vector<std::string>& rough) const;
+
   const Scenario& s_;
   const StateChoice& choice_;
   Signals signals_;
