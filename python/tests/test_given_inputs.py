@@ -63,7 +63,10 @@ def test_other_inputs_follow_the_given_one() -> None:
 
 
 def test_an_input_of_a_state_alone_is_an_argument() -> None:
-    model = an.loads('coordinates = ["x"]\ninput.u = "0"\nstate.w = {rate = "u", initial = 0}\nparticle = [{name = "p", mass = 1, position = "x*ex"}]\nforce = [{on = "p", vector = "w*ex"}]\n')
+    model = an.loads(
+        'coordinates = ["x"]\ninput.u = "0"\nstate.w = {rate = "u", initial = 0}\n'
+        'particle = [{name = "p", mass = 1, position = "x*ex"}]\nforce = [{on = "p", vector = "w*ex"}]\n'
+    )
     f = model.dynamics(inputs=["u"])
     assert f.inputs == ["u"] and f(0, f.start, [3])[-1] == 3
     linear = model.linearize()

@@ -59,10 +59,16 @@ def test_rates_are_put_into_an_array_of_any_layout() -> None:
 
 
 @pytest.mark.parametrize("minimal", [True, False])
-@pytest.mark.parametrize(("force", "kink"), [("-4*min(x,0) - 9*max(x,0)", True), ("-abs(x)", True), ("sign(x)", True), ("F(x)", True), ("-x*abs(x)", False), ("G(x)", False)])
+@pytest.mark.parametrize(
+    ("force", "kink"),
+    [("-4*min(x,0) - 9*max(x,0)", True), ("-abs(x)", True), ("sign(x)", True), ("F(x)", True), ("-x*abs(x)", False), ("G(x)", False)],
+)
 def test_a_kink_has_no_derivative(force: str, kink: bool, minimal: bool) -> None:
     tables = 'table = [{name = "F", x = [-1, 0, 1], y = [4, 0, -9]}, {name = "G", x = [-1, 0, 1], y = [4, 0, -9], fit = "spline"}]'
-    model = an.loads(f'coordinates = ["x", "y"]\nparticle = [{{name = "p", mass = 1, position = "x*ex + y*ey"}}]\n{tables}\nforce = [{{on = "p", vector = "({force})*ex - y*ey"}}]\n')
+    model = an.loads(
+        'coordinates = ["x", "y"]\nparticle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]\n'
+        f'{tables}\nforce = [{{on = "p", vector = "({force})*ex - y*ey"}}]\n'
+    )
     f = model.dynamics(minimal=minimal)
     at, beside = f.jac(0, f.start), f.jac(0, f.start + 0.1)
     assert np.isfinite(beside).all()
@@ -71,7 +77,8 @@ def test_a_kink_has_no_derivative(force: str, kink: bool, minimal: bool) -> None
 
 
 def line(force: str, more: str = "") -> an.Model:
-    return an.loads(f'coordinates = ["x"]\nparticle = [{{name = "p", mass = 1, position = "x*ex"}}]\nforce = [{{on = "p", vector = "({force})*ex"}}]\n{more}\n')
+    particle = 'coordinates = ["x"]\nparticle = [{name = "p", mass = 1, position = "x*ex"}]\n'
+    return an.loads(f'{particle}force = [{{on = "p", vector = "({force})*ex"}}]\n{more}\n')
 
 
 @pytest.mark.parametrize(
