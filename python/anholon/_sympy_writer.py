@@ -14,7 +14,7 @@ _SAME = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "
 _RECIPROCAL = {"cot": "tan", "sec": "cos", "csc": "sin", "coth": "tanh", "sech": "cosh", "csch": "sinh"}
 _OTHER_NAMES = {"Abs": "abs", "Max": "max", "Min": "min"}
 
-RESERVED = {"t", "pi", "ex", "ey", "ez", "e", "i", "D", "lambda"}
+RESERVED = {"t", "pi", "ex", "ey", "ez", "e", "i", "D", "lambda", "here", "inertial"}
 
 
 def _in_ascii(letter: str) -> str:

@@ -32,6 +32,20 @@ def _time(t: object) -> float:
     return float(t)
 
 
+def _takes_numbers(out: Array, x: Array) -> bool:
+    """Whether the core can write to `out` itself. Raises TypeError or ValueError if no rates of x can be put there."""
+    import numpy as np
+
+    if not isinstance(out, np.ndarray) or out.dtype != np.float64:
+        kind = f"an array of {out.dtype}" if isinstance(out, np.ndarray) else f"a {type(out).__name__}"
+        raise TypeError(f"out is {kind}; it has to be an array of float64")
+    if out.shape != x.shape:
+        raise ValueError(f"out has the shape {out.shape}; it has to be that of x, {x.shape}")
+    if not out.flags.writeable:
+        raise ValueError("out cannot be written to")
+    return out.flags.carray and not np.may_share_memory(out, x)
+
+
 class Dynamics:
     """A function f(t, x, u, p) -> x' in SI units, with outputs y. Threads may share it; large batches take all cores.
 
@@ -155,15 +169,16 @@ class Dynamics:
         Args:
             t: the time, s.
             x: states.
-            u: inputs, shape (inputs,), or (inputs, …) for each state; by the formulas of the model if it is None.
+            u: inputs, shape (inputs,), or (inputs, …) for each state; by the formulas of the model if it is None, and so
+                are those left out of a mapping, by the formulas at (t, x).
             p: parameters, shape (parameters,), or (parameters, …) for each state; those of the model if it is None.
-            out: an array of the shape of x for the result; a new one if it is None.
+            out: an array of float64 of the shape of x, in any layout, for the result; a new one if it is None.
 
         NaN where the equations have no solution. A state has the same bits alone and among others.
 
         Raises:
-            TypeError: t is not a number.
-            ValueError: a shape does not fit.
+            TypeError: t is not a number, or `out` is not an array of float64.
+            ValueError: a shape does not fit, or `out` cannot be written to.
             KeyError: there is no input or parameter of that name.
 
         Example:
@@ -178,25 +193,42 @@ class Dynamics:
         given = np.ascontiguousarray(x, dtype=np.float64)
         if given.shape[:1] != (self._count,):
             raise ValueError(f"x has the shape {given.shape}; its first axis has to be the {self._count} states")
-        if out is None:
-            out = np.empty_like(given)
+        # The core writes to contiguous numbers that x does not share.
+        to = out if out is not None and _takes_numbers(out, given) else np.empty_like(given)
         if u is None and p is None:
-            self._core.rates(time, given, out)
+            self._core.rates(time, given, to)
         else:
-            some = self._values(u, self.inputs, lambda: self.u0, "u", given.shape[1:])
-            others = self._values(p, self.parameters, lambda: self.p0, "p", given.shape[1:])
-            self._core.rates(time, given, out, some, others)
+            self._core.rates(time, given, to, *self._given(time, given, u, p))
+        if out is None:
+            return to
+        if to is not out:
+            out[...] = to
         return out
 
-    def _states(self, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array | None, Array | None, tuple[int, ...]]:
+    def _given(self, t: float, x: Array, u: Values, p: Values) -> tuple[Array | None, Array | None]:
+        """Inputs and parameters of these states. Inputs left out of a mapping have the values of their formulas."""
+        import numpy as np
+
+        others = self._values(p, self.parameters, lambda: self.p0, "p", x.shape[1:])
+
+        def by_formulas() -> Array:
+            count = int(np.prod(x.shape[1:], dtype=int))
+            flat = x.reshape(self._count, count)
+            each = None if others is None else np.broadcast_to(others.reshape(len(others), -1), (len(others), count))
+            rows = [self._core.inputs_at(t, flat[:, k].tolist(), [] if each is None else each[:, k].tolist()) for k in range(count)]
+            return np.array(rows).T.reshape((len(self.inputs), *x.shape[1:]))
+
+        usual = by_formulas if isinstance(u, Mapping) and any(name not in u for name in self.inputs) else lambda: self.u0
+        return self._values(u, self.inputs, usual, "u", x.shape[1:]), others
+
+    def _states(self, t: float, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array | None, Array | None, tuple[int, ...]]:
         """States with their inputs and parameters, and the axes that count them."""
         import numpy as np
 
         state = np.ascontiguousarray(x, dtype=np.float64)
         if state.shape[:1] != (self._count,):
             raise ValueError(f"x has the shape {state.shape}; its first axis has to be the {self._count} states")
-        some = self._values(u, self.inputs, lambda: self.u0, "u", state.shape[1:])
-        others = self._values(p, self.parameters, lambda: self.p0, "p", state.shape[1:])
+        some, others = self._given(t, state, u, p)
         return state, some, others, state.shape[1:]
 
     def output(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None) -> Array:
@@ -208,8 +240,9 @@ class Dynamics:
             >>> f.outputs, f.output(0, np.tile(f.start[:, None], 100)).shape
             (['N', 'lam'], (2, 100))
         """
-        state, some, others, batch = self._states(x, u, p)
-        made: Array = self._core.outputs_at(_time(t), state, some, others)
+        time = _time(t)
+        state, some, others, batch = self._states(time, x, u, p)
+        made: Array = self._core.outputs_at(time, state, some, others)
         return made.reshape((len(made), *batch))
 
     def input(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
@@ -220,10 +253,11 @@ class Dynamics:
         """
         import numpy as np
 
-        state, _, parameters, batch = self._states(x, None, p)
+        time = _time(t)
+        state, _, parameters, batch = self._states(time, x, None, p)
         if batch:
             raise ValueError(f"x has the shape {state.shape}; it has to be that of one state, {(self._count,)}")
-        return np.array(self._core.inputs_at(_time(t), state.tolist(), [] if parameters is None else parameters.tolist()))
+        return np.array(self._core.inputs_at(time, state.tolist(), [] if parameters is None else parameters.tolist()))
 
     def jac(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:
         """The exact derivatives of the rates (or outputs), not differences, of one state or of many.
@@ -236,7 +270,8 @@ class Dynamics:
             by: "x", "u" or "p": shape (rows, states, …), (rows, inputs, …) or (rows, parameters, …).
             of: "x'": the rates; "y": the outputs.
 
-        NaN where the equations have no solution. A state has the same bits alone and among others.
+        NaN where the equations have no solution, and where a formula has no derivative: at a kink or a jump of abs, min,
+        max, sign, piecewise or a table. A state has the same bits alone and among others.
 
         Raises:
             ValueError: a shape does not fit, or `by` or `of` is something else.
@@ -249,8 +284,9 @@ class Dynamics:
         """
         if by not in ("x", "u", "p") or of not in ("x'", "y"):
             raise ValueError("by is 'x', 'u' or 'p', and of is \"x'\" or 'y'")
-        state, some, others, batch = self._states(x, u, p)
-        whole: Array = self._core.jacobian(_time(t), state, some, others)
+        time = _time(t)
+        state, some, others, batch = self._states(time, x, u, p)
+        whole: Array = self._core.jacobian(time, state, some, others)
         rows = whole[: self._count] if of == "x'" else whole[self._count :]
         ends = [0, self._count, self._count + len(self.inputs), whole.shape[1]]
         k = "xup".index(by)
@@ -290,10 +326,11 @@ class Dynamics:
                 "the equations are not solved for accelerations alone, so no mass matrix times accelerations is in them\n"
                 "hint: model.equations() shows what they are; f.jac has the derivatives of the rates"
             )
-        state, some, others, batch = self._states(x, u, p)
+        time = _time(t)
+        state, some, others, batch = self._states(time, x, u, p)
         matrix: Array
         right: Array
-        _, matrix, right = self._core.equations(_time(t), state, some, others)
+        _, matrix, right = self._core.equations(time, state, some, others)
         return matrix.reshape((*matrix.shape[:2], *batch)), right.reshape((len(right), *batch))
 
     def mass_matrix(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:

@@ -105,6 +105,25 @@ def test_c_stands_by_itself() -> None:
             np.testing.assert_allclose(dx, f(0.3, x, u, p), rtol=1e-11, atol=1e-12)
 
 
+AFFINE = """coordinates = ["x", "y", "th", "ps"]
+parameters = {m = 2, a = 0.3, w = 0.4, J = 0.2}
+observer.spin = "w*t*ez"
+body = [{name = "b", mass = "m", inertia = "J", center = "x*ex + y*ey + a*(cos(th)*ex + sin(th)*ey)", angle = "th"},
+  {name = "c", inertia = "J/2", center = "x*ex", angle = "ps"}]
+constraint = [{name = "e", equation = "y'*cos(th) - x'*sin(th) = 0.1*t*ps' + 0.2*sin(3*t)"}]
+initial = {t = 0.7, x = 0.2, th = 0.3, "x'" = 0.4, "th'" = 0.6}
+"""
+
+
+def test_all_that_c_computes_is_read() -> None:
+    """Of constant factors that move outwards, and of a matrix in steps, for whose elimination there is nothing to do."""
+    from anholon.formulas import compile_c
+
+    for model in (an.load("rocket"), an.loads(AFFINE)):
+        for minimal in (True, False):
+            compile_c(model.dynamics(minimal=minimal).c_code(), ("-std=c99", "-O0", "-Wall", "-Wextra", "-Werror", "-D_DEFAULT_SOURCE"))
+
+
 def test_small_pivots_do_not_harm_generated_c() -> None:
     """Rods along the axes, where pivots that suit the start vanish."""
     pytest.importorskip("casadi")

@@ -317,3 +317,16 @@ def test_velocities_of_many_terms() -> None:
     method = rolling_disc_with_six_speeds()
     assert len(_Import(method).writer.q) == 6
     assert deviation(method) < 1e-12
+
+
+def test_symbols_with_reserved_names_come_in() -> None:
+    x, v = me.dynamicsymbols("here v")
+    inertial, mass = sm.symbols("inertial m")
+    frame, origin = me.ReferenceFrame("N"), me.Point("O")
+    origin.set_vel(frame, 0)
+    place = origin.locatenew("P", x * frame.x)
+    place.set_vel(frame, v * frame.x)
+    method = me.KanesMethod(frame, [x], [v], kd_eqs=[x.diff() - v])
+    method.kanes_equations([me.Particle("P", place, mass)], [(place, -inertial * x * frame.x)])
+    model = an.from_sympy(method, values={inertial: 3, mass: 2}, initial={x: 0.5, v: 0})
+    assert list(model.evaluate().accelerations.values()) == [-0.75]

@@ -113,6 +113,9 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
     }
     if (options.inputs || !options.input_names.empty()) {
       const inner::InputsAsParameters inputs = inner::inputs_as_parameters(*data->scenario, options.input_names);
+      if (options.outputs && !inputs.left_out.empty())
+        return mistake("the output '" + inputs.left_out[0] + "' holds the rate of an input, which is no argument",
+                       "leave the output out, or the input among the arguments");
       data->inputs = inputs.names, data->formulas = inputs.formulas;
       inner::Scenario opened;
       if (const inner::Outcome o = make_system(inputs.model, form, of.choice, opened); !o.ok()) return error_of(o);
@@ -129,8 +132,12 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
     if (options.outputs && !data->values().formulas().left_out.empty())
       return mistake("the output '" + data->values().formulas().left_out[0] +
                          "' holds what the equations are not solved for" +
-                         (data->function->minimal() ? ": in independent velocities there are no multipliers" : ""),
-                     data->function->minimal() ? "take all velocities, minimal=False" : "leave it out");
+                         (data->function->minimal()
+                              ? ": in independent velocities these are multipliers and derivatives beyond accelerations"
+                              : ""),
+                     data->function->minimal() ? "take all velocities, minimal=False, for multipliers; leave out "
+                                                 "derivatives beyond accelerations"
+                                               : "leave it out");
     return Dynamics(data);
   });
 }

@@ -19,6 +19,8 @@ namespace anholon {
 namespace {
 
 constexpr double kAround = 0.3;  // in coordinates and velocities
+// Numbers of formulas on both sides of a border differ by less if only the round-off of some thousand operations differs.
+constexpr double kSameSides = 4096 * std::numeric_limits<double>::epsilon();
 
 class Builder {
  public:
@@ -84,14 +86,14 @@ class Builder {
     f_.input_formulas = input_formulas_;
   }
 
-  // x = q, p, z with explicit rates. What holds multipliers is left out.
+  // x = q, p, z with explicit rates. What holds multipliers or derivatives beyond accelerations is left out.
   void in_independent_velocities() {
     const System& s = s_.system;
     const std::size_t n = s.coordinates, z = s_.model->states.size();
     Column others;
     std::vector<std::size_t> kept;
     for (std::size_t i = 0; i < f_.outputs.size(); ++i)
-      if (!holds_multipliers(f_.outputs[i])) others.push_back(f_.outputs[i]), kept.push_back(i);
+      if (known_in_independent_velocities(f_.outputs[i])) others.push_back(f_.outputs[i]), kept.push_back(i);
     others.insert(others.end(), input_formulas_.begin(), input_formulas_.end());
     std::string unused;
     const auto q =
@@ -114,7 +116,9 @@ class Builder {
     for (const auto& [from, to] : {std::pair{z, z + q->count}, std::pair{std::size_t{0}, z}})
       for (std::size_t i = from; i < to; ++i) f_.x.symbols.push_back(unknown(i, 0)), f_.rates.push_back(rates[i]);
     Column values;
-    for (Expr e : q->others) values.push_back(put(written(e), derivatives, rates));
+    const Column qd = jets(*f_.model, 1),
+                 velocities(f_.rates.begin(), f_.rates.begin() + static_cast<std::ptrdiff_t>(n));
+    for (Expr e : q->others) values.push_back(put(put(written(e), qd, velocities), derivatives, rates));
     std::vector<std::string> names;
     std::size_t next = 0;
     f_.outputs.clear();
@@ -127,10 +131,11 @@ class Builder {
     f_.input_formulas.assign(values.begin() + static_cast<std::ptrdiff_t>(next), values.end());
   }
 
-  static bool holds_multipliers(Expr e) {
+  static bool known_in_independent_velocities(Expr e) {
     for (const NodeId id : symbols({&e, 1}))
-      if (e.graph->node(id).kind == Kind::multiplier) return true;
-    return false;
+      if (const Node& n = e.graph->node(id); n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 2))
+        return false;
+    return true;
   }
 
   // Parameters that follow from others, by their formulas.
@@ -254,18 +259,40 @@ FormulaValues::FormulaValues(RateFormulas formulas) : formulas_(std::move(formul
     row += es->size();
   }
   derivatives_ = {f, partials};
+  Column rows = f.equations;
+  for (const Column* es : {&f.rates, &f.outputs}) rows.insert(rows.end(), es->begin(), es->end());
+  sides_ = {rows, by, f.model->names.parameters.size()};
+  if (!sides_.branches().empty()) sources_ = CompiledFormulas::sources(f);
+  columns_ = std::move(by);
 }
 
 CompiledFormulas::CompiledFormulas(const RateFormulas& f, const Column& es) {
   if (es.empty()) return;
   tape_ = compile(es);
+  const std::unordered_map<NodeId, Source> places = sources(f);
+  for (const Input& in : tape_.inputs) inputs_.push_back(places.at(in.symbol));
+}
+
+std::unordered_map<NodeId, CompiledFormulas::Source> CompiledFormulas::sources(const RateFormulas& f) {
   std::unordered_map<NodeId, Source> places{{f.model->graph->time().id, {From::time, 0}}};
   const auto add = [&](const RateFormulas::Symbols& list, From from) {
     for (std::size_t i = 0; i < list.size(); ++i) places[list.symbols[i].id] = {from, i};
   };
   add(f.x, From::state);
   add(f.lead, From::lead);
-  for (const Input& in : tape_.inputs) inputs_.push_back(places.at(in.symbol));
+  return places;
+}
+
+double CompiledFormulas::Source::at(const FormulaPoint& point) const {
+  switch (from) {
+  case From::time:
+    return point.t;
+  case From::state:
+    return point.x[index];
+  case From::lead:
+    return point.lead.empty() ? 0 : point.lead[index];
+  }
+  return 0;
 }
 
 std::vector<double> CompiledFormulas::values(const FormulaPoint& at, Work& work) const {
@@ -275,13 +302,7 @@ std::vector<double> CompiledFormulas::values(const FormulaPoint& at, Work& work)
     work.machine.emplace(tape_, 0, work.parameters);
   }
   Machine<double>& machine = *work.machine;
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    const auto [from, index] = inputs_[i];
-    machine.series(tape_.inputs[i].slot)[0] = from == From::time    ? at.t
-                                              : from == From::state ? at.x[index]
-                                              : at.lead.empty()     ? 0
-                                                                    : at.lead[index];
-  }
+  for (std::size_t i = 0; i < inputs_.size(); ++i) machine.series(tape_.inputs[i].slot)[0] = inputs_[i].at(at);
   machine.evaluate();
   std::vector<double> out;
   for (std::size_t i = 0; i < tape_.roots.size(); ++i) out.push_back(machine.value(i));
@@ -303,14 +324,50 @@ FormulaValues::Equations FormulaValues::equations(const Point& at, Work& work) c
 
 // d rates / dx  =  partial  -  d rates / d lead . (d equations / d lead)^-1 . d equations / dx
 FormulaValues::Derivatives FormulaValues::derivatives(const Point& at, Work& work) const {
+  Derivatives out = assembled(partials_, derivatives_.values(at, work.derivatives));
+  if (!sides_.branches().empty()) leave_out_kinks(at, out);
+  return out;
+}
+
+// The rows of the sides are equations, rates, outputs. A value that jumps with a condition has no derivative by what the
+// condition holds; what is solved for holds everything.
+void FormulaValues::leave_out_kinks(const Point& at, Derivatives& d) const {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::size_t n = formulas_.lead.size(), rows = n + d.rows;
+  const auto differ = [](double a, double b) {
+    return !(std::abs(a - b) <= kSameSides * (1 + std::abs(a) + std::abs(b))) && (std::isfinite(a) || std::isfinite(b));
+  };
+  const auto set = [&](Machine<double>& m) {
+    bind(m, *formulas_.model->graph, [&](const Node&, NodeId symbol) { return sources_.at(symbol).at(at); });
+  };
+  for (const auto& side : sides_.sides<double>({at.parameters.begin(), at.parameters.end()}, 0, set)) {
+    const std::span<const double> below(side.below), above(side.above);
+    const Derivatives a = assembled(sides_.partials(), below.subspan(rows)),
+                      b = assembled(sides_.partials(), above.subspan(rows));
+    for (std::size_t i = 0; i < d.values.size(); ++i)
+      if (differ(a.values[i], b.values[i])) d.values[i] = nan;
+    const std::vector<NodeId> held = symbols({&sides_.branches()[side.branch].condition, 1});
+    const auto holds = [&](Expr e) { return std::find(held.begin(), held.end(), e.id) != held.end(); };
+    const bool through_lead = std::any_of(formulas_.lead.symbols.begin(), formulas_.lead.symbols.end(), holds);
+    for (std::size_t r = 0; r < rows; ++r) {
+      if (!differ(below[r], above[r])) continue;
+      for (std::size_t c = 0; c < d.columns; ++c)
+        if (through_lead || holds(columns_[n + c]))
+          for (std::size_t k = r < n ? 0 : r - n; k < (r < n ? d.rows : r - n + 1); ++k)
+            d.values[k * d.columns + c] = nan;
+    }
+  }
+}
+
+FormulaValues::Derivatives FormulaValues::assembled(const std::vector<Partial>& places,
+                                                    std::span<const double> partials) const {
   const RateFormulas& f = formulas_;
   const std::size_t n = f.lead.size(), columns = f.x.size() + f.u.size() + f.p.size();
-  const std::vector<double> partials = derivatives_.values(at, work.derivatives);
   Derivatives out{f.rates.size() + f.outputs.size(), columns, {}};
   Matrix<double> of_lead(n, n), others(n, columns), through(out.rows, n);
   out.values.assign(out.rows * columns, 0);
-  for (std::size_t k = 0; k < partials_.size(); ++k) {
-    const auto [row, column] = partials_[k];
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto [row, column] = places[k];
     if (row < n)
       (column < n ? of_lead(row, column) : others(row, column - n)) = partials[k];
     else if (column < n)

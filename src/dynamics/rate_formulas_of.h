@@ -2,6 +2,7 @@
 #pragma once
 #include "dynamics/dynamics.h"
 #include "emit/rate_formulas.h"
+#include "tape/one_sided.h"
 
 namespace anholon {
 
@@ -32,12 +33,16 @@ class CompiledFormulas {
   };
   std::vector<double> values(const FormulaPoint& at, Work& work) const;
 
- private:
+  // Where the value of a symbol is in a point.
   enum class From : std::uint8_t { time, state, lead };
   struct Source {
     From from;
     std::size_t index;
+    double at(const FormulaPoint& point) const;
   };
+  static std::unordered_map<NodeId, Source> sources(const RateFormulas& formulas);
+
+ private:
   Tape tape_;
   std::vector<Source> inputs_;
 };
@@ -60,7 +65,8 @@ class FormulaValues {
     std::vector<double> matrix, right;
   };
   Equations equations(const Point& at, Work& work) const;
-  // Exact derivatives of rates, then outputs, by x, u and p: row by row. NaN where the equations have no solution.
+  // Exact derivatives of rates, then outputs, by x, u and p: row by row. NaN where the equations have no solution, and
+  // where a formula has no derivative: at a kink or a jump of abs, min, max, sign, piecewise or a table.
   struct Derivatives {
     std::size_t rows = 0, columns = 0;
     std::vector<double> values;
@@ -68,12 +74,17 @@ class FormulaValues {
   Derivatives derivatives(const Point& at, Work& work) const;
 
  private:
-  struct Partial {
-    std::size_t row, column;
-  };
+  using Partial = OneSided::Partial;
+  // The derivatives by these partial ones, of which there are as many numbers.
+  Derivatives assembled(const std::vector<Partial>& places, std::span<const double> partials) const;
+  // Puts NaN in the places of derivatives that differ on both sides of a border between branches.
+  void leave_out_kinks(const Point& at, Derivatives& d) const;
   RateFormulas formulas_;
   CompiledFormulas inputs_, outputs_, equations_, derivatives_;
   std::vector<Partial> partials_;  // of the derivatives: rows of equations, rates, outputs; columns of lead, x, u, p
+  Column columns_;
+  OneSided sides_;  // of the same rows and columns
+  std::unordered_map<NodeId, CompiledFormulas::Source> sources_;
 };
 
 }  // namespace anholon

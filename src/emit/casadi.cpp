@@ -174,6 +174,8 @@ static int $_eliminate(const double *e, double *lead)
         if (j != column && !a[row][j].empty()) out += " - " + a[row][j] + "*lead[" + std::to_string(j) + "]";
       out += ")*" + place("d", row) + ";\n";
     }
+    // A matrix in steps has no multipliers.
+    if (!f_.pivots.empty() && out.find("  l = ") == std::string::npos) out += "  (void)l;\n";
     return out + (f_.pivots.empty() ? "  (void)e, (void)lead, (void)l, (void)largest;\n  return 1;\n}\n"
                                     : "  return !(largest < 1e3);\n}\n");
   }

@@ -1,8 +1,10 @@
 #include "emit/straight_line.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 #include <unordered_map>
 
 #include "base/assert.h"
@@ -23,6 +25,40 @@ Tape tape_of(const Column& es) {
 const std::string kZero = "0.0";
 
 std::string element(const char* array, std::size_t i) { return std::string(array) + "[" + std::to_string(i) + "]"; }
+
+// The name of a value that begins at `at`, "s12"; empty if another word is there.
+std::string value_name(const std::string& text, std::size_t at) {
+  const auto in_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  if (text[at] != 's' || (at > 0 && in_word(text[at - 1]))) return {};
+  std::size_t end = at + 1;
+  while (end < text.size() && std::isdigit(static_cast<unsigned char>(text[end]))) ++end;
+  return end == at + 1 || (end < text.size() && in_word(text[end])) ? "" : text.substr(at, end - at);
+}
+
+// The statements, one a line, without values that no later one reads: a constant factor that moved outwards has left
+// them behind.
+std::string without_unread(const std::string& statements) {
+  std::vector<std::string> lines;
+  for (std::size_t from = 0, to; from < statements.size(); from = to) {
+    to = std::min(statements.find('\n', from), statements.size() - 1) + 1;
+    lines.push_back(statements.substr(from, to - from));
+  }
+  std::set<std::string> read;
+  for (std::size_t k = lines.size(); k-- > 0;) {
+    std::string& line = lines[k];
+    const std::size_t equals = line.find(" = ");
+    const std::size_t word = equals == std::string::npos || equals == 0 ? 0 : line.rfind(' ', equals - 1) + 1;
+    if (const std::string name = value_name(line, word); !name.empty() && word > 0 && !read.count(name)) {
+      line.clear();
+      continue;
+    }
+    for (std::size_t i = equals == std::string::npos ? 0 : equals; i < line.size(); ++i)
+      if (const std::string name = value_name(line, i); !name.empty()) read.insert(name);
+  }
+  std::string out;
+  for (const std::string& line : lines) out += line;
+  return out;
+}
 
 }  // namespace
 
@@ -61,6 +97,7 @@ StraightLine::StraightLine(const RateFormulas& f, const Column& es, Language lan
   for (std::uint32_t s = 0; s < tape_.code.size(); ++s)
     if (is_literal(s)) name_[s] = operation(tape_.code[s], {});
   write_rates();
+  text_ = without_unread(text_);
   write_constants();
 }
 

@@ -14,7 +14,11 @@ std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) 
     control.value = *control.value + u;
     signals.inputs.push_back(control.name);
     signals.u.push_back(u);
+    if (!control.put_into.empty())
+      signals.notes.push_back("the formula of the input '" + control.name + "' is put into " + control.put_into +
+                              ": B and D do not hold what it does there");
   }
+  put_inputs(*m);
   for (const OutputQuantity& output : m->outputs)
     for (std::size_t i = 0; i < output.values.size(); ++i) {
       signals.outputs.push_back(output.name + (output.values.size() == 1 ? "" : std::string(".") + "xyz"[i]));
@@ -90,11 +94,16 @@ std::shared_ptr<const Model> held_at_start(const Model& at_rest, const std::vect
   return m;
 }
 
-void say_no_rest(Outcome& o) {
+void say_no_rest(const std::vector<std::string>& states, Outcome& o) {
   if (o.kind != OutcomeKind::inconsistent) return;
   o.message = "no equilibrium was found near the initial positions";
   o.hint = "there may be none, also where a rounded number stands for a formula; the search begins at other positions "
            "by --q or [initial]";
+  if (states.empty()) return;
+  std::string names;
+  for (const std::string& z : states) names += (names.empty() ? "" : ", ") + z;
+  o.hint += "; positions alone are searched for, and the states keep their initial values: " + names +
+            " of [state] need those of the equilibrium";
 }
 
 }  // namespace anholon

@@ -24,6 +24,7 @@ std::vector<std::size_t> without_influence(const Scenario& at_rest);
 std::shared_ptr<const Model> held_at_start(const Model& at_rest, const std::vector<std::size_t>& coordinates);
 
 // If no equilibrium was found, the failed conditions are those of the search, not of the file: replaces the message.
-void say_no_rest(Outcome& outcome);
+// `states`: those of the model, which keep their initial values in the search; the hint says so.
+void say_no_rest(const std::vector<std::string>& states, Outcome& outcome);
 
 }  // namespace anholon

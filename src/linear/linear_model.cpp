@@ -52,6 +52,7 @@ const char* name(LinearModel::Motion motion) {
 Linearizer::Linearizer(Workspace& scenario, const StateChoice& choice, Signals signals)
     : s_(scenario), choice_(choice), signals_(std::move(signals)), mass_(mass_matrix(*scenario.mechanics)) {
   const Graph& g = *s_.model->graph;
+  notes_ = signals_.notes;
   Column columns, es;
   for (std::size_t j = 0; j < s_.system.size(); ++j) {
     first_.push_back(entries_.size());
@@ -91,6 +92,7 @@ Linearizer::Linearizer(Workspace& scenario, const StateChoice& choice, Signals s
   const Column outputs = put_masses(*s_.model, signals_.y);
   es.insert(es.end(), outputs.begin(), outputs.end());
   const std::size_t rows = es.size();
+  sides_ = {es, columns, s_.model->parameters.size()};
   for (std::size_t r = 0; r < rows; ++r) {
     const Column d = gradient(es[r], columns);
     for (std::size_t c = 0; c < d.size(); ++c) {
@@ -120,14 +122,19 @@ class LinearPoint {
       if (const Multi* known = state.value(node(e))) x[e] = *known;
   }
 
-  // Values of all equations, and the partial derivatives; false if a formula has no value here.
-  bool evaluate() {
-    bind(machine_, *l_.s_.model->graph, [&](const Node& n, NodeId symbol) {
+  // Gives a machine of formulas its inputs.
+  void set(Machine<Multi>& machine) const {
+    bind(machine, *l_.s_.model->graph, [&](const Node& n, NodeId symbol) {
       if (n.kind == Kind::time) return t;
       const auto j = l_.s_.system.variable(symbol);
       const bool known = j && n.order <= l_.s_.structure.d[*j];  // others are multipliers of redundant constraints
       return known ? x[l_.entry(*j, n.order)] : Multi(0);
     });
+  }
+
+  // Values of all equations, and the partial derivatives; false if a formula has no value here.
+  bool evaluate() {
+    set(machine_);
     machine_.evaluate();
     residual.clear();
     const std::size_t all = l_.rows_.size() + l_.signals_.y.size();
@@ -416,6 +423,53 @@ static void look_for_steadiness(const LinearPoint& point, bool check, LinearMode
   if (along.motion != LinearModel::Motion::unsteady) out = std::move(along);
 }
 
+static std::string text_of(const Branch& b, const SymbolNames& names) {
+  const std::string condition = print(b.condition, names, Format::text);
+  return b.table.empty() ? "where " + condition + " passes 0"
+                         : "where " + condition + " passes a knot of the table '" + b.table + "'";
+}
+
+Outcome Linearizer::look_for_kinks(const LinearPoint& point, const std::vector<Multi>& parameters,
+                                   std::vector<std::string>& rough) const {
+  const Multi part = round_off(kZeroPart), near = part * (Multi(1) + largest(point.x));
+  const std::size_t rows = rows_.size() + signals_.y.size();
+  for (const auto& side : sides_.sides(parameters, near, [&](Machine<Multi>& m) { point.set(m); })) {
+    const std::string where = text_of(sides_.branches()[side.branch], s_.model->names);
+    for (std::size_t k = 0; k < side.below.size(); ++k) {
+      const Multi &a = side.below[k], &b = side.above[k];
+      if (!a.finite() && !b.finite()) continue;
+      if (a.finite() && b.finite() && !(abs(Multi(a - b)) > part * (Multi(1) + abs(a) + abs(b)))) continue;
+      const std::size_t row = k < rows ? k : sides_.partials()[k - rows].row;
+      if (row >= rows_.size()) {
+        rough[row - rows_.size()] = where;
+        continue;
+      }
+      return {OutcomeKind::not_a_number,
+              "the equations have no derivative at this state: the equation of " +
+                  s_.system.equation_names[rows_[row].first] + " has a kink or a jump " + where,
+              "linearize at a state on one side of it, --about state with other initial values, or replace min, max, "
+              "abs, sign, piecewise or the table there by a smooth formula"};
+    }
+  }
+  return {};
+}
+
+// Outputs without a derivative at the point.
+static void leave_out(const std::vector<std::string>& rough, LinearModel& m) {
+  for (std::size_t o = rough.size(); o-- > 0;) {
+    if (rough[o].empty()) continue;
+    m.notes.push_back("the output '" + m.outputs[o] + "' has a kink or a jump at this state, " + rough[o] +
+                      "; it is left out");
+    m.outputs.erase(m.outputs.begin() + static_cast<std::ptrdiff_t>(o));
+    for (Matrix<Multi>* of : {&m.C, &m.D}) {
+      Matrix<Multi> fewer(of->rows - 1, of->cols);
+      for (std::size_t r = 0; r < fewer.rows; ++r)
+        for (std::size_t c = 0; c < fewer.cols; ++c) fewer(r, c) = (*of)(r < o ? r : r + 1, c);
+      *of = std::move(fewer);
+    }
+  }
+}
+
 Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const {
   const InitialProblem<Multi> problem{s_.mechanics.get(), parameters, choice_.overrides, choice_.t, &mass_, nullptr,
                                       &s_.state};
@@ -432,7 +486,10 @@ Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearM
     return {OutcomeKind::not_a_number, "a derivative of the equations has no value at this state",
             "choose another state"};
   if (!point.choose() || !point.settle()) return singular;
+  std::vector<std::string> rough(signals_.y.size());
+  if (Outcome o = look_for_kinks(point, parameters, rough); !o.ok()) return o;
   point.linear(out);
+  leave_out(rough, out);
 
   look_for_steadiness(point, check, out);
   Matrix<Multi> core(out.core.size(), out.core.size());

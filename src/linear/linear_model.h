@@ -12,6 +12,7 @@
 #pragma once
 #include "numeric/eigen.h"
 #include "setup/scenario.h"
+#include "tape/one_sided.h"
 
 namespace anholon {
 
@@ -20,6 +21,7 @@ namespace anholon {
 struct Signals {
   std::vector<std::string> inputs, outputs;
   Column u, y;
+  std::vector<std::string> notes;  // about them
 };
 
 // z' = A z + B u,  y = C z + D u.
@@ -47,6 +49,7 @@ const char* name(LinearModel::Motion motion);
 
 // Derivatives and their tape, made once for all parameter values. The precision of the thread must be that of its
 // construction.
+class LinearPoint;
 class Linearizer {
  public:
   Linearizer(Workspace& scenario, const StateChoice& choice, Signals signals = {});
@@ -68,6 +71,10 @@ class Linearizer {
   }
   bool leading(std::size_t e) const { return entries_[e].order == s_.structure.d[entries_[e].variable]; }
   std::string entry_name(std::size_t e) const;
+  // Looks for rows that have no derivative at the point. Returns an outcome that names an equation among them, and marks
+  // outputs in `rough` by the place where they have none.
+  Outcome look_for_kinks(const LinearPoint& point, const std::vector<Multi>& parameters,
+                         std::vector<std::string>& rough) const;
 
   const Scenario& s_;
   const StateChoice& choice_;
@@ -78,7 +85,8 @@ class Linearizer {
   std::vector<std::size_t> first_;                 // of each variable
   std::vector<std::pair<std::size_t, int>> rows_;  // E_i^(k), k <= c_i
   std::vector<Partial> partials_;
-  Tape tape_;  // values of the rows, outputs, then the partial derivatives
+  Tape tape_;       // values of the rows, outputs, then the partial derivatives
+  OneSided sides_;  // of the rows and outputs
 };
 
 }  // namespace anholon

@@ -92,6 +92,7 @@ ParameterRange read_range(const std::string& text, const Model& model, const std
 }
 
 LinearStudy::LinearStudy(std::shared_ptr<const Model> model, LinearRequest request) : request_(std::move(request)) {
+  for (const StateVariable& z : model->states) states_.push_back(z.name);
   if (request_.equilibrium) model = at_rest(*model);
   model = with_signals(*model, signals_);
   if (request_.equilibrium) model = searched_from(*model, request_.choice);
@@ -111,7 +112,7 @@ Linearization LinearStudy::compute() const {
   else
     l.results.push_back({"", start_, {}});
   if (request_.equilibrium)
-    for (LinearResult& r : l.results) say_no_rest(r.outcome);
+    for (LinearResult& r : l.results) say_no_rest(states_, r.outcome);
   return l;
 }
 

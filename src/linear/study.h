@@ -35,6 +35,7 @@ class LinearStudy {
  private:
   LinearRequest request_;
   Signals signals_;
+  std::vector<std::string> states_;  // of the model
   Scenario scenario_;
   Outcome start_;
 };

@@ -14,6 +14,7 @@ CopiedMechanics copied_mechanics(const Mechanics& m, const System& derived, std:
   c.model->coordinates = from.coordinates;
   c.model->masses = from.masses;
   c.model->controls = from.controls;
+  for (Control& u : c.model->controls) u.open = {};
   Column all;
   const auto visit = [&](const auto& each) {
     for (std::size_t i = 0; i < m.points.size(); ++i) {

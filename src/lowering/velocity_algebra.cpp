@@ -45,7 +45,7 @@ Expr put(Expr e, const Column& from, const Column& to) { return put(Column{e}, f
 Expr written_out(Expr e, std::size_t first, const Column& rates) {
   const auto series = [&](NodeId id) {
     const Node& n = e.graph->node(id);
-    return n.kind == Kind::jet && n.index >= first ? rates[n.index - first] : Expr{};
+    return n.kind == Kind::jet && n.index >= first ? total_derivative(rates[n.index - first], n.order) : Expr{};
   };
   for (;;) {
     const Expr out = substitute({&e, 1}, series)[0];

@@ -14,7 +14,8 @@ bool contains(Expr e, const Column& symbols);
 Column put(const Column& es, const Column& from, const Column& to);
 Expr put(Expr e, const Column& from, const Column& to);
 
-// Jets of coordinates from `first` on, which stand for these expressions (System::rates), written out.
+// Jets of coordinates from `first` on, which stand for these expressions and their total derivatives (System::rates),
+// written out.
 Expr written_out(Expr e, std::size_t first, const Column& rates);
 
 Expr dot(const Column& a, const Column& b);  // sum_i a_i b_i

@@ -72,13 +72,13 @@ static void for_each_expression(Constraint& c, const ExprVisitor& f) {
 }
 
 static void for_each_expression(StateVariable& z, const ExprVisitor& f) {
-  auto& [name, rate, initial, span] = z;
-  for_each_expression_of(f, name, rate, initial, span);
+  auto& [name, rate, initial, span, open_rate] = z;
+  for_each_expression_of(f, name, rate, initial, span, open_rate);
 }
 
 static void for_each_expression(Control& u, const ExprVisitor& f) {
-  auto& [name, value, constraint, span] = u;
-  for_each_expression_of(f, name, value, constraint, span);
+  auto& [name, value, constraint, span, open, put_into] = u;
+  for_each_expression_of(f, name, value, constraint, span, open, put_into);
 }
 
 static void for_each_expression(OutputQuantity& o, const ExprVisitor& f) {
@@ -87,13 +87,13 @@ static void for_each_expression(OutputQuantity& o, const ExprVisitor& f) {
 }
 
 static void for_each_expression(Assignment& a, const ExprVisitor& f) {
-  auto& [symbol, value, span] = a;
-  for_each_expression_of(f, symbol, value, span);
+  auto& [symbol, value, span, open] = a;
+  for_each_expression_of(f, symbol, value, span, open);
 }
 
 static void for_each_expression(Event& e, const ExprVisitor& f) {
-  auto& [name, when, direction, set, stop, span] = e;
-  for_each_expression_of(f, name, when, direction, set, stop, span);
+  auto& [name, when, direction, set, stop, span, open_when] = e;
+  for_each_expression_of(f, name, when, direction, set, stop, span, open_when);
 }
 
 void for_each_expression(QuasiVelocity& u, const ExprVisitor& f) {
@@ -102,8 +102,8 @@ void for_each_expression(QuasiVelocity& u, const ExprVisitor& f) {
 }
 
 static void for_each_expression(Monitor& m, const ExprVisitor& f) {
-  auto& [name, value, span] = m;
-  for_each_expression_of(f, name, value, span);
+  auto& [name, value, span, open] = m;
+  for_each_expression_of(f, name, value, span, open);
 }
 
 static void for_each_expression(Bound& b, const ExprVisitor& f) {

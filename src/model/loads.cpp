@@ -90,12 +90,14 @@ Load of_motion(const Model& model, const Body& body) {
   return total;
 }
 
-Load difference(const Model& model, const Load& total, const Load& given, const Load& reactive) {
+using Put = Column (*)(const Model&, std::span<const Expr>);
+
+Load difference(const Model& model, const Load& total, const Load& given, const Load& reactive, Put put) {
   const Expr parts[] = {
       total.force.x - given.force.x - reactive.force.x,    total.force.y - given.force.y - reactive.force.y,
       total.force.z - given.force.z - reactive.force.z,    total.torque.x - given.torque.x - reactive.torque.x,
       total.torque.y - given.torque.y - reactive.torque.y, total.torque.z - given.torque.z - reactive.torque.z};
-  const Column r = put_masses(model, parts);
+  const Column r = put(model, std::span<const Expr>(parts));
   return {{r[0], r[1], r[2]}, {r[3], r[4], r[5]}};
 }
 
@@ -105,14 +107,15 @@ std::vector<Load> reactions(const Model& model) {
   std::vector<Load> total;
   for (const Body& body : model.bodies) total.push_back(of_motion(model, body));
   const std::vector<Load> given = given_loads(model), reactive = reactive_loads(model);
-  for (std::size_t b = 0; b < total.size(); ++b) total[b] = difference(model, total[b], given[b], reactive[b]);
+  for (std::size_t b = 0; b < total.size(); ++b)
+    total[b] = difference(model, total[b], given[b], reactive[b], put_masses);
   return total;
 }
 
 Load reaction(const Model& model, std::size_t b) {
   const Load total = of_motion(model, model.bodies[b]);
   const std::vector<Load> given = given_loads(model), reactive = reactive_loads(model);
-  return difference(model, total, given[b], reactive[b]);
+  return difference(model, total, given[b], reactive[b], put_varying_masses);
 }
 
 }  // namespace anholon

@@ -14,12 +14,45 @@ Column put_controls(const Model& model, std::span<const Expr> es) {
   });
 }
 
+Column put_varying_masses(const Model& model, std::span<const Expr> es) {
+  const Graph& g = *model.graph;
+  return substitute(es, [&](NodeId id) {
+    const Node& n = g.node(id);
+    return n.kind == Kind::mass ? model.masses[n.index].value : Expr{};
+  });
+}
+
 Column put_masses(const Model& model, std::span<const Expr> es) {
-  Graph& g = *model.graph;
-  return put_controls(model, substitute(es, [&](NodeId id) {
-                        const Node& n = g.node(id);
-                        return n.kind == Kind::mass ? model.masses[n.index].value : Expr{};
-                      }));
+  return put_controls(model, put_varying_masses(model, es));
+}
+
+Expr open_form(const Model& model, Expr as_read) {
+  for (const NodeId id : symbols({&as_read, 1}))
+    if (const Node& n = as_read.graph->node(id); n.kind == Kind::control && model.controls[n.index].value)
+      return as_read;
+  return {};
+}
+
+void put_inputs(Model& model) {
+  const auto put = [&](Expr& value, Expr open) {
+    if (open.graph) value = put_masses(model, open);
+  };
+  for (Monitor& m : model.monitors) put(m.value, m.open);
+  for (StateVariable& z : model.states) put(z.rate, z.open_rate);
+  for (Event& e : model.events) {
+    put(e.when, e.open_when);
+    for (Assignment& a : e.set) put(a.value, a.open);
+  }
+}
+
+void put_inputs_into_inputs(Model& model, const std::set<std::size_t>& given) {
+  for (std::size_t k = 0; k < model.controls.size(); ++k)
+    if (Control& u = model.controls[k]; u.open.graph && !given.count(k)) u.value = u.open;
+  // The reader has seen to it that this comes to an end.
+  for (std::size_t depth = 0; depth < model.controls.size(); ++depth)
+    for (std::size_t k = 0; k < model.controls.size(); ++k)
+      if (Control& u = model.controls[k]; u.open.graph && u.value && !given.count(k))
+        u.value = put_controls(model, {&*u.value, 1})[0];
 }
 
 Expr put_state_rates(const Model& model, Expr e, unsigned from) {

@@ -6,6 +6,7 @@
 #pragma once
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -117,6 +118,7 @@ struct StateVariable {
   std::string name;
   Expr rate, initial;
   Span span;
+  Expr open_rate = {};  // see put_inputs
 };
 
 // A control: a formula of anything, held as a symbol of its own while equations are derived. Of a servo constraint it
@@ -126,6 +128,9 @@ struct Control {
   std::optional<Expr> value;
   std::optional<std::size_t> constraint = std::nullopt;  // that it keeps
   Span span;
+  Expr open = {};  // see put_inputs
+  // An element in which its formula stands in place of the symbol, "the potential 'V'"; empty if there is none.
+  std::string put_into = {};
 };
 
 // A number or vector to be recorded.
@@ -140,6 +145,7 @@ struct OutputQuantity {
 struct Assignment {
   Expr symbol, value;  // the value by those before
   Span span;
+  Expr open = {};  // see put_inputs
 };
 
 // The strict change of sign of a formula along the motion.
@@ -150,6 +156,7 @@ struct Event {
   std::vector<Assignment> set;
   bool stop = false;
   Span span;
+  Expr open_when = {};  // see put_inputs
   bool ends_step() const { return stop || !set.empty(); }
 };
 
@@ -166,6 +173,7 @@ struct Monitor {
   std::string name;
   Expr value;
   Span span;
+  Expr open = {};  // see put_inputs
 };
 
 // What must stay positive: a table's argument within its knots, where nothing else was said.
@@ -244,8 +252,18 @@ std::shared_ptr<Model> clone(const Model& model, std::size_t nodes);
 Column put_masses(const Model& model, std::span<const Expr> es);
 Expr put_masses(const Model& model, Expr e);
 
-// Inputs alone.
+// Masses alone, and inputs alone.
+Column put_varying_masses(const Model& model, std::span<const Expr> es);
 Column put_controls(const Model& model, std::span<const Expr> es);
+
+// Monitors, rates of states, events and inputs are read with the formulas of the inputs put in. Beside such a formula
+// stands its open form, in which inputs are symbols; it has no graph if the formula holds no input that has a formula.
+Expr open_form(const Model& model, Expr as_read);
+// Puts the inputs into monitors, rates and events anew, after the formulas of inputs were changed. Inputs without a
+// formula stay symbols.
+void put_inputs(Model& model);
+// Writes the formulas of the inputs that are not among `given` by those of the others anew.
+void put_inputs_into_inputs(Model& model, const std::set<std::size_t>& given);
 // z^(k) -> D^(k-from) of the rate, k >= from >= 1: no derivative of a state beyond `from` - 1 is left.
 Expr put_state_rates(const Model& model, Expr e, unsigned from);
 

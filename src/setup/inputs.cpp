@@ -23,6 +23,8 @@ bool known_before_solving(const Scenario& s, Expr value) {
 System with_symbols(const Scenario& s, const std::set<std::size_t>& inputs) {
   auto model = std::make_shared<Model>(*s.model);
   for (std::size_t k : inputs) model->controls[k].value.reset();
+  put_inputs_into_inputs(*model, inputs);
+  put_inputs(*model);
   System system = implicit_system(model, *s.mechanics, *s.system.form, s.independent, s.elimination);
   drop_absent(system, s.structure);
   return system;
@@ -39,10 +41,16 @@ std::set<std::size_t> free_ones(const Scenario& s, const System& system, std::se
       occurring.insert(n.index);
       if (n.order > 0 || s.structure.c[i] > 0) inputs.erase(n.index);
     }
-  for (NodeId id : reachable(system.equations))
-    for (std::size_t k : std::set<std::size_t>(inputs))
-      if (s.model->controls[k].value->id == id && !g.summands(id).empty()) inputs.erase(k);
-  std::erase_if(inputs, [&](std::size_t k) { return !occurring.count(k); });
+  const auto holds = [&](Expr e) {
+    for (NodeId id : symbols({&e, 1}))
+      if (const Node& n = g.node(id); n.kind == Kind::control) occurring.insert(n.index);
+  };
+  for (const Monitor& m : system.model->monitors) holds(m.value);
+  for (const Event& e : system.model->events) {
+    holds(e.when);
+    for (const Assignment& a : e.set) holds(a.value);
+  }
+  std::erase_if(inputs, [&](std::size_t k) { return !occurring.count(k) || !s.model->controls[k].put_into.empty(); });
   return inputs;
 }
 
@@ -83,6 +91,19 @@ static Rational value_at_start(const Scenario& s, const Model& model, Expr formu
   return Rational(0);
 }
 
+static std::string why_not(const Control& u) {
+  return u.put_into.empty()
+             ? "it keeps a constraint, holds accelerations or multipliers, or stands in an equation that "
+               "is differentiated, or no equation, output and event holds it"
+             : "its formula is put into " + u.put_into;
+}
+
+static bool holds_rate_of(Expr e, const std::set<std::size_t>& inputs) {
+  for (const NodeId id : symbols({&e, 1}))
+    if (const Node& n = e.graph->node(id); n.kind == Kind::control && n.order > 0 && inputs.count(n.index)) return true;
+  return false;
+}
+
 InputsAsParameters inputs_as_parameters(const Scenario& s, const std::vector<std::string>& names) {
   Workspace own(s);
   std::set<std::size_t> free;
@@ -90,7 +111,7 @@ InputsAsParameters inputs_as_parameters(const Scenario& s, const std::vector<std
   std::vector<std::string> known;
   for (const Control& u : s.model->controls) known.push_back(u.name);
   const std::shared_ptr<Model> m = given_model(s);
-  InputsAsParameters out{m, {}, {}};
+  InputsAsParameters out{m, {}, {}, {}};
   for (const std::string& name : names)
     if (const auto at = std::find(known.begin(), known.end(), name); at == known.end()) {
       const std::string near = did_you_mean(name, known);
@@ -100,9 +121,9 @@ InputsAsParameters inputs_as_parameters(const Scenario& s, const std::vector<std
                                     : "");
     } else if (!free.count(static_cast<std::size_t>(at - known.begin()))) {
       throw Failure({}, "the input '" + name + "' cannot be set from outside",
-                    "it keeps a constraint, holds accelerations or multipliers, or stands in an equation that is "
-                    "differentiated");
+                    why_not(s.model->controls[static_cast<std::size_t>(at - known.begin())]));
     }
+  std::set<std::size_t> given;
   for (const std::size_t k : free) {
     Control& u = m->controls[k];
     if (!names.empty() && std::find(names.begin(), names.end(), u.name) == names.end()) continue;
@@ -113,7 +134,15 @@ InputsAsParameters inputs_as_parameters(const Scenario& s, const std::vector<std
     m->parameters.push_back({u.name, m->graph->number(value), "", u.span});
     m->names.parameters.push_back(u.name);
     if (!m->parameter_units.empty()) m->parameter_units.emplace_back();
+    given.insert(k);
   }
+  std::erase_if(m->monitors, [&](const Monitor& o) {
+    if (!holds_rate_of(o.open.graph ? o.open : o.value, given)) return false;
+    out.left_out.push_back(o.name);
+    return true;
+  });
+  put_inputs_into_inputs(*m, given);
+  put_inputs(*m);
   return out;
 }
 

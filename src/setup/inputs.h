@@ -12,7 +12,8 @@ struct OpenSystem {
 
 // Not among them, and put in as formulas: inputs that hold accelerations or multipliers, that keep a constraint, that
 // stand in an equation which is differentiated (their rates would be inputs, too), or whose formula stands in a
-// potential, mass or constraint.
+// potential, dissipation, mass or constraint (Control::put_into). Formulas of other inputs, monitors, rates and events
+// of the system's model hold the symbols, too.
 // The system is of the workspace.
 OpenSystem open_inputs(Workspace& scenario);
 
@@ -21,7 +22,8 @@ OpenSystem open_inputs(Workspace& scenario);
 struct InputsAsParameters {
   std::shared_ptr<const Model> model;
   std::vector<std::string> names;
-  std::vector<NodeId> formulas;  // of the inputs, in the graph of the model
+  std::vector<NodeId> formulas;       // of the inputs, in the graph of the model
+  std::vector<std::string> left_out;  // monitors that hold the rate of an input, which nobody gives
 };
 // All inputs that can be set where `names` has none. Throws Failure for a name that is no input, or one that cannot be set.
 InputsAsParameters inputs_as_parameters(const Scenario& scenario, const std::vector<std::string>& names = {});

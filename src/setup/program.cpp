@@ -36,8 +36,8 @@ std::string program_text(const Scenario& scenario, const StateChoice& choice, Pr
   options.made_by = made_by;
   options.rates = rates;
   options.start = start_for_program(own, choice);
-  for (const Monitor& m : own.model->monitors) options.outputs.emplace_back(m.name, m.value);
   OpenSystem open = open_inputs(own);
+  for (const Monitor& m : open.system.model->monitors) options.outputs.emplace_back(m.name, m.value);
   options.inputs = std::move(open.inputs);
   return (language == ProgramLanguage::c ? emit_c : emit_python)(open.system, own.structure, options);
 }

@@ -28,9 +28,11 @@ void add_linearize(CommandLine& line) {
       "Exit status: 0 ok, 1 no linear model at some value, 2 bad input.\n"
       "Example: anholon linearize whipple --vary v=0..10:1");
   parameters(c, o), state(c, o), form_option(c, o), mode_of_contacts(c, o);
-  c->add_option("--about", o.about,
-                "state (default), or equilibrium: the one to which unbalanced forces fall steadily from the initial\n"
-                "positions, those of --q included; where they do not fall to zero, one that is found near")
+  c->add_option(
+       "--about", o.about,
+       "state (default), or equilibrium: the one to which unbalanced forces fall steadily from the initial\n"
+       "positions, those of --q included; where they do not fall to zero, one that is found near. States of the model\n"
+       "keep their initial values")
       ->type_name("WHAT")
       ->check(CLI::IsMember({"state", "equilibrium"}));
   c->add_option("--vary", o.vary,

@@ -234,10 +234,12 @@ equation = "theta'' = 0"
 by = "w"
 ```
 
-- A control. Motions use its formula; `linearize` gives the derivatives by it, with the formula put in where it is used otherwise.
+- A control. Motions use its formula; `linearize` gives the derivatives by it. Where a potential, a dissipation, a mass or a constraint holds an input
+  whose formula holds coordinates or velocities (a mass: any input), the formula is put in: B and D do not hold that part, which a note says.
 - Where an input stands in a position or orientation its formula may hold t and states only.
 - Programs (`derive --format c` or `python`) take inputs as an argument, and their formulas where it is not given. An input that holds accelerations or
-  stands in a constraint of which derivatives are needed remains a formula there.
+  stands in a constraint of which derivatives are needed remains a formula there, and so does one whose formula is put in. An input that is given acts in forces,
+  rates of states, outputs, events and other inputs alike.
 - Inputs may use each other, not themselves. `{}` needs a constraint that is kept by it.
 )md"},
       {"output",

@@ -58,6 +58,9 @@ void BodyReader::declare(const Item& root) {
 
 Expr BodyReader::frozen(Expr value, const std::string& name, Span span) {
   Graph& g = *model_.graph;
+  for (NodeId id : symbols({&value, 1}))
+    if (const Node& n = g.node(id); n.kind == Kind::control)
+      if (Control& u = model_.controls[n.index]; u.value && u.put_into.empty()) u.put_into = "the mass '" + name + "'";
   value = put_controls(model_, {&value, 1})[0];
   const bool varies = [&] {
     for (NodeId id : symbols({&value, 1})) {

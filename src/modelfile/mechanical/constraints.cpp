@@ -36,7 +36,7 @@ int ConstraintReader::true_order(Expr& phi) const {
 
 void ConstraintReader::add_constraint(const std::string& name, Expr phi, const std::string& equation, Span place,
                                       std::optional<Span> named) {
-  phi = with_feedback(model_, phi);
+  phi = with_feedback(model_, phi, "the constraint '" + name + "'");
   const int order = true_order(phi);
   if (order < 0) {
     if (proved_zero(phi)) throw Failure(place, "this equation always holds: it constrains nothing");

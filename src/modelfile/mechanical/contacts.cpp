@@ -442,15 +442,16 @@ void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact
     return any;
   };
   const auto at_start = [&](Expr e) { return with_forces_at_start(model, contacts, found->forces, e); };
-  const auto settle = [&](Expr& value, ContactForces::Formula::Of of, std::size_t index) {
+  const auto settle = [&](Expr& value, Expr& open, ContactForces::Formula::Of of, std::size_t index) {
     if (!holds_force(value)) return;
     found->formulas.push_back({of, index, value});
     value = at_start(value);
+    open = {};  // the mode puts in what value holds
   };
   for (std::size_t k = 0; k < model.monitors.size(); ++k)
-    settle(model.monitors[k].value, ContactForces::Formula::Of::monitor, k);
+    settle(model.monitors[k].value, model.monitors[k].open, ContactForces::Formula::Of::monitor, k);
   for (std::size_t k = 0; k < model.events.size(); ++k)
-    settle(model.events[k].when, ContactForces::Formula::Of::event, k);
+    settle(model.events[k].when, model.events[k].open_when, ContactForces::Formula::Of::event, k);
   for (OutputQuantity& o : model.outputs)
     for (Expr& e : o.values) e = at_start(e);
   const auto refuse = [&](Expr& e, Span span, const char* what) {

@@ -40,6 +40,7 @@ static void close(Model& model, Diagnostics& diagnostics) {
       });
       if (loose == all.end()) continue;
       open = true;
+      if (!u.open.graph) u.open = *u.value;
       if (depth == model.controls.size()) {
         diagnostics.error(u.span, "the input '" + u.name + "' is defined through itself");
         u.value = model.graph->zero();
@@ -113,33 +114,37 @@ void check_kept(const Model& model, Diagnostics& diagnostics) {
                         u.name + " = \"-2*x - x'\", or by = \"" + u.name + "\" in a constraint");
 }
 
-Expr with_feedback(const Model& model, Expr e) {
+Expr with_feedback(Model& model, Expr e, const std::string& element) {
   const Graph& g = *model.graph;
   return substitute({&e, 1}, [&](NodeId id) {
     const Node n = g.node(id);
     if (n.kind != Kind::control) return Expr{};
-    const Control& u = model.controls[n.index];
-    return u.value && jet_order(*u.value) >= 0 ? total_derivative(*u.value, n.order) : Expr{};
+    Control& u = model.controls[n.index];
+    if (!u.value || jet_order(*u.value) < 0) return Expr{};
+    if (u.put_into.empty()) u.put_into = element;
+    return total_derivative(*u.value, n.order);
   })[0];
 }
 
 // ---- outputs ---------------------------------------------------------------------------------
 
-static void record(const std::string& column, Expr value, const OutputQuantity& output, Model& model) {
+static void record(const std::string& column, Expr as_read, const OutputQuantity& output, Model& model) {
   const auto& taken = model.names.coordinates;
   const auto is_state = [&](const StateVariable& z) { return z.name == column; };
   if (column == "t" || std::any_of(model.states.begin(), model.states.end(), is_state) ||
       std::find(taken.begin(), taken.end(), column) != taken.end() ||
       std::any_of(model.monitors.begin(), model.monitors.end(), [&](const Monitor& m) { return m.name == column; }))
     throw Failure(output.span, "a column '" + column + "' is there already", "give the output a name of its own");
+  Expr value = put_masses(model, as_read), open = open_form(model, as_read);
   // Converts the output to the unit that was asked for.
   if (!output.unit.empty()) {
     const Unit unit = *read_unit(output.unit);
     const Expr factor = model.graph->number(Rational(1 / unit.factor));
     const Expr turns = pow(model.graph->pi(), Rational(-unit.pi));
-    value = value * factor * turns;
+    for (Expr* e : {&value, &open})
+      if (e->graph) *e = *e * factor * turns;
   }
-  model.monitors.push_back({column, value, output.span});
+  model.monitors.push_back({column, value, output.span, open});
 }
 
 static void read_output(const Item& i, Scope& scope, Model& model, Diagnostics& diagnostics) {
@@ -185,10 +190,9 @@ static void read_output(const Item& i, Scope& scope, Model& model, Diagnostics& 
   else
     throw Failure(value->span, std::string("an output is a number or a vector, this is ") + type_name(v));
   if (out.values.size() == 1)
-    record(out.name, put_masses(model, out.values[0]), out, model);
+    record(out.name, out.values[0], out, model);
   else
-    for (std::size_t k = 0; k < 3; ++k)
-      record(out.name + "." + std::string(1, "xyz"[k]), put_masses(model, out.values[k]), out, model);
+    for (std::size_t k = 0; k < 3; ++k) record(out.name + "." + std::string(1, "xyz"[k]), out.values[k], out, model);
   model.outputs.push_back(std::move(out));
 }
 

@@ -16,8 +16,8 @@ void keep_by(const Item& by, std::size_t first, const Scope& scope, Model& model
 // Checks that an input without a formula maintains a constraint.
 void check_kept(const Model& model, Diagnostics& diagnostics);
 // Substitutes the inputs whose formulas hold coordinates: in a constraint or a potential they are not functions of
-// time.
-Expr with_feedback(const Model& model, Expr e);
+// time. Such an input keeps the name of the element (Control::put_into).
+Expr with_feedback(Model& model, Expr e, const std::string& element);
 
 void read_outputs(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
 

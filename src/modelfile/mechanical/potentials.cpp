@@ -31,15 +31,15 @@ void read_potentials(const Item& root, Scope& scope, Model& model, Diagnostics& 
     collect(
         diagnostics,
         [&] {
-          const Expr v = scope.number(i);
-          if (jet_order(with_feedback(model, v)) > 0)
+          const Expr v = scope.number(i), value = with_feedback(model, v, "the potential '" + i.key + "'");
+          if (jet_order(value) > 0)
             throw Failure(i.span, "the potential '" + i.key + "' depends on a velocity", "give a force instead");
           if (const auto name = too_rough(v, 1))
             throw Failure(i.span,
                           "the potential '" + i.key + "' holds the table '" + *name +
                               "', which jumps: so would the energy, without a force",
                           "fit = \"linear\", \"monotone\" or \"spline\"");
-          model.potentials.push_back({i.key, with_feedback(model, v), i.span});
+          model.potentials.push_back({i.key, value, i.span});
         },
         i);
   scope.freeze_masses = false;
@@ -53,7 +53,7 @@ void read_dissipation(const Item& root, Scope& scope, Model& model, Diagnostics&
     collect(
         diagnostics,
         [&] {
-          const Expr r = with_feedback(model, scope.number(i));
+          const Expr r = with_feedback(model, scope.number(i), "the dissipation '" + i.key + "'");
           const int order = jet_order(r);
           if (order > 1) throw Failure(i.span, "the dissipation '" + i.key + "' depends on an acceleration");
           if (order < 1)

@@ -63,7 +63,9 @@ class EventReader {
       throw Failure(event.span, "the event '" + event.name + "' does not say when",
                     "when = \"x - 1\": a formula that passes zero then");
     if (!when->is_formula()) throw Failure(when->span, "'when' is a formula that passes zero at the event");
-    event.when = put_masses(model_, evaluate_number(parse_formula(when->formula), scope_));
+    const Expr as_read = evaluate_number(parse_formula(when->formula), scope_);
+    event.when = put_masses(model_, as_read);
+    event.open_when = open_form(model_, as_read);
     const std::vector<NodeId> all = symbols({&event.when, 1});
     if (std::none_of(all.begin(), all.end(), [&](NodeId id) { return model_.graph->node(id).kind != Kind::parameter; }))
       throw Failure(when->span, "nothing in this formula changes along the motion: it never passes zero");
@@ -87,7 +89,8 @@ class EventReader {
  private:
   Assignment assignment(const Item& i) {
     if (!i.is_formula()) throw Failure(i.span, "a new value is a number or a formula");
-    const Expr value = put_masses(model_, evaluate_number(parse_formula(i.formula), scope_));
+    const Expr as_read = evaluate_number(parse_formula(i.formula), scope_);
+    const Expr value = put_masses(model_, as_read), open = open_form(model_, as_read);
     std::string name = i.key;
     unsigned order = 0;
     while (!name.empty() && name.back() == '\'') name.pop_back(), ++order;
@@ -109,10 +112,10 @@ class EventReader {
     if (d.role == Scope::Role::coordinate) {
       if (order > 1)
         throw Failure(i.key_span, "an event sets coordinates and velocities; '" + i.key + "' follows from them");
-      return {g.jet(index, order), value, i.key_span};
+      return {g.jet(index, order), value, i.key_span, open};
     }
     if (order > 0) throw Failure(i.key_span, "the rate of '" + name + "' follows from its formula: it cannot be set");
-    return {d.role == Scope::Role::state ? g.state(index, 0) : g.parameter(index), value, i.key_span};
+    return {d.role == Scope::Role::state ? g.state(index, 0) : g.parameter(index), value, i.key_span, open};
   }
 
   bool settable(const Scope::Declaration& d) const {
@@ -146,7 +149,9 @@ void read_states(const Item& root, Scope& scope, Model& model, Diagnostics& diag
     collect(diagnostics, [&] {
       const Item& rate = *i.find("rate");
       if (!rate.is_formula()) throw Failure(rate.span, "a rate is a formula");
-      z->rate = put_masses(model, evaluate_number(parse_formula(rate.formula), scope));
+      const Expr as_read = evaluate_number(parse_formula(rate.formula), scope);
+      z->rate = put_masses(model, as_read);
+      z->open_rate = open_form(model, as_read);
       for (NodeId id : symbols({&z->rate, 1}))
         if (const Node& n = model.graph->node(id); n.kind == Kind::state && n.order > 0)
           throw Failure(rate.span, "the rate of '" + i.key + "' holds the rate of '" + model.states[n.index].name + "'",

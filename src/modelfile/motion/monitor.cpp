@@ -28,7 +28,7 @@ static void read_one(const Item& i, Scope& scope, Model& model) {
       if (const Node& n = model.graph->node(id);
           (n.kind == Kind::jet || n.kind == Kind::multiplier) && n.order > kHighestOrder)
         throw Failure(i.span, "a derivative of order above " + std::to_string(kHighestOrder));
-    model.monitors.push_back({name, value, i.key_span});
+    model.monitors.push_back({name, value, i.key_span, open_form(model, *e)});
     return;
   }
   throw Failure(i.span, std::string("a monitor is a number, this is ") + type_name(v),

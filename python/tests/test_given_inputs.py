@@ -1,0 +1,119 @@
+"""Inputs that are given act wherever the model holds them: in rates of states, outputs, reactions, events, other inputs."""
+
+from typing import Any
+
+import anholon as an
+import numpy as np
+import pytest
+
+DRIVEN = """coordinates = ["x", "y"]
+parameters = {m = 2}
+input.u = "-3*x"
+input.v = "u/2"
+state.w = {rate = "u - x + v", initial = 0.1}
+particle = [{name = "p", mass = "m", position = "x*ex + y*ey"}]
+force = [{on = "p", vector = "u*ex + v*ey"}]
+constraint = [{name = "c", equation = "y' = 2*x'"}]
+event = [{name = "limit", when = "u - 5", set = {"x'" = "u", w = "v"}}]
+[output]
+thrust = "u"
+power = "u*x'"
+push = "reaction(p).x"
+rate = "w'"
+[initial]
+x = 1
+"x'" = 0.5
+"""
+
+GIVEN = {"u": 10.0, "v": 7.0}
+
+
+def by_hand(u: float, v: float) -> tuple[float, dict[str, float]]:
+    """x'', and the outputs: m (x'' + 2 y'') = u + 2 v with y'' = 2 x''."""
+    a = (u + 2 * v) / 10
+    return a, {"thrust": u, "power": 0.5 * u, "push": 2 * a - u, "rate": u - 1 + v}
+
+
+@pytest.mark.parametrize("minimal", [True, False])
+def test_rates_and_outputs_take_given_inputs(minimal: bool) -> None:
+    f = an.loads(DRIVEN).dynamics(minimal=minimal, inputs=True)
+    assert f.inputs == ["u", "v"]
+    a, outputs = by_hand(**GIVEN)
+    rates = dict(zip((s.name for s in f.states), f(0, f.start, GIVEN), strict=True))
+    assert rates["w"] == pytest.approx(outputs["rate"])
+    if not minimal:
+        assert rates["x'"] == pytest.approx(a)
+    u = np.array(list(GIVEN.values()))
+    assert f.outputs == list(outputs)
+    expected = list(outputs.values())
+    np.testing.assert_allclose(f.output(0, f.start, u), expected, rtol=1e-13)
+    np.testing.assert_allclose(f.formulas.numpy()(0, f.start, u, f.p0)[1], expected, rtol=1e-13)
+    h = 0.5
+    slope = (f.output(0, f.start, u + [h, 0]) - f.output(0, f.start, u - [h, 0])) / (2 * h)
+    np.testing.assert_allclose(f.jac(0, f.start, u, by="u", of="y")[:, 0], slope, atol=1e-12)
+    assert slope[f.outputs.index("thrust")] == pytest.approx(1)
+
+
+def test_other_inputs_follow_the_given_one() -> None:
+    f = an.loads(DRIVEN).dynamics(minimal=False, inputs="u")
+    assert f.inputs == ["u"]
+    a, outputs = by_hand(10, 5)
+    rates = dict(zip((s.name for s in f.states), f(0, f.start, [10]), strict=True))
+    assert rates["w"] == pytest.approx(outputs["rate"]) and rates["x'"] == pytest.approx(a)
+
+
+def test_an_input_of_a_state_alone_is_an_argument() -> None:
+    model = an.loads(
+        'coordinates = ["x"]\ninput.u = "0"\nstate.w = {rate = "u", initial = 0}\n'
+        'particle = [{name = "p", mass = 1, position = "x*ex"}]\nforce = [{on = "p", vector = "w*ex"}]\n'
+    )
+    f = model.dynamics(inputs=["u"])
+    assert f.inputs == ["u"] and f(0, f.start, [3])[-1] == 3
+    linear = model.linearize()
+    assert linear.inputs == ["u"]
+    np.testing.assert_allclose(np.array(linear.B)[list(linear.states).index("w")], [1])
+
+
+def test_programs_take_given_inputs() -> None:
+    made: dict[str, Any] = {"__name__": "program"}
+    exec(compile(an.loads(DRIVEN).python_code(), "program.py", "exec"), made)
+    assert list(made["INPUTS"]) == ["u", "v"]
+    u, start = np.array(list(GIVEN.values())), made["START"]
+    a, outputs = by_hand(**GIVEN)
+    lead = made["leading"](0, start, None, u=u)
+    np.testing.assert_allclose(made["outputs"](0, start, lead, None, u), [outputs[name] for name in made["OUTPUTS"]], rtol=1e-13)
+    rates = dict(zip(made["STATE"], made["rhs"](0, start, None, u), strict=True))
+    assert rates["w"] == pytest.approx(outputs["rate"]) and rates["x'"] == pytest.approx(a)
+    np.testing.assert_allclose(made["events"](0, start, lead, None, u), [5])
+
+
+def test_a_linear_model_has_the_input_in_reactions() -> None:
+    linear = an.loads(DRIVEN.replace('input.v = "u/2"', 'input.v = "0"')).linearize()
+    D = np.array(linear.D)
+    assert D[list(linear.outputs).index("push"), 0] == pytest.approx(-0.8)
+    assert D[list(linear.outputs).index("rate"), 0] == pytest.approx(1)
+
+
+def test_a_formula_that_is_put_in_is_named() -> None:
+    model = an.loads(DRIVEN + "[dissipation]\nR = \"u*x'^2/2\"\n")
+    assert any("'u'" in note and "the dissipation 'R'" in note for note in model.linearize().notes)
+    with pytest.raises(an.ModelError, match="the dissipation 'R'"):
+        model.dynamics(inputs=["u"])
+
+
+def test_the_rate_of_a_given_input_is_no_output() -> None:
+    model = an.loads(DRIVEN)
+    with pytest.raises(an.ModelError, match="the output 'r' holds the rate of an input"):
+        model.dynamics(inputs=True, outputs={"r": "u'"})
+
+
+def test_inputs_left_out_have_the_values_of_their_formulas() -> None:
+    f = an.loads(DRIVEN).dynamics(inputs=True)
+    x = f.start + 0.3
+    formulas = f.input(0.4, x)
+    np.testing.assert_array_equal(f(0.4, x, {"u": 1}), f(0.4, x, [1, formulas[1]]))
+    many = np.stack([x, x + 0.2, f.start], axis=1)
+    rates = f(0.4, many, {"u": 1})
+    for k in range(3):
+        np.testing.assert_array_equal(rates[:, k], f(0.4, many[:, k], {"u": 1}))
+    np.testing.assert_array_equal(f.output(0.4, many, {"u": 1})[:, 1], f.output(0.4, many[:, 1], {"u": 1}))
