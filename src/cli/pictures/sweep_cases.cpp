@@ -86,9 +86,8 @@ bool SweepCases::are_in(const std::string& path) {
     std::string line;
     std::ifstream file(path);
     std::getline(file, line);
-    std::vector<std::string> names;
-    for (const std::string_view cell : cells_of(line)) names.emplace_back(cell);
-    return heads_a_sweep(names);
+    if (line.ends_with('\r')) line.pop_back();
+    return heads_a_sweep(split_csv(line));
   }
   // Files of other formats may be large: the first bytes tell.
   char beginning[4] = {};
