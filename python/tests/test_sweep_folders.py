@@ -280,6 +280,39 @@ initial = {x = 3}
         folder.run(4)
 
 
+FAMILY = """coordinates = ["q[i,j]"]
+parameters = {"k[i,j]" = [1, 2, 3, 4]}
+index = {i = "1..2", j = "1..2"}
+[[particle]]
+name = "p[i,j]"
+mass = 1
+position = "q[i,j]*ex"
+[[force]]
+on = "p[i,j]"
+vector = "-k[i,j]*q[i,j]*ex"
+[initial]
+"q[i,j]" = 1
+[case."heavy, big"]
+parameters = {"k[1,1]" = 5}
+[case.light]
+"""
+
+
+def test_names_with_commas(tmp_path: pathlib.Path) -> None:
+    model = tmp_path / "family.toml"
+    model.write_text(FAMILY)
+    out = str(tmp_path / "f") + "/"
+    words = ["--vary", "k[1,2]=2,3", "--vary", "q[2,1]=1,2", "--to", "1", "--quiet", "-o", out]
+    subprocess.run([os.environ["ANHOLON_PROGRAM"], "sweep", str(model), *words], check=True)
+    folder = an.open_sweep(out)
+    for case in range(4):
+        assert np.isclose(folder.run(case)["q[2,1]"][-1], folder["q[2,1]"][case], rtol=1e-8)
+        assert np.isclose(folder.run(case)["q[1,2]"][-1], folder["q[1,2]"][case], rtol=1e-8)
+    ours = an.load(model).sweep({"case": ["light", "heavy, big"], "q[1,1]": [1, 2]}, to=1, out=tmp_path / "g")
+    assert np.isclose(an.open_sweep(ours.path).run(2)["q[1,1]"][-1], ours["q[1,1]"][2], rtol=1e-8)
+    assert not np.isclose(ours["q[1,1]"][2], ours["q[1,1]"][0], rtol=1e-3)
+
+
 def test_a_lazy_frame_reads_what_is_asked(quiet: pathlib.Path) -> None:
     polars = pytest.importorskip("polars")
     folder = an.open_sweep(quiet)

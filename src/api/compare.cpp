@@ -17,7 +17,8 @@ ComparedEquation compared_equation(const inner::EquationFinding& f) {
                      f.difference.value_or(""),
                      f.detail,
                      f.point.value_or(""),
-                     {}};
+                     {},
+                     f.with_numbers};
   for (const inner::FoundChange& c : f.changes) {
     Suggestion s{{}, c.reads, c.proved, c.text()};
     for (const inner::FoundPlace& p : c.places) s.places.push_back({p.from, p.to, p.place, p.span.line, p.span.column});

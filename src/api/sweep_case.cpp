@@ -8,6 +8,7 @@
 #include "formula/formula.h"
 #include "numeric/number.h"
 #include "report/columns.h"
+#include "result/table.h"
 #include "setup/choice.h"
 
 namespace anholon::v1 {
@@ -23,11 +24,20 @@ constexpr const char* kMultipliers[] = {"lambda", "lambdadot"};
 constexpr std::string_view kInitial = "(0)";
 
 // "a=1 b=8 cm,c=2" as words of one name each; a name ends at = or, of what is drawn, at ~.
+// A comma in brackets belongs to a name: k[1,2].
 std::vector<std::string> words_of(const std::string& text) {
   std::vector<std::string> words;
+  const auto separator = [&](std::size_t at) {
+    for (int depth = 0; at < text.size(); ++at) {
+      if (text[at] == '[' || text[at] == '(') ++depth;
+      if (text[at] == ']' || text[at] == ')') --depth;
+      if (depth <= 0 && (text[at] == ' ' || text[at] == ',')) return at;
+    }
+    return std::string::npos;
+  };
   std::size_t from = 0;
-  for (std::size_t at = text.find_first_of(" ,"); at != std::string::npos; at = text.find_first_of(" ,", at + 1)) {
-    const std::size_t sign = text.find_first_of("=~", at), next = text.find_first_of(" ,", at + 1);
+  for (std::size_t at = separator(0); at != std::string::npos; at = separator(at + 1)) {
+    const std::size_t sign = text.find_first_of("=~", at), next = separator(at + 1);
     if (sign == std::string::npos || sign > next) continue;
     words.push_back(text.substr(from, at - from));
     from = at + 1;
@@ -46,15 +56,9 @@ AskedWord initial_word(std::string name, const std::string& value) {
   return {kOrders[std::min(primes, std::size(kOrders) - 1)], name + "=" + value};
 }
 
-// The parts of a list with commas.
-std::vector<std::string> listed(std::string rest) {
-  std::vector<std::string> names;
-  while (!rest.empty()) {
-    const std::size_t comma = std::min(rest.find(','), rest.size());
-    names.push_back(rest.substr(0, comma));
-    rest.erase(0, comma + 1);
-  }
-  return names;
+// The parts of a list with commas; a name that holds one is quoted.
+std::vector<std::string> listed(const std::string& text) {
+  return text.empty() ? std::vector<std::string>() : inner::csv_cells(text);
 }
 
 // The scenarios that --vary case=a,b runs through.

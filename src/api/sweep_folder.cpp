@@ -4,6 +4,7 @@
 
 #include "api/sweep_case.h"
 #include "api/sweep_request.h"
+#include "base/escape.h"
 #include "base/join.h"
 #include "base/json.h"
 #include "ensemble/parts/judgement.h"
@@ -68,7 +69,9 @@ std::vector<std::pair<std::string, std::string>> asked_of(const PreparedSweep& p
   for (const inner::MotionOption& m : inner::motion_options())
     if (std::string_view(m.name) != "error-estimate" && std::string_view(m.name) != "form")
       add(m.name, inner::joined(inner::words(settings, m), " "));
-  add("vary case", inner::joined(p.scenarios, ","));
+  std::vector<std::string> names;
+  for (const std::string& name : p.scenarios) names.push_back(inner::csv_cell(name));
+  add("vary case", inner::joined(names, ","));
   for (const Vary& v : o.vary) add("vary " + v.name, text_of(v));
   add("together", o.together ? "yes" : ""), add("cases", o.cases ? std::to_string(*o.cases) : "");
   add("draw", o.draw), add("seed", std::to_string(o.seed)), add("reduce", inner::joined(o.reduce, " "));

@@ -198,7 +198,7 @@ class Graph::Product {
     std::optional<Rational> power;
     if (integer && p.exponent.fits_long()) {
       power = exact_power(v, p.exponent.to_long());
-    } else if (p.exponent.fits_long()) {
+    } else if (p.exponent.fits_long() && v > 0) {  // a negative number has no fractional power, as in numbers
       if (auto root = exact_root(v, p.exponent.get_den().get_ui())) power = exact_power(*root, p.exponent.to_long());
     }
     if (power)

@@ -96,6 +96,11 @@ Value multiply(Value a, Value b, Syntax::Op sign, Span at, Names& names) {
 Expr integer_power(Expr base, const Rational& exponent, Span at) {
   if (is_zero(base) && exponent < 0) throw Failure(at, "zero to a negative power");
   if (abs(exponent) > 1000) throw Failure(at, "a power above 1000");
+  if (is_number(base) && number_value(base) < 0 && !exponent.is_integer())
+    throw Failure(at, "a negative number to a fractional power has no value",
+                  exponent.get_num() == 1 && exponent.get_den() == 3
+                      ? "the real cube root of -8 is -8^(1/3), without brackets"
+                      : "take the power of the absolute value: abs(a)^(1/3)");
   return pow(base, exponent);
 }
 

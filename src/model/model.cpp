@@ -1,5 +1,7 @@
 #include "model/model.h"
 
+#include <algorithm>
+
 namespace anholon {
 
 Column put_controls(const Model& model, std::span<const Expr> es) {
@@ -78,6 +80,30 @@ std::string multiplier_name(const Model& model, std::size_t r) {
   const Constraint& c = model.constraints[r];
   return c.by ? model.controls[*c.by].name : "lambda." + c.name;
 }
+
+std::string automatic_name(const Model& model, const std::string& wanted) {
+  const auto named = [&](const std::string& name) {
+    const auto among = [&](const std::vector<std::string>& list) {
+      return std::find(list.begin(), list.end(), name) != list.end();
+    };
+    const SymbolNames& n = model.names;
+    return among(n.coordinates) || among(n.parameters) || among(n.given) || among(n.states) || among(n.controls) ||
+           std::any_of(n.defined.begin(), n.defined.end(), [&](const auto& d) { return d.second == name; }) ||
+           std::any_of(model.quasi.begin(), model.quasi.end(), [&](const QuasiVelocity& u) { return u.name == name; });
+  };
+  // Names with a number must not be those of other masses and velocities, either.
+  const auto wanted_by_others = [&](const std::string& name) {
+    return std::any_of(model.masses.begin(), model.masses.end(),
+                       [&](const VaryingMass& m) { return name == "m_" + m.name; }) ||
+           std::any_of(model.coordinates.begin(), model.coordinates.end(),
+                       [&](const Coordinate& c) { return name == "u_" + c.name; });
+  };
+  if (!named(wanted)) return wanted;
+  for (int k = 2;; ++k)
+    if (const std::string name = wanted + "_" + std::to_string(k); !named(name) && !wanted_by_others(name)) return name;
+}
+
+std::string mass_name(const Model& model, std::size_t i) { return automatic_name(model, "m_" + model.masses[i].name); }
 
 Column jets(const Model& model, unsigned order) {
   Column q;

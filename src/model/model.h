@@ -216,6 +216,7 @@ struct Model {
   std::vector<Coordinate> coordinates;
   std::vector<Parameter> parameters;
   std::vector<std::string> unknown_functions;  // [functions] f = {}
+  std::vector<std::string> table_files;        // paths of the files that tables come from
   Observer observer;
   std::vector<VaryingMass> masses;
   std::vector<Body> bodies;  // particles among them, in the order of the file
@@ -269,6 +270,12 @@ Expr put_state_rates(const Model& model, Expr e, unsigned from);
 
 // The unknown that keeps constraint r: "lambda.rolling", or the input's name where the constraint is kept by one.
 std::string multiplier_name(const Model& model, std::size_t r);
+
+// A name that the equations give to a quantity on their own, "m_p" or "u_x": with a number after it where the model has
+// the name already.
+std::string automatic_name(const Model& model, const std::string& wanted);
+// The same of mass i, "m_p".
+std::string mass_name(const Model& model, std::size_t i);
 
 // Coordinates q, q', q'', … as columns of symbols.
 Column jets(const Model& model, unsigned order);

@@ -421,8 +421,8 @@ class DerivedNames final : public Names {
     const Model& model = reader_->model();
     if (name == "lambda" || name.rfind("lambda.", 0) == 0) return multiplier(name, span);
     if (name.rfind("m_", 0) == 0 && !scope_.declarations().count(name))
-      for (const VaryingMass& m : model.masses)
-        if (name == "m_" + m.name) return m.value;
+      for (std::size_t i = 0; i < model.masses.size(); ++i)
+        if (name == mass_name(model, i)) return model.masses[i].value;
     return scope_.name(name, span);
   }
   std::optional<Value> call(const std::string& function, const std::vector<Value>& arguments,

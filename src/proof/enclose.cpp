@@ -5,18 +5,19 @@
 
 namespace anholon {
 
-static Ball lookup(const StepFunction& f, const Ball& x) {
+// The value of a step function; nullptr if x does not tell it.
+static const Rational* lookup(const StepFunction& f, const Ball& x) {
   std::size_t k = 0;
   for (; k < f.knots.size(); ++k) {
     const Ball above = x - Ball(f.knots[k]);
-    if (above.contains_zero()) return Ball::unknown();
+    if (above.contains_zero()) return nullptr;
     if (!above.is_positive()) break;
   }
-  return Ball(f.values[k]);
+  return &f.values[k];
 }
 
-std::vector<Ball> enclose(std::span<const Expr> es, const BallPoint& at) {
-  if (es.empty()) return {};
+// The values of all nodes below the expressions.
+static BallPoint values_below(std::span<const Expr> es, const BallPoint& at) {
   const Graph& g = *es[0].graph;
   BallPoint value;
   for (NodeId id : reachable(es)) {
@@ -61,15 +62,47 @@ std::vector<Ball> enclose(std::span<const Expr> es, const BallPoint& at) {
                                : Ball::unknown();
       break;
     }
-    case Kind::lookup:
-      v = lookup(g.step_function(n.index), value.at(g.terms(id)[0].node));
+    case Kind::lookup: {
+      const Rational* known = lookup(g.step_function(n.index), value.at(g.terms(id)[0].node));
+      v = known ? Ball(*known) : Ball::unknown();
       break;
+    }
     }
     value.emplace(id, std::move(v));
   }
+  return value;
+}
+
+std::vector<Ball> enclose(std::span<const Expr> es, const BallPoint& at) {
+  if (es.empty()) return {};
+  const BallPoint value = values_below(es, at);
   std::vector<Ball> out;
   for (Expr e : es) out.push_back(value.at(e.id));
   return out;
+}
+
+Column on_branches(std::span<const Expr> es, const BallPoint& at) {
+  Column out(es.begin(), es.end());
+  if (es.empty()) return out;
+  Graph& g = *es[0].graph;
+  // A branch may hold further branching functions.
+  for (;;) {
+    std::unordered_map<NodeId, Expr> chosen;
+    const BallPoint value = values_below(out, at);
+    for (NodeId id : reachable(out)) {
+      const Node& n = g.node(id);
+      if (n.kind == Kind::select) {
+        const Ball& s = value.at(g.terms(id)[0].node);
+        if (s.is_positive() || !s.contains_zero())
+          chosen.emplace(id, Expr{&g, g.terms(id)[s.is_positive() ? 1 : 2].node});
+      } else if (n.kind == Kind::lookup) {
+        const Rational* known = lookup(g.step_function(n.index), value.at(g.terms(id)[0].node));
+        if (known) chosen.emplace(id, g.number(Rational(*known)));
+      }
+    }
+    if (chosen.empty()) return out;
+    out = replace_nodes(out, chosen);
+  }
 }
 
 }  // namespace anholon

@@ -13,4 +13,8 @@ using BallPoint = std::unordered_map<NodeId, Ball>;  // symbol -> value
 // symbol of the expressions.
 std::vector<Ball> enclose(std::span<const Expr> es, const BallPoint& at);
 
+// The expressions with the branch that holds at the point in place of each branching function whose condition the balls
+// decide. They have the same values there.
+Column on_branches(std::span<const Expr> es, const BallPoint& at);
+
 }  // namespace anholon

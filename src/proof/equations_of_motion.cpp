@@ -82,6 +82,11 @@ std::optional<Expr> solved_for(Expr psi, Expr s) {
 
 }  // namespace
 
+Expr put_rates(const Model& model, Expr e) {
+  if (model.states.empty()) return e;
+  return put_state_rates(model, put_masses(model, put_state_rates(model, e, 1)), 1);
+}
+
 PointValues generic_values(int attempt) { return values_of({}, attempt, attempt); }
 
 bool EquationsOfMotion::choose(Stage& s, const std::vector<std::size_t>& preferred, PointValues& at) const {
@@ -110,7 +115,9 @@ EquationsOfMotion::EquationsOfMotion(const Mechanics& M, unsigned highest_order,
     // D/Dt dT/dq' - dT/dq - (Q + …) - N
     const Column left = total_derivative(gradient(M.T, M.qd)) - gradient(M.T, M.q);
     routh = put_masses(model, left - forces(M) - M.N);
+    for (Expr& r : routh) r = put_rates(model, r);
   }
+  const auto differentiated = [&](Expr e, unsigned times) { return put_rates(model, total_derivative(e, times)); };
   int of_routh = 2;
   for (Expr r : routh) of_routh = std::max(of_routh, jet_order(r));
   for (unsigned k = 0; k <= highest; ++k) {
@@ -118,10 +125,10 @@ EquationsOfMotion::EquationsOfMotion(const Mechanics& M, unsigned highest_order,
     for (std::size_t r = 0; r < M.phi.size(); ++r)
       if (const int times = static_cast<int>(k) - M.order[r]; times >= 0)
         s.rows.push_back({true, r, static_cast<unsigned>(times),
-                          total_derivative(put_masses(model, M.phi[r]), static_cast<unsigned>(times))});
+                          differentiated(put_masses(model, M.phi[r]), static_cast<unsigned>(times))});
     s.symbols = jets(model, k);
     if (k >= 2) {
-      for (std::size_t a = 0; a < n; ++a) s.rows.push_back({false, a, k - 2, total_derivative(routh[a], k - 2)});
+      for (std::size_t a = 0; a < n; ++a) s.rows.push_back({false, a, k - 2, differentiated(routh[a], k - 2)});
       for (std::size_t r = 0; r < M.phi.size(); ++r)
         s.symbols.push_back(g.multiplier(static_cast<std::uint32_t>(r), k - 2));
       top.insert(top.end(), s.symbols.begin(), s.symbols.end());

@@ -1,5 +1,5 @@
 // The motion as equations: the constraints with their derivatives, Routh's equations [L 2.7], and points at which all
-// of them hold.
+// of them hold. Rates stand for the derivatives of states.
 //
 // At order k = 0, 1, 2, …, h the constraints' derivatives of order k are solved for some of the q^(k); from k = 2 on
 // together with Routh's equations, differentiated k - 2 times, for q^(k) and lambda^(k-2).
@@ -18,6 +18,9 @@ struct DerivedEquation {
   unsigned times = 0;     // number of differentiations
   Expr residual;
 };
+
+// Puts rates, with their masses and inputs, in place of the derivatives of states.
+Expr put_rates(const Model& model, Expr e);
 
 // Values of all symbols, none of them near 0; each attempt gives another point.
 PointValues generic_values(int attempt);

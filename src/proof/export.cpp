@@ -1,8 +1,10 @@
 // Converts expressions to the straight-line program of a certificate.
+#include <set>
 #include <unordered_map>
 
 #include "base/assert.h"
 #include "print/print.h"
+#include "proof/enclose.h"
 #include "proof/prove.h"
 
 namespace anholon {
@@ -25,28 +27,58 @@ class Exporter {
 
   Index symbol(NodeId id) {
     const auto [it, fresh] = symbol_.try_emplace(id, static_cast<Index>(c_.symbols.size()));
-    if (fresh) c_.symbols.push_back(print(Expr{&g_, id}, names_, Format::text));
+    if (fresh) {
+      // Two symbols may be printed alike, as two branching functions whose long formulas are shortened.
+      const std::string name = print(Expr{&g_, id}, names_, Format::text);
+      std::string own = name;
+      for (int k = 2; !used_.insert(own).second; ++k) own = name + " #" + std::to_string(k);
+      c_.symbols.push_back(own);
+    }
     return it->second;
   }
 
-  std::optional<Certificate::Witness> witness(const std::optional<WitnessPoint>& w) {
-    if (!w) return std::nullopt;
-    Certificate::Witness out;
-    for (const auto& [s, value] : w->values) out.values.push_back({symbol(s.id), value});
-    for (const WitnessPoint::Enclosed& e : w->enclosed)
-      out.enclosed.push_back({symbol(e.symbol.id), e.midpoint, e.radius});
-    for (Expr e : w->equations) out.equations.push_back(node(e));
-    return out;
-  }
-
-  void claim(Certificate::ClaimKind kind, const std::string& a, const std::string& b, const Difference& d) {
-    Certificate::Claim claim{kind, a, b, d.component, node(d.left), {}, {}};
+  void claim(Certificate::ClaimKind kind, const std::string& a, const std::string& b, const Difference& all) {
+    Certificate::Claim claim{kind, a, b, all.component, 0, {}, {}};
+    const bool at_witness = !claim.says_zero() && all.witness;
+    const Difference d = at_witness ? on_branches_of_witness(all) : all;
+    claim.left = node(d.left);
     for (const auto& [coefficient, term] : d.right) claim.right.push_back({node(coefficient), node(term)});
-    if (!claim.says_zero()) claim.witness = witness(d.witness);
+    if (at_witness) claim.witness = witness(*d.witness);
     c_.claims.push_back(std::move(claim));
   }
 
+  // Whether a branching function stands for its branch at a witness.
+  bool took_branches() const { return took_branches_; }
+
  private:
+  Certificate::Witness witness(const WitnessPoint& w) {
+    Certificate::Witness out;
+    for (const auto& [s, value] : w.values) out.values.push_back({symbol(s.id), value});
+    for (const WitnessPoint::Enclosed& e : w.enclosed)
+      out.enclosed.push_back({symbol(e.symbol.id), e.midpoint, e.radius});
+    for (Expr e : w.equations) out.equations.push_back(node(e));
+    return out;
+  }
+
+  // The difference with branching functions replaced by their branches at its witness: the checker knows no others.
+  Difference on_branches_of_witness(Difference d) {
+    constexpr slong kBits = 1024;
+    const BallScope precision(kBits);
+    BallPoint at;
+    for (const auto& [s, value] : d.witness->values) at.emplace(s.id, Ball(value));
+    for (const WitnessPoint::Enclosed& e : d.witness->enclosed) at.emplace(e.symbol.id, Ball(e.midpoint, e.radius));
+    Column all = {d.left};
+    for (const auto& [coefficient, term] : d.right) all.insert(all.end(), {coefficient, term});
+    all.insert(all.end(), d.witness->equations.begin(), d.witness->equations.end());
+    const Column own = on_branches(all, at);
+    took_branches_ = took_branches_ || own != all;
+    std::size_t k = 0;
+    d.left = own[k++];
+    for (auto& [coefficient, term] : d.right) coefficient = own[k++], term = own[k++];
+    for (Expr& e : d.witness->equations) e = own[k++];
+    return d;
+  }
+
   Index add(NodeId id) {
     const Node& n = g_.node(id);
     Certificate::Node out;
@@ -102,6 +134,8 @@ class Exporter {
   Graph& g_;
   SymbolNames names_;
   std::unordered_map<NodeId, Index> index_, symbol_;
+  std::set<std::string> used_;  // names of symbols
+  bool took_branches_ = false;
 };
 
 std::string list_of(const Model& model, const std::vector<std::size_t>& which) {
@@ -163,7 +197,7 @@ Certificate certificate(const Mechanics& M, const Proof& proof, const Eliminatio
   SymbolNames names = M.model->names;
   for (std::size_t i = 0; i < names.masses.size() || i < M.model->masses.size(); ++i) {
     if (i >= names.masses.size()) names.masses.emplace_back();
-    names.masses[i] = "m_" + M.model->masses[i].name + (M.model->masses[i].weight ? "." + std::to_string(i) : "");
+    names.masses[i] = mass_name(*M.model, i) + (M.model->masses[i].weight ? "." + std::to_string(i) : "");
   }
   if (eliminations.quasi.quasi) names.quasi = eliminations.quasi.free.names;
   Exporter out(c, M.graph(), names);
@@ -177,6 +211,8 @@ Certificate certificate(const Mechanics& M, const Proof& proof, const Eliminatio
       out.claim(d.verdict == Verdict::proved ? Certificate::ClaimKind::agree : Certificate::ClaimKind::differ,
                 f.form->name, "routh", d);
     }
+  if (out.took_branches())
+    c.hypotheses.push_back("where forms differ, a branching function stands for the branch that holds at the witness");
   return c;
 }
 

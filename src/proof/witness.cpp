@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "proof/enclose.h"
 #include "proof/scattered.h"
@@ -97,8 +98,12 @@ class Search {
       }
       largest = value;
     }
+    const std::string points = " at " + std::to_string(tried) + " points";
+    // A ball of a large radius says nothing of the difference.
+    const bool is_small = std::strtod(largest.c_str(), nullptr) < 1;
     out.detail = tried == 0 ? "no point of the manifold was found"
-                            : "zero to " + largest + " at " + std::to_string(tried) + " points";
+                 : is_small ? "zero to " + largest + points
+                            : "its values have no digits that are known" + points;
     return out;
   }
 

@@ -305,6 +305,7 @@ Comparison Comparer::decide(Expr P) {
 Comparison Comparer::compare(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet) {
   const Expr P = words.number(equation.left) - words.number(equation.right);
   Comparison c = decide(P);
+  if (c.trivial && holds_by_rates(equation.left, equation.right, words)) c.trivial = false, c.what = kOfRates;
   if (c.verdict != Verdict::refuted) return c;
   c.changes = repairs(equation, words, alphabet, *this);
   const auto quantities = [&] {

@@ -43,10 +43,14 @@ struct Comparison {
   std::optional<WitnessPoint> witness;  // if false
   std::string detail;
   std::vector<Change> changes;  // each of them makes it true
+  std::string with_numbers;     // false: the numbers of the file with which it holds, "J = 0.5, c = 0.7"
   bool identity = false;        // false: the equation is meant as an identity, not as an equation of motion
   bool trivial = false;         // true of every motion of every system
   bool of_constraints = false;  // true by the constraints alone
 };
+
+// The kind of an equation that is true by the rates of the states alone.
+inline constexpr const char* kOfRates = "a consequence of the rates of the states alone";
 
 class Comparer {
  public:

@@ -61,6 +61,11 @@ bool speaks_of_quantities(const Syntax& s, Vocabulary& words) {
   return std::any_of(s.args.begin(), s.args.end(), [&](const Syntax& a) { return speaks_of_quantities(a, words); });
 }
 
+bool holds_by_rates(const Syntax& left, const Syntax& right, Vocabulary& words) {
+  return proved_zero(words.number(left) - words.number(right)) &&
+         !proved_zero(words.number_before_rates(left) - words.number_before_rates(right));
+}
+
 bool meant_as_identity(const Syntax& left, const Syntax& right, Vocabulary& words) {
   const Expr a = words.number(left), b = words.number(right);
   const auto is_0 = [](const Syntax& s) { return s.op == Syntax::Op::number && s.text == "0"; };

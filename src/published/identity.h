@@ -12,6 +12,8 @@
 namespace anholon {
 
 bool speaks_of_quantities(const Syntax& s, Vocabulary& words);
+// Whether both sides are equal once rates stand for the derivatives of states, and not before.
+bool holds_by_rates(const Syntax& left, const Syntax& right, Vocabulary& words);
 // Whether an equation is meant to hold for every motion.
 bool meant_as_identity(const Syntax& left, const Syntax& right, Vocabulary& words);
 

@@ -22,6 +22,7 @@ const Column& Comparer::contractions() {
   if (!contractions_) {
     const Column a = put_masses(*M_.model, lagrange_operator(M_) - forces(M_));
     contractions_ = elimination_.on(elimination_.contract(a));
+    for (Expr& e : *contractions_) e = put_rates(*M_.model, e);
   }
   return *contractions_;
 }
@@ -33,7 +34,7 @@ bool Comparer::on_manifold(Expr P, bool regular, Comparison& out) {
   if (!E.solved || E.quasi || E.dependent.empty()) return false;
   for (NodeId id : symbols({&P, 1}))
     if (g.node(id).kind == Kind::multiplier) return false;
-  const Expr on = E.on(P);
+  const Expr on = put_rates(*M_.model, E.on(P));
   const int highest = jet_order(on);
   if (highest > static_cast<int>(std::max(2U, E.m))) return false;
   if (shown_zero(on, Effort::full)) {

@@ -86,8 +86,14 @@ class Repair {
   }
 
   void accept(Survivor& s) {
-    const Comparison c = comparer_.decide(s.whole);
+    Comparison c;
+    try {
+      c = comparer_.decide(s.whole);
+    } catch (const Failure&) {  // the changed equation has no value
+      return;
+    }
     if (c.verdict == Verdict::refuted) return;
+    if (c.trivial && holds_by_rates(s.syntax.args[0], s.syntax.args[1], words_)) c.trivial = false, c.what = kOfRates;
     if (c.trivial && !meant_as_identity(s.syntax.args[0], s.syntax.args[1], words_)) return;
     s.change.difference = s.whole;
     s.change.what = c.what;

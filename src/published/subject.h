@@ -14,6 +14,7 @@ class Subject {
   // `choice`: the eliminated coordinates, and the state near which they are eliminated. Functions that depend on it
   // throw Failure if it is impossible.
   explicit Subject(OpenModel open, StateChoice choice = {});
+  ~Subject();
   Subject(const Subject&) = delete;
   Subject& operator=(const Subject&) = delete;
 
@@ -25,8 +26,9 @@ class Subject {
   std::vector<PublishedEquation> read(const SourceText& equations, Diagnostics& diagnostics) {
     return read_equations(equations, words_, diagnostics);
   }
-  // Whether the equation is true; with the changes that would make it true, if it is false.
-  Comparison compare(const PublishedEquation& equation) { return comparer_.compare(equation, words_, alphabet_); }
+  // Whether the equation is true; with the changes that would make it true, if it is false, or the numbers of the file
+  // with which it is. An equation that has no value is unknown.
+  Comparison compare(const PublishedEquation& equation);
   // As above, without a search for changes and for the nearest equation.
   Comparison judge(const PublishedEquation& equation) { return comparer_.decide(difference(equation)); }
   Expr difference(const PublishedEquation& equation) {
@@ -34,7 +36,13 @@ class Subject {
   }
 
  private:
+  // The derived equations with the numbers of the file in place of some parameters.
+  struct WithNumbers;
+  using Parameters = std::vector<std::size_t>;
+
   const Elimination& elimination(bool quasi);
+  std::unique_ptr<WithNumbers> with_numbers(const Parameters& of);
+  std::string numbers_that_make_true(Expr difference);
 
   OpenModel open_;
   StateChoice choice_;
@@ -43,6 +51,7 @@ class Subject {
   Vocabulary words_;
   Comparer comparer_;
   Alphabet alphabet_;
+  std::unique_ptr<WithNumbers> with_all_numbers_;
 };
 
 }  // namespace anholon

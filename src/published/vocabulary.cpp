@@ -6,6 +6,7 @@
 #include "formula/functions.h"
 #include "mechanics/mechanics.h"
 #include "modelfile/names/hints.h"
+#include "proof/equations_of_motion.h"
 
 namespace anholon {
 
@@ -108,7 +109,9 @@ Expr Vocabulary::finished(Expr e) {
   return put_masses(*mechanics_.model, e);
 }
 
-Expr Vocabulary::number(const Syntax& s) { return finished(evaluate_number(s, *this)); }
+Expr Vocabulary::number(const Syntax& s) { return put_rates(*mechanics_.model, number_before_rates(s)); }
+
+Expr Vocabulary::number_before_rates(const Syntax& s) { return finished(evaluate_number(s, *this)); }
 
 Value Vocabulary::value(const Syntax& s) {
   const Value v = as_point(evaluate(s, *this), *this, s.span);
@@ -118,7 +121,7 @@ Value Vocabulary::value(const Syntax& s) {
   if (v.index() > 1)
     throw Failure(s.span, std::string("a side of an equation is a number or a vector, this is ") + type_name(v),
                   body_hint(v, *this));
-  return each(v, s.span, [this](Expr e) { return finished(e); });
+  return each(v, s.span, [this](Expr e) { return put_rates(*mechanics_.model, finished(e)); });
 }
 
 Value Vocabulary::each(const Value& v, Span span, const std::function<Expr(Expr)>& f) const {

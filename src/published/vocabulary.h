@@ -36,10 +36,12 @@ class Vocabulary final : public Names {
   // Throws Failure if the name is taken. `value` is joined.
   void let(const std::string& name, Syntax value, Span span);
 
-  // The value of a joined formula along the motion, with masses substituted and quasi-velocities expressed in
-  // coordinates.
+  // The value of a joined formula along the motion, with masses substituted, quasi-velocities expressed in coordinates,
+  // and rates in place of the derivatives of states.
   Expr number(const Syntax& s);
   Value value(const Syntax& s);
+  // The same, in which derivatives of states are symbols.
+  Expr number_before_rates(const Syntax& s);
 
   Graph& graph() override { return mechanics_.graph(); }
   Value name(const std::string& name, Span span) override;

@@ -24,7 +24,7 @@ class Derive {
       const auto named = d_.names.defined.find(value.id);
       d_.names.masses[i] = named != d_.names.defined.end()                ? named->second
                            : m.graph().node(value.id).kind == Kind::given ? print(value, d_.names, Format::text)
-                                                                          : "m_" + m.model->masses[i].name;
+                                                                          : mass_name(*m.model, i);
     }
     if (e.quasi) {
       d_.names.quasi = e.free.names;
@@ -47,6 +47,7 @@ class Derive {
           {all ? d_.model->coordinates[a].name : e_.free.names[a], arranged(q.left[a]), arranged(q.right[a])});
     for (std::size_t r = 0; r < m_.phi.size(); ++r)
       d_.constraints.push_back({d_.model->constraints[r].name, arranged(m_.phi[r]), m_.graph().zero()});
+    rates();
     if (of_reactions) reactions(*of_reactions);
     if (arranger_.in_parts(m_.q.size())) in_parts();
     return std::move(d_);
@@ -54,6 +55,12 @@ class Derive {
 
  private:
   Expr arranged(Expr e) { return arranger_.in_parts(m_.q.size()) ? e : arranger_(e, d_.names); }
+
+  void rates() {
+    for (std::size_t i = 0; i < d_.model->states.size(); ++i)
+      d_.rates.push_back({d_.model->states[i].name, m_.graph().state(static_cast<std::uint32_t>(i), 1),
+                          arranged(put_masses(*d_.model, d_.model->states[i].rate))});
+  }
 
   void in_parts() {
     Column all;
@@ -66,6 +73,7 @@ class Derive {
     for (const auto& [heading, lines] : d_.steps) add_all(lines);
     add_all(d_.equations);
     add_all(d_.constraints);
+    add_all(d_.rates);
     for (const auto& [heading, lines] : d_.reactions) add_all(lines);
     d_.parts = name_parts(all, d_.names);
   }

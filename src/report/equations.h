@@ -22,8 +22,8 @@ struct Derivation {
   unsigned m = 0;     // the order asked for; 0: none
   SymbolNames names;  // masses and quasi-velocities under their own names
   std::vector<Section> steps, reactions;
-  std::vector<Line> equations, constraints;
-  std::vector<Expr> parts;  // named in `names`, if the equations are printed in parts
+  std::vector<Line> equations, constraints, rates;  // rates: of the states
+  std::vector<Expr> parts;                          // named in `names`, if the equations are printed in parts
 };
 
 // Arranges expressions, each only once: many forms share equations, or have equations that are equal when expanded.

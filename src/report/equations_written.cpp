@@ -32,6 +32,18 @@ Sides printed(const Derivation& d, const std::vector<Line>& lines, Format format
   return s;
 }
 
+// The masses that vary, without those whose formula is their name.
+std::vector<std::pair<std::string, std::string>> masses(const Derivation& d, Format format) {
+  std::vector<std::pair<std::string, std::string>> list;
+  for (std::size_t i = 0; i < d.model->masses.size(); ++i) {
+    const std::string& name = d.names.masses[i];
+    if (name == mass_text(d, i, Format::text)) continue;
+    list.push_back(
+        {print(d.model->graph->mass(static_cast<std::uint32_t>(i)), d.names, format), mass_text(d, i, format)});
+  }
+  return list;
+}
+
 // The named parts: names and formulas.
 std::vector<std::pair<std::string, std::string>> parts(const Derivation& d, Format format) {
   std::vector<std::pair<std::string, std::string>> list;
@@ -107,14 +119,15 @@ std::string as_text(const std::vector<Derivation>& list) {
     for (std::size_t i = 0; i < d.equations.size(); ++i)
       out += d.equations[i].name + ":  " + e.left[i] + " = " + e.right[i] + "\n";
     for (std::size_t i = 0; i < d.constraints.size(); ++i) out += d.constraints[i].name + ":  " + c.left[i] + " = 0\n";
+    const Sides r = printed(d, d.rates, Format::text);
+    for (std::size_t i = 0; i < d.rates.size(); ++i)
+      out += d.rates[i].name + ":  " + r.left[i] + " = " + r.right[i] + "\n";
     for (const Section& s : d.reactions) out += "\n", section(s);
     if (!d.parts.empty()) out += "\nwith the parts\n";
     for (const auto& [name, text] : parts(d, Format::text)) out += "  " + name + " = " + text + "\n";
   }
   std::string with;
-  for (std::size_t i = 0; i < list[0].model->masses.size(); ++i)
-    if (const std::string &name = list[0].names.masses[i], text = mass_text(list[0], i, Format::text); name != text)
-      with += "  " + name + " = " + text + "\n";
+  for (const auto& [name, text] : masses(list[0], Format::text)) with += "  " + name + " = " + text + "\n";
   if (!with.empty()) out += "\nwith\n" + with;
   for (const std::string& n : list[0].model->notes) out += "note: " + n + "\n";
   return out;
@@ -140,7 +153,10 @@ std::string as_latex(const std::vector<Derivation>& all) {
     const Sides e = printed(d, d.equations, Format::latex), c = printed(d, d.constraints, Format::latex);
     for (std::size_t i = 0; i < d.equations.size(); ++i) list.push_back(e.left[i] + " &= " + e.right[i]);
     for (const std::string& left : c.left) list.push_back(left + " &= 0");
+    const Sides r = printed(d, d.rates, Format::latex);
+    for (std::size_t i = 0; i < r.left.size(); ++i) list.push_back(r.left[i] + " &= " + r.right[i]);
     for (const auto& [name, text] : parts(d, Format::latex)) list.push_back(name + " &= " + text);
+    for (const auto& [name, text] : masses(d, Format::latex)) list.push_back(name + " &= " + text);
     align(list);
     for (const Section& s : d.reactions) section(s);
   }
@@ -165,7 +181,10 @@ std::string as_mathml(const std::vector<Derivation>& all) {
     const Sides e = printed(d, d.equations, Format::mathml), c = printed(d, d.constraints, Format::mathml);
     for (std::size_t i = 0; i < d.equations.size(); ++i) list.push_back({e.left[i], e.right[i]});
     for (const std::string& left : c.left) list.push_back({left, "<mn>0</mn>"});
+    const Sides r = printed(d, d.rates, Format::mathml);
+    for (std::size_t i = 0; i < r.left.size(); ++i) list.push_back({r.left[i], r.right[i]});
     for (const auto& [name, text] : parts(d, Format::mathml)) list.push_back({name, text});
+    for (const auto& [name, text] : masses(d, Format::mathml)) list.push_back({name, text});
     table(list);
     for (const Section& s : d.reactions) section(s);
   }
@@ -206,7 +225,9 @@ std::string as_json(const std::vector<Derivation>& list, bool as_list) {
       j.close();
     };
     sections("steps", d.steps);
-    for (const auto& [key, lines] : {std::pair{"equations", &d.equations}, {"constraints", &d.constraints}}) {
+    for (const auto& [key, lines] :
+         {std::pair{"equations", &d.equations}, {"constraints", &d.constraints}, {"rates", &d.rates}}) {
+      if (lines == &d.rates && lines->empty()) continue;
       j.key(key).open_array();
       const Sides text = printed(d, *lines, Format::text), latex = printed(d, *lines, Format::latex);
       for (std::size_t i = 0; i < lines->size(); ++i) {

@@ -33,7 +33,7 @@ class CsvReader {
       }
       // The file of a killed run ends in the middle of a row.
       const bool cut = text_.empty() && text_end_ != '\n';
-      if (cut && std::count(line.begin(), line.end(), ',') + 1 < static_cast<long>(table_.columns.size())) {
+      if (cut && entries_of(line) < table_.columns.size()) {
         run_.notes.push_back("the file ends in the middle of line " + std::to_string(number_) + ", which is left out");
         break;
       }
@@ -64,22 +64,41 @@ class CsvReader {
     words_.assign(table_.columns.size(), false);
   }
 
+  static std::size_t entries_of(std::string_view line) {
+    return line.find('"') == std::string_view::npos
+               ? 1 + static_cast<std::size_t>(std::count(line.begin(), line.end(), ','))
+               : csv_cells(line).size();
+  }
+
+  // Adds a cell at the place `from` of the line.
+  void add(std::size_t column, std::string_view cell, std::string_view line, std::size_t from) {
+    // A column whose first cell is a word is a column of words, like the outcomes of a sweep.
+    if (table_.add(column, cell) || words_[column]) return;
+    if (table_.values[column].size() > 1) fail(line, from, "'" + std::string(cell) + "' is not a number", {}, cell);
+    words_[column] = true;
+  }
+
   void row(std::string_view line) {
     const std::size_t columns = table_.columns.size();
+    if (line.find('"') != std::string_view::npos) {
+      const std::vector<std::string> cells = csv_cells(line);
+      if (cells.size() != columns) wrong_number(line, line.size());
+      for (std::size_t k = 0; k < columns; ++k) add(k, cells[k], line, std::min(line.find(cells[k]), line.size()));
+      return;
+    }
     std::size_t column = 0, from = 0;
     for (; column < columns && from <= line.size(); ++column) {
       const std::size_t comma = std::min(line.find(',', from), line.size());
-      const std::string_view cell = line.substr(from, comma - from);
-      // A column whose first cell is a word is a column of words, like the outcomes of a sweep.
-      if (!table_.add(column, cell) && !words_[column]) {
-        if (table_.values[column].size() > 1) fail(line, from, "'" + std::string(cell) + "' is not a number", {}, cell);
-        words_[column] = true;
-      }
+      add(column, line.substr(from, comma - from), line, from);
       from = comma + 1;
     }
     if (column == columns && from > line.size()) return;
-    const auto found = 1 + std::count(line.begin(), line.end(), ',');
-    fail(line, from <= line.size() ? from : line.size(),
+    wrong_number(line, std::min(from, line.size()));
+  }
+
+  [[noreturn]] void wrong_number(std::string_view line, std::size_t at) const {
+    const std::size_t found = entries_of(line), columns = table_.columns.size();
+    fail(line, at,
          "this row has " + std::to_string(found) + (found == 1 ? " entry" : " entries") + ", the first line has " +
              std::to_string(columns) + " names",
          {});
@@ -138,7 +157,7 @@ bool write_table(std::FILE* file, const RunTable& table) {
   for (std::size_t i = 0; i < table.rows(); ++i) {
     for (std::size_t j = 0; j < table.columns.size(); ++j) {
       if (j) line += ',';
-      line += table.text(i, j);
+      line += csv_cell(table.text(i, j));
     }
     line += '\n';
     if (line.size() < kBuffer) continue;

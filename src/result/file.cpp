@@ -27,10 +27,15 @@ static std::string part_of(const std::string& path) { return path + ".part"; }
 
 // A link is kept; its target is written.
 std::string target_of_link(const std::string& path) {
+  constexpr int kMostLinks = 40;  // as many as the system follows
   std::error_code none;
-  if (!fs::is_symlink(path, none)) return path;
-  const fs::path target = fs::canonical(path, none);
-  return none ? path : target.string();
+  fs::path at = path;
+  for (int k = 0; k < kMostLinks && fs::is_symlink(at, none); ++k) {
+    const fs::path to = fs::read_symlink(at, none);
+    if (none) return path;
+    at = to.is_absolute() ? to : at.parent_path() / to;
+  }
+  return at.string();
 }
 
 static bool is_other_kind(const std::string& path) {

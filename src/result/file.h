@@ -62,7 +62,7 @@ class GrowingFile {
 // to wait for.
 void start_writing(const std::string& path);
 
-// The target of a link; other names are returned unchanged.
+// The target of a link, which may be missing; other names are returned unchanged.
 std::string target_of_link(const std::string& path);
 
 // Writes beside the file and renames: a kill leaves the old file or the new one. Returns an empty string, or the reason

@@ -101,7 +101,7 @@ std::string json_number(std::string_view written) {
   return number_text(value);
 }
 
-std::vector<std::string> split_csv(std::string_view line) {
+static std::vector<std::string> split_at_commas(std::string_view line, bool brackets) {
   std::vector<std::string> names(1);
   int depth = 0;
   bool quoted = false;
@@ -120,12 +120,16 @@ std::vector<std::string> split_csv(std::string_view line) {
       names.emplace_back();
       depth = 0;
     } else {
-      if (c == '(' || c == '[') ++depth;
-      if (c == ')' || c == ']') --depth;
+      if (brackets && (c == '(' || c == '[')) ++depth;
+      if (brackets && (c == ')' || c == ']')) --depth;
       names.back() += c;
     }
   }
   return names;
 }
+
+std::vector<std::string> split_csv(std::string_view line) { return split_at_commas(line, true); }
+
+std::vector<std::string> csv_cells(std::string_view line) { return split_at_commas(line, false); }
 
 }  // namespace anholon

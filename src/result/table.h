@@ -51,4 +51,7 @@ std::string json_number(std::string_view written);
 
 // The names in the first row of a CSV file. A comma in brackets or quotes belongs to a name: P[1,2], D(x,4).
 std::vector<std::string> split_csv(std::string_view line);
+// The cells of a further row: a comma in quotes alone belongs to a cell (RFC 4180).
+std::vector<std::string> csv_cells(std::string_view line);
+
 }  // namespace anholon

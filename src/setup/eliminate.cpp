@@ -130,7 +130,7 @@ std::vector<QuasiVelocity> quasi_velocities(const Mechanics& m, const std::vecto
     const Matrix<double> more = with(row);
     if (!independent(more)) continue;
     rows = more;
-    list.push_back({"u_" + model.coordinates[a].name, m.qd[a], 1, {}});
+    list.push_back({automatic_name(model, "u_" + model.coordinates[a].name), m.qd[a], 1, {}});
   }
   return list;
 }
@@ -156,19 +156,8 @@ EliminationChoice choose_elimination(const Mechanics& m, const std::vector<std::
   return choice;
 }
 
-// Of those constraints `all` that are independent.
-static Elimination elimination_of(const Mechanics& m, const std::vector<std::size_t>& all, Unknowns unknowns,
-                                  const std::vector<StateOverride>& overrides, const std::vector<std::size_t>& wanted,
-                                  bool solve, unsigned order) {
-  const Model& model = *m.model;
-  Column es;
-  for (const Parameter& p : model.parameters) es.push_back(p.value);
-  const std::vector<double> parameters = evaluate_parameters<double>(*model.graph, es);
-  InitialState<double> state;
-  if (model.unknown_functions.empty())
-    if (!consistent_state(InitialProblem<double>{&m, parameters, overrides, {}}, state).ok()) state = {};
-  const auto at = std::make_shared<PointValues>(values_near(model, parameters, state));
-  std::vector<std::size_t> rows = choose_rows(constraint_matrix(m, all, *at), kSingular).independent;
+std::vector<std::size_t> independent_rows(const Mechanics& m, const std::vector<std::size_t>& all, PointValues& at) {
+  std::vector<std::size_t> rows = choose_rows(constraint_matrix(m, all, at), kSingular).independent;
   if (rows.size() < all.size()) {
     // Fewer at a singular state only?
     PointValues elsewhere(generic);
@@ -176,26 +165,7 @@ static Elimination elimination_of(const Mechanics& m, const std::vector<std::siz
   }
   std::vector<std::size_t> chosen;
   for (std::size_t i : rows) chosen.push_back(all[i]);
-  EliminationChoice choice = choose_elimination(m, chosen, unknowns, wanted, *at);
-  choice.solve = solve;
-  choice.m = order;
-  return Elimination(m, choice, at);
-}
-
-Elimination elimination_for(const Mechanics& m, Unknowns unknowns, const std::vector<StateOverride>& overrides,
-                            const std::vector<std::size_t>& wanted, bool solve, unsigned order) {
-  if (unknowns != Unknowns::coordinates && unknowns != Unknowns::quasi_velocities) return Elimination::of_order(order);
-  std::vector<std::size_t> all;
-  for (std::size_t r = 0; r < m.phi.size(); ++r) all.push_back(r);
-  return elimination_of(m, all, unknowns, overrides, wanted, solve, order);
-}
-
-Elimination elimination_of_reactions(const Mechanics& m, const std::vector<StateOverride>& overrides,
-                                     const std::vector<std::size_t>& wanted) {
-  std::vector<std::size_t> ideal;
-  for (std::size_t r = 0; r < m.phi.size(); ++r)
-    if (!m.model->constraints[r].by) ideal.push_back(r);
-  return elimination_of(m, ideal, Unknowns::coordinates, overrides, wanted, true, 0);
+  return chosen;
 }
 
 }  // namespace anholon

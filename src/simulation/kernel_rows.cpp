@@ -149,7 +149,12 @@ std::vector<double> KernelRows::of_round_off(const RowPlace& place, const std::v
   }
   waiting_->compute(block, [&](const WaitingRows::Computed& row) {
     row.numbers(other);
-    for (std::size_t j = 0; j < numbers.size(); ++j) changes[j] = std::max(changes[j], std::abs(other[j] - numbers[j]));
+    for (std::size_t j = 0; j < numbers.size(); ++j) {
+      // A root of about 0 may lose its value.
+      const bool lost = std::isnan(other[j]) != std::isnan(numbers[j]);
+      const double change = lost ? std::numeric_limits<double>::infinity() : std::abs(other[j] - numbers[j]);
+      changes[j] = std::max(changes[j], change);
+    }
     return true;
   });
   return changes;

@@ -42,7 +42,9 @@ void print_text(const EquationFinding& f, std::size_t width, const SourceText& s
     for (std::size_t i = 0; i < f.changes.size() && i < kListed; ++i) show(f.changes[i]);
     if (f.changes.size() > kListed) say(stdout, "%s…\n", indent.c_str());
   }
-  if (f.changes.empty())
+  if (!f.with_numbers.empty())
+    say(stdout, "%sholds with the file's numbers %s, not for all values\n", indent.c_str(), f.with_numbers.c_str());
+  else if (f.changes.empty())
     say(stdout, "%sno change of one term and no lost dots of up to four symbols make it true\n", indent.c_str());
 }
 
@@ -79,6 +81,7 @@ void write_json(JsonWriter& j, const EquationFinding& f) {
   for (const FoundChange& k : f.changes) change(k);
   j.close();
   j.key("detail").string(f.detail);
+  if (!f.with_numbers.empty()) j.key("with_numbers").string(f.with_numbers);
   optional("point", f.point);
   j.close();
 }

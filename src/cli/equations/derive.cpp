@@ -5,6 +5,7 @@
 #include "cli/contacts.h"
 #include "cli/input.h"
 #include "cli/models/show.h"
+#include "cli/outputs.h"
 #include "cli/say.h"
 #include "dynamics/rate_formulas_of.h"
 #include "report/equations.h"
@@ -76,6 +77,7 @@ int derive(const DeriveCommand& asked) {
   DeriveCommand o = asked;
   o.format = format_of_equations(asked);
   const Reader in = in_mode(read(o), o, "derive");
+  must_spare_inputs(o, in, {}, {{"-o", o.output}});
   const Model& model = *in.model;
   if (o.format != "text" && o.format != "latex" && o.format != "mathml" && o.format != "c" && o.format != "python" &&
       o.format != "json")

@@ -10,6 +10,7 @@
 #include "base/stop.h"
 #include "cli/contacts.h"
 #include "cli/input.h"
+#include "cli/outputs.h"
 #include "cli/say.h"
 #include "cli/stop.h"
 #include "modelfile/hash.h"
@@ -178,6 +179,7 @@ int prove(const ProveCommand& o) {
   const auto start = std::chrono::steady_clock::now();
   const Reader in = in_mode(read(o), o, "prove");
   const Model& model = *in.model;
+  must_spare_inputs(o, in, {}, {{"-o", o.output}});
   if (!o.output.empty()) must_be_written(obstacle_to_writing(o.output));
   const Mechanics m = mechanics(model);
   if (o.m) must_lift(m, static_cast<unsigned>(o.m));

@@ -28,6 +28,16 @@ RunFile read_result(const std::string& path) {
   }
 }
 
+void check_ending(const std::string& output, const std::vector<const ResultFormat*>& formats) {
+  std::error_code none;
+  const std::filesystem::path path = output;
+  const auto kind = std::filesystem::status(path, none).type();
+  const bool other = kind != std::filesystem::file_type::regular && kind != std::filesystem::file_type::not_found;
+  if (output.empty() || output == "-" || other || !path.has_extension() || format_of(output)) return;
+  throw UsageError{"error: the format of '" + output + "' is not known\nhint: a name that ends in " +
+                   known_files("", formats) + "\n"};
+}
+
 void check_format(const ResultFormat* format) {
   if (format && format->missing)
     throw UsageError{"error: " + std::string(format->missing) + "\nhint: " + format->missing_hint + "\n"};

@@ -9,6 +9,7 @@
 #include "cli/motions/result_file.h"
 #include "cli/motions/run_formulas.h"
 #include "cli/motions/run_info.h"
+#include "cli/outputs.h"
 #include "cli/say.h"
 #include "observe/rows/quantity_units.h"
 #include "report/page/page_of.h"
@@ -96,6 +97,7 @@ int report(const ReportCommand& o) {
   std::deque<Told> cases;
   if (!o.rows.empty() || is_a_run(o.model)) {
     take_up(o, o.rows, cases.emplace_back());
+    must_spare_inputs(o, cases[0].in, {o.rows.empty() ? o.model : o.rows}, {{"the page", page.path}});
     write_page(o, page, cases);
     return kOk;
   }

@@ -8,6 +8,10 @@ namespace anholon::cli {
 // Throws UsageError with the position of the error.
 RunFile read_result(const std::string& path);
 
+// Throws UsageError if the name has an ending that no format of `formats` has. A name without an ending passes, and so do
+// pipes and devices.
+void check_ending(const std::string& output, const std::vector<const ResultFormat*>& formats);
+
 // Throws UsageError if this build cannot write the format; null passes.
 void check_format(const ResultFormat* format);
 

@@ -15,6 +15,7 @@
 #include "cli/motions/result_file.h"
 #include "cli/motions/run_info.h"
 #include "cli/motions/saved.h"
+#include "cli/outputs.h"
 #include "cli/say.h"
 #include "cli/stop.h"
 #include "contact/hybrid.h"
@@ -226,11 +227,15 @@ int say_end(const SimulateCommand& o, const Written& w, const std::string& save_
 }  // namespace
 
 int simulate_motion(const SimulateCommand& asked, const SavedRun* resume, Told* told) {
+  check_ending(asked.output, result_formats());
   check_format(format_of(asked.output));
   Told own;
   Told& all = told ? *told : own;
   all.in = read(asked);
   const Reader& in = all.in;
+  // A continued run may be saved to its own file.
+  must_spare_inputs(asked, in, {asked.resume}, {{"-o", asked.output}, {"the page", asked.page.path}});
+  must_spare_inputs(asked, in, {}, {{"-o", asked.output}, {"the page", asked.page.path}, {"--save", asked.save}});
   const SimulateCommand o = with_form(asked, in);
   if (resume) same_model(*resume, in);
   SimulationOptions options;

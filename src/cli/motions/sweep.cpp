@@ -11,6 +11,7 @@
 #include "cli/motions/run_info.h"
 #include "cli/motions/sweep_folder.h"
 #include "cli/motions/sweep_output.h"
+#include "cli/outputs.h"
 #include "cli/say.h"
 #include "cli/stop.h"
 #include "ensemble/parts/judgement.h"
@@ -105,6 +106,7 @@ Reductions reductions_of(const SweepCommand& o, const Reader& in) {
 // Returns false if --show has printed what was asked for.
 bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   p.in = read(p.asked);
+  must_spare_inputs(p.asked, p.in, {p.asked.case_table}, {{"-o", p.asked.output}});
   // Without a mode the contacts move, too.
   if (!p.asked.mode.empty()) p.in = in_mode(std::move(p.in), p.asked, "sweep");
   const SweepCommand o = p.asked = with_form(p.asked, p.in);

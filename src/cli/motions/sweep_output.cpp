@@ -1,5 +1,6 @@
 #include "cli/motions/sweep_output.h"
 
+#include "cli/motions/result_file.h"
 #include "cli/say.h"
 #include "ensemble/parts/judgement.h"
 
@@ -29,6 +30,7 @@ const ResultFormat& sweep_format(const std::string& output, bool json) {
   if (unable)
     throw UsageError{"error: " + std::string(unable) +
                      " files are not written yet\nhint: " + known_files("-o cases", sweep_formats()) + "\n"};
+  check_ending(output, sweep_formats());
   if (named && named->missing)
     throw UsageError{"error: " + std::string(named->missing) + "\nhint: " + named->missing_hint + "\n"};
   if (json) return report_format();

@@ -14,17 +14,6 @@ namespace anholon::cli {
 
 namespace {
 
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  if (line.ends_with('\r')) line.remove_suffix(1);
-  for (std::size_t from = 0;;) {
-    const std::size_t comma = std::min(line.find(',', from), line.size());
-    cells.push_back(line.substr(from, comma - from));
-    if (comma == line.size()) return cells;
-    from = comma + 1;
-  }
-}
-
 bool heads_a_sweep(const std::vector<std::string>& names) {
   return !names.empty() && names[0] == "case" && names.size() > 1 && names[1] != "t";
 }
@@ -37,12 +26,13 @@ ParquetTable table_of_csv(std::string_view text, const std::string& path) {
   std::vector<bool> worded;
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
+    std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.ends_with('\r')) line.remove_suffix(1);
     if (line.empty()) continue;
-    const std::vector<std::string_view> cells = cells_of(line);
+    const std::vector<std::string> cells = table.columns.empty() ? split_csv(line) : csv_cells(line);
     if (table.columns.empty()) {
-      for (const std::string_view name : cells) table.columns.push_back({std::string(name), {}});
+      for (const std::string& name : cells) table.columns.push_back({name, {}});
       numbers.resize(cells.size()), words.resize(cells.size()), worded.resize(cells.size());
       continue;
     }
@@ -96,9 +86,8 @@ bool SweepCases::are_in(const std::string& path) {
     std::string line;
     std::ifstream file(path);
     std::getline(file, line);
-    std::vector<std::string> names;
-    for (const std::string_view cell : cells_of(line)) names.emplace_back(cell);
-    return heads_a_sweep(names);
+    if (line.ends_with('\r')) line.pop_back();
+    return heads_a_sweep(split_csv(line));
   }
   // Files of other formats may be large: the first bytes tell.
   char beginning[4] = {};

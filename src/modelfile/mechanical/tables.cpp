@@ -137,6 +137,7 @@ class TableReader {
     if (file.kind != Item::Kind::string) throw Failure(file.span, "a file is a name in quotes");
     const std::filesystem::path path = std::filesystem::path(model_.source_text.name).parent_path() / file.text();
     std::error_code error;
+    model_.table_files.push_back(path.string());
     if (!std::filesystem::is_regular_file(path, error))
       throw Failure(file.span, "there is no file '" + path.string() + "'", "the name is relative to the model file");
     if (std::filesystem::file_size(path, error) > kLargestFile)

@@ -63,7 +63,7 @@ bool RowCheck::doubts(const RowTwice& row) {
 void RowCheck::count(const RowTwice& row, const std::vector<double>& of_state) {
   for (std::size_t j = 0; j < columns_.size(); ++j) {
     const double missed = static_cast<double>(std::abs(row.written[j] - row.solved[j]));
-    if (!of_state.empty() && missed <= kRoundoffsOfState * of_state[j]) continue;
+    if (!of_state.empty() && (std::isinf(of_state[j]) || missed <= kRoundoffsOfState * of_state[j])) continue;
     const double found = difference(row, j);
     if (!(found <= worst_.difference)) worst_ = {found, row.t, j};
   }

@@ -33,8 +33,8 @@ class RowCheck {
 
   // Returns whether a difference of the row is larger than round-off; the numbers that follow are measured by its, too.
   bool doubts(const RowTwice& row);
-  // Counts the differences of a row. `of_state`: by how much the round-off of the state changes each column; empty if
-  // it does not.
+  // Counts the differences of a row. `of_state`: by how much the round-off of the state changes each column, infinite
+  // if the column may lose its value; empty if it does not.
   void count(const RowTwice& row, const std::vector<double>& of_state);
   // The largest difference, if it is no round-off.
   std::optional<RowDifference> found() const;

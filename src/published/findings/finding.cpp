@@ -50,7 +50,7 @@ std::string FoundChange::text() const {
 const char* truth(Verdict v) { return v == Verdict::proved ? "true" : v == Verdict::refuted ? "false" : "unknown"; }
 
 EquationFinding finding_of(const PublishedEquation& e, const Comparison& c, const SymbolNames& names) {
-  EquationFinding f{e.label, e.text(), c.verdict, c.what, {}, c.identity, c.detail, {}, {}};
+  EquationFinding f{e.label, e.text(), c.verdict, c.what, {}, c.identity, c.detail, {}, {}, c.with_numbers};
   if (c.difference) f.difference = print(*c.difference, names, Format::text);
   if (c.witness) f.point = point_text(*c.witness, names);
   for (const Change& k : c.changes) {

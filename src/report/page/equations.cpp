@@ -23,6 +23,7 @@ class EquationsSection {
       if (k < p_.eliminations.size() && !p_.eliminations[k].empty()) out += "<p>" + user(p_.eliminations[k]) + "</p>\n";
       out += lines(d, d.equations, false);
       if (!d.constraints.empty()) out += "<h4>with the constraints</h4>\n" + lines(d, d.constraints, true);
+      if (!d.rates.empty()) out += "<h4>with the rates of the states</h4>\n" + lines(d, d.rates, false);
       out += parts(d);
       for (const auto& [heading, list] : d.steps)
         if (!list.empty())

@@ -5,6 +5,7 @@
 
 #include "base/stop.h"
 #include "modelfile/hash.h"
+#include "observe/rows/quantity_units.h"
 #include "proof/checker/verify.h"
 #include "report/page/page.h"
 #include "setup/eliminate.h"
@@ -126,9 +127,11 @@ Proof add_proof(Page& page, const PageRequest& request, const Model& fresh) {
 
 PageInParts::PageInParts(std::vector<PagedRun> runs, std::shared_ptr<const Model> model, PageRequest request)
     : model_(std::move(model)), request_(std::move(request)) {
-  for (PagedRun& r : runs)
+  for (PagedRun& r : runs) {
+    if (!r.run.units.empty()) add_units(*r.scenario->model, r.conserved, r.run.units);
     page_.cases.push_back(
         {r.name, r.scenario, constraint_facts(*r.scenario), std::move(r.conserved), std::move(r.run)});
+  }
   page_.version = request_.version;
   page_.model_hash = model_hash(request_.source);
   page_.source = request_.source;

@@ -24,7 +24,7 @@ std::string digits(const SimulationReport& r) {
   return list + ", by " + r.error->means;
 }
 
-// `units`: of columns, as far as they are known.
+// `units`: of columns, and of "conserved NAME", as far as they are known.
 std::string watched(const SimulationReport& r, const std::map<std::string, std::string>& units, const std::string& of) {
   constexpr std::size_t kMostEvents = 50;
   const auto unit = [&](const std::string& name) {
@@ -36,9 +36,10 @@ std::string watched(const SimulationReport& r, const std::map<std::string, std::
   std::vector<std::vector<std::string>> rows;
   for (const std::vector<WatchedReport>* list : {&r.conserved, &r.monitors})
     for (const WatchedReport& w : *list) {
+      const std::string name = list == &r.conserved && unit(w.name).empty() ? "conserved " + w.name : w.name;
       rows.push_back(
           {user(w.name), w.first.text(), w.last.text(), w.least.text(), w.greatest.text(), residual(w.largest_change)});
-      if (!units.empty()) rows.back().insert(rows.back().end() - 1, unit(w.name));
+      if (!units.empty()) rows.back().insert(rows.back().end() - 1, unit(name));
     }
   std::string out = table("Integrals of the motion and what was watched" + of, head, rows);
   std::vector<std::vector<std::string>> events;

@@ -55,6 +55,45 @@ TEST(Compare, HolonomicConstraintsAndTheirConsequences) {
   EXPECT_NE(s.what("2*lambda*l^2 = m*g*y - m*(x'^2 + y'^2)").find("with rod put in"), std::string::npos);
 }
 
+// A rocket that burns its fuel, a state: its rate stands for its derivatives.
+TEST(Compare, RatesOfStatesBelongToTheDerivedEquations) {
+  Compared s(R"toml(coordinates = ["x"]
+parameters = {m0 = 2, c = 3, q = 0.1}
+state.fuel = {rate = "-q*(1 + x)", initial = 2}
+particle = [{name = "r", mass = "m0 + fuel", position = "x*ex", expelled_velocity = "-c*ex"}]
+)toml");
+  EXPECT_EQ(s.what("(m0 + fuel)*x'' = q*(1 + x)*c"), "the equation of x");
+  EXPECT_EQ(s.what("(m0 + fuel)*x'' = -fuel'*c"), "the equation of x");
+  EXPECT_EQ(s.what("fuel' = -q*(1 + x)"), "a consequence of the rates of the states alone");
+  EXPECT_EQ(s.what("fuel'' = -q*x'"), "a consequence of the rates of the states alone");
+  EXPECT_EQ(s.what("fuel' + x = fuel' + x"), "an identity: it holds whatever the motion");
+  EXPECT_EQ(s.what("(m0 + fuel)*x''' - q*(1 + x)*x'' = q*x'*c"), "the equation of x, differentiated once");
+  EXPECT_EQ(s.compare("fuel' = q*(1 + x)").verdict, Verdict::refuted);
+  EXPECT_EQ(s.compare("(m0 + fuel)*x'' = fuel'*c").verdict, Verdict::refuted);
+}
+
+// A number in place of a parameter is true for the file alone.
+TEST(Compare, NumbersOfTheFile) {
+  Compared s(R"toml(coordinates = ["th"]
+parameters = {J = 0.5, c = 0.7, k = 2}
+body = [{name = "rod", inertia = "J", center = "0*ex", angle = "th"}]
+dissipation.R = "c*th'^2/2"
+)toml");
+  EXPECT_EQ(s.compare("J*th'' = -0.7*th'").with_numbers, "c = 0.7");
+  const Comparison both = s.compare("0.5*th'' = -0.7*th'");
+  EXPECT_EQ(both.verdict, Verdict::refuted);
+  EXPECT_EQ(both.with_numbers, "J = 0.5, c = 0.7");
+  EXPECT_EQ(s.compare("0.5*th'' = -0.8*th'").with_numbers, "");
+}
+
+TEST(Compare, AnEquationWithoutAValueIsUnknown) {
+  Compared s(test::kSleigh);
+  const Comparison c = s.compare("1/(y'*cos(th) - x'*sin(th)) = 5");
+  EXPECT_EQ(c.verdict, Verdict::unknown);
+  EXPECT_EQ(c.detail, "line 1: division by zero where the derived equations hold");
+  EXPECT_EQ(s.what("J*th'' = 0"), "the equation of th");
+}
+
 TEST(Compare, NamesTheMisprint) {
   Compared s(test::kSleigh);
   EXPECT_EQ(s.change("m*x'' = lambda*sin(th)"),

@@ -54,6 +54,14 @@ TEST_F(File, HasItsNameWhenItIsWhole) {
   EXPECT_EQ(files(), 1u);
 }
 
+TEST_F(File, ALinkStaysWhereItsTargetIsMissing) {
+  fs::create_symlink("target.csv", path_);
+  EXPECT_EQ(write_whole(path_, std::string("t\n0\n")), "");
+  EXPECT_TRUE(fs::is_symlink(path_));
+  EXPECT_EQ(text(folder_ / "target.csv"), "t\n0\n");
+  EXPECT_EQ(files(), 2u);
+}
+
 TEST_F(File, WhatWasNotBegunLeavesNothing) {
   std::ofstream(path_) << "old";
   {

@@ -51,6 +51,20 @@ TEST(RunTable, HoldsNoTextsWhereTheNumbersSayItAll) {
   EXPECT_TRUE(t.texts[1].empty());
 }
 
+// RFC 4180: a word that holds a comma or a quote is quoted, in each line.
+TEST(Csv, QuotedWordsOfRows) {
+  const std::string text = "case,case_name,\"q[1,2]\"\n0,\"heavy, big\",1.5\n1,\"q\"\"uote\",2\n2,plain (,3\n";
+  const RunTable t = table_of(text);
+  EXPECT_EQ(t.columns, (std::vector<std::string>{"case", "case_name", "q[1,2]"}));
+  ASSERT_EQ(t.rows(), 3u);
+  EXPECT_EQ(t.text(0, 1), "heavy, big");
+  EXPECT_EQ(t.text(1, 1), "q\"uote");
+  EXPECT_EQ(t.text(2, 1), "plain (");
+  EXPECT_EQ(t.values[2][0], 1.5);
+  EXPECT_EQ(csv_cells("a[1,2],\"b,\"\"c\","), (std::vector<std::string>{"a[1", "2]", "b,\"c", ""}));
+  EXPECT_EQ(trouble("t,a\n0,\"x,y\",1\n"), "2:10: this row has 3 entries, the first line has 2 names");
+}
+
 TEST(Csv, CommasInBracketsAndQuotesBelongToNames) {
   EXPECT_EQ(split_csv("t,P[1,2],D(x,4),\"a,\"\"b\",y'"),
             (std::vector<std::string>{"t", "P[1,2]", "D(x,4)", "a,\"b", "y'"}));

@@ -1,0 +1,58 @@
+// The eliminations of equations that are derived and compared, and not integrated.
+#include "formulation/operators.h"
+#include "setup/eliminate.h"
+#include "setup/scenario.h"
+
+namespace anholon {
+
+// The pivots of constraints on accelerations depend on these, which follow from Routh's equations at the state. The
+// state is left as it is if they have no solution there.
+static void add_accelerations(const Model& model, const std::vector<StateOverride>& overrides,
+                              InitialState<double>& state) {
+  try {
+    Scenario s;
+    StateChoice choice;
+    choice.overrides = overrides;
+    const auto own = std::shared_ptr<const Model>(&model, [](const Model*) {});
+    if (make_scenario(own, *find_formulation("routh"), choice, s).ok()) state = s.state;
+  } catch (const Failure&) {
+    // A motion is refused for a reason that does not concern the equations.
+  }
+}
+
+// Of those constraints `all` that are independent.
+static Elimination elimination_of(const Mechanics& m, const std::vector<std::size_t>& all, Unknowns unknowns,
+                                  const std::vector<StateOverride>& overrides, const std::vector<std::size_t>& wanted,
+                                  bool solve, unsigned order) {
+  const Model& model = *m.model;
+  Column es;
+  for (const Parameter& p : model.parameters) es.push_back(p.value);
+  const std::vector<double> parameters = evaluate_parameters<double>(*model.graph, es);
+  InitialState<double> state;
+  if (model.unknown_functions.empty())
+    if (!consistent_state(InitialProblem<double>{&m, parameters, overrides, {}}, state).ok()) state = {};
+  if (!state.q.empty() && highest_order(m) >= 2) add_accelerations(model, overrides, state);
+  const auto at = std::make_shared<PointValues>(values_near(model, parameters, state));
+  EliminationChoice choice = choose_elimination(m, independent_rows(m, all, *at), unknowns, wanted, *at);
+  choice.solve = solve;
+  choice.m = order;
+  return Elimination(m, choice, at);
+}
+
+Elimination elimination_for(const Mechanics& m, Unknowns unknowns, const std::vector<StateOverride>& overrides,
+                            const std::vector<std::size_t>& wanted, bool solve, unsigned order) {
+  if (unknowns != Unknowns::coordinates && unknowns != Unknowns::quasi_velocities) return Elimination::of_order(order);
+  std::vector<std::size_t> all;
+  for (std::size_t r = 0; r < m.phi.size(); ++r) all.push_back(r);
+  return elimination_of(m, all, unknowns, overrides, wanted, solve, order);
+}
+
+Elimination elimination_of_reactions(const Mechanics& m, const std::vector<StateOverride>& overrides,
+                                     const std::vector<std::size_t>& wanted) {
+  std::vector<std::size_t> ideal;
+  for (std::size_t r = 0; r < m.phi.size(); ++r)
+    if (!m.model->constraints[r].by) ideal.push_back(r);
+  return elimination_of(m, ideal, Unknowns::coordinates, overrides, wanted, true, 0);
+}
+
+}  // namespace anholon
