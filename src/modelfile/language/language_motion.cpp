@@ -68,7 +68,9 @@ set = {stage = "stage + 1"}
        {{"name", name, "for events and columns; `contact1`, … without it"},
         {"gap", formula, "the distance, a formula of coordinates and time that is not negative"},
         {"slip", any, "the relative tangential velocity: a number, a list of two, or a vector with `along`"},
-        {"along", any, "the tangential directions of a vector `slip`, as in a constraint; they are made of length 1 and at right angles"},
+        {"along", any,
+         "the tangential directions of a vector `slip`, as in a constraint; they are made of length 1 and at right "
+         "angles"},
         {"body", name, "instead of `gap` and `slip`: the body that touches, with its shape"},
         {"shape", text,
          "what touches: `point`, `ball(R)`, `disc(R)`, `box(a, b, c)`; the shape of the body without it"},
