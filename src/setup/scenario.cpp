@@ -241,8 +241,8 @@ static void note_unused_values(const Formulation& form, Scenario& s) {
       const Origin origin = k ? s.state.qd_origin[a] : s.state.q_origin[a];
       if (static_cast<int>(k) < s.structure.d[a] || origin != Origin::given) continue;
       const std::string& name = s.model->coordinates[a].name;
-      s.notes.push_back("the initial value of " + derivative_name(name, k, Format::text) + " is not used: " + name +
-                        " has no inertia here, and it follows from the equations");
+      s.state.notes.push_back("the initial value of " + derivative_name(name, k, Format::text) +
+                              " is not used: " + name + " has no inertia here, and it follows from the equations");
     }
 }
 
