@@ -213,8 +213,11 @@ guess = {b = -2}
   const StateChoice choice;
   // The formulas of signals belong to the model; the system is a copy of it.
   const Expr x2 = g.jet(0, 2), b = g.jet(2, 0);
-  const Signals signals{
-      {"push"}, {"acceleration", "height", "pull", "jerk"}, {g.parameter(0)}, {x2, b, g.multiplier(0, 0), g.jet(0, 3)}};
+  const Signals signals{{"push"},
+                        {"acceleration", "height", "pull", "jerk"},
+                        {g.parameter(0)},
+                        {x2, b, g.multiplier(0, 0), g.jet(0, 3)},
+                        {}};
   const auto s = scenario(model, choice);
   const Linearization l = linearize(*s, choice, std::nullopt, signals);
   ASSERT_TRUE(l.results[0].outcome.ok());
@@ -245,7 +248,7 @@ TEST(LinearModels, InputsInConstraintsAreLeftOut) {
       "constraint = [{name = \"c\", equation = \"y' = u*x\"}]\nparameters.u = 2\n");
   const StateChoice choice;
   const auto s = scenario(model, choice);
-  const Linearization l = linearize(*s, choice, std::nullopt, {{"u"}, {}, {model->graph->parameter(0)}, {}});
+  const Linearization l = linearize(*s, choice, std::nullopt, {{"u"}, {}, {model->graph->parameter(0)}, {}, {}});
   EXPECT_TRUE(l.results[0].model.inputs.empty());
   EXPECT_EQ(l.results[0].model.notes.size(), 1U);
 }
