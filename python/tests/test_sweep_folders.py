@@ -1,6 +1,7 @@
 """Sweeps in folders: the same numbers as without one, whoever computed the parts; mistakes are named and nothing is overwritten."""
 
 import hashlib
+import os
 import pathlib
 import pickle
 import signal
@@ -239,8 +240,6 @@ def test_a_motion_of_a_case_whose_numbers_are_not_kept(tmp_path: pathlib.Path, d
 
 
 def test_motions_of_a_folder_of_the_command_line(tmp_path: pathlib.Path) -> None:
-    import os
-
     words = ["--vary", "phi'=1:7:7", "--set", "m=2", "--qdot", "psi=0.1", "--to", "3", "--quiet", "-o", str(tmp_path / "f") + "/"]
     subprocess.run([os.environ["ANHOLON_PROGRAM"], "sweep", "disc", *words], check=True)
     folder = an.open_sweep(tmp_path / "f")
@@ -250,8 +249,6 @@ def test_motions_of_a_folder_of_the_command_line(tmp_path: pathlib.Path) -> None
 
 
 def test_motions_of_scenarios_of_the_command_line(tmp_path: pathlib.Path) -> None:
-    import os
-
     model = tmp_path / "spring.toml"
     model.write_text(
         """coordinates = ["x"]

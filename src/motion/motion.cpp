@@ -215,10 +215,11 @@ Outcome Motion<N>::at(const W& t) {
 // Keeps an eye on what the choices of a leg stand on.
 template <Number N>
 void Motion<N>::watch_pivots(Leg& leg) const {
-  if (!base_) return;
+  const bool rows = base_ && chooses_rows(s_, settings_);
+  if (!rows && leg.elimination.pivots().empty()) return;
   const std::vector<std::size_t> all;
-  leg.pivots = std::make_unique<ChoiceWatch<W>>(
-      workspace(leg), leg.elimination, chooses_rows(s_, settings_) ? leg.system.constraints : all, parameters_);
+  leg.pivots = std::make_unique<ChoiceWatch<W>>(workspace(leg), leg.elimination, rows ? leg.system.constraints : all,
+                                                parameters_);
 }
 
 // The present leg once more, with the present parameters.
@@ -327,7 +328,8 @@ bool Motion<N>::choose_again() {
   if (next) accelerate(*next);
   // Before the expansion, which a kernel goes on from.
   const Expansion<W>& point = present();
-  std::vector<double> as_it_is = leg_->pivots->at(point), as_chosen = next ? next->pivots->at(point) : as_it_is;
+  std::vector<double> as_it_is = leg_->pivots->at(point), as_chosen;
+  if (next && next->pivots) as_chosen = next->pivots->at(point);
   const bool taken = next && next->stepper.take_over(leg_->stepper).ok();
   if (taken) {
     leg_ = std::move(next);
