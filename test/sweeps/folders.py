@@ -222,7 +222,7 @@ class Folders:
 
     REFINED = ["sweep", "disc", "--vary", "phi'=1:7:13", "--vary", "theta=0.2:1.4:9", "--to", "3", "--quiet"]
 
-    def refined(self, folder, *words, rule="theta:0.5"):
+    def refined(self, folder, *words, rule="theta:0.25"):
         return [*self.REFINED, "-o", str(folder) + "/", *words, *(["--refine-by", rule] if rule else [])]
 
     # Each of these begins a process, lets one thing happen to it after some seconds, and returns whether it was still at work then.
@@ -308,8 +308,8 @@ class Folders:
         must(alone.read_text().splitlines()[1].split(",")[1:] == rows[-1].split(",")[1:], "a refined case has other numbers than alone")
 
         # Another rule, no grid, a plan that was changed.
-        _, error = self.run(*self.refined(self.folder, "--refine", "4", rule="theta:0.4"), status=2)
-        must("refined by 'theta:0.5', not by 'theta:0.4'" in error, error)
+        _, error = self.run(*self.refined(self.folder, "--refine", "4", rule="theta:0.2"), status=2)
+        must("refined by 'theta:0.25', not by 'theta:0.2'" in error, error)
         for words, rule, message in [
             (["--vary", "m~normal(1,0.1)", "-n", "200"], "", "lies no grid"),
             (["--vary", "m=1,3,2"], "", "neither ascend nor descend"),

@@ -51,7 +51,7 @@ def borders(folder, on=None):
     import anholon as an
 
     grid = {"phi'": an.grid(1, 7, 61), "theta": an.grid("0.2", "1.4", 25)}
-    return an.load("disc").sweep(grid, to=6, out=folder, chunk=50, on=on, threads=1, refine=2, refine_by=("theta", 0.5))
+    return an.load("disc").sweep(grid, to=6, out=folder, chunk=50, on=on, threads=1, refine=2, refine_by=("theta", 0.2))
 
 
 SWEEPS = {"sweep": sweep, "borders": borders}
