@@ -41,12 +41,23 @@ JoinedReport::JoinedReport(const Model& model) {
 bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, ModeEvent>& contacts) {
   bool goes_on = true;
   power_miss_ = std::max(power_miss_, r.power * (r.turned_over > 0 ? r.turned_over : 1));
+  // What a mode says of its own part of a change: the whole motion is told of at the end.
+  const auto of_its_own = [&](const Warning& w) {
+    return std::any_of(r.conserved.begin(), r.conserved.end(), [&](const WatchedReport& c) {
+      return w.message == not_conserved(c.name, c.largest_change).message;
+    });
+  };
+  const auto named = [&](const Warning& w) {
+    return std::any_of(all_.warnings.begin(), all_.warnings.end(),
+                       [&](const Warning& o) { return same_but_time(o, w); });
+  };
   if (segments_++ == 0) {
     const SimulationReport first = all_;
     all_ = r;
     all_.model = first.model, all_.looks_for_events = true;
     all_.events = first.events, all_.constraints_each.clear(), all_.monitors.clear();
     all_.conserved.clear();
+    std::erase_if(all_.warnings, of_its_own);
   } else {
     all_.steps += r.steps;
     all_.rows_looked_at += r.rows_looked_at;
@@ -57,9 +68,7 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
     if (r.smallest_sigma < all_.smallest_sigma)
       all_.smallest_sigma = r.smallest_sigma, all_.smallest_sigma_t = r.smallest_sigma_t;
     for (const Warning& w : r.warnings)
-      if (std::none_of(all_.warnings.begin(), all_.warnings.end(),
-                       [&](const Warning& o) { return same_but_time(o, w); }))
-        all_.warnings.push_back(w);
+      if (!of_its_own(w) && !named(w)) all_.warnings.push_back(w);
     all_.method.taylor_steps += r.method.taylor_steps;
     all_.method.steps += r.method.steps;
     all_.method.refused += r.method.refused;
@@ -129,14 +138,8 @@ SimulationReport JoinedReport::report(Outcome outcome, double t, std::size_t row
   all_.t = t;
   all_.rows = rows;
   all_.power = power_miss_ / (all_.turned_over > 0 ? all_.turned_over : 1);
-  for (const WatchedReport& w : all_.conserved) {
-    if (w.largest_change <= kConserved) continue;
-    const Warning warning = not_conserved(w.name, w.largest_change);
-    // A mode has told of its own part.
-    const std::string beginning = warning.message.substr(0, warning.message.find(':'));
-    std::erase_if(all_.warnings, [&](const Warning& o) { return o.message.starts_with(beginning); });
-    all_.warnings.push_back(warning);
-  }
+  for (const WatchedReport& w : all_.conserved)
+    if (!(w.largest_change <= kConserved)) all_.warnings.push_back(not_conserved(w.name, w.largest_change));
   all_.no_error = "a motion with contacts has no estimate of its error";
   return all_;
 }

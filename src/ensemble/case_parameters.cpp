@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace anholon {
 
@@ -40,27 +39,15 @@ bool may_go_beyond(const System& system, const Structure& t) {
   return false;
 }
 
-// Whether the equations can be assigned to the unknowns whose leading derivatives they hold.
+// Whether the equations can be assigned to the unknowns whose leading derivatives they hold: sum sigma of an assignment is
+// sum d - sum c then, and less for any other (Pryce 2001). REQUIRES: sigma_ij <= d_j - c_i.
 bool each_is_determined(const std::vector<std::vector<int>>& sigma, const Structure& t) {
-  const std::size_t n = sigma.size();
-  constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> equation_of(n, kNone);
-  std::vector<bool> seen;
-  const std::function<bool(std::size_t)> assign = [&](std::size_t i) {
-    for (std::size_t j = 0; j < n; ++j) {
-      if (seen[j] || sigma[i][j] == kAbsent || sigma[i][j] + t.c[i] != t.d[j]) continue;
-      seen[j] = true;
-      if (equation_of[j] != kNone && !assign(equation_of[j])) continue;
-      equation_of[j] = i;
-      return true;
-    }
-    return false;
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    seen.assign(n, false);
-    if (!assign(i)) return false;
-  }
-  return true;
+  const std::vector<int> unknown_of = highest_transversal(sigma);
+  if (unknown_of.empty()) return false;
+  int sum = 0;
+  for (std::size_t i = 0; i < sigma.size(); ++i)
+    sum += sigma[i][static_cast<std::size_t>(unknown_of[i])] + t.c[i] - t.d[i];
+  return sum == 0;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "motion/course.h"
 #include "motion/representation.h"
 #include "observe/watch.h"
+#include "setup/output_tape.h"
 #include "simulation/followed_value.h"
 #include "simulation/trust.h"
 

@@ -98,7 +98,7 @@ void Motion<N>::take(const MotionPlans& plans, Leg& leg) {
   leg.plan = plans.plan, leg.unmapped_plan = plans.unmapped_plan, leg.writing = plans.writing;
 }
 
-// ChoiceWatch are chosen at the start of the whole motion, with the modes there, so that a run that goes on has the same.
+// Pivots are chosen at the start of the whole motion, with the modes there, so that a run that goes on has the same.
 template <Number N>
 void Motion<N>::accelerate(Leg& leg) const {
   if constexpr (std::same_as<N, double>) {

@@ -2,6 +2,7 @@
 
 #include "motion/motion.h"
 #include "setup/eliminate.h"
+#include "setup/output_tape.h"
 #include "structure/branch.h"
 #include "structure/redundancy.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "expr/normal.h"
+#include "setup/output_tape.h"
 
 namespace anholon {
 

@@ -6,7 +6,7 @@
 // body with inertia.
 #pragma once
 #include "integrate/stretch.h"
-#include "setup/scenario.h"
+#include "setup/output_tape.h"
 
 namespace anholon {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "setup/output_tape.h"
 #include "tape/bind.h"
 
 namespace anholon {

@@ -1,7 +1,7 @@
 // What tells that the choices on which the equations of a leg stand go bad: the pivots by which its elimination divides,
 // and how independent the constraints are that take part where others are left out.
 #pragma once
-#include "setup/scenario.h"
+#include "setup/output_tape.h"
 
 namespace anholon {
 

@@ -1,7 +1,7 @@
 // Constraints that are left out because they follow from the others: whether they go on to do so, and their
 // multipliers. Which are left out belongs to a point: a motion may choose others on its way (motion/motion.h).
 #pragma once
-#include "setup/least_multipliers.h"
+#include "setup/output_tape.h"
 
 namespace anholon {
 

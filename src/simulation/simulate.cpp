@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 
+#include "setup/output_tape.h"
 #include "simulation/event_paces.h"
 #include "simulation/first_pull.h"
 #include "simulation/followed_value.h"

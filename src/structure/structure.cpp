@@ -159,9 +159,31 @@ class Probe {
   std::vector<std::uint32_t> columns_;  // these inputs, the highest derivatives first
 };
 
-// The assignment of variables to equations with the greatest sum of sigma (Hungarian method with
-// potentials); an entry -1 of `sigma` is forbidden. Empty if there is none. Of columns that are equally near, one without
-// a row is taken: where all entries are equal, the assignment of the rows before then is not searched.
+// An unknown that cannot be matched, for the message.
+std::string undetermined(const System& s, const std::vector<std::vector<int>>& sigma) {
+  for (std::size_t j = 0; j < s.size(); ++j) {
+    bool occurs = false;
+    for (std::size_t i = 0; i < s.size(); ++i) occurs = occurs || sigma[i][j] != kAbsent;
+    if (!occurs) return s.variable_names[j];
+  }
+  return {};
+}
+
+// Coordinates whose acceleration occurs in no equation of motion.
+std::string without_inertia(const System& s, const std::vector<std::vector<int>>& sigma) {
+  std::string list;
+  for (std::size_t j = 0; j < s.coordinates; ++j) {
+    int highest = kAbsent;
+    for (std::size_t i = 0; i < s.coordinates; ++i) highest = std::max(highest, sigma[i][j]);
+    if (highest < 2) list += (list.empty() ? "" : ", ") + s.variable_names[j];
+  }
+  return list;
+}
+
+}  // namespace
+
+// By the Hungarian method with potentials. Of columns that are equally near, one without a row is taken: where all entries
+// are equal, the assignment of the rows before then is not searched.
 std::vector<int> highest_transversal(const std::vector<std::vector<int>>& sigma) {
   const std::size_t n = sigma.size();
   const double inf = std::numeric_limits<double>::infinity(), forbidden = 1e9;
@@ -207,29 +229,6 @@ std::vector<int> highest_transversal(const std::vector<std::vector<int>>& sigma)
   }
   return transversal;
 }
-
-// An unknown that cannot be matched, for the message.
-std::string undetermined(const System& s, const std::vector<std::vector<int>>& sigma) {
-  for (std::size_t j = 0; j < s.size(); ++j) {
-    bool occurs = false;
-    for (std::size_t i = 0; i < s.size(); ++i) occurs = occurs || sigma[i][j] != kAbsent;
-    if (!occurs) return s.variable_names[j];
-  }
-  return {};
-}
-
-// Coordinates whose acceleration occurs in no equation of motion.
-std::string without_inertia(const System& s, const std::vector<std::vector<int>>& sigma) {
-  std::string list;
-  for (std::size_t j = 0; j < s.coordinates; ++j) {
-    int highest = kAbsent;
-    for (std::size_t i = 0; i < s.coordinates; ++i) highest = std::max(highest, sigma[i][j]);
-    if (highest < 2) list += (list.empty() ? "" : ", ") + s.variable_names[j];
-  }
-  return list;
-}
-
-}  // namespace
 
 std::optional<std::vector<std::vector<int>>> signature(const System& s, const Tape& equations,
                                                        const std::vector<double>& parameters, const ProbeHints& hints) {

@@ -46,6 +46,10 @@ struct ProbeHints {
 std::optional<std::vector<std::vector<int>>> signature(const System& system, const Tape& equations,
                                                        const std::vector<double>& parameters, const ProbeHints& hints);
 
+// The assignment of variables to equations with the greatest sum of sigma: equation i -> variable. Entries kAbsent are
+// forbidden; empty if there is no assignment.
+std::vector<int> highest_transversal(const std::vector<std::vector<int>>& sigma);
+
 // Outcome `singular` if the system has no transversal (an unknown that no equation determines).
 Outcome analyse(const System& system, const std::vector<double>& parameters, const ProbeHints& hints,
                 Structure& structure);

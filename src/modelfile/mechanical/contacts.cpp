@@ -144,7 +144,7 @@ class ContactReader {
                       "a contact is that of a body which moves");
       std::vector<Direction> across;
       if (const Item* along = c.find("along"))
-        across = tangents(*along);
+        across = orthonormal_directions(*along, scope_);
       else
         for (const Vector& d : t.directions) across.push_back({"", d});
       int index = 0;
@@ -211,22 +211,6 @@ class ContactReader {
     return e;
   }
 
-  // The directions that are given, made of length 1 and at right angles: friction is the same in all directions of what
-  // they span. Those that are so identically are taken as they are.
-  std::vector<Direction> tangents(const Item& along) const {
-    std::vector<Direction> list = directions(&along, scope_);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      Vector v = *list[i].axis;
-      for (std::size_t k = 0; k < i; ++k)
-        if (const Expr part = dot(v, *list[k].axis); !proved_zero(part)) v = v - part * *list[k].axis;
-      const Expr square = dot(v, v);
-      if (proved_zero(square)) throw Failure(along.span, "two directions of a contact are parallel");
-      if (!proved_zero(square - 1)) v = pow(square, Rational(-1, 2)) * v;
-      list[i].axis = v;
-    }
-    return list;
-  }
-
   // A velocity by its components: a number, a list of numbers, or a vector along two directions.
   std::vector<Expr> velocities(const Item& slip, const Item* along) const {
     std::vector<Expr> list;
@@ -246,7 +230,7 @@ class ContactReader {
           throw Failure(slip.span, "the slip velocity is a vector: its tangential components count",
                         "along = [\"ex\", \"ey\"]");
         int index = 0;
-        for (const Direction& d : tangents(*along)) take(component(*a, d, index++));
+        for (const Direction& d : orthonormal_directions(*along, scope_)) take(component(*a, d, index++));
       } else {
         throw Failure(slip.span, std::string("a slip velocity is a number or a vector, this is ") + type_name(v));
       }

@@ -1,5 +1,7 @@
 #include "modelfile/names/along.h"
 
+#include "expr/normal.h"
+
 namespace anholon {
 
 std::vector<Direction> directions(const Item* along, Scope& scope) {
@@ -31,6 +33,20 @@ std::vector<Direction> directions(const Item* along, Scope& scope) {
         s.span, std::string("the axes of a frame are expected, this is ") + type_name(v),
         std::holds_alternative<Vector>(v) ? "one direction is a list of one: along = [\"" + along->text() + "\"]" : "");
   for (int k = 0; k < 3; ++k) list.push_back({std::string(1, "xyz"[k]), (*axes)[k]});
+  return list;
+}
+
+std::vector<Direction> orthonormal_directions(const Item& along, Scope& scope) {
+  std::vector<Direction> list = directions(&along, scope);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    Vector v = *list[i].axis;
+    for (std::size_t k = 0; k < i; ++k)
+      if (const Expr part = dot(v, *list[k].axis); !proved_zero(part)) v = v - part * *list[k].axis;
+    const Expr square = dot(v, v);
+    if (proved_zero(square)) throw Failure(along.span, "two directions of a contact are parallel");
+    if (!proved_zero(square - 1)) v = pow(square, Rational(-1, 2)) * v;
+    list[i].axis = v;
+  }
   return list;
 }
 

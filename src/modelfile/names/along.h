@@ -13,6 +13,10 @@ struct Direction {
 // Failure.
 std::vector<Direction> directions(const Item* along, Scope& scope);
 
+// The same, made of length 1 and at right angles; those that are so identically are taken as they are. Throws Failure, also if
+// they do not span as many dimensions.
+std::vector<Direction> orthonormal_directions(const Item& along, Scope& scope);
+
 Expr component(const Vector& v, const Direction& d, int index);
 
 }  // namespace anholon

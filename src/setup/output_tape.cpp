@@ -1,4 +1,4 @@
-#include "setup/least_multipliers.h"
+#include "setup/output_tape.h"
 
 #include "structure/redundancy.h"
 
@@ -29,30 +29,5 @@ template class LeastMultipliers<double>;
 template class LeastMultipliers<long double>;
 template class LeastMultipliers<Quad>;
 template class LeastMultipliers<Multi>;
-
-template <Number N>
-std::shared_ptr<LeastMultipliers<N>> least_multipliers_of(Workspace& s, const std::vector<N>& parameters) {
-  return std::make_shared<LeastMultipliers<N>>(s, parameters);
-}
-
-template <Number N>
-std::vector<N> multipliers_at(LeastMultipliers<N>& least, const Expansion<N>& point) {
-  return least.at(point);
-}
-
-template <Number N>
-void set_parameters(LeastMultipliers<N>& least, const std::vector<N>& parameters) {
-  least.set_parameters(parameters);
-}
-
-#define INSTANTIATE(N)                                                                                                 \
-  template std::shared_ptr<LeastMultipliers<N>> least_multipliers_of(Workspace&, const std::vector<N>&);               \
-  template std::vector<N> multipliers_at(LeastMultipliers<N>&, const Expansion<N>&);                                   \
-  template void set_parameters(LeastMultipliers<N>&, const std::vector<N>&);
-INSTANTIATE(double)
-INSTANTIATE(long double)
-INSTANTIATE(Quad)
-INSTANTIATE(Multi)
-#undef INSTANTIATE
 
 }  // namespace anholon

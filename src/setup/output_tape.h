@@ -1,0 +1,113 @@
+// Expressions as numbers at the points of a motion, and the multipliers that they hold.
+#pragma once
+#include <algorithm>
+
+#include "setup/scenario.h"
+
+namespace anholon {
+
+template <Number N>
+class LeastMultipliers;
+
+// Expressions evaluated at a point of the motion. evaluate() reads no graph, so that one thread may evaluate while
+// another builds expressions. Where constraints are redundant multipliers are the least ones with the same forces; if
+// multipliers belong to the state, those of constraints that are left out are zero.
+template <Number N>
+class OutputTape {
+ public:
+  OutputTape(Workspace& s, const Column& es, const std::vector<N>& parameters)
+      : system_(s.system), tape_(compile(s.redundant.empty() ? put(s, es) : es)), machine_(tape_, 0, parameters) {
+    for (const Input& in : tape_.inputs) {
+      const Node& n = s.model->graph->node(in.symbol);
+      places_.push_back({n.kind == Kind::time, system_.variable(in.symbol), n.order, in.slot});
+      if (!s.redundant.empty() && n.kind == Kind::multiplier) multipliers_.push_back({places_.size() - 1, n.index});
+    }
+    if (!multipliers_.empty() && multiplier_orders(s) == 0)
+      least_ = std::make_shared<LeastMultipliers<N>>(s, parameters);
+  }
+  void evaluate(const Expansion<N>& point) {
+    if (!multipliers_.empty()) find_multipliers(*point.program().system);
+    for (const InputPlace& in : places_)
+      machine_.series(in.slot)[0] = in.time       ? point.time()
+                                    : in.variable ? point.derivative(*in.variable, in.order)
+                                                  : N(0);
+    if (least_) {
+      const std::vector<N> all = least_->at(point);
+      for (const MultiplierPlace& m : multipliers_)
+        if (places_[m.input].order == 0) machine_.series(places_[m.input].slot)[0] = all[m.constraint];
+    }
+    machine_.evaluate();
+    sizes_.clear();
+  }
+  // By the rule of tape/bind.h.
+  template <class Rule>
+  void evaluate_at(const Rule& rule) {
+    bind(machine_, *system_.model->graph, rule);
+    machine_.evaluate();
+    sizes_.clear();
+  }
+  const N& operator[](std::size_t i) const { return machine_.value(i); }
+  // The sum of the absolute values of its terms.
+  N terms(std::size_t i) const { return machine_.magnitude(tape_.roots[i]); }
+  // What it is made of (tape/tape.h), at the point evaluated last.
+  const N& made_of(std::size_t i) const {
+    if (sizes_.empty()) machine_.made_of(sizes_);
+    return sizes_[tape_.roots[i]];
+  }
+  // Modes have changed.
+  void set_parameters(const std::vector<N>& parameters) {
+    machine_.set_parameters(parameters);
+    if (least_) least_->set_parameters(parameters);
+    sizes_.clear();
+  }
+  static Column put(Workspace& s, const Column& es) { return taking_part(s.system, es); }
+
+ private:
+  struct InputPlace {
+    bool time;
+    std::optional<std::size_t> variable;  // the unknown; nullopt for the multiplier of a redundant constraint
+    int order;                            // of its derivative
+    std::uint32_t slot;
+  };
+  struct MultiplierPlace {
+    std::size_t input;       // among the places
+    std::size_t constraint;  // of the model
+  };
+  void find_multipliers(const System& of_point) {
+    for (const MultiplierPlace& m : multipliers_) {
+      const auto row = std::find(of_point.constraints.begin(), of_point.constraints.end(), m.constraint);
+      places_[m.input].variable = std::nullopt;
+      if (row != of_point.constraints.end())
+        places_[m.input].variable = of_point.coordinates + static_cast<std::size_t>(row - of_point.constraints.begin());
+    }
+  }
+
+  const System& system_;
+  Tape tape_;
+  Machine<N> machine_;
+  std::vector<InputPlace> places_;              // of the inputs
+  std::vector<MultiplierPlace> multipliers_;    // among them, where constraints are redundant
+  std::shared_ptr<LeastMultipliers<N>> least_;  // that gives them; null where there is nothing to choose
+  mutable std::vector<N> sizes_;
+};
+
+// The multipliers of all constraints where some are redundant: the least ones with the same forces (theory: dae-view).
+template <Number N>
+class LeastMultipliers {
+ public:
+  LeastMultipliers(Workspace& s, const std::vector<N>& parameters);
+  // Of all constraints of the model at a point.
+  std::vector<N> at(const Expansion<N>& point);
+  void set_parameters(const std::vector<N>& parameters) { phi_.set_parameters(parameters); }
+
+ private:
+  std::size_t coordinates_, constraints_;
+  OutputTape<N> phi_;  // the rows of all constraints
+};
+
+extern template class LeastMultipliers<double>;
+extern template class LeastMultipliers<long double>;
+extern template class LeastMultipliers<Quad>;
+extern template class LeastMultipliers<Multi>;
+
+}  // namespace anholon
