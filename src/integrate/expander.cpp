@@ -103,19 +103,6 @@ void GuardedExpander::restart() {
   awaits_kernel_ = false;
 }
 
-void GuardedExpander::go_on(const StepRecord<double>& record) {
-  restart();
-  if (!kernel_ || !(record.last_health > 0)) return;
-  maker_ = Maker::kernel;
-  kernel_->follow_pivots({record.last_health, record.last_determinant});
-}
-
-// The pivots of the expansion made last, for the next one.
-static void note_pivots(StepRecord<double>& record, const Pivots& pivots) {
-  record.last_health = pivots.health;
-  record.last_determinant = pivots.determinant;
-}
-
 void GuardedExpander::reset() {
   restart();
   by_kernel_ = 0;
@@ -131,7 +118,6 @@ bool GuardedExpander::kernel_serves(const StepRecord<double>& record) const {
 // others, too, is then left in peace.
 void GuardedExpander::begin(MotionTrack<double>& track, const std::vector<W>& guess, bool again) {
   awaits_kernel_ = kernel_serves(track.now.record) && (!again || alone());
-  if (maker_ != Maker::kernel) note_pivots(track.now.record, {});
   if (!again) {
     if (!awaits_kernel_) take_back(track, false);
     track.begin_next();
@@ -150,7 +136,6 @@ bool GuardedExpander::end_by_kernel(MotionTrack<double>& track) {
   }
   maker_ = Maker::kernel;
   known_ = Known::nothing;
-  note_pivots(track.now.record, kernel_->last_pivots());
   ++by_kernel_;
   return true;
 }
@@ -159,7 +144,6 @@ bool GuardedExpander::end_at_once(MotionTrack<double>& track) {
   if (!kernel_->serves_at_once(track.now.record, measure_)) return false;
   awaits_kernel_ = false;
   known_ = Known::nothing;
-  note_pivots(track.now.record, kernel_->last_pivots());
   ++by_kernel_;
   return true;
 }
@@ -177,8 +161,6 @@ void GuardedExpander::follow(MotionTrack<double>& track, const OrdinaryCourse& c
     ++now.record.steps;
     note();
   };
-  // Nothing is suspected at an expansion that these steps have made: the pivots before it tell no more.
-  if (course.steps > 0) note_pivots(now.record, course.aimed ? Pivots{} : course.pivots);
   if (course.steps > 1) {
     // Only the last two expansions are still asked for.
     now.record.steps += course.steps - 2;
@@ -189,7 +171,6 @@ void GuardedExpander::follow(MotionTrack<double>& track, const OrdinaryCourse& c
   if (course.steps > 0 || course.aimed) {
     known_ = Known::nothing;
     kernel_->follow_pivots(course.pivots);
-    note_pivots(now.record, course.pivots);
   }
   if (!course.aimed) return;
   if (now.record.worst_constraint < W(course.drift)) now.record.worst_constraint = course.drift;

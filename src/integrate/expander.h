@@ -29,8 +29,7 @@ class ReferenceExpander {
   int order() const { return reference_.order(); }
   const std::vector<W>& wide_parameters() const { return point_.parameters(); }
   void restart() {}  // no expansion is made
-  void go_on(const StepRecord<N>&) {}
-  void reset() {}  // nor counted
+  void reset() {}    // nor counted
 
   void begin(MotionTrack<N>& track, const std::vector<W>& guess, bool again);
   static constexpr void expand_kernel() {}
@@ -102,8 +101,6 @@ class GuardedExpander {
   std::size_t expansions_by_kernel() const { return by_kernel_; }
   int order() const { return order_; }
   void restart();
-  // The motion goes on from a record of what was met before.
-  void go_on(const StepRecord<double>& record);
   void reset();
 
   void begin(MotionTrack<double>& track, const std::vector<W>& guess, bool again);

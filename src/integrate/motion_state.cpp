@@ -6,7 +6,7 @@ template <Number N>
 StepRecord<N> with_other_equations(const StepRecord<N>& record) {
   // By structured bindings: a member that is added later and forgotten here does not compile.
   [[maybe_unused]] const auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, least_regular,
-                                sigma_before, last_step, least_health, last_health, last_determinant, careful] = record;
+                                sigma_before, last_step, least_health, careful] = record;
   StepRecord<N> to;
   to.steps = steps;
   to.worst_constraint = worst_constraint;

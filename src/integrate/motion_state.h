@@ -34,11 +34,9 @@ struct StepRecord {
   W worst_constraint{0}, worst_equation{0};
   N first_sigma{0};  // the first smallest singular value of the scaled system Jacobian
   LeastRegular<N> least_regular;
-  N sigma_before{0};  // where the last step began
-  W last_step{0};     // its length
-  N least_health{1};  // of a kernel's pivots
-  // Of the pivots at the expansion before the next one; 0 if no kernel made it.
-  N last_health{0}, last_determinant{0};
+  N sigma_before{0};     // where the last step began
+  W last_step{0};        // its length
+  N least_health{1};     // of a kernel's pivots
   bool careful = false;  // the step that follows is made without a kernel
 };
 

@@ -398,7 +398,7 @@ Outcome Stepper<N>::resume(const StepperState<N>& begun) {
   track_.now = begun.motion;
   before_ = time();
   paces_.begin(to_double(time()), record().steps);
-  expander_.go_on(record());
+  expander_.restart();
   expander_.series().set_weakest_direction(begun.direction);
   guard_.set_sigma(record().sigma_before);
   if (!begun.sides.empty()) events_.set_sides(begun.sides);

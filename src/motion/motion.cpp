@@ -348,7 +348,7 @@ void Motion<N>::save(SavedRun& to) const {
   const auto& [motion, direction, sides] = begun;
   const auto& [t, state, carry, leading, own, own_leading, integrals, integral_carry, record] = motion;
   const auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, least_regular, sigma_before,
-               last_step, least_health, last_health, last_determinant, careful] = record;
+               last_step, least_health, careful] = record;
   to.set_numbers<W>("t", {t});
   to.set_numbers("state", state);
   to.set_numbers("carry", carry);
@@ -358,8 +358,7 @@ void Motion<N>::save(SavedRun& to) const {
   to.set_numbers("integrals", integrals);
   to.set_numbers("integral_carry", integral_carry);
   to.set_numbers<W>("stepper", {branch_step, worst_constraint, worst_equation, least_regular.t, last_step});
-  to.set_numbers<N>("sigma",
-                    {first_sigma, least_regular.sigma, sigma_before, least_health, last_health, last_determinant});
+  to.set_numbers<N>("sigma", {first_sigma, least_regular.sigma, sigma_before, least_health});
   to.set_numbers("direction", direction);
   to.set("counts", {std::to_string(steps), std::to_string(least_regular.unknown), careful ? "1" : "0"});
   std::vector<double> choices;
@@ -422,13 +421,13 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   const Program& p = leg_->program;
   const std::size_t size = leg_->point.state_size();
   const std::vector<W> more = from.numbers<W>("stepper", 5);
-  const std::vector<N> sigma = from.numbers<N>("sigma", 6);
+  const std::vector<N> sigma = from.numbers<N>("sigma", 4);
   const std::vector<long double> counts = from.numbers<long double>("counts", 3);
   StepperState<N> b;
   auto& [motion, direction, sides] = b;
   auto& [t, state, carry, leading, own, own_leading, integrals, integral_carry, record] = motion;
   auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, least_regular, sigma_before, last_step,
-         least_health, last_health, last_determinant, careful] = record;
+         least_health, careful] = record;
   t = from.number<W>("t");
   state = from.numbers<W>("state", size);
   carry = from.numbers<W>("carry", size);
@@ -447,8 +446,6 @@ Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
   least_regular.sigma = sigma[1];
   sigma_before = sigma[2];
   least_health = sigma[3];
-  last_health = sigma[4];
-  last_determinant = sigma[5];
   steps = static_cast<std::size_t>(counts[0]);
   least_regular.unknown = static_cast<std::size_t>(counts[1]);
   careful = counts[2] != 0;
