@@ -48,6 +48,10 @@ class HybridMotion {
                    "end the motion earlier"};
       else
         name_angles(outcome = choose());
+      if (outcome.ok() && slips_->waits()) {
+        if (!slips_->wait(outcome)) break;
+        continue;
+      }
       if (outcome.ok() && !segments_->follow(end_, outcome)) {
         explain(outcome);
         break;

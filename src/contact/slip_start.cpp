@@ -15,24 +15,24 @@ static constexpr long double kSeed = 1e-10L;
 
 bool SlipStart::hold(Outcome& outcome) {
   constexpr long double kTrial = 1e-6L;
-  std::fill(held_.begin(), held_.end(), 0);
+  std::fill(held_.begin(), held_.end(), Held{});
   if (shares_friction(bodies_.modes)) return share_anew(outcome);
   together_ = 0;
   std::size_t c = 0;
   while (c < bodies_.contacts.size() && !begins_at_rest(c)) ++c;
   if (c == bodies_.contacts.size()) return true;
   const long double trial = kTrial / std::max(bodies_.dynamics.speed(), 1.0L);
-  if (!hold_for(c, trial, outcome)) return outcome.ok();
+  if (const Hold how = hold_for(c, trial, outcome); how != Hold::to_its_end) return how != Hold::motion_ends;
   bodies_.dynamics.go(bodies_.at);
   ContactProblem p = bodies_.with_touching();
   bodies_.against_friction(p, c);
   const std::vector<ContactSolution> list = consistent_modes(p);
   if (list.size() != 1 || list[0].modes[c].touch != Touch::slips) return true;
-  held_[c] = trial;
+  held_[c] = {trial};
   const long double h = time_to_grow(c, list[0].x, trial);
   if (!(h > 2 * trial)) return true;
-  if (!hold_for(c, h - trial, outcome)) return outcome.ok();
-  held_[c] = h;
+  if (const Hold how = hold_for(c, h - trial, outcome); how != Hold::to_its_end) return how != Hold::motion_ends;
+  held_[c] = {h};
   if (holds_again(c)) bodies_.excluded[c].stick = false;
   return true;
 }
@@ -50,7 +50,9 @@ bool SlipStart::was_held(std::size_t c) const { return together_ > 0 && bodies_.
 
 long double SlipStart::first_slip(std::size_t c, const std::vector<long double>& accelerations) const {
   const long double seed = kSeed * std::max(bodies_.dynamics.speed(), 1.0L);
-  return held_[c] > 0 ? std::max(seed, bodies_.dynamics.slip_acceleration(c, accelerations) * held_[c] / 2) : seed;
+  const auto [time, grows] = held_[c];
+  if (!(time > 0)) return seed;
+  return std::max(seed, bodies_.dynamics.slip_acceleration(c, accelerations) * time / (grows ? 2 : 1));
 }
 
 void SlipStart::guess_directions(ContactProblem& p) const {
@@ -60,10 +62,47 @@ void SlipStart::guess_directions(ContactProblem& p) const {
 }
 
 void SlipStart::begin(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations) {
-  if (list.size() == 1)
-    bodies_.set_slip(list[0], bodies_.modes[list[0]].direction, first_slip(list[0], accelerations));
-  else if (!list.empty())
-    begin_together(list, accelerations);
+  waits_.reset();
+  if (list.size() > 1) return begin_together(list, accelerations);
+  if (!list.empty() && !lets_wait(list[0], accelerations)) begin_alone(list[0], accelerations);
+}
+
+void SlipStart::begin_alone(std::size_t c, const std::vector<long double>& accelerations) {
+  const std::vector<double> before = bodies_.at.qd;
+  bodies_.set_slip(c, bodies_.modes[c].direction, first_slip(c, accelerations));
+  // The way of a velocity that has grown as the square of the time, or as the time.
+  const long double mean = held_[c].time / (held_[c].grows ? 3 : 2);
+  for (std::size_t a = 0; a < before.size(); ++a)
+    bodies_.at.q[a] = static_cast<double>(bodies_.at.q[a] + mean * (bodies_.at.qd[a] - before[a]));
+}
+
+bool SlipStart::lets_wait(std::size_t c, const std::vector<long double>& accelerations) {
+  constexpr long double kFirst = 1e-8L, kLongest = 3e-7L;
+  if (held_[c].time > 0) return false;
+  for (std::size_t o = 0; o < bodies_.contacts.size(); ++o) {
+    const TouchingBodies::Excluded& e = bodies_.excluded[o];
+    if (o != c && (e.touch || e.stick || e.slips)) return false;
+  }
+  const long double speed = std::max(bodies_.dynamics.speed(), 1.0L);
+  const long double a = bodies_.dynamics.slip_acceleration(c, accelerations);
+  const long double time = Rational(later(std::min(kFirst * speed / a, kLongest / speed)) - bodies_.at.t).get_d();
+  if (!(a * time > kSeed * speed)) return false;
+  ContactModes sticks = bodies_.modes;
+  sticks[c].touch = Touch::sticks;
+  share_forces(bodies_.with_touching(), sticks);
+  if (shares_friction(sticks)) return false;
+  bodies_.modes = std::move(sticks);
+  bodies_.modes[c].held = true;
+  waits_ = {c, time};
+  return true;
+}
+
+bool SlipStart::wait(Outcome& outcome) {
+  const auto [c, time] = *waits_;
+  waits_.reset();
+  const Hold how = hold_for(c, time, outcome);
+  if (how == Hold::to_its_end) held_[c] = {time, false};
+  return how != Hold::motion_ends;
 }
 
 void SlipStart::begin_together(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations) {
@@ -140,7 +179,7 @@ bool SlipStart::share_anew(Outcome& outcome) {
 }
 
 bool SlipStart::hold_together(long double time, Outcome& outcome) {
-  const Rational to = std::min(end_, Rational(bodies_.at.t.get_d() + static_cast<double>(time)));
+  const Rational to = std::min(end_, later(time));
   const std::vector<bool> told = told_;
   for (ContactMode& m : bodies_.modes) m.held = m.touch == Touch::sticks;
   bodies_.stop(bodies_.modes);
@@ -162,13 +201,13 @@ bool SlipStart::hold_to_grow(Outcome& outcome) {
   for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
     if (!was_held(c) || bodies_.contacts[c].slip.size() != 2 || list[0].modes[c].touch != Touch::slips) continue;
     slipping.push_back(c);
-    held_[c] = together_;
+    held_[c] = {together_};
     h = std::max(h, time_to_grow(c, list[0].x, together_));
   }
   if (!(h > 2 * together_)) return true;
   if (!hold_together(h - together_, outcome)) return false;
   together_ = h;
-  for (const std::size_t c : slipping) held_[c] = h;
+  for (const std::size_t c : slipping) held_[c] = {h};
   return true;
 }
 
@@ -198,14 +237,17 @@ bool SlipStart::begins_at_rest(std::size_t c) const {
          rows.friction == rows.static_friction;
 }
 
-bool SlipStart::hold_for(std::size_t c, long double time, Outcome& outcome) {
-  const Rational to = std::min(end_, Rational(bodies_.at.t.get_d() + static_cast<double>(time)));
+Rational SlipStart::later(long double time) const { return Rational(bodies_.at.t.get_d() + static_cast<double>(time)); }
+
+SlipStart::Hold SlipStart::hold_for(std::size_t c, long double time, Outcome& outcome) {
+  const Rational to = std::min(end_, later(time));
   bodies_.modes[c].held = true;
   bodies_.stop(bodies_.modes);
   const bool goes_on = segment_(to, outcome);
   bodies_.modes[c].held = false;
   bodies_.excluded[c].stick = true;
-  return goes_on && outcome.ok() && bodies_.at.t >= to;
+  if (!goes_on || !outcome.ok()) return Hold::motion_ends;
+  return bodies_.at.t >= to ? Hold::to_its_end : Hold::something_else_happens;
 }
 
 }  // namespace anholon

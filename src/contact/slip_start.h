@@ -14,7 +14,7 @@ class SlipStart {
   // Refers to the bodies and the report. `end`: of the motion.
   SlipStart(TouchingBodies& bodies, JoinedReport& joined, Rational end, Segment segment)
       : bodies_(bodies), joined_(joined), end_(std::move(end)), segment_(std::move(segment)),
-        told_(bodies.contacts.size(), false), held_(bodies.contacts.size(), 0) {}
+        told_(bodies.contacts.size(), false), held_(bodies.contacts.size()) {}
 
   // The event at which a segment has ended tells that the contact slips.
   void told(std::size_t contact) { told_[contact] = true; }
@@ -26,15 +26,22 @@ class SlipStart {
   void tell_who_slips_too(const ContactModes& now);
   // Puts in the directions against the friction that held, as first guesses.
   void guess_directions(ContactProblem& problem) const;
-  // Gives slips with two components the velocities with which they begin. `list`: the contacts of the present modes.
+  // Gives slips with two components the velocities with which they begin. `list`: the contacts of the present modes. A single
+  // one that begins with an acceleration waits instead: its contact sticks for a moment, which wait() follows.
   void begin(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations);
+  bool waits() const { return waits_.has_value(); }
+  // Follows the motion for this moment, after which the slip begins with a velocity. Returns false if the motion ends meanwhile.
+  bool wait(Outcome& outcome);
 
  private:
   // Whether a contact shared friction and may begin to slip.
   bool was_held(std::size_t c) const;
-  // The slip velocity from which a slip with two components is followed. After held_ it has grown with the acceleration,
-  // which is zero where the slip begins.
+  // The slip velocity from which a slip with two components is followed. After held_ it has grown with the acceleration.
   long double first_slip(std::size_t c, const std::vector<long double>& accelerations) const;
+  void begin_alone(std::size_t c, const std::vector<long double>& accelerations);
+  // Lets the contact stick for the moment after which its slip is large against round-off, unless something else than this
+  // slip changes now.
+  bool lets_wait(std::size_t c, const std::vector<long double>& accelerations);
   // Slips that begin at once on bodies that join them have velocities as their accelerations are.
   void begin_together(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations);
   // How long these accelerations may act until a slip that goes on has half of its velocity: infinite if none becomes slower.
@@ -54,17 +61,29 @@ class SlipStart {
   bool holds_again(std::size_t c);
   // Whether the last segment ended with a slip of this contact that has two components and one coefficient of friction.
   bool begins_at_rest(std::size_t c) const;
-  // Returns false if something else happens before.
-  bool hold_for(std::size_t c, long double time, Outcome& outcome);
+  enum class Hold : std::uint8_t { to_its_end, something_else_happens, motion_ends };
+  Hold hold_for(std::size_t c, long double time, Outcome& outcome);
+  // The time after a moment, rounded as the times of events are.
+  Rational later(long double time) const;
 
   TouchingBodies& bodies_;
   JoinedReport& joined_;
   Rational end_;
   Segment segment_;
   std::vector<bool> told_;
-  long double together_ = 0;       // for how long contacts that share friction were held last
-  double held_until_ = 0;          // the time at which that ended
-  std::vector<long double> held_;  // the time for which a contact that begins to slip was held
+  long double together_ = 0;  // for how long contacts that share friction were held last
+  double held_until_ = 0;     // the time at which that ended
+  // The time for which a contact that begins to slip was held. The acceleration of the slip then
+  struct Held {
+    long double time = 0;
+    bool grows = true;  // is zero where the slip begins; else it hardly changes
+  };
+  std::vector<Held> held_;
+  struct Waiting {
+    std::size_t contact;
+    long double time;
+  };
+  std::optional<Waiting> waits_;
 };
 
 }  // namespace anholon

@@ -162,31 +162,6 @@ contact = [{name = "floor", gap = "z", slip = "x'", friction = 0.3}]
   }
 }
 
-// A force that grows begins the slip without acceleration. Pushed straight the block goes by the cube of the time; a force
-// that turns bends its path.
-TEST(ClosedForms, SlipWithTwoComponentsBeginsWithoutAcceleration) {
-  const auto push = [](const std::string& turn, const std::string& friction) {
-    return contact_motion(R"toml(coordinates = ["x", "y", "z"]
-particle = [{name = "block", mass = 1, position = "x*ex + y*ey + z*ez"}]
-contact = [{name = "floor", gap = "z", slip = ["x'", "y'"], friction = )toml" +
-                              friction + "}]\nforce = [{on = \"block\", vector = \"-ez + t*(cos(" + turn +
-                              "*t)*ex + sin(" + turn + "*t)*ey)\"}]\ninitial = {x = 1, y = 1}\n",
-                          2);
-  };
-  const auto straight = push("0", "0.3");
-  ASSERT_TRUE(straight.report.outcome.ok()) << straight.report.outcome.message;
-  ASSERT_EQ(times(straight, "floor.slips").size(), 1U);
-  EXPECT_NEAR(times(straight, "floor.slips")[0], 0.3, 2e-12);
-  EXPECT_NEAR(straight.last("x"), 1 + std::pow(1.7, 3) / 6, 1e-9);
-  EXPECT_EQ(straight.last("y"), 1);
-  const auto turns = push("1", "0.3");
-  ASSERT_TRUE(turns.report.outcome.ok()) << turns.report.outcome.message;
-  EXPECT_LT(turns.report.power, 1e-10);
-  EXPECT_LT(turns.report.steps, 2000U);
-  EXPECT_GT(turns.last("y"), 1.1);
-  EXPECT_GT(std::abs(push("0", "0.31").last("x") - straight.last("x")), 1e-3);  // the mutant
-}
-
 // The normal force is zero at the start and its rate decides: pressed the block touches, lifted it leaves.
 TEST(ClosedForms, RateOfTheNormalForceDecidesWhereItIsZero) {
   const auto height = [](const std::string& force) {
