@@ -22,10 +22,11 @@ struct Suggestion {
 struct ComparedEquation {
   std::string label, text;
   Verdict verdict = Verdict::unknown;  // proved: true; refuted: false
-  std::string what;                    // true: the kind of the equation; false: the nearest true equation
-  std::string difference;              // false: left - right less the nearest true equation; empty if there is none
-  std::string detail;                  // false: left - right at the point; unknown: why
-  std::string point;                   // false: a point of the motion at which the equation fails, "x = 1/2, …"
+  // true: the kind of the equation. false: the nearest true equation; empty if it holds at some points and fails at others.
+  std::string what;
+  std::string difference;  // false: left - right less the nearest true equation; empty if there is none
+  std::string detail;      // false: left - right at the point; unknown: why
+  std::string point;       // false: a point of the motion at which the equation fails, "x = 1/2, …"
   std::vector<Suggestion> suggestions;
   std::string with_numbers = {};  // false: the numbers of the file with which it holds, "J = 0.5, c = 0.7"
 };

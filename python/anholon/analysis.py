@@ -93,7 +93,8 @@ class Comparison(Sequence[_core.ComparedEquation]):
         for line in self.lines:
             told = line.what or line.detail
             if line.verdict == "false":
-                told = "; ".join(s.text for s in line.suggestions) or f"nearest: {line.nearest}"
+                near = f"nearest: {line.nearest}" if line.nearest else f"not zero at {line.point}"
+                told = "; ".join(s.text for s in line.suggestions) or near
             cells = (line.label, line.text, f"{signs[line.verdict]} {line.verdict}", told)
             rows += "<tr>" + "".join(f"<td style='text-align:left'>{html.escape(cell)}</td>" for cell in cells) + "</tr>"
         return f"<table><caption>{html.escape(self.title)}</caption><tbody>{rows}</tbody></table>"

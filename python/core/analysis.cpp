@@ -46,7 +46,7 @@ void bind_compare(nb::module_& m) {
           "Of a true equation: its kind.")
       .def_prop_ro(
           "nearest", [](const ComparedEquation& e) { return e.verdict == Verdict::refuted ? e.what : std::string(); },
-          "Of a false equation: the nearest true one.")
+          "Of a false equation: the nearest true one; empty if it holds at some points and fails at others.")
       .def_ro("difference", &ComparedEquation::difference,
               "Of a false equation: left - right less the nearest true one; empty if there is none.")
       .def_ro("detail", &ComparedEquation::detail,

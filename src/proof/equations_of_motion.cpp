@@ -19,10 +19,14 @@ std::uint64_t key(const Node& n) {
   return (static_cast<std::uint64_t>(n.kind) << 40) | (static_cast<std::uint64_t>(n.order) << 32) | n.index;
 }
 
+// From this attempt on, coordinates have either sign, and are three times as large at every second attempt.
+constexpr int kElsewhere = 5000;
+
 // A value for each symbol at an attempt: between 0.3 and 1.4, derivatives of either sign.
 double generic(const Node& n, int attempt) {
   const std::uint64_t bits = scattered_bits(key(n) * 131 + static_cast<std::uint64_t>(attempt) * 7919 + 17);
   const double r = 0.3 + 1.1 * unit_of(bits);
+  if (attempt >= kElsewhere && n.kind == Kind::jet && n.order == 0) return (bits & 1 ? -r : r) * (attempt % 2 ? 3 : 1);
   if (n.kind != Kind::jet || n.order == 0) return r;
   // Every third attempt has small velocities: a bounded speed leaves room for them.
   return (bits & 1 ? -r : r) / (1 << (attempt % 3));
@@ -55,8 +59,13 @@ bool finite(const Matrix<double>& a) {
   return std::all_of(a.data.begin(), a.data.end(), [](double v) { return std::isfinite(v); });
 }
 
-// psi = 0 solved for the symbol s in which it is affine or quadratic.
-std::optional<Expr> solved_for(Expr psi, Expr s) {
+// psi = 0 solved for the symbol s in which it is affine or quadratic. `sign`: that of a root.
+struct Solved {
+  Expr value;
+  bool by_root = false;  // `sign` stands in it
+};
+
+std::optional<Solved> solved_for(Expr psi, Expr s, Expr sign) {
   Graph& g = *psi.graph;
   const auto holds_s = [&](Expr e) {
     const std::vector<NodeId> ids = symbols({&e, 1});
@@ -71,10 +80,10 @@ std::optional<Expr> solved_for(Expr psi, Expr s) {
     if (const auto full = expanded(curve)) curve = *full;
     if (holds_s(curve)) return std::nullopt;
     const Expr c = at_zero(psi), b = at_zero(slope);
-    if (proved_zero(curve)) return proved_zero(b) ? std::nullopt : std::optional(-(c / b));
+    if (proved_zero(curve)) return proved_zero(b) ? std::nullopt : std::optional(Solved{-(c / b)});
     const Expr a = Rational(1, 2) * curve;
-    if (proved_zero(b)) return sqrt(-(c / a));
-    return (sqrt(b * b - 4 * (a * c)) - b) / (2 * a);
+    if (proved_zero(b)) return Solved{sign * sqrt(-(c / a)), true};
+    return Solved{(sign * sqrt(b * b - 4 * (a * c)) - b) / (2 * a), true};
   } catch (const Failure&) {
     return std::nullopt;  // a denominator that vanishes with s
   }
@@ -162,6 +171,17 @@ EquationsOfMotion::EquationsOfMotion(const Mechanics& M, unsigned highest_order,
   }
 }
 
+std::vector<PointValues>& EquationsOfMotion::elsewhere() {
+  constexpr int kWanted = 8;
+  if (elsewhere_) return *elsewhere_;
+  elsewhere_.emplace();
+  for (int k = kElsewhere; k < kElsewhere + kAttempts && elsewhere_->size() < kWanted; ++k) {
+    Symbols known, below;
+    if (find_point(k, known, &below)) elsewhere_->push_back(values_of(std::move(known), k, k));
+  }
+  return *elsewhere_;
+}
+
 bool EquationsOfMotion::find_point(int attempt, Symbols& known, Symbols* below) {
   for (std::size_t k = 0; k < stages_.size(); ++k) {
     const Stage& s = stages_[k];
@@ -197,6 +217,8 @@ bool EquationsOfMotion::find_point(int attempt, Symbols& known, Symbols* below) 
 }
 
 void EquationsOfMotion::solve_lower() {
+  constexpr std::uint32_t kFirstSign = 100'000;  // beyond all quasi-velocities
+  constexpr std::size_t kMostSigns = 4;
   lower_solved_ = true;
   const auto put = [&](Expr e) {
     for (const auto& [symbol, value] : solution_)
@@ -211,36 +233,49 @@ void EquationsOfMotion::solve_lower() {
       const Expr psi = put(s.rows[i].residual);
       // Affine equations come before quadratic ones: a root makes all later expressions longer.
       std::size_t best = open.size();
-      std::optional<Expr> value;
+      std::optional<Solved> value;
+      const Expr sign = psi.graph->quasi(kFirstSign + static_cast<std::uint32_t>(signs_.size()), 0);
       for (std::size_t j = 0; j < open.size(); ++j) {
-        const auto v = solved_for(psi, open[j]);
-        if (!v || (value && reachable({&*value, 1}).size() <= reachable({&*v, 1}).size())) continue;
+        const auto v = solved_for(psi, open[j], sign);
+        if (!v || (value && reachable({&value->value, 1}).size() <= reachable({&v->value, 1}).size())) continue;
         best = j;
         value = v;
       }
-      if (!value) {
+      if (!value || (value->by_root && signs_.size() == kMostSigns)) {
         lower_can_be_ = false;
         return;
       }
       for (auto& [symbol, before] : solution_)
-        before = substitute({&before, 1}, [&](NodeId id) { return id == open[best].id ? *value : Expr{}; })[0];
-      solution_.push_back({open[best], *value});
+        before = substitute({&before, 1}, [&](NodeId id) { return id == open[best].id ? value->value : Expr{}; })[0];
+      solution_.push_back({open[best], value->value});
+      if (value->by_root) signs_.push_back(sign);
       open.erase(open.begin() + static_cast<std::ptrdiff_t>(best));
     }
   }
 }
 
-std::optional<Expr> EquationsOfMotion::reduced(Expr e) {
+Column EquationsOfMotion::reduced(Expr e) {
   if (!lower_solved_) solve_lower();
-  if (!lower_can_be_ || solution_.empty()) return std::nullopt;
-  try {
-    return substitute({&e, 1}, [&](NodeId id) {
-      for (const auto& [symbol, value] : solution_)
+  if (!lower_can_be_ || solution_.empty()) return {};
+  const auto put = [](Expr in, const std::vector<std::pair<Expr, Expr>>& values) {
+    return substitute({&in, 1}, [&](NodeId id) {
+      for (const auto& [symbol, value] : values)
         if (symbol.id == id) return value;
       return Expr{};
     })[0];
+  };
+  try {
+    Column branches;
+    const Expr on = put(e, solution_);
+    for (unsigned branch = 0; branch < 1U << signs_.size(); ++branch) {
+      std::vector<std::pair<Expr, Expr>> signs;
+      for (std::size_t k = 0; k < signs_.size(); ++k)
+        signs.push_back({signs_[k], e.graph->number(branch >> k & 1 ? -1 : 1)});
+      branches.push_back(put(on, signs));
+    }
+    return branches;
   } catch (const Failure&) {
-    return std::nullopt;
+    return {};
   }
 }
 

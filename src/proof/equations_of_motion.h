@@ -4,6 +4,7 @@
 // At order k = 0, 1, 2, …, h the constraints' derivatives of order k are solved for some of the q^(k); from k = 2 on
 // together with Routh's equations, differentiated k - 2 times, for q^(k) and lambda^(k-2).
 #pragma once
+#include <optional>
 #include <unordered_map>
 
 #include "mechanics/mechanics.h"
@@ -44,8 +45,11 @@ class EquationsOfMotion {
   std::vector<PointValues>& on_constraints() { return on_constraints_; }
   std::vector<PointValues>& anywhere() { return anywhere_; }
 
-  // e with the constraints of orders 0 and 1 solved; nullopt if they cannot be solved. A root represents either sign.
-  std::optional<Expr> reduced(Expr e);
+  // Further points on the motion, whose coordinates have either sign and may be three times as large. There may be none.
+  std::vector<PointValues>& elsewhere();
+
+  // e with the constraints of orders 0 and 1 solved, on each branch of those that are quadratic; none if they cannot be solved.
+  Column reduced(Expr e);
 
  private:
   struct Stage {
@@ -62,8 +66,10 @@ class EquationsOfMotion {
 
   std::vector<Stage> stages_;
   std::vector<PointValues> on_motion_, on_constraints_, anywhere_;
+  std::optional<std::vector<PointValues>> elsewhere_;
   bool lower_solved_ = false, lower_can_be_ = true;
   std::vector<std::pair<Expr, Expr>> solution_;  // symbol, value
+  Column signs_;                                 // symbols in it that stand for 1 or -1
 };
 
 }  // namespace anholon

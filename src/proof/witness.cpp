@@ -18,14 +18,19 @@ constexpr slong kFirstBits = 64;
 constexpr slong kRootBits = 256;  // precision of the box of a root, unless more is asked for
 constexpr int kNewtonSteps = 60;
 
-// A rational in (1/5, 8/5) that depends on the symbol and the attempt.
-Rational arbitrary(const Node& n, int attempt) {
+// A rational in (1/5, 8/5) that depends on the symbol and the attempt; of derivatives, and elsewhere of coordinates, of either
+// sign.
+Rational arbitrary(const Node& n, int attempt, Where where) {
   const std::uint64_t h = scattered_bits(static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order +
                                          static_cast<std::uint64_t>(attempt) * 7919);
   const unsigned long step = (h >> 40) % 89;
   Rational r(13 + step, 64);
-  if (n.kind == Kind::jet && n.order > 0) r /= 1 << (attempt % kSizes);
-  return n.kind == Kind::jet && n.order > 0 && (h & 1) ? Rational(-r) : r;
+  if (n.kind != Kind::jet || (n.order == 0 && where == Where::positive)) return r;
+  if (n.order > 0)
+    r /= 1 << (attempt % kSizes);
+  else if (attempt % 2)
+    r *= 3;
+  return h & 1 ? Rational(-r) : r;
 }
 
 // Parameters of the model that have a rational value.
@@ -48,8 +53,9 @@ std::vector<std::optional<Rational>> rational_parameters(const Model& model) {
 class Search {
  public:
   // Parameters have the values of the model, or arbitrary ones.
-  Search(const Difference& d, const Column& equations, const Column& unknowns, const Model& model, bool of_the_model)
-      : e_(d.expression()), g_(*e_.graph), parts_{d.left}, equations_(equations), unknowns_(unknowns) {
+  Search(const Difference& d, const Column& equations, const Column& unknowns, const Model& model, bool of_the_model,
+         Where where = Where::positive)
+      : e_(d.expression()), g_(*e_.graph), where_(where), parts_{d.left}, equations_(equations), unknowns_(unknowns) {
     if (of_the_model) parameters_ = rational_parameters(model);
     for (const auto& [coefficient, term] : d.right) parts_.insert(parts_.end(), {coefficient, term});
   }
@@ -122,7 +128,7 @@ class Search {
       if (is_unknown(id)) continue;
       const Node& n = g_.node(id);
       const bool given = n.kind == Kind::parameter && n.index < parameters_.size() && parameters_[n.index];
-      const Rational r = given ? *parameters_[n.index] : arbitrary(n, attempt);
+      const Rational r = given ? *parameters_[n.index] : arbitrary(n, attempt, where_);
       value.emplace(id, r);
       w.values.push_back({Expr{&g_, id}, r});
     }
@@ -158,7 +164,7 @@ class Search {
 
   bool approximate(const std::unordered_map<NodeId, Rational>& value, int attempt, std::vector<long double>& root) {
     std::vector<double> x;
-    for (Expr u : unknowns_) x.push_back(arbitrary(g_.node(u.id), attempt).get_d());
+    for (Expr u : unknowns_) x.push_back(arbitrary(g_.node(u.id), attempt, where_).get_d());
     Rows jacobian;
     for (Expr f : equations_) jacobian.push_back(gradient(f, unknowns_));
     for (int k = 0; k < kNewtonSteps; ++k) {
@@ -215,6 +221,7 @@ class Search {
 
   Expr e_;
   Graph& g_;
+  Where where_;
   slong most_bits_ = kWitnessBits;
   std::vector<std::optional<Rational>> parameters_;
   Column parts_, equations_, unknowns_;
@@ -226,10 +233,11 @@ WitnessSearch find_witness(const Difference& d, const Elimination& elimination, 
   return Search(d, elimination, model).run(bits);
 }
 
-WitnessSearch find_witness(const Difference& d, const Column& equations, const Column& unknowns, const Model& model) {
+WitnessSearch find_witness(const Difference& d, const Column& equations, const Column& unknowns, const Model& model,
+                           Where where) {
   WitnessSearch search;
   for (const bool of_the_model : {true, false}) {
-    search = Search(d, equations, unknowns, model, of_the_model).run();
+    search = Search(d, equations, unknowns, model, of_the_model, where).run();
     if (search.witness) break;
   }
   return search;

@@ -21,7 +21,11 @@ struct WitnessSearch {
 WitnessSearch find_witness(const Difference& d, const Elimination& elimination, const Model& model,
                            long bits = kWitnessBits);
 
+// The coordinates that are tried: of one size and positive, or of either sign and up to three times as large.
+enum class Where : std::uint8_t { positive, elsewhere };
+
 // As above, at a root of other equations, as many as unknowns.
-WitnessSearch find_witness(const Difference& d, const Column& equations, const Column& unknowns, const Model& model);
+WitnessSearch find_witness(const Difference& d, const Column& equations, const Column& unknowns, const Model& model,
+                           Where where = Where::positive);
 
 }  // namespace anholon

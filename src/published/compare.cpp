@@ -6,6 +6,7 @@
 #include "expr/normal.h"
 #include "numeric/linear.h"
 #include "print/arrange.h"
+#include "proof/few_functions.h"
 #include "proof/witness.h"
 #include "published/at_points.h"
 #include "published/identity.h"
@@ -18,7 +19,7 @@ constexpr std::size_t kMostCombined = 6;  // equations in a combination that is 
 
 // Whether e is zero by algebra; if the whole is too large, by its coefficients of the symbols in which it is affine.
 bool zero_by_parts(Expr e, const Column& symbols) {
-  if (shown_zero(e, Effort::brief)) return true;
+  if (shown_zero_in_few_functions(e, Effort::brief)) return true;
   Graph& g = *e.graph;
   const Column slopes = gradient(e, symbols);
   const auto at_zero = [&](Expr x) {
@@ -28,11 +29,11 @@ bool zero_by_parts(Expr e, const Column& symbols) {
   };
   for (Expr slope : slopes)
     for (Expr curve : gradient(slope, symbols))
-      if (!is_zero(curve)) return shown_zero(e, Effort::full);
+      if (!is_zero(curve)) return shown_zero_in_few_functions(e, Effort::full);
   try {
     return std::all_of(slopes.begin(), slopes.end(),
-                       [](Expr x) { return is_zero(x) || shown_zero(x, Effort::full); }) &&
-           shown_zero(at_zero(e), Effort::full);
+                       [&](Expr x) { return is_zero(x) || shown_zero_in_few_functions(x, Effort::full); }) &&
+           shown_zero_in_few_functions(at_zero(e), Effort::full);
   } catch (const Failure&) {
     return false;
   }
@@ -207,8 +208,10 @@ bool Comparer::combined(Expr P, EquationsOfMotion& motion, Comparison& out) {
   if (!rest) return false;
   bool constrained = false;
   if (!vanishes(*rest, motion.anywhere()) || !zero_by_parts(*rest, motion.top)) {
-    const std::optional<Expr> on = motion.reduced(*rest);
-    if (!on || !zero_by_parts(*on, motion.top)) return false;
+    const Column branches = motion.reduced(*rest);
+    if (branches.empty() ||
+        !std::all_of(branches.begin(), branches.end(), [&](Expr on) { return zero_by_parts(on, motion.top); }))
+      return false;
     constrained = true;
   }
   out.verdict = Verdict::proved;
@@ -262,13 +265,13 @@ bool Comparer::without_motion(Expr P, EquationsOfMotion& motion) const {
 
 Comparison Comparer::judge(Expr P) {
   Comparison out = decide(P);
-  if (out.verdict == Verdict::refuted) nearest(P, out);
+  if (out.verdict == Verdict::refuted && !out.in_places) nearest(P, out);
   return out;
 }
 
 Comparison Comparer::decide(Expr P) {
   Comparison out;
-  if (proved_zero(P)) {
+  if (proved_zero(P) || shown_zero_in_few_functions(P, Effort::brief)) {
     out.verdict = Verdict::proved;
     out.trivial = true;
     out.what = "an identity: it holds whatever the motion";
@@ -293,6 +296,17 @@ Comparison Comparer::decide(Expr P) {
     return out;
   }
   if (combined(P, motion, out) || on_manifold(P, true, out)) return out;
+  if (!vanishes(P, motion.elsewhere())) {
+    const Difference d{{}, P, {}, {}, {}, {}};
+    WitnessSearch search = find_witness(d, motion.equations, motion.unknowns, *M_.model, Where::elsewhere);
+    if (search.witness) {
+      out.verdict = Verdict::refuted;
+      out.in_places = true;
+      out.detail = search.detail;
+      out.witness = std::move(search.witness);
+      return out;
+    }
+  }
   double largest = 0;
   for (PointValues& at : motion.on_motion()) largest = std::max(largest, std::abs(at(P)) / (1e-6 + size_at(P, at)));
   char bound[32];
@@ -306,7 +320,7 @@ Comparison Comparer::compare(const PublishedEquation& equation, Vocabulary& word
   const Expr P = words.number(equation.left) - words.number(equation.right);
   Comparison c = decide(P);
   if (c.trivial && holds_by_rates(equation.left, equation.right, words)) c.trivial = false, c.what = kOfRates;
-  if (c.verdict != Verdict::refuted) return c;
+  if (c.verdict != Verdict::refuted || c.in_places) return c;
   c.changes = repairs(equation, words, alphabet, *this);
   const auto quantities = [&] {
     return speaks_of_quantities(equation.left, words) || speaks_of_quantities(equation.right, words);

@@ -38,8 +38,8 @@ struct Change : ChangedPlace {
 
 struct Comparison {
   Verdict verdict = Verdict::unknown;
-  std::string what;                     // true: the kind of the equation; false: the nearest true one
-  std::optional<Expr> difference;       // false: left - right less the nearest true equation
+  std::string what;                // true: the kind of the equation; false: the nearest true one, unless `in_places`
+  std::optional<Expr> difference;  // false: left - right less the nearest true equation
   std::optional<WitnessPoint> witness;  // if false
   std::string detail;
   std::vector<Change> changes;  // each of them makes it true
@@ -47,6 +47,7 @@ struct Comparison {
   bool identity = false;        // false: the equation is meant as an identity, not as an equation of motion
   bool trivial = false;         // true of every motion of every system
   bool of_constraints = false;  // true by the constraints alone
+  bool in_places = false;       // false: it holds, up to round-off, where all coordinates are positive
 };
 
 // The kind of an equation that is true by the rates of the states alone.

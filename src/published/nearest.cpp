@@ -83,7 +83,8 @@ class Comparer::Nearest {
         const std::string what = "the equation of " + c_.M_.model->coordinates[E.independent[nu]].name +
                                  " without multipliers" + c_.times(factor);
         offer(P_ - factor * row, what, 3);
-        if (const auto on = motion_.reduced(P_ - factor * row)) offer(*on, what + ", on the constraints", 4);
+        if (const Column on = motion_.reduced(P_ - factor * row); !on.empty())
+          offer(on[0], what + ", on the constraints", 4);
       }
     }
   }
@@ -97,7 +98,7 @@ class Comparer::Nearest {
     std::string what;
     for (const auto& [i, c] : terms) what += (what.empty() ? "" : " and ") + c_.name(motion_.rows[i]) + c_.times(c);
     offer(*rest, what, 4);
-    if (const auto on = motion_.reduced(*rest)) offer(*on, what + ", on the constraints", 5);
+    if (const Column on = motion_.reduced(*rest); !on.empty()) offer(on[0], what + ", on the constraints", 5);
   }
 
   void offer_identity() {

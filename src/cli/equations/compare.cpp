@@ -27,8 +27,13 @@ void print_text(const EquationFinding& f, std::size_t width, const SourceText& s
   say(stdout, "%-*s  %-7s %s\n", static_cast<int>(width), f.label.c_str(), truth(f.verdict),
       f.verdict == Verdict::proved    ? f.what.c_str()
       : f.verdict == Verdict::unknown ? f.detail.c_str()
+      : f.what.empty()                ? "it holds at some points of the motion, and not at others"
                                       : ("nearest: " + f.what).c_str());
   if (f.verdict != Verdict::refuted) return;
+  if (f.what.empty()) {
+    say(stdout, "%sleft - right = %s at %s\n", indent.c_str(), f.detail.c_str(), f.point.value_or("").c_str());
+    return;
+  }
   if (f.difference)
     say(stdout, "%sleft - right %s %s\n", indent.c_str(), f.identity ? "is" : "differs from it by",
         shortened(*f.difference).c_str());

@@ -21,7 +21,7 @@ struct FoundChange : FoundPlace {
 struct EquationFinding {
   std::string label, text;
   Verdict verdict = Verdict::unknown;
-  std::string what;                       // true: the kind of the equation; false: the nearest true one
+  std::string what;                       // true: the kind of the equation; false: the nearest true one, or empty
   std::optional<std::string> difference;  // false: left - right less the nearest true equation
   bool identity = false;                  // false: the equation is meant as an identity
   std::string detail;                     // false: left - right at the point; unknown: why

@@ -86,6 +86,21 @@ dissipation.R = "c*th'^2/2"
   EXPECT_EQ(s.compare("0.5*th'' = -0.8*th'").with_numbers, "");
 }
 
+// A root of the constraint has either sign, so that no proof may take it for an absolute value.
+TEST(Compare, HoldsAtSomePointsAlone) {
+  Compared p(kPendulum);
+  for (const char* const wrong :
+       {"abs(y) = y", "y = sqrt(l^2 - x^2)", "abs(x) = x", "x = sqrt(l^2 - y^2)", "asin(y/l) = atan(y/x)"}) {
+    const Comparison c = p.compare(wrong);
+    EXPECT_EQ(c.verdict, Verdict::refuted) << wrong;
+    EXPECT_TRUE(c.in_places) << wrong;
+    EXPECT_TRUE(c.what.empty() && c.changes.empty()) << wrong;
+    EXPECT_TRUE(c.witness) << wrong;
+  }
+  EXPECT_EQ(p.what("abs(x)^2 = l^2 - y^2"), "the constraint rod");
+  EXPECT_FALSE(p.compare("x = 2*sqrt(l^2 - y^2)").in_places);
+}
+
 TEST(Compare, AnEquationWithoutAValueIsUnknown) {
   Compared s(test::kSleigh);
   const Comparison c = s.compare("1/(y'*cos(th) - x'*sin(th)) = 5");

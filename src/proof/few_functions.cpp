@@ -1,0 +1,224 @@
+#include "proof/few_functions.h"
+
+#include <algorithm>
+#include <map>
+#include <unordered_map>
+
+#include "expr/normal.h"
+
+namespace anholon {
+
+namespace {
+
+constexpr long kMostOfArgument = 20'000;  // products of terms, to reduce an argument
+
+class Rewriting {
+ public:
+  explicit Rewriting(Graph& g) : g_(g) {}
+
+  Expr of(Expr e) {
+    for (const NodeId id : reachable({&e, 1})) done_.emplace(id, rewritten(id));
+    return done_.at(e.id);
+  }
+
+ private:
+  using Factors = std::map<NodeId, Rational>;
+
+  Expr at(NodeId id) const { return done_.at(id); }
+  Expr node(NodeId id) { return {&g_, id}; }
+
+  Expr rewritten(NodeId id) {
+    switch (g_.node(id).kind) {
+    case Kind::sum: {
+      std::vector<std::pair<Rational, Expr>> terms;
+      for (const Term& t : g_.summands(id)) terms.push_back({g_.rational(t.weight), at(t.node)});
+      return g_.sum(terms);
+    }
+    case Kind::product:
+      return product(id);
+    case Kind::function:
+      return function(static_cast<Function>(g_.node(id).index), at(g_.terms(id)[0].node));
+    case Kind::atan2:
+      return atan2(reduced(at(g_.terms(id)[0].node)), reduced(at(g_.terms(id)[1].node)));
+    case Kind::select:
+      return select(reduced(at(g_.terms(id)[0].node)), at(g_.terms(id)[1].node), at(g_.terms(id)[2].node));
+    case Kind::lookup:
+      return g_.lookup(g_.node(id).index, reduced(at(g_.terms(id)[0].node)));
+    case Kind::number:
+    case Kind::pi:
+    case Kind::time:
+    case Kind::jet:
+    case Kind::parameter:
+    case Kind::mass:
+    case Kind::multiplier:
+    case Kind::given:
+    case Kind::quasi:
+    case Kind::state:
+    case Kind::control:
+      break;
+    }
+    return node(id);
+  }
+
+  Expr function(Function f, Expr u) {
+    switch (f) {
+    case Function::abs:
+      return root(u * u, {1, 2});
+    case Function::exp:
+      return exponential(u);
+    case Function::sinh:
+      return Rational(1, 2) * (exponential(u) - pow(exponential(u), -1));
+    case Function::cosh:
+      return Rational(1, 2) * (exponential(u) + pow(exponential(u), -1));
+    case Function::tanh: {
+      const Expr square = pow(exponential(u), 2);
+      return (square - 1) / (1 + square);
+    }
+    case Function::sin:
+    case Function::cos:
+    case Function::tan:
+      return g_.apply(f, u);  // the zero test expands their sums
+    default:
+      return g_.apply(f, reduced(u));
+    }
+  }
+
+  Expr reduced(Expr u) {
+    if (is_number(u)) return u;
+    return expanded(u, kMostOfArgument).value_or(u);
+  }
+
+  // exp(c_1 a_1 + c_2 a_2 + …) as the product of exp(a_i)^c_i, which is y^c_i where a_i is ln y.
+  Expr exponential(Expr u) {
+    u = reduced(u);
+    if (g_.node(u.id).kind != Kind::sum) return exponential_of(u.id, 1);
+    Expr all = g_.one();
+    for (const Term& t : g_.terms(u.id)) all = all * exponential_of(t.node, g_.rational(t.weight));
+    return all;
+  }
+  Expr exponential_of(NodeId a, const Rational& c) {
+    const Node& n = g_.node(a);
+    const bool of_log = n.kind == Kind::function && static_cast<Function>(n.index) == Function::log;
+    return pow(of_log ? node(g_.terms(a)[0].node) : exp(node(a)), c);
+  }
+
+  // u sign(u) is |u|, and |u| sign(u) is u, also where u is zero.
+  Expr product(NodeId id) {
+    Factors factors;
+    for (const Term& t : g_.terms(id)) factors[t.node] = g_.rational(t.weight);
+    for (const Term& t : g_.terms(id)) {
+      const Node& n = g_.node(t.node);
+      if (n.kind != Kind::function || static_cast<Function>(n.index) != Function::sign) continue;
+      take_sign(factors, t.node, g_.terms(t.node)[0].node);
+    }
+    Expr all = g_.one();
+    for (const auto& [base, power] : factors)
+      all = all * (power.is_integer() ? pow(at(base), power) : root(at(base), power));
+    return extra_ ? all * *std::exchange(extra_, std::nullopt) : all;
+  }
+  void take_sign(Factors& factors, NodeId sign, NodeId u) {
+    const Rational power = factors.at(sign);
+    const auto positive = [](const Rational& r) { return r.is_integer() && r > 0; };
+    if (!positive(power)) return;
+    const bool odd = !Rational(power / 2).is_integer();
+    const Expr size = root(at(u) * at(u), {1, 2});
+    const auto put = [&](Expr e) { extra_ = extra_ ? *extra_ * e : e; };
+    const auto own = factors.find(u);
+    const auto absolute = factors.find(abs(node(u)).id);
+    if (own != factors.end() && positive(own->second)) {
+      factors.erase(sign);
+      if (odd) own->second = own->second - 1, put(size);
+    } else if (absolute != factors.end() && positive(absolute->second)) {
+      factors.erase(sign);
+      if (odd) absolute->second = absolute->second - 1, put(at(u));
+    }
+  }
+
+  // x^e of a fraction e. Of square roots, even powers of factors common to all terms of x stand before the root.
+  Expr root(Expr x, const Rational& e) {
+    x = reduced(x);
+    if (is_number(x) || e.get_den() != 2) return pow(x, e);
+    Factors common = even_powers(x.id);
+    Expr before = g_.one();
+    for (const auto& [base, power] : common) {
+      const Rational half = power / 2 * e.get_num();
+      const Expr b = node(base);
+      x = x * pow(b, -power);
+      before = before * (Rational(half / 2).is_integer() ? pow(b, half) : pow(pow(pow(b, 2), {1, 2}), half));
+    }
+    if (!common.empty()) x = reduced(x);
+    return before * pow(x, e);
+  }
+
+  // The even powers of the factors that all terms have.
+  Factors even_powers(NodeId x) {
+    Factors common;
+    if (g_.node(x).kind != Kind::sum) return even(factors_of(x));
+    bool first = true;
+    for (const Term& t : g_.terms(x)) {
+      const Factors own = factors_of(t.node);
+      if (std::exchange(first, false)) {
+        common = own;
+        continue;
+      }
+      Factors both;
+      for (const auto& [base, power] : common)
+        if (const auto k = own.find(base); k != own.end()) both[base] = std::min(power, k->second);
+      common = std::move(both);
+    }
+    return even(common);
+  }
+  Factors factors_of(NodeId x) const {
+    Factors list;
+    if (g_.node(x).kind == Kind::product)
+      for (const Term& t : g_.terms(x)) list[t.node] = g_.rational(t.weight);
+    else if (!g_.is_number(x))
+      list[x] = 1;
+    return list;
+  }
+  static Factors even(const Factors& of) {
+    Factors list;
+    for (const auto& [base, power] : of) {
+      if (!power.is_integer() || power < 2) continue;
+      list[base] = Rational(power / 2).is_integer() ? power : power - 1;
+    }
+    return list;
+  }
+
+  Graph& g_;
+  std::unordered_map<NodeId, Expr> done_;
+  std::optional<Expr> extra_;
+};
+
+// Whether e holds a function, or a root, that is written anew.
+bool may_be_written_anew(Expr e) {
+  const Graph& g = *e.graph;
+  const std::vector<NodeId> ids = reachable({&e, 1});
+  return std::any_of(ids.begin(), ids.end(), [&](NodeId id) {
+    const Node& n = g.node(id);
+    if (n.kind == Kind::function) {
+      const Function f = static_cast<Function>(n.index);
+      return f != Function::sin && f != Function::cos && f != Function::tan;
+    }
+    if (n.kind != Kind::product) return n.kind == Kind::atan2 || n.kind == Kind::select || n.kind == Kind::lookup;
+    const std::span<const Term> terms = g.terms(id);
+    return std::any_of(terms.begin(), terms.end(), [&](const Term& t) { return !g.rational(t.weight).is_integer(); });
+  });
+}
+
+}  // namespace
+
+Expr in_few_functions(Expr e) { return Rewriting(*e.graph).of(e); }
+
+bool shown_zero_in_few_functions(Expr e, Effort effort) {
+  if (shown_zero(e, effort)) return true;
+  if (!may_be_written_anew(e)) return false;
+  try {
+    const Expr few = in_few_functions(e);
+    return !(few == e) && shown_zero(few, effort);
+  } catch (const Failure&) {
+    return false;  // a denominator vanishes
+  }
+}
+
+}  // namespace anholon

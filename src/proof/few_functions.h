@@ -1,0 +1,15 @@
+// Expressions in few functions, among which the zero test (expr/normal.h) knows more relations.
+#pragma once
+#include "proof/prove.h"
+
+namespace anholon {
+
+// The absolute value is the root of a square, and u sign(u) is |u|. Exponentials of sums are products, and the hyperbolic
+// functions are exponentials. Arguments and radicands are reduced, so that equal ones are one node, and radicands give up
+// their even powers. Equal to e wherever both are defined.
+Expr in_few_functions(Expr e);
+
+// As shown_zero(), also by these relations.
+bool shown_zero_in_few_functions(Expr e, Effort effort);
+
+}  // namespace anholon

@@ -1,0 +1,79 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "proof/few_functions.h"
+#include "tape/point.h"
+
+namespace anholon::few_functions_test {
+namespace {
+
+struct Symbols {
+  Graph g;
+  Expr x = g.jet(0, 0), y = g.jet(1, 0), p = g.parameter(0);
+
+  bool shown(Expr e) const { return shown_zero_in_few_functions(e, Effort::full); }
+
+  // Formulas in all functions that are written anew.
+  std::vector<Expr> formulas() const {
+    const Expr u = x - 2 * y;
+    return {abs(u) * u,
+            pow(u, 3) * sign(u),
+            pow(u, 2) * pow(sign(u), 2),
+            abs(u) * sign(u) * u,
+            sign(u) + x,
+            exp(3 + (2 * x - y)),
+            exp(Rational(1, 2) * log(1 + x * x) - x),
+            sinh(u) * cosh(x) - tanh(x - 1),
+            sqrt(pow(x, 2) * (1 + y * y)),
+            sqrt(pow(x, 3) * x * pow(y, 6)),
+            pow(pow(x, 2) * pow(y, 4) + pow(x, 4) * pow(y, 2), {3, 2}),
+            pow(1 + x * x, {-1, 2}),
+            pow(pow(x, 2) + pow(u, 2), {1, 3}),
+            sqrt(sin(x) * sin(x) + cos(x) * cos(x)) + atan2(abs(x) * x, 1 + u * u),
+            select(u, abs(x), -(x * sign(x)))};
+  }
+};
+
+TEST(FewFunctions, KeepTheValue) {
+  const Symbols s;
+  for (int k = 0; k < 40; ++k) {
+    PointValues at([&](const Node& n) { return std::sin(7.0 * k + 3.0 * n.index + 1) * 2; });
+    for (const Expr e : s.formulas()) {
+      const double value = at(e), few = at(in_few_functions(e));
+      EXPECT_NEAR(few, value, 1e-11 * (1 + std::abs(value))) << "point " << k << ", node " << e.id;
+    }
+  }
+}
+
+TEST(FewFunctions, ShowWhatIsEqual) {
+  const Symbols s;
+  const auto &x = s.x, &y = s.y;
+  EXPECT_TRUE(s.shown(pow(abs(x), 2) - x * x));
+  EXPECT_TRUE(s.shown(x * sign(x) - abs(x)));
+  EXPECT_TRUE(s.shown(sqrt(x * x + 2 * (x * y) + y * y) - abs(x + y)));
+  EXPECT_TRUE(s.shown(sqrt(pow(x, 4)) - x * x));
+  EXPECT_TRUE(s.shown(sqrt(pow(cos(x) * y, 2) + pow(sin(x) * y, 2)) - abs(y)));
+  EXPECT_TRUE(s.shown(exp(x + 2 * y) - exp(x) * pow(exp(y), 2)));
+  EXPECT_TRUE(s.shown(pow(cosh(x), 2) - pow(sinh(x), 2) - 1));
+  EXPECT_TRUE(s.shown(tanh(2 * x) - 2 * tanh(x) / (1 + pow(tanh(x), 2))));
+  EXPECT_TRUE(s.shown(exp(2 * log(x)) - x * x));
+}
+
+// The mutants: each holds at points of one sign, or differs by a term.
+TEST(FewFunctions, DoNotShowWhatDiffers) {
+  const Symbols s;
+  const auto &x = s.x, &y = s.y;
+  EXPECT_FALSE(s.shown(abs(x) - x));
+  EXPECT_FALSE(s.shown(sqrt(x * x) - x));
+  EXPECT_FALSE(s.shown(pow(sign(x), 2) - 1));  // not at zero
+  EXPECT_FALSE(s.shown(sign(x) * x * x - x * x));
+  EXPECT_FALSE(s.shown(sqrt(x * x * y * y) - x * y));
+  EXPECT_FALSE(s.shown(abs(x + y) - abs(x) - abs(y)));
+  EXPECT_FALSE(s.shown(exp(x + y) - exp(x) * exp(2 * y)));
+  EXPECT_FALSE(s.shown(pow(cosh(x), 2) + pow(sinh(x), 2) - 1));
+  EXPECT_FALSE(s.shown(log(x * x) - 2 * log(x) + y));
+}
+
+}  // namespace
+}  // namespace anholon::few_functions_test
