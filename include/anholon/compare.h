@@ -28,7 +28,7 @@ struct ComparedEquation {
   std::string detail;      // false: left - right at the point; unknown: why
   std::string point;       // false: a point of the motion at which the equation fails, "x = 1/2, …"
   std::vector<Suggestion> suggestions;
-  std::string with_numbers = {};  // false: the numbers of the file with which it holds, "J = 0.5, c = 0.7"
+  std::string with_numbers = {};  // false, unknown: the numbers of the file with which it holds, "J = 0.5, c = 0.7"
 };
 
 struct CompareOptions {

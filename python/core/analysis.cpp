@@ -53,8 +53,9 @@ void bind_compare(nb::module_& m) {
               "Of a false equation: left - right at `point`; of an unknown one: why.")
       .def_ro("point", &ComparedEquation::point, "Of a false equation: a point of the motion at which it fails.")
       .def_ro("suggestions", &ComparedEquation::suggestions, "Changes, each of which makes it true.")
-      .def_ro("with_numbers", &ComparedEquation::with_numbers,
-              "Of a false equation that holds with numbers of the file: these numbers, as 'J = 0.5, c = 0.7'.")
+      .def_ro(
+          "with_numbers", &ComparedEquation::with_numbers,
+          "Of a false or unknown equation that holds with numbers of the file: these numbers, as 'J = 0.5, c = 0.7'.")
       .def("__bool__", [](const ComparedEquation& e) { return e.verdict == Verdict::proved; })
       .def("__repr__", [](const ComparedEquation& e) {
         std::string text = e.label + ": " + truth(e.verdict);

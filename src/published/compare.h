@@ -43,7 +43,7 @@ struct Comparison {
   std::optional<WitnessPoint> witness;  // if false
   std::string detail;
   std::vector<Change> changes;  // each of them makes it true
-  std::string with_numbers;     // false: the numbers of the file with which it holds, "J = 0.5, c = 0.7"
+  std::string with_numbers;     // false, unknown: the numbers of the file with which it holds, "J = 0.5, c = 0.7"
   bool identity = false;        // false: the equation is meant as an identity, not as an equation of motion
   bool trivial = false;         // true of every motion of every system
   bool of_constraints = false;  // true by the constraints alone

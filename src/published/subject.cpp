@@ -122,7 +122,7 @@ Comparison Subject::compare(const PublishedEquation& equation) {
                " where the derived equations hold";
     return c;
   }
-  if (c.verdict == Verdict::refuted && !c.in_places && c.changes.empty())
+  if (c.verdict == Verdict::unknown || (c.verdict == Verdict::refuted && !c.in_places && c.changes.empty()))
     c.with_numbers = numbers_that_make_true(difference(equation));
   return c;
 }

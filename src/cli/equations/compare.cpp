@@ -29,6 +29,9 @@ void print_text(const EquationFinding& f, std::size_t width, const SourceText& s
       : f.verdict == Verdict::unknown ? f.detail.c_str()
       : f.what.empty()                ? "it holds at some points of the motion, and not at others"
                                       : ("nearest: " + f.what).c_str());
+  if (f.verdict == Verdict::unknown && !f.with_numbers.empty())
+    say(stdout, "%sholds with the file's numbers %s; no proof for all values was found\n", indent.c_str(),
+        f.with_numbers.c_str());
   if (f.verdict != Verdict::refuted) return;
   if (f.what.empty()) {
     say(stdout, "%sleft - right = %s at %s\n", indent.c_str(), f.detail.c_str(), f.point.value_or("").c_str());

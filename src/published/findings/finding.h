@@ -27,7 +27,7 @@ struct EquationFinding {
   std::string detail;                     // false: left - right at the point; unknown: why
   std::optional<std::string> point;       // false: values of the symbols, "x = 1/2, …"
   std::vector<FoundChange> changes;
-  std::string with_numbers;  // false: the numbers of the file with which it holds
+  std::string with_numbers;  // false, unknown: the numbers of the file with which it holds
 };
 
 EquationFinding finding_of(const PublishedEquation& equation, const Comparison& comparison, const SymbolNames& names);
