@@ -1,6 +1,7 @@
 #include "published/subject.h"
 
 #include <algorithm>
+#include <set>
 
 #include "numeric/number.h"
 #include "published/at_points.h"
@@ -33,13 +34,34 @@ Alphabet alphabet_of(const Model& model) {
 }  // namespace
 
 Subject::Subject(OpenModel open, StateChoice choice)
-    : open_(std::move(open)), choice_(std::move(choice)), mechanics_(anholon::mechanics(*open_.model)),
+    : open_(with_free_inputs(std::move(open))), choice_(std::move(choice)),
+      mechanics_(anholon::mechanics(*open_.model)),
       words_(mechanics_, open_.names, [this](bool quasi) -> const Elimination& { return elimination(quasi); }),
       comparer_(mechanics_, elimination(false), names_of(*open_.model)), alphabet_(alphabet_of(*open_.model)) {}
 
+OpenModel Subject::with_free_inputs(OpenModel open) {
+  const std::vector<Parameter>& parameters = open.model->parameters;
+  for (std::size_t k = 0; k < parameters.size(); ++k)
+    if (!parameters[k].mode) numbered_.push_back({parameters[k].name, parameters[k].value, false, k});
+  std::set<std::size_t> free;
+  for (std::size_t k = 0; k < open.model->controls.size(); ++k) {
+    const Control& u = open.model->controls[k];
+    if (!u.value || !is_number(*u.value) || u.constraint || !u.put_into.empty()) continue;
+    numbered_.push_back({u.name, *u.value, true, k});
+    free.insert(k);
+  }
+  if (free.empty()) return open;
+  auto model = std::make_shared<Model>(*open.model);
+  for (const std::size_t k : free) model->controls[k].value.reset();
+  put_inputs_into_inputs(*model, free);
+  put_inputs(*model);
+  open.model = std::move(model);
+  return open;
+}
+
 struct Subject::WithNumbers {
   Model model;
-  std::unordered_map<NodeId, Expr> values;  // of the parameters
+  std::unordered_map<NodeId, Expr> values;  // of parameters and inputs
   Mechanics mechanics;
   Elimination elimination;
   std::optional<Comparer> comparer;
@@ -51,6 +73,7 @@ struct Subject::WithNumbers {
     })[0];
   }
 
+  Comparison decide(Expr difference) { return comparer->decide(put(difference)); }
   bool proves(Expr difference) {
     const Expr P = put(difference);
     EquationsOfMotion& motion = comparer->motion(order_of_motion(P));
@@ -61,20 +84,34 @@ struct Subject::WithNumbers {
 
 Subject::~Subject() = default;
 
-std::unique_ptr<Subject::WithNumbers> Subject::with_numbers(const Parameters& of) {
-  auto out = std::make_unique<WithNumbers>();
+Subject::WithNumbers& Subject::with_numbers(const Parameters& of) {
+  std::unique_ptr<WithNumbers>& out = with_numbers_[of];
+  if (out) return *out;
+  out = std::make_unique<WithNumbers>();
   out->model = *open_.model;
   Graph& g = *out->model.graph;
-  const std::vector<Parameter>& all = open_.model->parameters;
+  std::unordered_map<NodeId, Expr> given;
+  for (std::size_t k : of)
+    if (!numbered_[k].input)
+      given.emplace(g.parameter(static_cast<std::uint32_t>(numbered_[k].index)).id, numbered_[k].value);
   for (std::size_t k : of) {
+    const Numbered& number = numbered_[k];
+    const auto index = static_cast<std::uint32_t>(number.index);
+    if (number.input) {
+      constexpr std::uint32_t kMostRates = 4;
+      out->values.emplace(g.control(index, 0).id, number.value);
+      for (std::uint32_t order = 1; order <= kMostRates; ++order)
+        out->values.emplace(g.control(index, order).id, g.zero());
+      continue;
+    }
     // A value may refer to other parameters.
-    Expr value = all[k].value;
-    for (std::size_t depth = 0; depth <= all.size() && !symbols({&value, 1}).empty(); ++depth)
+    Expr value = number.value;
+    for (std::size_t depth = 0; depth <= of.size() && !symbols({&value, 1}).empty(); ++depth)
       value = substitute({&value, 1}, [&](NodeId id) {
-        const Node& n = g.node(id);
-        return n.kind == Kind::parameter ? all[n.index].value : Expr{};
+        const auto at = given.find(id);
+        return at == given.end() ? Expr{} : at->second;
       })[0];
-    out->values.emplace(g.parameter(static_cast<std::uint32_t>(k)).id, value);
+    out->values.emplace(g.parameter(index).id, value);
   }
   for_each_expression(out->model, [&](Expr& e) {
     if (e.graph) e = out->put(e);
@@ -82,39 +119,55 @@ std::unique_ptr<Subject::WithNumbers> Subject::with_numbers(const Parameters& of
   out->mechanics = anholon::mechanics(out->model);
   out->elimination = elimination_for(out->mechanics, Unknowns::coordinates, choice_.overrides, choice_.eliminate);
   out->comparer.emplace(out->mechanics, out->elimination, names());
-  return out;
+  return *out;
 }
 
-std::string Subject::numbers_that_make_true(Expr difference) {
+Subject::Parameters Subject::needed_for(Expr difference, const std::function<bool(const Numbered&)>& may) {
   constexpr std::size_t kMostFreed = 12;  // parameters of which it is tried whether they may stay free
-  const std::vector<Parameter>& all = open_.model->parameters;
   Parameters needed;
-  for (std::size_t k = 0; k < all.size(); ++k)
-    if (!all[k].mode) needed.push_back(k);
-  if (needed.empty()) return {};
+  for (std::size_t k = 0; k < numbered_.size(); ++k)
+    if (may(numbered_[k])) needed.push_back(k);
   try {
-    if (!with_all_numbers_) with_all_numbers_ = with_numbers(needed);
-    if (!with_all_numbers_->proves(difference)) return {};
+    if (needed.empty() || !with_numbers(needed).proves(difference)) return {};
     for (std::size_t k = needed.size(); k-- > 0 && needed.size() <= kMostFreed;) {
       Parameters fewer = needed;
       fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(k));
-      if (!fewer.empty() && with_numbers(fewer)->proves(difference)) needed = std::move(fewer);
+      if (!fewer.empty() && with_numbers(fewer).proves(difference)) needed = std::move(fewer);
     }
   } catch (const Failure&) {
     return {};
   }
+  return needed;
+}
+
+std::string Subject::values_of(const Parameters& of) {
   std::string text;
-  for (std::size_t k : needed) {
-    const Expr value = with_all_numbers_->values.at(open_.model->graph->parameter(static_cast<std::uint32_t>(k)).id);
-    text += (text.empty() ? "" : ", ") + all[k].name + " = " +
+  Graph& g = *open_.model->graph;
+  for (std::size_t k : of) {
+    const auto index = static_cast<std::uint32_t>(numbered_[k].index);
+    const Expr symbol = numbered_[k].input ? g.control(index, 0) : g.parameter(index);
+    const Expr value = with_numbers(of).values.at(symbol.id);
+    text += (text.empty() ? "" : ", ") + numbered_[k].name + " = " +
             (is_number(value) ? number_text(number_value(value).get_d()) : print(value, names(), Format::text));
   }
   return text;
 }
 
+std::optional<Comparison> Subject::by_formulas(Expr difference) {
+  const auto has_formula = [](const Numbered& n) { return !n.input && !symbols({&n.value, 1}).empty(); };
+  const Parameters needed = needed_for(difference, has_formula);
+  if (needed.empty()) return std::nullopt;
+  Comparison c = with_numbers(needed).decide(difference);
+  c.what += ", with " + values_of(needed) + " put in";
+  return c;
+}
+
 Comparison Subject::compare(const PublishedEquation& equation) {
   Comparison c;
   try {
+    const Expr P = difference(equation);
+    if (comparer_.decide(P).verdict != Verdict::proved)
+      if (auto proved = by_formulas(P)) return *std::move(proved);
     c = comparer_.compare(equation, words_, alphabet_);
   } catch (const Failure& f) {
     c = {};
@@ -123,7 +176,7 @@ Comparison Subject::compare(const PublishedEquation& equation) {
     return c;
   }
   if (c.verdict == Verdict::unknown || (c.verdict == Verdict::refuted && !c.in_places && c.changes.empty()))
-    c.with_numbers = numbers_that_make_true(difference(equation));
+    c.with_numbers = values_of(needed_for(difference(equation), [](const Numbered&) { return true; }));
   return c;
 }
 

@@ -1,6 +1,7 @@
 // A model as the subject of published equations: its derived equations, its vocabulary, and the names that a misprint
 // may exchange.
 #pragma once
+#include <functional>
 #include <memory>
 
 #include "published/compare.h"
@@ -36,14 +37,30 @@ class Subject {
   }
 
  private:
-  // The derived equations with the numbers of the file in place of some parameters.
+  // A parameter, or an input that is free and has a number in the file.
+  struct Numbered {
+    std::string name;
+    Expr value;  // by numbers and, of a parameter, by others
+    bool input = false;
+    std::size_t index = 0;
+  };
+  // The derived equations with the numbers of the file in place of some of them.
   struct WithNumbers;
-  using Parameters = std::vector<std::size_t>;
+  using Parameters = std::vector<std::size_t>;  // places in numbered_
 
   const Elimination& elimination(bool quasi);
-  std::unique_ptr<WithNumbers> with_numbers(const Parameters& of);
-  std::string numbers_that_make_true(Expr difference);
+  WithNumbers& with_numbers(const Parameters& of);
+  // The fewest of them with which it is proved, at most all that satisfy `may`; none if there are none.
+  Parameters needed_for(Expr difference, const std::function<bool(const Numbered&)>& may);
+  // "J = 0.5, c = 0.7"
+  std::string values_of(const Parameters& of);
+  // A parameter that others give keeps its formula: an equation with the formula put in is true. Returns nullopt if none is.
+  std::optional<Comparison> by_formulas(Expr difference);
 
+  // An input whose formula is a number stands for a function of time, as parameters stand for all their values.
+  OpenModel with_free_inputs(OpenModel open);
+
+  std::vector<Numbered> numbered_;
   OpenModel open_;
   StateChoice choice_;
   Mechanics mechanics_;
@@ -51,7 +68,7 @@ class Subject {
   Vocabulary words_;
   Comparer comparer_;
   Alphabet alphabet_;
-  std::unique_ptr<WithNumbers> with_all_numbers_;
+  std::map<Parameters, std::unique_ptr<WithNumbers>> with_numbers_;
 };
 
 }  // namespace anholon

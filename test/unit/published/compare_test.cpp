@@ -86,6 +86,42 @@ dissipation.R = "c*th'^2/2"
   EXPECT_EQ(s.compare("0.5*th'' = -0.8*th'").with_numbers, "");
 }
 
+// An input whose formula is a number may be any function of time.
+TEST(Compare, InputsAreFree) {
+  const auto cart = [](const std::string& input) {
+    return "coordinates = [\"x\"]\nparameters = {m = 2}\ninput.u = \"" + input +
+           "\"\nparticle = [{name = \"p\", mass = \"m\", position = \"x*ex\"}]\n"
+           "force = [{on = \"p\", vector = \"u*ex\"}]\n";
+  };
+  Compared s(cart("0"));
+  EXPECT_EQ(s.what("m*x'' = u"), "the equation of x");
+  EXPECT_EQ(s.what("m*D(x, 3) = u'"), "the equation of x, differentiated once");
+  EXPECT_EQ(s.change("m*x'' = -u"), "-u -> u");
+  for (const char* const wrong : {"m*x'' = 0", "m*x'' = 7*u*x", "u = 0"}) {
+    EXPECT_EQ(s.compare(wrong).verdict, Verdict::refuted) << wrong;
+    EXPECT_EQ(s.compare(wrong).with_numbers, "u = 0") << wrong;
+  }
+  // The formula of a controller belongs to the model.
+  Compared feedback(cart("-3*x"));
+  EXPECT_EQ(feedback.what("m*x'' = u"), "the equation of x");
+  EXPECT_EQ(feedback.what("m*x'' = -3*x"), "the equation of x");
+  EXPECT_EQ(feedback.compare("m*x'' = -u").verdict, Verdict::refuted);
+}
+
+TEST(Compare, ParametersFollowOthers) {
+  Compared s(R"toml(coordinates = ["th"]
+parameters = {m = 2, R = 0.3, J = "m*R^2/2", k = "4*m", c = 8}
+body = [{name = "disc", mass = "m", inertia = "J", center = "R*(cos(th)*ex + sin(th)*ey)", angle = "th"}]
+potential.spring = "k*th^2/2"
+)toml");
+  EXPECT_EQ(s.what("(J + m*R^2)*th'' = -k*th"), "the equation of th");
+  EXPECT_EQ(s.what("3/2*m*R^2*th'' = -k*th"), "the equation of th, with J = R^2*m/2 put in");
+  EXPECT_EQ(s.what("3/2*R^2*th'' = -4*th"), "the equation of th, times 1/m, with J = R^2*m/2, k = 4*m put in");
+  EXPECT_EQ(s.compare("3/2*R^2*th'' = -5*th").verdict, Verdict::refuted);
+  EXPECT_EQ(s.compare("3/2*m*R^2*th'' = -c*th").verdict, Verdict::refuted);
+  EXPECT_FALSE(s.compare("3/2*m*R^2*th'' = -c*th").with_numbers.empty());
+}
+
 // A root of the constraint has either sign, so that no proof may take it for an absolute value.
 TEST(Compare, HoldsAtSomePointsAlone) {
   Compared p(kPendulum);
