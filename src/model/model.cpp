@@ -103,7 +103,11 @@ std::string automatic_name(const Model& model, const std::string& wanted) {
     if (const std::string name = wanted + "_" + std::to_string(k); !named(name) && !wanted_by_others(name)) return name;
 }
 
-std::string mass_name(const Model& model, std::size_t i) { return automatic_name(model, "m_" + model.masses[i].name); }
+std::string mass_name(const Model& model, std::size_t i) {
+  std::string of = model.masses[i].name;  // "wheel weight x" for a second moment
+  std::replace(of.begin(), of.end(), ' ', '_');
+  return automatic_name(model, "m_" + of);
+}
 
 Column jets(const Model& model, unsigned order) {
   Column q;

@@ -296,7 +296,8 @@ Comparison Comparer::decide(Expr P) {
     return out;
   }
   if (combined(P, motion, out) || on_manifold(P, true, out)) return out;
-  if (!vanishes(P, motion.elsewhere())) {
+  constexpr std::size_t kShort = 1000;  // nodes of which a difference below the round-off of numbers is looked for, too
+  if (number_of_nodes(P) <= kShort || !vanishes(P, motion.elsewhere())) {
     const Difference d{{}, P, {}, {}, {}, {}};
     WitnessSearch search = find_witness(d, motion.equations, motion.unknowns, *M_.model, Where::elsewhere);
     if (search.witness) {

@@ -47,7 +47,7 @@ struct Comparison {
   bool identity = false;        // false: the equation is meant as an identity, not as an equation of motion
   bool trivial = false;         // true of every motion of every system
   bool of_constraints = false;  // true by the constraints alone
-  bool in_places = false;       // false: it holds, up to round-off, where all coordinates are positive
+  bool in_places = false;       // false: it holds up to round-off where all coordinates are positive
 };
 
 // The kind of an equation that is true by the rates of the states alone.

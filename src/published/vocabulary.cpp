@@ -283,7 +283,10 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
 
 std::optional<Expr> Vocabulary::quasi_velocity(const std::string& name) {
   const std::vector<QuasiVelocity>& own = mechanics_.model->quasi;
-  if (std::none_of(own.begin(), own.end(), [&](const QuasiVelocity& u) { return u.name == name; })) return std::nullopt;
+  // u_x is a name that forms in quasi-velocities give where the model has too few.
+  const bool may_be_automatic = name.rfind("u_", 0) == 0;
+  if (!may_be_automatic && std::none_of(own.begin(), own.end(), [&](const QuasiVelocity& u) { return u.name == name; }))
+    return std::nullopt;
   const Elimination& E = elimination_(true);
   const auto k = E.free.index_of(name);
   if (!k) return std::nullopt;

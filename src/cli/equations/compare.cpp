@@ -27,7 +27,7 @@ void print_text(const EquationFinding& f, std::size_t width, const SourceText& s
   say(stdout, "%-*s  %-7s %s\n", static_cast<int>(width), f.label.c_str(), truth(f.verdict),
       f.verdict == Verdict::proved    ? f.what.c_str()
       : f.verdict == Verdict::unknown ? f.detail.c_str()
-      : f.what.empty()                ? "it holds at some points of the motion, and not at others"
+      : f.what.empty()                ? "it does not hold at all points of the motion"
                                       : ("nearest: " + f.what).c_str());
   if (f.verdict == Verdict::unknown && !f.with_numbers.empty())
     say(stdout, "%sholds with the file's numbers %s; no proof for all values was found\n", indent.c_str(),
@@ -130,7 +130,7 @@ int compare(const CompareCommand& o) {
     j.close().close();
     hand_out(j.text() + "\n");
   } else {
-    say(stdout, "%s\n\n", model.title.c_str());
+    if (!model.title.empty()) say(stdout, "%s\n\n", model.title.c_str());
     for (std::size_t i = 0; i < found.size(); ++i) print_text(found[i], width, source);
     say(stdout, "\n%zu true, %zu false, %zu unknown\n", counts[static_cast<std::size_t>(Verdict::proved)],
         counts[static_cast<std::size_t>(Verdict::refuted)], counts[static_cast<std::size_t>(Verdict::unknown)]);
