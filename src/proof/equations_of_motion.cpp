@@ -59,36 +59,6 @@ bool finite(const Matrix<double>& a) {
   return std::all_of(a.data.begin(), a.data.end(), [](double v) { return std::isfinite(v); });
 }
 
-// psi = 0 solved for the symbol s in which it is affine or quadratic. `sign`: that of a root.
-struct Solved {
-  Expr value;
-  bool by_root = false;  // `sign` stands in it
-};
-
-std::optional<Solved> solved_for(Expr psi, Expr s, Expr sign) {
-  Graph& g = *psi.graph;
-  const auto holds_s = [&](Expr e) {
-    const std::vector<NodeId> ids = symbols({&e, 1});
-    return std::binary_search(ids.begin(), ids.end(), s.id);
-  };
-  const auto at_zero = [&](Expr e) {
-    return substitute({&e, 1}, [&](NodeId id) { return id == s.id ? g.zero() : Expr{}; })[0];
-  };
-  try {
-    const Expr slope = partial(psi, s);
-    Expr curve = partial(slope, s);
-    if (const auto full = expanded(curve)) curve = *full;
-    if (holds_s(curve)) return std::nullopt;
-    const Expr c = at_zero(psi), b = at_zero(slope);
-    if (proved_zero(curve)) return proved_zero(b) ? std::nullopt : std::optional(Solved{-(c / b)});
-    const Expr a = Rational(1, 2) * curve;
-    if (proved_zero(b)) return Solved{sign * sqrt(-(c / a)), true};
-    return Solved{(sign * sqrt(b * b - 4 * (a * c)) - b) / (2 * a), true};
-  } catch (const Failure&) {
-    return std::nullopt;  // a denominator that vanishes with s
-  }
-}
-
 }  // namespace
 
 Expr put_rates(const Model& model, Expr e) {
@@ -217,66 +187,22 @@ bool EquationsOfMotion::find_point(int attempt, Symbols& known, Symbols* below) 
 }
 
 void EquationsOfMotion::solve_lower() {
-  constexpr std::uint32_t kFirstSign = 100'000;  // beyond all quasi-velocities
-  constexpr std::size_t kMostSigns = 4;
-  lower_solved_ = true;
-  const auto put = [&](Expr e) {
-    for (const auto& [symbol, value] : solution_)
-      e = substitute({&e, 1}, [&, s = symbol, v = value](NodeId id) { return id == s.id ? v : Expr{}; })[0];
-    return e;
-  };
+  lower_solved_.emplace();
   for (std::size_t k = 0; k < 2; ++k) {
     const Stage& s = stages_[k];
     Column open;
     for (std::size_t j : s.chosen_symbols) open.push_back(s.symbols[j]);
-    for (std::size_t i : s.chosen_rows) {
-      const Expr psi = put(s.rows[i].residual);
-      // Affine equations come before quadratic ones: a root makes all later expressions longer.
-      std::size_t best = open.size();
-      std::optional<Solved> value;
-      const Expr sign = psi.graph->quasi(kFirstSign + static_cast<std::uint32_t>(signs_.size()), 0);
-      for (std::size_t j = 0; j < open.size(); ++j) {
-        const auto v = solved_for(psi, open[j], sign);
-        if (!v || (value && reachable({&value->value, 1}).size() <= reachable({&v->value, 1}).size())) continue;
-        best = j;
-        value = v;
-      }
-      if (!value || (value->by_root && signs_.size() == kMostSigns)) {
-        lower_can_be_ = false;
+    for (std::size_t i : s.chosen_rows)
+      if (!lower_solved_->add(s.rows[i].residual, open)) {
+        lower_solved_ = SolvedEquations();
         return;
       }
-      for (auto& [symbol, before] : solution_)
-        before = substitute({&before, 1}, [&](NodeId id) { return id == open[best].id ? value->value : Expr{}; })[0];
-      solution_.push_back({open[best], value->value});
-      if (value->by_root) signs_.push_back(sign);
-      open.erase(open.begin() + static_cast<std::ptrdiff_t>(best));
-    }
   }
 }
 
 Column EquationsOfMotion::reduced(Expr e) {
   if (!lower_solved_) solve_lower();
-  if (!lower_can_be_ || solution_.empty()) return {};
-  const auto put = [](Expr in, const std::vector<std::pair<Expr, Expr>>& values) {
-    return substitute({&in, 1}, [&](NodeId id) {
-      for (const auto& [symbol, value] : values)
-        if (symbol.id == id) return value;
-      return Expr{};
-    })[0];
-  };
-  try {
-    Column branches;
-    const Expr on = put(e, solution_);
-    for (unsigned branch = 0; branch < 1U << signs_.size(); ++branch) {
-      std::vector<std::pair<Expr, Expr>> signs;
-      for (std::size_t k = 0; k < signs_.size(); ++k)
-        signs.push_back({signs_[k], e.graph->number(branch >> k & 1 ? -1 : 1)});
-      branches.push_back(put(on, signs));
-    }
-    return branches;
-  } catch (const Failure&) {
-    return {};
-  }
+  return lower_solved_->empty() ? Column{} : lower_solved_->branches(e);
 }
 
 }  // namespace anholon

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "mechanics/mechanics.h"
+#include "proof/solved_equations.h"
 #include "tape/point.h"
 
 namespace anholon {
@@ -67,9 +68,7 @@ class EquationsOfMotion {
   std::vector<Stage> stages_;
   std::vector<PointValues> on_motion_, on_constraints_, anywhere_;
   std::optional<std::vector<PointValues>> elsewhere_;
-  bool lower_solved_ = false, lower_can_be_ = true;
-  std::vector<std::pair<Expr, Expr>> solution_;  // symbol, value
-  Column signs_;                                 // symbols in it that stand for 1 or -1
+  std::optional<SolvedEquations> lower_solved_;
 };
 
 }  // namespace anholon

@@ -283,8 +283,9 @@ Comparison Comparer::decide(Expr P) {
   for (const DerivedEquation& e : motion.rows)
     if (directly(P, e, motion, out)) return out;
   if (!motion.regular) {
-    if (on_manifold(P, false, out)) return out;
-    out.detail = "the equations do not determine the accelerations and multipliers at this order";
+    if (on_manifold(P, false, out) || of_higher_order(P, out)) return out;
+    if (out.detail.empty())
+      out.detail = "the equations do not determine the accelerations and multipliers at this order";
     return out;
   }
   if (!vanishes(P, motion.on_motion())) {

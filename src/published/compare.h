@@ -78,6 +78,7 @@ class Comparer {
   bool directly(Expr P, const DerivedEquation& e, EquationsOfMotion& motion, Comparison& out);
   bool combined(Expr P, EquationsOfMotion& motion, Comparison& out);
   bool on_manifold(Expr P, bool regular, Comparison& out);
+  bool of_higher_order(Expr P, Comparison& out);
   const Column& contractions();
   void nearest(Expr P, Comparison& out);
   void nearest_of(const std::vector<Change>& changes, Expr P, Comparison& out) const;

@@ -211,5 +211,22 @@ equation = "D(z,3) = D(x,3)^2 + D(w,3)^2"
   EXPECT_NE(s.compare("along(inertia_term, x) + k*(y' - x) = along(G, x)").verdict, Verdict::refuted);
 }
 
+// The multiplier is eliminated with derivatives of the third order, which the constraint relates.
+TEST(Compare, ConstraintOfThirdOrderThatIsNonlinear) {
+  Compared s(R"toml(coordinates = ["x", "y"]
+parameters = {m = 2, g = 9}
+particle = [{name = "p", mass = "m", position = "x*ex + y*ey"}]
+gravity.field = "-g*ey"
+constraint = [{name = "jerk", equation = "D(x,3)^2 + D(y,3)^2 = 9"}]
+)toml");
+  EXPECT_EQ(s.what("x''*D(y,3) = (y'' + g)*D(x,3)"), "a combination of the equations of motion");
+  EXPECT_EQ(s.what("m^2*(x''^2 + (y'' + g)^2) = 36*lambda^2"),
+            "a combination of the equations of motion, with the constraints put in");
+  EXPECT_EQ(s.compare("x''*D(y,3) = -(y'' + g)*D(x,3)").verdict, Verdict::refuted);
+  EXPECT_EQ(s.compare("m^2*(x''^2 + (y'' + g)^2) = 9*lambda^2").verdict, Verdict::refuted);
+  EXPECT_EQ(s.compare("3*x'' = sqrt(x''^2 + (y'' + g)^2)*D(x,3)").verdict, Verdict::refuted);  // of one sign of lambda
+  EXPECT_EQ(s.compare("D(x,4) = D(y,3)").verdict, Verdict::refuted);
+}
+
 }  // namespace
 }  // namespace anholon::compare_test

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "proof/equations_of_motion.h"
-#include "published/trial.h"
+#include "published/misprints/trial.h"
 #include "support/published.h"
 
 namespace anholon::repair_test {

@@ -1,11 +1,11 @@
 // Changes of several places that together make left - right vanish.
 //
-// If changes add up (published/trial.h), the sum of their effects must equal the error of left - right. Sets of up to
+// If changes add up (published/misprints/trial.h), the sum of their effects must equal the error of left - right. Sets of up to
 // four changes are two halves of up to two; one half is looked up among the others by its value at a point. Changes in
 // factors of one product are first combined and tried as one. A set holds at most one change other than lost dots, or
 // two of them. The numbers of pairs and of connected sets are bounded; sets beyond these bounds are not found.
 #pragma once
-#include "published/trial.h"
+#include "published/misprints/trial.h"
 
 namespace anholon {
 

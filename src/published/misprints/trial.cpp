@@ -1,4 +1,4 @@
-#include "published/trial.h"
+#include "published/misprints/trial.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Misprints: changes of one place of an equation, and of several places at once, that make a false equation true.
 //
-// They are tried numerically at points of the motion (published/trial.h, together.h); survivors are judged like any
+// They are tried numerically at points of the motion (published/misprints/trial.h, together.h); survivors are judged like any
 // other equation. More changes are tried only if fewer do not make the equation true.
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "published/at_points.h"
 #include "published/compare.h"
 #include "published/identity.h"
-#include "published/together.h"
+#include "published/misprints/together.h"
 
 namespace anholon {
 

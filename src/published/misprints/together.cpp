@@ -1,4 +1,4 @@
-#include "published/together.h"
+#include "published/misprints/together.h"
 
 #include <algorithm>
 #include <cmath>
