@@ -32,12 +32,25 @@ std::optional<AdmissibleVelocities::Row> AdmissibleVelocities::row(Expr constrai
   for (const std::size_t i : r.in)
     if (std::abs(at_(r.a[i])) >= kPivot * r.largest)
       if (const std::size_t c = varying_nodes(r.a[i]); c < r.cost) r.best = i, r.cost = c;
+  r.pair = pair_of(r);
   return r;
+}
+
+std::optional<AdmissibleVelocities::Row::Pair> AdmissibleVelocities::pair_of(const Row& r) {
+  // Of more than two, later constraints clear the poles, unless there is a part without velocities.
+  if (r.cost == 0 || (r.in.size() > 2 && is_zero(r.rest))) return std::nullopt;
+  for (std::size_t k = 0; k < r.in.size(); ++k)
+    for (std::size_t l = k + 1; l < r.in.size(); ++l) {
+      const std::size_t v = r.in[k], w = r.in[l];
+      const Expr square = tidy_(pow(r.a[v], 2) + pow(r.a[w], 2));
+      if (r.in.size() == 2 || (is_constant(square) && at_(square) > 0)) return Row::Pair{v, w, square};
+    }
+  return std::nullopt;
 }
 
 bool AdmissibleVelocities::solve(Expr constraint) {
   if (const Expr whole = cleared(constraint); whole != constraint)
-    if (const auto r = row(whole); r && r->largest > 0 && (r->cost == 0 || r->has_direction())) {
+    if (const auto r = row(whole); r && r->largest > 0 && (r->cost == 0 || r->pair)) {
       clears_poles = true;
       solve(*r);
       return true;
@@ -57,13 +70,21 @@ bool AdmissibleVelocities::solve(Expr constraint) {
 
 void AdmissibleVelocities::solve(const Row& r) {
   const Column& a = r.a;
-  if (r.cost > 0 && r.has_direction()) {
-    // a v + b w = 0 without division: v = b u, w = -a u.
-    const std::size_t v = r.in[0], w = r.in[1];
-    const Expr u = new_name(), u_by_velocity = (a[w] * free_by_velocity_[v] - a[v] * free_by_velocity_[w]) /
-                                               tidy_(pow(a[v], 2) + pow(a[w], 2));
-    remove(w, -a[v] * u);
-    remove(v, a[w] * u);
+  if (r.pair) {
+    // a v + b w + c = 0 without division by a or b: v = b u - a c/(a^2 + b^2), w = -a u - b c/(a^2 + b^2).
+    const auto [v, w, square] = *r.pair;
+    const Expr u = new_name(), u_by_velocity = (a[w] * free_by_velocity_[v] - a[v] * free_by_velocity_[w]) / square;
+    std::vector<Expr> terms{r.rest};
+    for (const std::size_t i : r.in)
+      if (i != v && i != w) terms.push_back(a[i] * free[i]);
+    const Expr others = sum(terms);
+    const auto beside = [&](Expr along, std::size_t i) {
+      return is_zero(others) ? along : tidy_(along - a[i] * others / square);
+    };
+    const Expr of_v = beside(a[w] * u, v), of_w = beside(-a[v] * u, w);
+    // The later one first: it moves what comes after it.
+    remove(w, of_w);
+    remove(v, of_v);
     free.push_back(u);
     free_by_velocity_.push_back(u_by_velocity);
     return;

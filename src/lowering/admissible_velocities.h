@@ -42,10 +42,16 @@ class AdmissibleVelocities {
     Expr rest;
     double largest = 0;                     // of the a at the start
     std::size_t best = 0, cost = SIZE_MAX;  // the pivot, and how many of its nodes vary
-
-    bool has_direction() const { return in.size() == 2 && is_zero(rest); }
+    // Two of them, v and w, where a_v^2 + a_w^2 is a constant, or where there are only these: the direction (a_w, -a_v) in
+    // which they are free has a length.
+    struct Pair {
+      std::size_t v, w;
+      Expr square;  // a_v^2 + a_w^2
+    };
+    std::optional<Pair> pair;
   };
   std::optional<Row> row(Expr constraint);
+  std::optional<Row::Pair> pair_of(const Row& r);
   bool solve(Expr constraint);
   void solve(const Row& r);
   std::optional<Direction> direction(Expr constraint) const;

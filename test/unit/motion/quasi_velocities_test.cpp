@@ -60,6 +60,31 @@ TEST(QuasiVelocities, AreThoseOfTheBooks) {
   EXPECT_TRUE(is_number(sleigh.q->determinant)) << "never singular";
 }
 
+// A blade with a given slip, alone and joined to another body: the speed along the blade again, and no poles.
+TEST(QuasiVelocities, HaveNoPolesWhereAConstraintHasAPartWithoutVelocities) {
+  const std::string sleigh = R"toml(coordinates = ["x", "y", "th", "be"]
+parameters = {m = 2, J = 0.4, w = 0.1}
+point.P = "x*ex + y*ey"
+frame.B = "rotz(th + be)"
+body = [{name = "front", mass = "m", inertia = "J", center = "P", orientation = "B"},
+        {name = "rear", mass = "m", inertia = "J", center = "P - ROD", orientation = "rotz(th)"}]
+constraint = [{name = "blade", equation = "dot(vel(ARM), B.y) = w*cos(t)"}]
+initial = {be = 0.3, "th'" = 1, "x'" = 1}
+)toml";
+  const auto of = [&](const std::string& rod, const std::string& arm) {
+    std::string text = sleigh;
+    text.replace(text.find("ROD"), 3, rod);
+    return Found(test::model_of(text.replace(text.find("ARM"), 3, arm)));
+  };
+  for (const Found& f : {of("0.5*(cos(th)*ex + sin(th)*ey)", "P"), of("0*ex", "P + cos(th)*ex + sin(th)*ey")}) {
+    ASSERT_TRUE(f.q) << f.why;
+    for (const std::string& v : print(f.q->velocities, f.q->system.model->names, Format::text)) {
+      EXPECT_EQ(v.find("/cos"), std::string::npos) << v;
+      EXPECT_EQ(v.find("/sin"), std::string::npos) << v;
+    }
+  }
+}
+
 TEST(QuasiVelocities, TellWhyThereAreNone) {
   EXPECT_EQ(Found(test::shipped("zoo/disc")).why, "");
   for (const auto& [name, why] :
