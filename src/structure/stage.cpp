@@ -110,11 +110,10 @@ bool Stage<N>::read_equations(bool jacobian_stays) {
     undefined = i;
     residual[i] = machine_.value(i);
     if (!is_finite(residual[i])) return false;
+    if (!jacobian_stays && !read_slopes(i)) return false;
     scale[i] = machine_.terms(i, 0);
     for (std::size_t j = 0; j < n; ++j) {
-      N& slope = jacobian(i, j);
-      if (!jacobian_stays) slope = machine_.value(size() + i * n + j);
-      if (!is_finite(slope)) return false;
+      const N& slope = jacobian(i, j);
       if (!(abs(slope) > N(0))) continue;
       if (N part = abs(N(slope * at_[j])); part > scale[i]) scale[i] = part;
       if (N part = abs(slope) * largest_unknown * unit_roundoff<N>(); part > floor_[i]) floor_[i] = part;
@@ -123,6 +122,22 @@ bool Stage<N>::read_equations(bool jacobian_stays) {
     if (!(scale[i] > N(0))) scale[i] = N(1);
   }
   undefined = size();
+  return true;
+}
+
+// The row i of the Jacobian. What is no more than the round-off of the row, as the cosine of pi/2, is zero.
+template <Number N>
+bool Stage<N>::read_slopes(std::size_t i) {
+  const N round_off(1e-14);
+  N largest(0);
+  for (std::size_t j = 0; j < unknowns(); ++j) {
+    N& slope = jacobian(i, j);
+    slope = machine_.value(size() + i * unknowns() + j);
+    if (!is_finite(slope)) return false;
+    if (N size = abs(slope); size > largest) largest = size;
+  }
+  for (std::size_t j = 0; j < unknowns(); ++j)
+    if (N& slope = jacobian(i, j); abs(slope) <= round_off * largest) slope = N(0);
   return true;
 }
 

@@ -114,6 +114,7 @@ class Stage {
   enum class Change : std::uint8_t { none, unknowns, all };
   Change bind_inputs(const InitialState<N>& s);
   bool read_equations(bool jacobian_stays);
+  bool read_slopes(std::size_t i);
   bool read_metric();
 
   std::vector<N> floor_, at_;  // the values of the unknowns
