@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ._errors import ModelError
+from ._numbers import text_of
 
 _LONGEST = 1000  # operations of a velocity whose integral is looked for: to expand 1600 of a rolling disc takes minutes
 
@@ -182,6 +183,40 @@ def vanish(expressions: Iterable[Any], near: Mapping[Any, Any]) -> bool:
             if any(abs(x) > 1e-20 for x in values(*at)):
                 return False
     return True
+
+
+def never_zero(e: Any, where: list[Any]) -> bool:
+    """Whether an expression is certainly not zero where the expressions of ``where`` are: what these leave of it has no
+    coordinates, as 1 of the squared length of a quaternion."""
+    sm = sympy_module()
+
+    def polynomial(x: Any) -> tuple[Any, list[Any]]:
+        x = sm.nsimplify(x, rational=True)
+        functions = sorted(x.atoms(sm.core.function.AppliedUndef), key=str)
+        return x, functions if x.is_polynomial(*functions) and not x.has(sm.Derivative) else []
+
+    e, own = polynomial(e)
+    if not own:
+        return not e.atoms(sm.core.function.AppliedUndef)
+    divisors = {x: of for x, of in map(polynomial, where) if of}
+    every = sorted({*own, *(q for of in divisors.values() for q in of)}, key=str)
+    rest = sm.reduced(e, list(divisors), *every, order="grevlex")[1] if divisors else e
+    return rest != 0 and not rest.atoms(sm.core.function.AppliedUndef)
+
+
+def certainly_positive(e: Any, values: Mapping[Any, Any]) -> bool:
+    """Whether an expression of symbols is positive, by their assumptions or by their values (numbers, or formulas of others)."""
+    sm, by_name = sympy_module(), {getattr(key, "name", str(key)): value for key, value in values.items()}
+    for _ in range(len(values) + 1):
+        if e.is_positive or not e.free_symbols:
+            break
+        names = {s.name: s for s in e.free_symbols}
+        try:
+            known = {s: values.get(s, by_name.get(name)) for name, s in names.items()}
+            e = e.xreplace({s: v if isinstance(v, sm.Basic) else sm.sympify(text_of(v), locals=names) for s, v in known.items() if v is not None})
+        except (sm.SympifyError, TypeError, ValueError):  # a value with a unit, or none of SymPy
+            return False
+    return bool(e.is_positive)
 
 
 def state_on(holonomic: list[Any], flows: list[Any], q: list[Any], rates: list[Any]) -> dict[Any, Any]:
