@@ -204,6 +204,48 @@ def never_zero(e: Any, where: list[Any]) -> bool:
     return rest != 0 and not rest.atoms(sm.core.function.AppliedUndef)
 
 
+def has_poles(e: Any, where: list[Any]) -> bool:
+    """Whether an expression may have a pole where the expressions of ``where`` are zero."""
+    sm = sympy_module()
+    return not never_zero(sm.denom(sm.together(e)), where)
+
+
+_LONG = 200  # operations of an expression that is not simplified, which would take seconds
+_LARGE = 3  # unknowns of a system that is solved by determinants
+
+
+def solution(a: Any, b: Any, where: list[Any]) -> list[Any]:
+    """The solution of a x = b. Pivots may vanish where the matrix is regular, as those of a rotation: unknowns whose
+    equations hold no other ones are then found by determinants."""
+    sm = sympy_module()
+
+    def short(e: Any) -> Any:
+        return sm.simplify(e) if sm.count_ops(e) < _LONG else e
+
+    found = [short(x) for x in a.LUsolve(b)]
+    for rows, columns in _blocks(a):
+        if len(rows) != len(columns) or not 1 < len(columns) <= _LARGE or not any(has_poles(found[k], where) for k in columns):
+            continue
+        part = a.extract(rows, columns)
+        determinant, above = short(part.det()), part.adjugate().applyfunc(short) * b.extract(rows, [0])
+        for k, e in zip(columns, above, strict=True):
+            found[k] = short(e / determinant)
+    return found
+
+
+def _blocks(a: Any) -> list[tuple[list[int], list[int]]]:
+    """The rows and columns of the parts of a matrix that have no common entry."""
+    left, blocks = set(range(a.cols)), []
+    while left:
+        columns, rows = {min(left)}, set[int]()
+        while (more := {i for i in range(a.rows) if any(a[i, j] != 0 for j in columns)}) != rows:
+            rows = more
+            columns |= {j for j in left if any(a[i, j] != 0 for i in rows)}
+        blocks.append((sorted(rows), sorted(columns)))
+        left -= columns
+    return blocks
+
+
 def certainly_positive(e: Any, values: Mapping[Any, Any]) -> bool:
     """Whether an expression of symbols is positive, by their assumptions or by their values (numbers, or formulas of others)."""
     sm, by_name = sympy_module(), {getattr(key, "name", str(key)): value for key, value in values.items()}

@@ -25,12 +25,13 @@ from ._sympy_parts import (
     atoms_of,
     center_of,
     certainly_positive,
+    has_poles,
     integral_of,
     is_particle,
     mechanics_module,
-    never_zero,
     numeric,
     parts_of,
+    solution,
     state_on,
     sympy_module,
     vanish,
@@ -94,14 +95,13 @@ class _Import:
         if left:
             # Where all equations hold, the speeds follow from all of them, without pivots that vanish somewhere.
             among_all = self._solution(speeds, a.T * a, -(a.T * b))
-            if all(never_zero(sm.denom(sm.together(e)), self.parts.holonomic) for e in among_all.values()):
+            if not any(has_poles(e, self.parts.holonomic) for e in among_all.values()):
                 self.speeds = {**{u: e.xreplace(among_all) for u, e in before.items()}, **among_all}
         return left
 
     def _solution(self, speeds: list[Any], a: Any, b: Any) -> dict[Any, Any]:
         """The solution of a x = b."""
-        sm = self.sm
-        return dict(zip(speeds, (sm.simplify(x) if sm.count_ops(x) < 200 else x for x in a.LUsolve(b)), strict=True))
+        return dict(zip(speeds, solution(a, b, self.parts.holonomic), strict=True))
 
     def _coordinates_of(self, e: Any) -> set[Any]:
         return set(e.atoms(self.sm.core.function.AppliedUndef))
