@@ -9,6 +9,7 @@ expression is.
 from __future__ import annotations
 
 import importlib
+import sys
 from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, Union
@@ -16,6 +17,16 @@ from typing import Any, Union
 from ._numbers import Number, text_of
 
 _SUM, _PRODUCT, _POWER, _ATOM = range(1, 5)
+
+
+def _as_given(base: Any) -> Any:
+    """The left side of a power. Before Python 3.12 a Fraction there is a float when it comes; the fraction itself is in the
+    frame of its method."""
+    frame = sys._getframe(2)
+    return frame.f_locals["a"] if isinstance(base, float) and frame.f_code is _POWER_OF_FRACTION else base
+
+
+_POWER_OF_FRACTION = Fraction.__pow__.__code__
 
 
 class Expr:
@@ -74,7 +85,7 @@ class Expr:
         return _Formula(f"{self._inside(_ATOM)}^{b._inside(_ATOM)}", _POWER, ("^", self, b))
 
     def __rpow__(self, other: Term) -> Expr:
-        return expr(other) ** self
+        return expr(_as_given(other)) ** self
 
     def __neg__(self) -> Expr:
         if self._tree[:1] == ("number",) and self.text.startswith("-"):

@@ -373,6 +373,12 @@ def test_texts_mean_what_python_means() -> None:
         assert number(ours) == pytest.approx(theirs, rel=1e-15), repr(ours)
 
 
+def test_fractions_to_the_left_of_a_power_stay_exact() -> None:
+    _, x, _ = bead()
+    assert (Fraction(1, 3) ** x).text == "(1/3)^x" and (Fraction(-2, 7) ** (x + 1)).text == "(-2/7)^(x + 1)"
+    assert (0.1**x).text == "0.1^x" and (2**x).text == "2^x"
+
+
 def test_sides_of_equations_stay_where_they_are() -> None:
     b, x, y = bead()
     place, frame = b.point("P", [x, 0, 0]), b.frame("F", an.rotz(y))
