@@ -173,7 +173,8 @@ class Expr:
         return self.text
 
     def _sympy_(self) -> Any:
-        """The expression for SymPy: coordinates and states are dynamicsymbols, other names symbols.
+        """The expression for SymPy: coordinates, states, inputs and functions of time are dynamicsymbols, parameters symbols;
+        what was defined is its formula.
 
         Raises:
             TypeError: it is a vector or a rotation, or a function that SymPy does not have.
@@ -329,8 +330,9 @@ def vector(x: Term, y: Term, z: Term) -> Expr:
     return _Formula("0", _ATOM, ("vector",)) if total is None else total
 
 
-def _named(name: str, kind: str = "symbol") -> Expr:
-    return _Formula(name, _ATOM, ("name", name, kind))
+def _named(name: str, kind: str = "symbol", *formula: Expr) -> Expr:
+    """A name; of kind "formula" it stands for the formula."""
+    return _Formula(name, _ATOM, ("name", name, kind, *formula))
 
 
 t = _named("t", "time")
@@ -346,7 +348,9 @@ def _to_sympy(e: Expr) -> Any:
         value = Fraction(rest[0])
         return sm.Rational(value.numerator, value.denominator)
     if head == "name":
-        name, kind = rest
+        name, kind, *formula = rest
+        if formula:
+            return _to_sympy(formula[0])
         if kind == "coordinate":
             return importlib.import_module("sympy.physics.mechanics").dynamicsymbols(name)
         if kind in ("time", "pi"):

@@ -423,6 +423,12 @@ def test_expressions_go_to_sympy() -> None:
     assert sm.sympify(x == m) == sm.Eq(s, sm.Symbol("m"))
     with pytest.raises((TypeError, sm.SympifyError)):
         sm.sympify(x * ex)
+    speed, rate = b.define("speed", x.dt**2), b.quasi("rate", 2 * x.dt)
+    assert sm.sympify(speed / 2) == s.diff() ** 2 / 2 and sm.sympify((speed * x).dt) == sm.sympify((x.dt**2 * x).dt)
+    assert sm.sympify(rate.dt) == 2 * s.diff().diff() and (speed.dt.text, rate.dt.text) == ("speed'", "rate'")
+    for vector in (b.define("place", x * ex), b.define("text", "x*ex")):
+        with pytest.raises((TypeError, sm.SympifyError)):
+            sm.sympify(vector)
 
 
 def test_numpy_leaves_products_to_expressions() -> None:
