@@ -409,6 +409,8 @@ class Builder:
         """
         if t is not None:
             self._entry("initial", "t", t)
+        if values is not None and not isinstance(values, Mapping):
+            raise TypeError("initial values are given by coordinate and derivative, as {x: 1, x.dt: 0}; equations are conditions=[x.dt == y]")
         for q, value in (values or {}).items():
             self._entry("initial", expr(q).text, value)
         listed = list(conditions)

@@ -309,6 +309,8 @@ def expr(term: object) -> Expr:
         return vector(*term)
     if type(term).__module__.startswith("numpy") and getattr(term, "shape", ()) == (3,):
         return vector(*term.tolist())  # type: ignore[attr-defined]
+    if isinstance(term, Condition):
+        raise TypeError(f"{term.text!r} is a condition, and a formula is expected here: the difference of the sides, such as x - 1 of x > 1")
     text = text_of(term)  # type: ignore[arg-type]
     strength = _SUM if text.startswith("-") else _PRODUCT if "/" in text else _ATOM
     return _Formula(text, strength, ("number", text))

@@ -373,6 +373,14 @@ def test_texts_mean_what_python_means() -> None:
         assert number(ours) == pytest.approx(theirs, rel=1e-15), repr(ours)
 
 
+def test_conditions_and_equations_in_the_place_of_formulas_are_named() -> None:
+    b, x, y = bead()
+    with pytest.raises(TypeError, match="'x > 1' is a condition, and a formula is expected here: the difference of the sides"):
+        b.event("e", x > 1, stop=True)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"conditions=\[x.dt == y\]"):
+        b.initial({x.dt == y})  # type: ignore[arg-type]
+
+
 def test_fractions_to_the_left_of_a_power_stay_exact() -> None:
     _, x, _ = bead()
     assert (Fraction(1, 3) ** x).text == "(1/3)^x" and (Fraction(-2, 7) ** (x + 1)).text == "(-2/7)^(x + 1)"
