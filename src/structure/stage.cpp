@@ -1,6 +1,7 @@
 #include "structure/stage.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace anholon {
 
@@ -38,7 +39,7 @@ StagePlan::StagePlan(const Mechanics& m, std::vector<StageEquation> of, Column i
 
 template <Number N>
 Stage<N>::Stage(const Mechanics& m, std::shared_ptr<const StagePlan> plan, const std::vector<N>& parameters)
-    : m_(m), plan_(std::move(plan)), machine_(plan_->tape, 0, parameters) {}
+    : m_(m), plan_(std::move(plan)), parameters_(parameters), machine_(plan_->tape, 0, parameters) {}
 
 namespace {
 
@@ -123,7 +124,43 @@ bool Stage<N>::read_equations(bool jacobian_stays) {
     if (!(scale[i] > N(0))) scale[i] = N(1);
   }
   undefined = size();
+  if (!jacobian_stays) drop_round_off();
   return true;
+}
+
+// The round-off is that of doubles in all number types: values are typed in as doubles, and a start is one in all of them.
+template <Number N>
+void Stage<N>::drop_round_off() {
+  constexpr double kSmall = 64 * std::numeric_limits<double>::epsilon(),
+                   kMoved = 2 * std::numeric_limits<double>::epsilon();
+  if (!plan_->linear) return;
+  // By a few units in the last place, another number for each.
+  const auto moved = [](const N& value, std::size_t k) {
+    return N(value * N(1 + kMoved * static_cast<double>(1 + k % 3)));
+  };
+  std::optional<Machine<N>> machine;
+  const std::size_t n = unknowns();
+  for (std::size_t i = 0; i < size(); ++i) {
+    N largest(0);
+    for (std::size_t j = 0; j < n; ++j)
+      if (N v = abs(jacobian(i, j)); v > largest) largest = v;
+    for (std::size_t j = 0; j < n; ++j) {
+      N& slope = jacobian(i, j);
+      if (!(abs(slope) > N(0)) || abs(slope) > N(kSmall) * largest) continue;
+      if (!machine) {
+        machine = machine_;
+        std::vector<N> parameters = parameters_;
+        for (std::size_t k = 0; k < parameters.size(); ++k) parameters[k] = moved(parameters[k], k);
+        machine->set_parameters(parameters);
+        for (std::size_t k = 0; k < plan_->tape.inputs.size(); ++k) {
+          N& input = machine->series(plan_->tape.inputs[k].slot)[0];
+          input = moved(machine_.series(plan_->tape.inputs[k].slot)[0], k);
+        }
+        machine->evaluate();
+      }
+      if (N change = abs(N(machine->value(size() + i * n + j) - slope)); !(abs(slope) > change)) slope = N(0);
+    }
+  }
 }
 
 template <Number N>
