@@ -58,12 +58,13 @@ bool AdmissibleVelocities::solve(Expr constraint) {
 void AdmissibleVelocities::solve(const Row& r) {
   const Column& a = r.a;
   if (r.cost > 0 && r.has_direction()) {
-    // a v + b w = 0 without division: v = b u, w = -a u.
+    // a v + b w + rest = 0 without division by a or b: v = b u - a rest / (a^2 + b^2), w = -a u - b rest / (a^2 + b^2).
     const std::size_t v = r.in[0], w = r.in[1];
-    const Expr u = new_name(), u_by_velocity = (a[w] * free_by_velocity_[v] - a[v] * free_by_velocity_[w]) /
-                                               tidy_(pow(a[v], 2) + pow(a[w], 2));
-    remove(w, -a[v] * u);
-    remove(v, a[w] * u);
+    const Expr size = tidy_(pow(a[v], 2) + pow(a[w], 2)), rest = tidy_(r.rest / size);
+    const Expr u = new_name(), u_by_velocity = (a[w] * free_by_velocity_[v] - a[v] * free_by_velocity_[w]) / size;
+    const auto with_rest = [&](Expr e, Expr factor) { return is_zero(rest) ? e : tidy_(e - factor * rest); };
+    remove(w, with_rest(-a[v] * u, a[w]));
+    remove(v, with_rest(a[w] * u, a[v]));
     free.push_back(u);
     free_by_velocity_.push_back(u_by_velocity);
     return;

@@ -43,7 +43,7 @@ class AdmissibleVelocities {
     double largest = 0;                     // of the a at the start
     std::size_t best = 0, cost = SIZE_MAX;  // the pivot, and how many of its nodes vary
 
-    bool has_direction() const { return in.size() == 2 && is_zero(rest); }
+    bool has_direction() const { return in.size() == 2; }
   };
   std::optional<Row> row(Expr constraint);
   bool solve(Expr constraint);
