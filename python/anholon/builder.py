@@ -406,6 +406,9 @@ class Builder:
             guess: values that are looked for nearby.
             branch: ``{constraint: "lambda > 0"}`` where there are several solutions.
             t: the initial time, s.
+
+        Raises:
+            TypeError: `values` is no mapping.
         """
         if t is not None:
             self._entry("initial", "t", t)
