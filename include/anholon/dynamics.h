@@ -68,6 +68,9 @@ class ANHOLON_API Dynamics {
   std::vector<double> outputs(double t, std::span<const double> x, std::size_t count, const Given& given) const;
   // The inputs of one state by the formulas of the model. REQUIRES: the sizes fit.
   std::vector<double> inputs(double t, const std::vector<double>& x, std::span<const double> p) const;
+  // The given ones, and the others by their formulas, in which the given ones act.
+  std::vector<double> inputs(double t, const std::vector<double>& x, std::span<const double> p,
+                             std::span<const std::optional<double>> given) const;
 
   // The exact derivatives of the rates, then of the outputs, of `count` states by x, u and p: number (i, j) of state k at
   // [(i * columns + j) * count + k]. NaN where the equations have no solution. REQUIRES: the sizes fit.

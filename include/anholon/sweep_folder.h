@@ -98,14 +98,17 @@ class ANHOLON_API SweepFolder {
 };
 
 // Opens the folder for this sweep, or makes it; nothing is computed. `chunk` holds for a new folder; 0: as many cases as
-// take some seconds, by a trial. `recipe` is kept in a new folder as it is. Errors: as `sweep`; another sweep or other files
-// are in the folder; it cannot be written.
+// take some seconds, by a trial. `recipe` is kept in a new folder as it is. `refine`: a rule, by which `refine` is called
+// later. Errors: as `sweep`; another sweep or other files are in the folder; it cannot be written; the sweep cannot be
+// refined by the rule.
 ANHOLON_API Result<SweepFolder> sweep_into(const System& system, const SweepOptions& options, const std::string& folder,
-                                           std::size_t chunk = 0, const std::string& recipe = {});
+                                           std::size_t chunk = 0, const std::string& recipe = {},
+                                           const std::optional<std::string>& refine = {});
 // The same of a model, whose scenarios may vary, as in `sweep`. The name of the scenario is the column "case_name".
 ANHOLON_API Result<SweepFolder> sweep_into(const Model& model, const SweepOptions& options, const std::string& folder,
                                            std::size_t chunk = 0, const std::string& recipe = {},
-                                           const PrepareOptions& prepare = {});
+                                           const PrepareOptions& prepare = {},
+                                           const std::optional<std::string>& refine = {});
 // Opens a folder to look at it. Errors: it holds no sweep.
 ANHOLON_API Result<SweepFolder> open_sweep(const std::string& folder);
 

@@ -141,8 +141,21 @@ def _calling_lines(error: BaseException) -> list[str]:
     return [f"line {place[1]}: \x1b[1m{code}\x1b[0m"] if code else []
 
 
+# What the library says in the words of the command line, and how Python says it.
+_IN_PYTHON = [
+    (r"\berror: --(?:set|case): ", "error: "),
+    (r"(?m)^hint: leave out the dense output$", "hint: simulate(every=0.01), or at=[…], has rows at the times that are wanted"),
+    (r"(?m)^hint: the mode (\S+?)=open, or slips, or sticks$", r'hint: model.in_mode("\1=open"), or slips, or sticks'),
+    (r"(?m)^hint: the mode (\S+?)=0, or another number$", r'hint: model.in_mode("\1=0"), or another number'),
+    (r"(?m)^hint: leave out --digits and --numbers$", "hint: leave out digits and numbers"),
+    (r"(?m)^hint: leave out --(save|rigorous|integrator)\b.*$", r"hint: leave out \1"),
+]
+
+
 def error_of(text: str, diagnostics: list[Diagnostic], outcome: Outcome | None) -> Exception:
     """The exception for an error of the library; called by the binding."""
     if outcome is not None:
         return MotionError(text.rstrip("\n"), outcome)
+    for words, here in _IN_PYTHON:
+        text = re.sub(words, here, text)
     return ModelError(text.rstrip("\n"), diagnostics)

@@ -80,16 +80,16 @@ class SweepRequest:
         """Opens the folder or makes it, and computes what is missing there."""
         if refine > 0 and self._scenarios and len(dict(self._words[0])["case"]) > 1:
             raise no_grid()
-        core = self.open(folder, chunk)
+        core = self.open(folder, chunk, rule_of(refine, refine_by))
         _opened[_key(core.path)] = core
         return fill(core, on=on, share=share, threads=threads, stop=stop, progress=progress, refine=refine, refine_by=refine_by)
 
-    def open(self, folder: str, chunk: int) -> _core.SweepFolder:
-        """Opens the folder or makes it."""
+    def open(self, folder: str, chunk: int, rule: str | None = None) -> _core.SweepFolder:
+        """Opens the folder or makes it, if the sweep can be refined by the rule."""
         if self._scenarios:
-            return _core.sweep_scenarios_into(self._model._core, self._form, self._initial, self._words, folder, chunk, self._recipe())
+            return _core.sweep_scenarios_into(self._model._core, self._form, self._initial, self._words, folder, chunk, self._recipe(), rule)
         system = self._model._system(self._form, self._initial, ())
-        return _core.sweep_into(system, self._words, folder, chunk, self._recipe())
+        return _core.sweep_into(system, self._words, folder, chunk, self._recipe(), rule)
 
     def _recipe(self) -> str:
         model = self._model
@@ -99,6 +99,15 @@ class SweepRequest:
         return json.dumps(
             {"path": path, "set": model._given, "case": model._cases, **mode, "form": self._form, "initial": self._initial, "words": self._words}
         )
+
+
+def rule_of(refine: int, refine_by: tuple[str, float] | None) -> str | None:
+    """The rule by which a sweep is refined, as a word; None if it is not."""
+    if refine_by is not None and refine < 1:
+        raise ModelError("refine_by tells what a border is, and refine how often it is refined\nhint: refine=4")
+    if refine < 1:
+        return None
+    return "" if refine_by is None else f"{refine_by[0]}:{float(refine_by[1])!r}"
 
 
 def no_grid() -> ModelError:
@@ -148,15 +157,15 @@ def fill(
     refine_by: tuple[str, float] | None = None,
 ) -> SweepFolder:
     """Computes what is missing, and plans generations until there are `refine` of them after the first, or no border is left."""
-    rule = "" if refine_by is None else f"{refine_by[0]}:{float(refine_by[1])!r}"
-    if refine_by is not None and refine < 1:
-        raise ModelError("refine_by tells what a border is, and refine how often it is refined\nhint: refine=4")
-    if refine > 0 and "case_name" in core.columns and "," in core.asked("vary case"):
+    rule = rule_of(refine, refine_by)
+    if rule is not None and "case_name" in core.columns and "," in core.asked("vary case"):
         raise no_grid()
+    if rule is not None:
+        core.refine(rule, 0)  # plans nothing, and tells before the first case is computed whether it can be refined
     while True:
         folder = _fill_generation(core, on=on, share=share, threads=threads, stop=stop, progress=progress)
         # Other shares may have parts to compute before the borders are known; other processes may plan the same generation.
-        if refine < 1 or core.missing():
+        if rule is None or core.missing():
             return folder
         generations = len(core.progress().generations)
         if generations > refine or not core.refine(rule, generations):

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ._errors import ModelError
+from ._numbers import text_of
 
 _LONGEST = 1000  # operations of a velocity whose integral is looked for: to expand 1600 of a rolling disc takes minutes
 
@@ -182,6 +183,82 @@ def vanish(expressions: Iterable[Any], near: Mapping[Any, Any]) -> bool:
             if any(abs(x) > 1e-20 for x in values(*at)):
                 return False
     return True
+
+
+def never_zero(e: Any, where: list[Any]) -> bool:
+    """Whether an expression is certainly not zero where the expressions of ``where`` are: what these leave of it has no
+    coordinates, as 1 of the squared length of a quaternion."""
+    sm = sympy_module()
+
+    def polynomial(x: Any) -> tuple[Any, list[Any]]:
+        x = sm.nsimplify(x, rational=True)
+        functions = sorted(x.atoms(sm.core.function.AppliedUndef), key=str)
+        return x, functions if x.is_polynomial(*functions) and not x.has(sm.Derivative) else []
+
+    e, own = polynomial(e)
+    if not own:
+        return not e.atoms(sm.core.function.AppliedUndef)
+    divisors = {x: of for x, of in map(polynomial, where) if of}
+    every = sorted({*own, *(q for of in divisors.values() for q in of)}, key=str)
+    rest = sm.reduced(e, list(divisors), *every, order="grevlex")[1] if divisors else e
+    return rest != 0 and not rest.atoms(sm.core.function.AppliedUndef)
+
+
+def has_poles(e: Any, where: list[Any]) -> bool:
+    """Whether an expression may have a pole where the expressions of ``where`` are zero."""
+    sm = sympy_module()
+    return not never_zero(sm.denom(sm.together(e)), where)
+
+
+_LONG = 200  # operations of an expression that is not simplified, which would take seconds
+_LARGE = 3  # unknowns of a system that is solved by determinants
+
+
+def solution(a: Any, b: Any, where: list[Any]) -> list[Any]:
+    """The solution of a x = b. Pivots may vanish where the matrix is regular, as those of a rotation: unknowns whose
+    equations hold no other ones are then found by determinants."""
+    sm = sympy_module()
+
+    def short(e: Any) -> Any:
+        return sm.simplify(e) if sm.count_ops(e) < _LONG else e
+
+    found = [short(x) for x in a.LUsolve(b)]
+    for rows, columns in _blocks(a):
+        if len(rows) != len(columns) or not 1 < len(columns) <= _LARGE or not any(has_poles(found[k], where) for k in columns):
+            continue
+        part = a.extract(rows, columns)
+        determinant, above = short(part.det()), part.adjugate().applyfunc(short) * b.extract(rows, [0])
+        for k, e in zip(columns, above, strict=True):
+            found[k] = short(e / determinant)
+    return found
+
+
+def _blocks(a: Any) -> list[tuple[list[int], list[int]]]:
+    """The rows and columns of the parts of a matrix that have no common entry."""
+    left, blocks = set(range(a.cols)), []
+    while left:
+        columns, rows = {min(left)}, set[int]()
+        while (more := {i for i in range(a.rows) if any(a[i, j] != 0 for j in columns)}) != rows:
+            rows = more
+            columns |= {j for j in left if any(a[i, j] != 0 for i in rows)}
+        blocks.append((sorted(rows), sorted(columns)))
+        left -= columns
+    return blocks
+
+
+def certainly_positive(e: Any, values: Mapping[Any, Any]) -> bool:
+    """Whether an expression of symbols is positive, by their assumptions or by their values (numbers, or formulas of others)."""
+    sm, by_name = sympy_module(), {getattr(key, "name", str(key)): value for key, value in values.items()}
+    for _ in range(len(values) + 1):
+        if e.is_positive or not e.free_symbols:
+            break
+        names = {s.name: s for s in e.free_symbols}
+        try:
+            known = {s: values.get(s, by_name.get(name)) for name, s in names.items()}
+            e = e.xreplace({s: v if isinstance(v, sm.Basic) else sm.sympify(text_of(v), locals=names) for s, v in known.items() if v is not None})
+        except (sm.SympifyError, TypeError, ValueError):  # a value with a unit, or none of SymPy
+            return False
+    return bool(e.is_positive)
 
 
 def state_on(holonomic: list[Any], flows: list[Any], q: list[Any], rates: list[Any]) -> dict[Any, Any]:

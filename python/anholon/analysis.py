@@ -32,6 +32,8 @@ def equation_text(equations: PublishedEquations) -> tuple[str, bool]:
         return os.fspath(equations), True
     if isinstance(equations, Mapping):
         return "\n".join(f"{label}: {equation}" for label, equation in equations.items()), False
+    if not isinstance(equations, Iterable):
+        raise TypeError(f"equations are a text, a path, {{label: equation}} or a list, not a {type(equations).__name__}")
     return "\n".join(equations), False
 
 

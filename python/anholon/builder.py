@@ -139,7 +139,7 @@ class Builder:
         """Gives a formula a name, which equations print. The type of the expression is that of the formula."""
         self._entry("define", name, value)
         of = value if isinstance(value, Expr) else expr(value)
-        return type(of)(name, 4, ("name", name, "vector")) if isinstance(of, (Rotation, Place)) else _named(name)
+        return type(of)(name, 4, ("name", name, "vector")) if isinstance(of, (Rotation, Place)) else _named(name, "formula", of)
 
     def frame(self, name: str, rotation: Term) -> Rotation:
         """Adds a frame, a rotation from the observer's axes."""
@@ -349,7 +349,7 @@ class Builder:
     def quasi(self, name: str, velocity: Term) -> Expr:
         """Adds a quasi-velocity."""
         self._entry("quasi", name, velocity)
-        return _named(name)
+        return _named(name, "formula", expr(velocity))
 
     def observer(self, **motion: Term) -> None:
         """How the observer moves: ``spin`` or ``rotation``, and one of ``origin_acceleration``, ``origin_velocity``,
@@ -406,9 +406,14 @@ class Builder:
             guess: values that are looked for nearby.
             branch: ``{constraint: "lambda > 0"}`` where there are several solutions.
             t: the initial time, s.
+
+        Raises:
+            TypeError: `values` is no mapping.
         """
         if t is not None:
             self._entry("initial", "t", t)
+        if values is not None and not isinstance(values, Mapping):
+            raise TypeError("initial values are given by coordinate and derivative, as {x: 1, x.dt: 0}; equations are conditions=[x.dt == y]")
         for q, value in (values or {}).items():
             self._entry("initial", expr(q).text, value)
         listed = list(conditions)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     Array = npt.NDArray[np.float64]
 
 
-Values = Union["npt.ArrayLike", Mapping[str, float], None]
+Values = Union["npt.ArrayLike", Mapping[str, "npt.ArrayLike"], None]
 """Inputs or parameters: an array in their order, values by name (the others keep theirs), or None for those of the model."""
 
 
@@ -170,7 +170,7 @@ class Dynamics:
             t: the time, s.
             x: states.
             u: inputs, shape (inputs,), or (inputs, …) for each state; by the formulas of the model if it is None, and so
-                are those left out of a mapping, by the formulas at (t, x).
+                are those left out of a mapping, by the formulas at (t, x) and the inputs that are given.
             p: parameters, shape (parameters,), or (parameters, …) for each state; those of the model if it is None.
             out: an array of float64 of the shape of x, in any layout, for the result; a new one if it is None.
 
@@ -206,7 +206,8 @@ class Dynamics:
         return out
 
     def _given(self, t: float, x: Array, u: Values, p: Values) -> tuple[Array | None, Array | None]:
-        """Inputs and parameters of these states. Inputs left out of a mapping have the values of their formulas."""
+        """Inputs and parameters of these states. Inputs left out of a mapping have the values of their formulas, in which
+        those of the mapping act."""
         import numpy as np
 
         others = self._values(p, self.parameters, lambda: self.p0, "p", x.shape[1:])
@@ -215,10 +216,22 @@ class Dynamics:
             count = int(np.prod(x.shape[1:], dtype=int))
             flat = x.reshape(self._count, count)
             each = None if others is None else np.broadcast_to(others.reshape(len(others), -1), (len(others), count))
-            rows = [self._core.inputs_at(t, flat[:, k].tolist(), [] if each is None else each[:, k].tolist()) for k in range(count)]
+            some = [[None] * count if name not in named else numbers(name) for name in self.inputs]
+            rows = [
+                self._core.inputs_at(t, flat[:, k].tolist(), [] if each is None else each[:, k].tolist(), [of[k] for of in some])
+                for k in range(count)
+            ]
             return np.array(rows).T.reshape((len(self.inputs), *x.shape[1:]))
 
-        usual = by_formulas if isinstance(u, Mapping) and any(name not in u for name in self.inputs) else lambda: self.u0
+        def numbers(name: str) -> list[float]:
+            given = np.asarray(named[name], dtype=np.float64)
+            if given.shape not in ((), x.shape[1:]):
+                raise ValueError(f"the input {name!r} has the shape {given.shape}; it has to be a number" + (f" or {x.shape[1:]}" if x.shape[1:] else ""))
+            made: list[float] = np.broadcast_to(given, x.shape[1:]).reshape(-1).tolist()
+            return made
+
+        named = u if isinstance(u, Mapping) else {}
+        usual = by_formulas if isinstance(u, Mapping) and any(name not in named for name in self.inputs) else lambda: self.u0
         return self._values(u, self.inputs, usual, "u", x.shape[1:]), others
 
     def _states(self, t: float, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array | None, Array | None, tuple[int, ...]]:

@@ -9,6 +9,7 @@ expression is.
 from __future__ import annotations
 
 import importlib
+import sys
 from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, Union
@@ -16,6 +17,16 @@ from typing import Any, Union
 from ._numbers import Number, text_of
 
 _SUM, _PRODUCT, _POWER, _ATOM = range(1, 5)
+
+
+def _as_given(base: Any) -> Any:
+    """The left side of a power. Before Python 3.12 a Fraction there is a float when it comes; the fraction itself is in the
+    frame of its method."""
+    frame = sys._getframe(2)
+    return frame.f_locals["a"] if isinstance(base, float) and frame.f_code is _POWER_OF_FRACTION else base
+
+
+_POWER_OF_FRACTION = Fraction.__pow__.__code__
 
 
 class Expr:
@@ -74,7 +85,7 @@ class Expr:
         return _Formula(f"{self._inside(_ATOM)}^{b._inside(_ATOM)}", _POWER, ("^", self, b))
 
     def __rpow__(self, other: Term) -> Expr:
-        return expr(other) ** self
+        return expr(_as_given(other)) ** self
 
     def __neg__(self) -> Expr:
         if self._tree[:1] == ("number",) and self.text.startswith("-"):
@@ -162,7 +173,8 @@ class Expr:
         return self.text
 
     def _sympy_(self) -> Any:
-        """The expression for SymPy: coordinates and states are dynamicsymbols, other names symbols.
+        """The expression for SymPy: coordinates, states, inputs and functions of time are dynamicsymbols, parameters symbols;
+        what was defined is its formula.
 
         Raises:
             TypeError: it is a vector or a rotation, or a function that SymPy does not have.
@@ -297,6 +309,8 @@ def expr(term: object) -> Expr:
         return vector(*term)
     if type(term).__module__.startswith("numpy") and getattr(term, "shape", ()) == (3,):
         return vector(*term.tolist())  # type: ignore[attr-defined]
+    if isinstance(term, Condition):
+        raise TypeError(f"{term.text!r} is a condition, and a formula is expected here: the difference of the sides, such as x - 1 of x > 1")
     text = text_of(term)  # type: ignore[arg-type]
     strength = _SUM if text.startswith("-") else _PRODUCT if "/" in text else _ATOM
     return _Formula(text, strength, ("number", text))
@@ -318,8 +332,9 @@ def vector(x: Term, y: Term, z: Term) -> Expr:
     return _Formula("0", _ATOM, ("vector",)) if total is None else total
 
 
-def _named(name: str, kind: str = "symbol") -> Expr:
-    return _Formula(name, _ATOM, ("name", name, kind))
+def _named(name: str, kind: str = "symbol", *formula: Expr) -> Expr:
+    """A name; of kind "formula" it stands for the formula."""
+    return _Formula(name, _ATOM, ("name", name, kind, *formula))
 
 
 t = _named("t", "time")
@@ -335,7 +350,9 @@ def _to_sympy(e: Expr) -> Any:
         value = Fraction(rest[0])
         return sm.Rational(value.numerator, value.denominator)
     if head == "name":
-        name, kind = rest
+        name, kind, *formula = rest
+        if formula:
+            return _to_sympy(formula[0])
         if kind == "coordinate":
             return importlib.import_module("sympy.physics.mechanics").dynamicsymbols(name)
         if kind in ("time", "pi"):

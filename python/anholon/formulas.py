@@ -22,6 +22,10 @@ NOT_LINEAR = (
     "hint: f(t, x) and f.jac(t, x) compute them; f.formulas.mpmath has more digits"
 )
 
+NO_FORMULAS_OF_INPUTS = (
+    "the formulas of the inputs hold what the equations are solved for\nhint: give u, for instance f.input(t, x) of the function f that these formulas are of"
+)
+
 # NumPy's names of elementary functions, and those of other libraries where they differ.
 _SHORT = {"arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "arcsinh": "asinh", "arccosh": "acosh", "arctanh": "atanh"}
 
@@ -138,8 +142,26 @@ class Formulas:
             lead = solve(matrix, right)
         return module["rates"](library, t, x, u, p, lead), module["outputs"](library, t, x, u, p, lead)
 
+    def _completed(self, library: Any, t: Any, x: Any, u: Any, p: Any, number: Callable[[str], Any] | None = None) -> tuple[Any, Any]:
+        """u and p, by the formulas of the model and as the model has them where they are None.
+
+        Raises:
+            ModelError: the formulas of the inputs are not known before the equations are solved.
+        """
+        module = self._module if number is None else self._with_numbers(number)
+        if p is None:
+            p = self._module["DEFAULTS"] if number is None else module["defaults"](library)
+        if u is None and module["INPUTS"] and "inputs" not in module:
+            raise ModelError(NO_FORMULAS_OF_INPUTS)
+        if u is None:
+            u = module["inputs"](library, t, x, p) if module["INPUTS"] else ()
+        return u, p
+
     def numpy(self) -> Callable[..., Any]:
-        """A function f(t, x, u, p) of NumPy alone, with the shapes of :class:`Dynamics`; returns (x', y)."""
+        """A function f(t, x, u, p) of NumPy alone, with the shapes of :class:`Dynamics`; returns (x', y).
+
+        Without u the inputs follow the formulas of the model.
+        """
         import numpy as np
 
         def solve(matrix: list[list[Any]], right: list[Any]) -> Any:
@@ -151,9 +173,9 @@ class Formulas:
 
         def f(t: Any, x: Any, u: Any = None, p: Any = None) -> Any:
             x = np.asarray(x, dtype=float)
-            u = self._module["START_INPUTS"] if u is None else np.asarray(u, dtype=float)
-            p = self._module["DEFAULTS"] if p is None else np.asarray(p, dtype=float)
+            u, p = (values if values is None else np.asarray(values, dtype=float) for values in (u, p))
             with np.errstate(all="ignore"):
+                u, p = self._completed(np, t, x, u, p)
                 rates, outputs = self.evaluate(np, solve, t, x, u, p)
             stacked = [np.stack([np.broadcast_to(row, x.shape[1:]) for row in rows]) if rows else np.empty((0, *x.shape[1:])) for rows in (rates, outputs)]
             return stacked[0], stacked[1]
@@ -163,12 +185,11 @@ class Formulas:
     def jax(self) -> Callable[..., Any]:
         """A pure function f(t, x, u, p) of JAX, for ``jit``, ``vmap``, ``grad``; returns (x', y).
 
-        JAX computes with 32 bits unless ``jax.config.update("jax_enable_x64", True)`` comes first.
+        Without u the inputs follow the formulas of the model. JAX computes with 32 bits unless ``jax.config.update("jax_enable_x64", True)`` comes first.
         """
         import jax.numpy as jnp
 
         library = _Library(jnp, {}, jnp.where)
-        defaults, start_inputs = self._module["DEFAULTS"], self._module["START_INPUTS"]
 
         def stack(rows: Sequence[Any], x: Any) -> Any:
             return jnp.stack([jnp.broadcast_to(row, x.shape[1:]) for row in rows]) if rows else jnp.empty((0, *x.shape[1:]))
@@ -181,7 +202,8 @@ class Formulas:
                 b = stack(right, x)
                 return jnp.moveaxis(jnp.linalg.solve(jnp.moveaxis(a, (0, 1), (-2, -1)), jnp.moveaxis(b, 0, -1)[..., None])[..., 0], -1, 0)
 
-            rates, outputs = self.evaluate(library, solve, t, x, start_inputs if u is None else u, defaults if p is None else p)
+            u, p = self._completed(library, t, x, u, p)
+            rates, outputs = self.evaluate(library, solve, t, x, u, p)
             return stack(rates, x), stack(outputs, x)
 
         return f
@@ -208,18 +230,23 @@ class Formulas:
         rates, outputs = self.evaluate(library, solve, t, x, u, p)
         return casadi.Function(name, [t, x, u, p], [casadi.vertcat(*rates), casadi.vertcat(*outputs)], ["t", "x", "u", "p"], ["dx", "y"])
 
-    def mpmath(self, t: Any, x: Sequence[Any], u: Sequence[Any] = (), p: Sequence[Any] | None = None) -> Any:
-        """The rates of one state with as many digits as mpmath has set; returns (x', y), two lists."""
+    def mpmath(self, t: Any, x: Sequence[Any], u: Sequence[Any] | None = None, p: Sequence[Any] | None = None) -> Any:
+        """The rates of one state with as many digits as mpmath has set; returns (x', y), two lists.
+
+        Without u the inputs follow the formulas of the model, and without p its parameters have all digits, too.
+        """
         import mpmath
 
         def solve(matrix: list[list[Any]], right: list[Any]) -> Any:
             return list(mpmath.lu_solve(mpmath.matrix(matrix), mpmath.matrix(right)))
 
         library = _Library(mpmath, _SHORT | {"abs": "fabs"}, lambda condition, a, b: a if condition else b)
+        t = mpmath.mpf(t)
+        u, p = self._completed(library, t, x, u, p, mpmath.mpf)
         lead = None
         if not self._module["LINEAR"]:
-            lead = self.dynamics._core.leading(float(t), *([float(v) for v in values] for values in (x, u, [] if p is None else p)))
-        return self.evaluate(library, solve, mpmath.mpf(t), x, u, self._module["DEFAULTS"] if p is None else p, mpmath.mpf, lead)
+            lead = self.dynamics._core.leading(float(t), *([float(v) for v in values] for values in (x, u, p)))
+        return self.evaluate(library, solve, t, x, u, p, mpmath.mpf, lead)
 
 
 class SymPyRates:

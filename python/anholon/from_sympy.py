@@ -21,7 +21,21 @@ from typing import Any
 
 from ._errors import ModelError
 from ._numbers import Number, text_of
-from ._sympy_parts import atoms_of, center_of, integral_of, is_particle, mechanics_module, numeric, parts_of, state_on, sympy_module, vanish
+from ._sympy_parts import (
+    atoms_of,
+    center_of,
+    certainly_positive,
+    has_poles,
+    integral_of,
+    is_particle,
+    mechanics_module,
+    numeric,
+    parts_of,
+    solution,
+    state_on,
+    sympy_module,
+    vanish,
+)
 from ._sympy_writer import name_of, RESERVED, Writer
 from .model import Model
 from .reading import loads
@@ -42,6 +56,7 @@ class _Import:
         parts.velocity += self._solve(list(parts.kinematic), known)
         self.centers: list[tuple[str, Any]] = []  # constraints that tie coordinates of mass centres to their velocities
         self.writer = Writer(parts)
+        self._given: Mapping[Any, Number] = {}  # values of symbols
         self._places: dict[Any, list[Any]] = {}
         self._kept: tuple[Any, list[Any]] | None = None
         self._place_centers([u for u in parts.u if u not in known])
@@ -80,14 +95,13 @@ class _Import:
         if left:
             # Where all equations hold, the speeds follow from all of them, without pivots that vanish somewhere.
             among_all = self._solution(speeds, a.T * a, -(a.T * b))
-            if all(self._coordinates_of(sm.denom(sm.together(e))) == set() for e in among_all.values()):
+            if not any(has_poles(e, self.parts.holonomic) for e in among_all.values()):
                 self.speeds = {**{u: e.xreplace(among_all) for u, e in before.items()}, **among_all}
         return left
 
     def _solution(self, speeds: list[Any], a: Any, b: Any) -> dict[Any, Any]:
         """The solution of a x = b."""
-        sm = self.sm
-        return dict(zip(speeds, (sm.simplify(x) if sm.count_ops(x) < 200 else x for x in a.LUsolve(b)), strict=True))
+        return dict(zip(speeds, solution(a, b, self.parts.holonomic), strict=True))
 
     def _coordinates_of(self, e: Any) -> set[Any]:
         return set(e.atoms(self.sm.core.function.AppliedUndef))
@@ -290,11 +304,12 @@ class _Import:
                     sums[q] = sums.get(q, 0) + more
 
     def _inertia_of(self, q: Any) -> Any:
-        """What stands in for the inertia of a coordinate if only a Lagrangian is known: its constant part, else 1."""
+        """What stands in for the inertia of a coordinate if only a Lagrangian is known: its constant part if that is
+        positive, else 1."""
         sm = self.sm
         own = sm.expand(sm.diff(self.parts.lagrangian, q.diff(self.time), 2))
         constant = own.as_independent(*self.writer.q, *self.writer.rates, self.time, as_Add=True)[0]
-        return constant if constant != 0 else sm.Integer(1)
+        return constant if certainly_positive(constant, self._given) else sm.Integer(1)
 
     def stand_ins(self) -> list[str]:
         """A particle on a line for each coordinate. Its inertia is one term of the kinetic energy, and
@@ -364,7 +379,7 @@ class _Import:
 
     def text(self, title: str, values: Mapping[Any, Number], initial: Mapping[Any, Number]) -> str:
         """The model file."""
-        w = self.writer
+        w, self._given = self.writer, values
         bodies = [self.body(b) for b in self.parts.bodies] if self.parts.lagrangian is None else self.stand_ins()
         constraints = [(f"holonomic{k + 1}", w.formula(e)) for k, e in enumerate(self.parts.holonomic)]
         constraints += [(f"velocity{k + 1}", w.formula(e)) for k, e in enumerate(self.velocity_constraints())]

@@ -273,7 +273,8 @@ class Model(Analysed):
                 through scenarios [case.NAME] of the file, laid over this model; they vary slowest.
             to: the end, s; that of the file if it is None, or the last of ``at``.
             at: times, s, at which the state of each case is kept, too: ``sweep.rows("theta")`` has shape (cases, times).
-            columns: names or patterns such as ``"theta*"``; all columns without it.
+            columns: names or patterns such as ``"theta*"``; all columns without it. What varies and the reductions are kept
+                in any case.
             reduce: columns over the whole motion of a case: ``"max(theta')"``, ``"min(height)"``, ``"mean(...)"``,
                 ``"last(...)"`` of an output or of any formula of the model. They are those of the Taylor polynomials,
                 not of some times. ``"count(EVENT)"`` tells how often an event of the model or of a contact fired, as in

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -123,8 +124,17 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
     def varied(self) -> list[str]:
         """The names of the columns of what varies."""
         names = self._core.columns
-        end = names.index("outcome") if "outcome" in names else 0
-        return [name for name in names[:end] if name not in ("case", "t", "case_name")]
+        if self._core.asked("table of cases"):
+            end = names.index("outcome") if "outcome" in names else 0
+            return [name for name in names[:end] if name not in ("case", "t", "case_name")]
+        # The command line keeps the words of --vary: NAME=VALUES or NAME~LAW.
+        by_command = {re.split("[=~]", word)[0] for word in self._core.asked("vary").split()}
+
+        def varies(name: str) -> bool:
+            of = name.removesuffix("(0)")
+            return name + "(0)" not in names and (of in by_command or self._core.asked("vary " + of) != "")
+
+        return [name for name in names if name not in ("case", "case_name") and varies(name)]
 
     def judge(self, *, stop: Callable[[], bool] | None = None) -> dict[str, Any]:
         """How far the cases can be trusted: digits to trust and residuals of some of them, which are computed once more.

@@ -25,6 +25,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "anholon/anholon.h"
+#include "ending.h"
 
 namespace anholon::python {
 
@@ -58,32 +59,20 @@ T value_of(Result<T> result) {
 // Calls f without the interpreter's lock.
 template <class F>
 auto unlocked(const F& f) {
-  const nb::gil_scoped_release release;
+  const Unlocked without_lock;
   return f();
 }
 
-// Exists as long as a thread of the library computes.
-class Running {
- public:
-  Running() { ++count_; }
-  ~Running() { --count_; }
-  Running(const Running&) = delete;
-  Running& operator=(const Running&) = delete;
-  static std::size_t count() { return count_; }
-
- private:
-  static inline std::atomic<std::size_t> count_{0};
-};
-
 // Looks after a computation that runs in a thread of its own, while this thread waits for it with the interpreter's lock
 // released: every 20 ms it lets Python's signal handlers run, of which one raises KeyboardInterrupt, asks `stop` and
-// tells `progress` (functions of the user, or None). Any of them that raises ends the computation.
+// tells `progress` (functions of the user, or None). Any of them that raises ends the computation, and so does the end of
+// the process.
 class Attendant {
  public:
   Attendant(nb::object stop, nb::object progress) : stop_(std::move(stop)), progress_(std::move(progress)) {}
 
   // For the computation: whether it is to end, and how far it has come. Any thread may call them.
-  bool cancelled() const { return ends_.load(std::memory_order_relaxed); }
+  bool cancelled() const { return ends_.load(std::memory_order_relaxed) || process_ends(); }
   void tell(double done, std::size_t count) {
     done_.store(done, std::memory_order_relaxed);
     count_.store(count, std::memory_order_relaxed);
@@ -98,7 +87,7 @@ class Attendant {
     std::condition_variable changed;
     bool ready = false;
     {
-      const nb::gil_scoped_release release;
+      const Unlocked without_lock;
       std::thread computing([&] {
         const Running running;
         try {
@@ -126,8 +115,10 @@ class Attendant {
  private:
   static constexpr std::chrono::milliseconds kPause{20};
   void look();
+  bool process_ends() const { return !at_the_end_ && Ending::begun(); }
 
   nb::object stop_, progress_, raised_ = nb::none();
+  const bool at_the_end_ = Ending::begun();  // the functions that are called there may compute
   std::atomic<bool> ends_{false};
   std::atomic<double> done_{0};
   std::atomic<std::size_t> count_{0};

@@ -62,8 +62,11 @@ void bind_dynamics(nb::module_& m) {
           "t"_a, "x"_a, "u"_a.none(), "p"_a.none())
       .def(
           "inputs_at",
-          [](const Dynamics& f, double t, const Doubles& x, const Doubles& p) { return f.inputs(t, x, p); }, "t"_a,
-          "x"_a, "p"_a)
+          [](const Dynamics& f, double t, const Doubles& x, const Doubles& p,
+             const std::vector<std::optional<double>>& given) {
+            return given.empty() ? f.inputs(t, x, p) : f.inputs(t, x, p, given);
+          },
+          "t"_a, "x"_a, "p"_a, "given"_a = std::vector<std::optional<double>>())
       .def(
           "leading",
           [](const Dynamics& f, double t, const Doubles& x, const Doubles& u, const Doubles& p) {

@@ -90,7 +90,7 @@ void bind_results(nb::module_& m) {
 
 void Attendant::look() {
   const nb::gil_scoped_acquire lock;
-  if (ends_) return;
+  if (cancelled()) return;
   try {
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     if (!progress_.is_none() && count_ > 0) progress_(done_.load(), count_.load());

@@ -115,20 +115,21 @@ void bind_sweep_folders(nb::module_& m) {
   m.def(
       "sweep_into",
       [](const System& system, const SweepWords& words, const std::string& folder, std::size_t chunk,
-         const std::string& recipe) {
+         const std::string& recipe, const std::optional<std::string>& refine) {
         const SweepOptions options = options_of(words);
-        return value_of(unlocked([&] { return sweep_into(system, options, folder, chunk, recipe); }));
+        return value_of(unlocked([&] { return sweep_into(system, options, folder, chunk, recipe, refine); }));
       },
-      "system"_a, "words"_a, "folder"_a, "chunk"_a, "recipe"_a);
+      "system"_a, "words"_a, "folder"_a, "chunk"_a, "recipe"_a, "refine"_a.none());
   m.def(
       "sweep_scenarios_into",
       [](const Model& model, const std::string& form, const Numbers& initial, const SweepWords& words,
-         const std::string& folder, std::size_t chunk, const std::string& recipe) {
+         const std::string& folder, std::size_t chunk, const std::string& recipe,
+         const std::optional<std::string>& refine) {
         const SweepOptions options = options_of(words);
         const PrepareOptions prepare{form, numbers(initial), {}};
-        return value_of(unlocked([&] { return sweep_into(model, options, folder, chunk, recipe, prepare); }));
+        return value_of(unlocked([&] { return sweep_into(model, options, folder, chunk, recipe, prepare, refine); }));
       },
-      "model"_a, "form"_a, "initial"_a, "words"_a, "folder"_a, "chunk"_a, "recipe"_a);
+      "model"_a, "form"_a, "initial"_a, "words"_a, "folder"_a, "chunk"_a, "recipe"_a, "refine"_a.none());
 }
 
 }  // namespace anholon::python

@@ -373,6 +373,20 @@ def test_texts_mean_what_python_means() -> None:
         assert number(ours) == pytest.approx(theirs, rel=1e-15), repr(ours)
 
 
+def test_conditions_and_equations_in_the_place_of_formulas_are_named() -> None:
+    b, x, y = bead()
+    with pytest.raises(TypeError, match="'x > 1' is a condition, and a formula is expected here: the difference of the sides"):
+        b.event("e", x > 1, stop=True)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match=r"conditions=\[x.dt == y\]"):
+        b.initial({x.dt == y})  # type: ignore[arg-type]
+
+
+def test_fractions_to_the_left_of_a_power_stay_exact() -> None:
+    _, x, _ = bead()
+    assert (Fraction(1, 3) ** x).text == "(1/3)^x" and (Fraction(-2, 7) ** (x + 1)).text == "(-2/7)^(x + 1)"
+    assert (0.1**x).text == "0.1^x" and (2**x).text == "2^x"
+
+
 def test_sides_of_equations_stay_where_they_are() -> None:
     b, x, y = bead()
     place, frame = b.point("P", [x, 0, 0]), b.frame("F", an.rotz(y))
@@ -417,6 +431,12 @@ def test_expressions_go_to_sympy() -> None:
     assert sm.sympify(x == m) == sm.Eq(s, sm.Symbol("m"))
     with pytest.raises((TypeError, sm.SympifyError)):
         sm.sympify(x * ex)
+    speed, rate = b.define("speed", x.dt**2), b.quasi("rate", 2 * x.dt)
+    assert sm.sympify(speed / 2) == s.diff() ** 2 / 2 and sm.sympify((speed * x).dt) == sm.sympify((x.dt**2 * x).dt)
+    assert sm.sympify(rate.dt) == 2 * s.diff().diff() and (speed.dt.text, rate.dt.text) == ("speed'", "rate'")
+    for vector in (b.define("place", x * ex), b.define("text", "x*ex")):
+        with pytest.raises((TypeError, sm.SympifyError)):
+            sm.sympify(vector)
 
 
 def test_numpy_leaves_products_to_expressions() -> None:

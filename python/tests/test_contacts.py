@@ -31,10 +31,23 @@ def test_cases_are_the_motions() -> None:
 
 
 def test_equations_refuse_contacts() -> None:
-    with pytest.raises(an.ModelError, match="'linearize' needs the mode of the contacts, and the model has 'hoop'"):
+    with pytest.raises(an.ModelError, match="'linearize' needs the mode of the contacts, and the model has 'hoop'\nhint: model.in_mode\\(\"hoop=open\"\\), or slips"):
         an.load("bead-in-hoop").linearize()
     with pytest.raises(an.ModelError, match="'prove' needs the mode"):
         an.load("bead-in-hoop").prove()
+
+
+def test_messages_are_in_the_words_of_python() -> None:
+    model = an.load("bead-in-hoop")
+    with pytest.raises(an.ModelError, match="error: there is no parameter 'mas'") as set_wrong:
+        model.with_(mas=3)
+    with pytest.raises(an.ModelError, match="error: there is no case 'heavy'") as case_wrong:
+        model.with_(case="heavy")
+    with pytest.raises(an.ModelError, match=r"no polynomials\nhint: simulate\(every=0.01\), or at=") as times_wrong:
+        model.simulate(to=0.1, every=0.05)(0.02)
+    with pytest.raises(an.ModelError, match="computed in doubles\nhint: leave out digits") as digits_wrong:
+        model.simulate(to=0.1, digits=30)
+    assert all("--" not in str(wrong.value) for wrong in (set_wrong, case_wrong, times_wrong, digits_wrong))
 
 
 STRING = """

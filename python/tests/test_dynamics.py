@@ -463,3 +463,29 @@ def test_a_singular_state_has_no_rates() -> None:
     )
     f = model.dynamics(minimal=False)
     assert np.isnan(f(0, np.zeros(4))[2:]).all()
+
+
+DRIFTING = """
+coordinates = ["x", "y", "th"]
+parameters = {m = 2, J = 0.4, w = 0.1}
+point.P = "x*ex + y*ey"
+frame.B = "rotz(th)"
+body = [{name = "s", mass = "m", inertia = "J", center = "P", orientation = "B"}]
+constraint = [{name = "blade", equation = "dot(vel(P), B.y) = w"}]
+initial = {x = 0, y = 0, th = 0, "th'" = 1, "x'" = 1}
+"""
+
+
+def test_independent_velocities_of_a_blade_that_drifts_have_no_poles() -> None:
+    model = an.loads(DRIFTING)
+    f, whole = model.dynamics(), model.dynamics(minimal=False)
+    assert f.minimal and all("/" not in state.meaning for state in f.states)
+    for th in (1.0, 1.5707, np.pi / 2, 3.0):
+        velocities = {"x'": 2 * np.cos(th) - 0.1 * np.sin(th), "y'": 2 * np.sin(th) + 0.1 * np.cos(th), "th'": 1.0}
+        x, y = (of.state(q={"th": th}, qdot=velocities) for of in (f, whole))
+        assert f.motion(x) == pytest.approx({"x": 0, "y": 0, "th": th, **velocities}, abs=1e-14)
+        np.testing.assert_allclose(f(0, x)[:3], whole(0, y)[:3], atol=1e-14)
+        # m (v' - w th') = 0 along the blade, J th'' = 0.
+        assert sorted(np.abs(f(0, x)[3:])) == pytest.approx([0, 0.1], abs=1e-14)
+    run = model.simulate(to=3, at=[3]).expect()
+    assert run["x'"][-1] * np.cos(3) + run["y'"][-1] * np.sin(3) == pytest.approx(1.3, rel=1e-13)

@@ -151,3 +151,40 @@ def test_formulas_need_no_library_of_others() -> None:
     code = "import anholon, sys; print([m for m in ('casadi', 'jax', 'sympy', 'scipy', 'matplotlib') if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+STEERED = """coordinates = ["x", "th"]
+parameters = {a = 0.1, b = "1/3", c = "pi/7"}
+input.V = "2*sin(3*t)"
+input.S = "0.3*V - b*th"
+particle = [{name = "p", mass = 1, position = "x*ex + th*ey"}]
+force = [{on = "p", vector = "(V + a)*ex + (S + c)*ey"}]
+constraint = [{name = "k", equation = "x' = cos(x)*th'"}]
+[initial]
+x = 0.4
+th = 0.5
+"""
+
+
+@pytest.mark.parametrize("minimal", [True, False])
+def test_inputs_that_are_not_given_follow_the_model(minimal: bool) -> None:
+    f = an.loads(STEERED).dynamics(minimal=minimal, inputs=True)
+    x = f.start + 0.1 * np.arange(len(f.start))
+    many = np.stack([x, x + 0.2], axis=1)
+    np.testing.assert_allclose(f.formulas.numpy()(0.37, x)[0], f(0.37, x), rtol=1e-13)
+    np.testing.assert_allclose(f.formulas.numpy()(0.37, many)[0], f(0.37, many), rtol=1e-13)
+    import mpmath
+
+    np.testing.assert_allclose([float(v) for v in f.formulas.mpmath(0.37, x.tolist())[0]], f(0.37, x), rtol=1e-12)
+    with mpmath.workdps(40):
+        numbers = [mpmath.mpf(str(v)) for v in x]
+        p = [{"a": mpmath.mpf("0.1"), "b": mpmath.mpf(1) / 3, "c": mpmath.pi / 7}[name] for name in f.parameters]
+        t = mpmath.mpf("0.37")
+        V = 2 * mpmath.sin(3 * t)
+        th = numbers[1]
+        u = [V, mpmath.mpf("0.3") * V - th / 3]
+        for a, b in zip(f.formulas.mpmath(t, numbers)[0], f.formulas.mpmath(t, numbers, u, p)[0], strict=True):
+            assert abs(a - b) < mpmath.mpf(10) ** -37
+    jax = pytest.importorskip("jax")
+    jax.config.update("jax_enable_x64", True)
+    np.testing.assert_allclose(f.formulas.jax()(0.37, x)[0], f(0.37, x), rtol=1e-12)

@@ -111,9 +111,53 @@ def test_inputs_left_out_have_the_values_of_their_formulas() -> None:
     f = an.loads(DRIVEN).dynamics(inputs=True)
     x = f.start + 0.3
     formulas = f.input(0.4, x)
-    np.testing.assert_array_equal(f(0.4, x, {"u": 1}), f(0.4, x, [1, formulas[1]]))
+    np.testing.assert_array_equal(f(0.4, x, {"u": 1}), f(0.4, x, [1, 0.5]))
+    np.testing.assert_array_equal(f(0.4, x, {"v": 1}), f(0.4, x, [formulas[0], 1]))
     many = np.stack([x, x + 0.2, f.start], axis=1)
     rates = f(0.4, many, {"u": 1})
     for k in range(3):
         np.testing.assert_array_equal(rates[:, k], f(0.4, many[:, k], {"u": 1}))
     np.testing.assert_array_equal(f.output(0.4, many, {"u": 1})[:, 1], f.output(0.4, many[:, 1], {"u": 1}))
+
+
+THROUGH = """coordinates = ["x"]
+input.V = "10 + 0*x"
+input.S = "3*V"
+input.R = "S - V"
+input.D = "V' + x"
+particle = [{name = "p", mass = 1, position = "x*ex"}]
+force = [{on = "p", vector = "(S + R + D)*ex"}]
+[output]
+y = "S + R"
+[initial]
+x = 2
+"""
+
+
+def test_an_input_given_by_name_acts_in_the_other_inputs() -> None:
+    f = an.loads(THROUGH).dynamics(inputs=True)
+    assert f.inputs == ["V", "S", "R", "D"]
+    assert f(0, f.start, {"V": 1.0})[1] == 3 + 2 + 2
+    np.testing.assert_array_equal(f(0, f.start, {"V": 1.0}), f(0, f.start, [1, 3, 2, 2]))
+    assert f(0, f.start, {"S": 1.0})[1] == 1 - 9 + 2
+    np.testing.assert_array_equal(f.output(0, f.start, {"V": 1.0}), [5])
+    np.testing.assert_array_equal(f(0, f.start, {}), f(0, f.start))
+    many = np.stack([f.start, f.start + 1], axis=1)
+    np.testing.assert_array_equal(f(0, many, {"V": [1.0, 2.0]})[1], [7, 13])
+    with pytest.raises(ValueError, match="the input 'V' has the shape"):
+        f(0, many, {"V": [1.0, 2.0, 3.0]})
+    given = {"V": 1.0}
+    np.testing.assert_array_equal(f.jac(0, f.start, given, by="u"), f.jac(0, f.start, [1, 3, 2, 2], by="u"))
+
+
+def test_an_input_that_acts_in_another_input_alone_can_be_set() -> None:
+    text = THROUGH.replace("(S + R + D)", "S").replace('input.R = "S - V"\ninput.D = "V\' + x"\n', "").replace("S + R", "S")
+    f = an.loads(text).dynamics(inputs=["V"])
+    assert f.inputs == ["V"] and f(0, f.start, [2.0])[1] == 6
+    both = an.loads(text).dynamics(inputs=True)
+    assert both.inputs == ["V", "S"] and both(0, both.start, {"V": 2.0})[1] == 6
+
+
+def test_an_input_whose_rate_acts_cannot_be_set_alone() -> None:
+    with pytest.raises(an.ModelError, match="acts by its rate"):
+        an.loads(THROUGH).dynamics(inputs=["V"])

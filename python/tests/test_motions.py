@@ -5,6 +5,8 @@ import gc
 import pathlib
 import resource
 import signal
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -298,3 +300,29 @@ def test_wrong_arguments_of_a_sweep_are_named(disc: an.Model, tmp_path: pathlib.
         folder.where([])  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="a range is a pair"):
         folder.where({"m": (1,)})
+
+
+ENDS = {
+    "simulate": "begin(lambda: disc.simulate(to=1e6, every=0.5))",
+    "progress": "begin(lambda: disc.simulate(to=1e6, every=0.5, progress=lambda *_: time.sleep(0.01)))",
+    "sweep": "begin(lambda: disc.sweep({\"phi'\": an.uniform(5, 6)}, cases=200_000, to=5))",
+    "prove": "begin(lambda: [an.load('spherical-robot').prove() for _ in range(99)])",
+    "short": "begin(lambda: [disc.simulate(to=0.1) for _ in range(9999)])",
+    "at_exit": "begin(lambda: disc.simulate(to=1e6, every=0.5)); atexit.register(lambda: disc.simulate(to=0.1).expect())",
+    "arrays": "run = disc.simulate(to=0.1); column = np.from_dlpack(run['theta'])",
+    "fork": "begin(lambda: disc.simulate(to=1e6, every=0.5)); child = os.fork(); child and os.waitpid(child, 0)",
+}
+
+
+@pytest.mark.parametrize("what", ENDS)
+def test_a_program_ends_while_a_daemon_thread_computes(what: str) -> None:
+    script = f"""import atexit, os, threading, time
+import anholon as an, numpy as np
+disc = an.load("disc")
+def begin(f):
+    threading.Thread(target=f, daemon=True).start()
+    time.sleep(0.2)
+{ENDS[what]}
+"""
+    done = subprocess.run([sys.executable, "-W", "ignore", "-c", script], capture_output=True, text=True, check=False, timeout=60)
+    assert (done.returncode, done.stderr) == (0, "")

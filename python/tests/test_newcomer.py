@@ -1,7 +1,9 @@
 """Someone new, who has read the README alone: a rolling disc in ten lines, a table, a plot, an animation, and mistakes."""
 
 import pathlib
+import re
 from collections.abc import Callable
+from typing import Any
 
 import anholon as an
 import pytest
@@ -182,3 +184,25 @@ def test_a_time_is_a_number(disc: an.Model) -> None:
         for function in (f, f.jac, f.output):
             with pytest.raises(TypeError, match="t is a number, the time in s"):
                 function(wrong, f.start)  # type: ignore[arg-type]
+
+
+def test_numbers_in_the_place_of_names_and_equations_are_named() -> None:
+    model: Any = an.loads(SPRING)
+    with pytest.raises(TypeError, match="equations are a text, a path, .* not a int"):
+        model.compare(3)
+    with pytest.raises(TypeError, match="a name is a str, such as 'kane', .* not 3"):
+        model.prove(3)
+
+
+@pytest.mark.parametrize("right_angle", ["pi/2", 1.5707963267948966])
+def test_a_velocity_across_the_blade_of_a_sleigh_that_is_turned_clashes(right_angle: str | float) -> None:
+    sleigh = an.load("chaplygin-sleigh")
+    turned = an.loads(re.sub(r"(?m)^th +=.*$", f'th = "{right_angle}"', sleigh.text))
+    for call in (lambda: turned.check(), lambda: turned.evaluate(), lambda: turned.simulate(to=1).expect()):
+        with pytest.raises((an.MotionError, an.ModelError), match="x' = -0.5 .*clashes with constraint 'blade_edge'"):
+            call()
+    # What is given now is stronger than the velocities of the file, which change least.
+    found = {value.name: value.value for value in sleigh.check(initial={"th": right_angle}).initial}
+    assert found["x'"] == pytest.approx(0, abs=1e-15) and abs(found["y'"]) < 1
+    run = sleigh.simulate(to=1, initial={"th": right_angle, "x'": 0, "y'": 0.5}).expect()
+    assert run["y'"][0] == 0.5

@@ -232,11 +232,40 @@ def test_a_motion_follows_from_what_the_folder_keeps(tmp_path: pathlib.Path, dis
 
 
 def test_a_motion_of_a_case_whose_numbers_are_not_kept(tmp_path: pathlib.Path, disc: an.Model) -> None:
-    lean = disc.sweep({"phi'": ["16/3", 6]}, to=1, columns=["theta"], out=tmp_path / "lean")
-    assert "phi'(0)" not in lean and an.open_sweep(lean.path).run(0)["phi'"][0] == 16 / 3
     folder = disc.sweep({"phi'": ["16/3", 6]}, to=1, out=tmp_path / "f")
     (tmp_path / "f" / "part-000000.parquet").unlink()
     assert an.open_sweep(folder.path).run(0)["phi'"][0] == folder.run(0)["phi'"][0] == 16 / 3
+
+
+def test_columns_leave_out_neither_what_varies_nor_reductions(tmp_path: pathlib.Path, disc: an.Model, program: Callable[..., str]) -> None:
+    asked: dict[str, Any] = {"to": 1, "reduce": ["max(theta')", "min(theta)"], "columns": ["theta", "outcome", "min*", "x"]}
+    folder = disc.sweep({"phi'": [5, 6], "m": [1, 2]}, **asked, out=tmp_path / "f")
+    names = ["case", "phi'(0)", "m", "theta", "outcome", "min(theta)", "x", "max(theta')"]
+    assert list(folder) == list(folder.to_pandas()) == names and folder.varied == ["phi'(0)", "m"]
+    words = ["--vary", "phi'=5,6", "--vary", "m=1,2", "--to", "1", "--reduce", "max(theta'),min(theta)", "--columns", "theta,outcome,min*,x", "--quiet"]
+    assert program("sweep", "disc", *words) == program("sweep", "collect", folder.path, "--quiet")
+    memory = disc.sweep({"phi'": [5, 6], "m": [1, 2]}, **{**asked, "columns": ["theta"]})
+    assert list(memory) == ["theta", "max(theta')", "min(theta)"]
+    np.testing.assert_array_equal(memory["max(theta')"], folder["max(theta')"])
+    saved = memory.save(tmp_path / "s.csv")
+    assert pathlib.Path(saved).read_text().splitlines()[0] == "case,phi'(0),m,outcome,t,theta,max(theta'),min(theta)"
+
+
+def test_a_sweep_that_cannot_be_refined_is_refused_before_it_is_computed(tmp_path: pathlib.Path, disc: an.Model) -> None:
+    vary = {"phi'": an.grid(1, 7, 7)}
+    for options, message in (
+        ({"refine": 1, "columns": ["theta"]}, "without the column 'outcome'"),
+        ({"refine": 1, "refine_by": ("tehta", 0.1)}, "did you mean 'theta'"),
+    ):
+        with pytest.raises(an.ModelError, match=message):
+            disc.sweep(vary, to=1, out=tmp_path / "f", **options)  # type: ignore[call-overload]
+        assert not (tmp_path / "f").exists()
+    folder = disc.sweep(vary, to=1, out=tmp_path / "f", refine=1, columns=["theta", "outcome"], chunk=3)
+    part = tmp_path / "f" / "part-000001.parquet"
+    part.unlink()
+    with pytest.raises(an.ModelError, match="keeps no column 'x'"):
+        an.open_sweep(folder.path).fill(refine=1, refine_by=("x", 0.1))
+    assert not part.exists()
 
 
 def test_motions_of_a_folder_of_the_command_line(tmp_path: pathlib.Path) -> None:

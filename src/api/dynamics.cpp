@@ -19,6 +19,7 @@ struct Dynamics::Data {
   const inner::Scenario* scenario;      // of the system, or the opened one
   std::vector<std::string> inputs;      // names
   std::vector<inner::NodeId> formulas;  // of the inputs
+  std::vector<inner::NodeId> open;      // the same, with the parameters that are inputs
   std::unique_ptr<const inner::Dynamics> function;
   std::string obstacle;  // to independent velocities
   std::vector<StateName> states;
@@ -27,7 +28,7 @@ struct Dynamics::Data {
   const inner::FormulaValues& values() const {
     std::call_once(once_, [&] {
       inner::Workspace own(*scenario);
-      values_ = std::make_unique<const inner::FormulaValues>(inner::rate_formulas_of(own, *function, formulas));
+      values_ = std::make_unique<const inner::FormulaValues>(inner::rate_formulas_of(own, *function, formulas, open));
     });
     return *values_;
   }
@@ -50,10 +51,14 @@ struct Dynamics::Data {
   // u, by the formulas of the model where none is given.
   std::vector<double> given_inputs(double t, const std::vector<double>& x, const Given& given) const {
     if (!given.u.empty() || inputs.empty()) return {given.u.begin(), given.u.end()};
-    std::vector<double> parameters;
-    for (const long double p : function->parameters({{}, given.p}, 1, 0)) parameters.push_back(static_cast<double>(p));
     inner::FormulaValues::Work work;
-    return values().inputs({t, x, parameters, {}}, work);
+    return values().inputs({t, x, parameters(given.p), {}}, work);
+  }
+  // All parameters of the model.
+  std::vector<double> parameters(std::span<const double> p) const {
+    std::vector<double> all;
+    for (const long double value : function->parameters({{}, p}, 1, 0)) all.push_back(static_cast<double>(value));
+    return all;
   }
 
   // Calls f(k, solved) with the point of each of `count` states and a Work, on several threads if they are many. A
@@ -116,7 +121,7 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
       if (options.outputs && !inputs.left_out.empty())
         return mistake("the output '" + inputs.left_out[0] + "' holds the rate of an input, which is no argument",
                        "leave the output out, or the input among the arguments");
-      data->inputs = inputs.names, data->formulas = inputs.formulas;
+      data->inputs = inputs.names, data->formulas = inputs.formulas, data->open = inputs.open_formulas;
       inner::Scenario opened;
       if (const inner::Outcome o = make_system(inputs.model, form, of.choice, opened); !o.ok()) return error_of(o);
       data->opened = std::move(opened);
@@ -191,6 +196,13 @@ void Dynamics::rates(double t, std::span<const double> x, std::size_t count, std
 
 std::vector<double> Dynamics::inputs(double t, const std::vector<double>& x, std::span<const double> p) const {
   return data_->given_inputs(t, x, {{}, p});
+}
+
+std::vector<double> Dynamics::inputs(double t, const std::vector<double>& x, std::span<const double> p,
+                                     std::span<const std::optional<double>> given) const {
+  if (inputs().empty()) return {};
+  inner::FormulaValues::Work work;
+  return data_->values().inputs({t, x, data_->parameters(p), {}}, given, work);
 }
 
 std::vector<double> Dynamics::outputs(double t, std::span<const double> x, std::size_t count,

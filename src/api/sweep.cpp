@@ -21,6 +21,9 @@ struct KeptColumns {
     in_state = all.size();
     for (const inner::Reduction& r : piece.options.reductions.list) all.push_back(r.name);
     places = chosen_places(asked, all);
+    for (std::size_t k = in_state; k < all.size(); ++k)
+      if (std::find(places.begin(), places.end(), k) == places.end()) places.push_back(k);
+    std::sort(places.begin(), places.end());
     for (const std::size_t k : places) {
       names.push_back(all[k]);
       of_state += k < in_state;

@@ -183,6 +183,19 @@ static const inner::Variation& grid_of(const PreparedSweep& p) {
   return *p.variation();
 }
 
+// The rule by which borders of a sweep with these columns are refined. Throws Failure.
+static inner::RefineRule rule_for(const PreparedSweep& p, const std::vector<std::string>& columns,
+                                  const std::string& word) {
+  inner::RefineRule rule;
+  try {
+    rule = inner::refine_rule(word);
+  } catch (const inner::MistakeInWord& m) {
+    throw inner::Failure({}, "refine by " + m.word + ": " + m.diagnostic.message, "COLUMN:BOUND, such as theta:0.1");
+  }
+  must_be_refinable(grid_of(p), columns, rule);
+  return rule;
+}
+
 Result<FolderDone> SweepFolder::fill(const FolderWork& work) const {
   return told([&]() -> Result<FolderDone> {
     const PreparedSweep& p = prepared(*data_);
@@ -213,13 +226,7 @@ Result<std::size_t> SweepFolder::refine(const std::string& word, std::optional<s
   return told([&]() -> Result<std::size_t> {
     const PreparedSweep& p = prepared(*data_);
     inner::SweepStore store = data_->now();
-    inner::RefineRule rule;
-    try {
-      rule = inner::refine_rule(word);
-    } catch (const inner::MistakeInWord& m) {
-      throw inner::Failure({}, "refine by " + m.word + ": " + m.diagnostic.message, "COLUMN:BOUND, such as theta:0.1");
-    }
-    must_be_refinable(grid_of(p), columns(), rule);
+    const inner::RefineRule rule = rule_for(p, columns(), word);
     const std::size_t next = store.generations().size();
     if (number && *number < next) return store.generations()[*number].cases;
     if (number && *number > next)
@@ -308,11 +315,13 @@ Result<std::string> SweepFolder::judge(const std::function<bool()>& cancelled) c
 
 // Opens the folder for a sweep that is prepared, or makes it.
 static Result<SweepFolder> opened(std::shared_ptr<const PreparedSweep> prepared, const std::string& folder,
-                                  std::size_t chunk, const std::string& recipe) {
+                                  std::size_t chunk, const std::string& recipe,
+                                  const std::optional<std::string>& refine) {
   if (folder.empty()) return mistake("the sweep needs the name of a folder");
   TabledPieces tabled(*prepared);
   inner::SweepRequest request{asked_of(*prepared), {}, prepared->cases, chunk, recipe};
   for (const inner::SweepColumn& c : tabled.tables.front().columns()) request.columns.push_back(c.name);
+  if (refine) rule_for(*prepared, request.columns, *refine);
   if (chunk > inner::kMostInPart) return mistake("a part has at most " + std::to_string(inner::kMostInPart) + " cases");
   if (chunk == 0) request.chunk = inner::SweepStore::is_there(folder) ? 1 : inner::cases_in_part(tabled.pieces);
   return SweepFolder(std::make_shared<const SweepFolder::Data>(
@@ -320,17 +329,18 @@ static Result<SweepFolder> opened(std::shared_ptr<const PreparedSweep> prepared,
 }
 
 Result<SweepFolder> sweep_into(const System& system, const SweepOptions& asked, const std::string& folder,
-                               std::size_t chunk, const std::string& recipe) {
+                               std::size_t chunk, const std::string& recipe, const std::optional<std::string>& refine) {
   const auto prepared = prepared_sweep(system, asked);
   if (!prepared) return prepared.error();
-  return guarded(system.data().model->source, [&] { return opened(*prepared, folder, chunk, recipe); });
+  return guarded(system.data().model->source, [&] { return opened(*prepared, folder, chunk, recipe, refine); });
 }
 
 Result<SweepFolder> sweep_into(const Model& model, const SweepOptions& asked, const std::string& folder,
-                               std::size_t chunk, const std::string& recipe, const PrepareOptions& prepare) {
+                               std::size_t chunk, const std::string& recipe, const PrepareOptions& prepare,
+                               const std::optional<std::string>& refine) {
   const auto prepared = prepared_sweep(model, prepare, asked);
   if (!prepared) return prepared.error();
-  return guarded(model.data().source, [&] { return opened(*prepared, folder, chunk, recipe); });
+  return guarded(model.data().source, [&] { return opened(*prepared, folder, chunk, recipe, refine); });
 }
 
 Result<SweepFolder> open_sweep(const std::string& folder) {

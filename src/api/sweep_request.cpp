@@ -190,7 +190,7 @@ TabledPieces::TabledPieces(const PreparedSweep& sweep) {
     if (!sweep.asked.columns.empty()) {
       std::vector<std::string> all;
       for (const inner::SweepColumn& c : table.available()) all.push_back(c.name);
-      table.choose(chosen_places(sweep.asked.columns, all));
+      table.choose(inner::chosen_columns(all, sweep.asked.columns));
     }
     if (!piece.word.empty()) table.add_word("case_name");
     must_have_columns_of(tables.front(), sweep.pieces.front().word, table, piece.word, "choose columns that both have");

@@ -24,7 +24,8 @@ constexpr double kSameSides = 4096 * std::numeric_limits<double>::epsilon();
 
 class Builder {
  public:
-  Builder(Workspace& s, const Dynamics& of, std::span<const NodeId> input_formulas)
+  // `input_formulas`: with all inputs put in, then with the parameters that are inputs.
+  Builder(Workspace& s, const Dynamics& of, const std::vector<NodeId>& input_formulas)
       : s_(s), of_(of), motion_(emit::motion_between_events(s.system, s.structure, {})) {
     const Model& model = *s.model;
     for (const NodeId id : input_formulas) input_formulas_.push_back(put_masses(model, Expr{model.graph.get(), id}));
@@ -44,6 +45,9 @@ class Builder {
       in_independent_velocities();
     else
       in_all_velocities();
+    const auto open = f_.input_formulas.begin() + static_cast<std::ptrdiff_t>(f_.input_formulas.size() / 2);
+    f_.open_input_formulas.assign(open, f_.input_formulas.end());
+    f_.input_formulas.erase(open, f_.input_formulas.end());
     const std::vector<Parameter>& parameters = s_.model->parameters;
     Graph& g = *f_.model->graph;
     const auto add = [&](RateFormulas::Symbols& to, std::vector<double>& values, std::size_t i) {
@@ -144,7 +148,7 @@ class Builder {
     Column formulas;
     for (const std::size_t i : motion_.derived) formulas.push_back(motion_.parameters[i]);
     if (f_.model != s_.model) formulas = copied(formulas, *f_.model->graph);
-    for (Column* es : {&f_.rates, &f_.equations, &f_.outputs, &f_.input_formulas})
+    for (Column* es : {&f_.rates, &f_.equations, &f_.outputs, &f_.input_formulas, &f_.open_input_formulas})
       *es = substitute(*es, [&](NodeId id) {
         const Node& n = f_.model->graph->node(id);
         if (n.kind != Kind::parameter) return Expr{};
@@ -197,6 +201,7 @@ class Builder {
     for (Expr e : f_.input_formulas)
       if (holds_others(e)) {
         f_.input_formulas.clear();
+        f_.open_input_formulas.clear();
         break;
       }
     for (const RateFormulas::Symbols* list : {&f_.u, &f_.lead})
@@ -233,16 +238,20 @@ std::optional<RateFormulas> independent_rates(const Scenario& scenario, const St
   std::string why;
   const std::unique_ptr<Dynamics> function = Dynamics::make(own, choice, {}, why);
   if (!function || !function->minimal()) return std::nullopt;
-  return rate_formulas_of(own, *function, {});
+  return rate_formulas_of(own, *function, {}, {});
 }
 
-RateFormulas rate_formulas_of(Workspace& s, const Dynamics& dynamics, std::span<const NodeId> input_formulas) {
-  return Builder(s, dynamics, input_formulas).run();
+RateFormulas rate_formulas_of(Workspace& s, const Dynamics& dynamics, std::span<const NodeId> input_formulas,
+                              std::span<const NodeId> open) {
+  std::vector<NodeId> both(input_formulas.begin(), input_formulas.end());
+  both.insert(both.end(), open.begin(), open.end());
+  return Builder(s, dynamics, both).run();
 }
 
 FormulaValues::FormulaValues(RateFormulas formulas) : formulas_(std::move(formulas)) {
   const RateFormulas& f = formulas_;
   inputs_ = {f, f.input_formulas};
+  open_inputs_ = {f, f.open_input_formulas};
   outputs_ = {f, f.outputs};
   Column equations = emit::entries(f.matrix());
   const Column right = f.right();
@@ -310,6 +319,21 @@ std::vector<double> CompiledFormulas::values(const FormulaPoint& at, Work& work)
 }
 
 std::vector<double> FormulaValues::inputs(const Point& at, Work& work) const { return inputs_.values(at, work.inputs); }
+
+std::vector<double> FormulaValues::inputs(const Point& at, std::span<const std::optional<double>> given,
+                                          Work& work) const {
+  std::vector<double> parameters(at.parameters.begin(), at.parameters.end());
+  const std::span<double> u = std::span(parameters).last(given.size());
+  const auto put = [&](const std::vector<double>& by_formulas) {
+    for (std::size_t i = 0; i < given.size(); ++i) u[i] = given[i].value_or(by_formulas[i]);
+  };
+  put(inputs(at, work));
+  // No formula holds its own input, also not through others, so each pass settles the inputs of one more depth.
+  for (std::size_t pass = 0; pass < given.size(); ++pass)
+    put(open_inputs_.values({at.t, at.x, parameters, {}}, work.open_inputs));
+  return {u.begin(), u.end()};
+}
+
 std::vector<double> FormulaValues::outputs(const Point& at, Work& work) const {
   return outputs_.values(at, work.outputs);
 }

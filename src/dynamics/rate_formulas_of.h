@@ -6,9 +6,10 @@
 
 namespace anholon {
 
-// `scenario` is that of which `dynamics` was made; `input_formulas`: expressions of its model, one for each input.
-// Throws Failure for functions without a formula.
-RateFormulas rate_formulas_of(Workspace& scenario, const Dynamics& dynamics, std::span<const NodeId> input_formulas);
+// `scenario` is that of which `dynamics` was made; `input_formulas`: expressions of its model, one for each input;
+// `open`: the same, with the parameters that are other inputs. Throws Failure for functions without a formula.
+RateFormulas rate_formulas_of(Workspace& scenario, const Dynamics& dynamics, std::span<const NodeId> input_formulas,
+                              std::span<const NodeId> open);
 
 // The rates in independent velocities, with inputs by their formulas. Returns nullopt if the equations have none.
 std::optional<RateFormulas> independent_rates(const Scenario& scenario, const StateChoice& choice);
@@ -56,9 +57,11 @@ class FormulaValues {
   using Point = FormulaPoint;
   // Belongs to one thread, and makes the points after the first one cheaper.
   struct Work {
-    CompiledFormulas::Work inputs, outputs, equations, derivatives;
+    CompiledFormulas::Work inputs, open_inputs, outputs, equations, derivatives;
   };
   std::vector<double> inputs(const Point& at, Work& work) const;
+  // The given inputs, and the others by their formulas, in which the given ones act.
+  std::vector<double> inputs(const Point& at, std::span<const std::optional<double>> given, Work& work) const;
   std::vector<double> outputs(const Point& at, Work& work) const;
   // matrix lead = right: the matrix row by row. REQUIRES: rates are not explicit, and the equations are linear.
   struct Equations {
@@ -80,7 +83,7 @@ class FormulaValues {
   // Puts NaN in the places of derivatives that differ on both sides of a border between branches.
   void leave_out_kinks(const Point& at, Derivatives& d) const;
   RateFormulas formulas_;
-  CompiledFormulas inputs_, outputs_, equations_, derivatives_;
+  CompiledFormulas inputs_, open_inputs_, outputs_, equations_, derivatives_;
   std::vector<Partial> partials_;  // of the derivatives: rows of equations, rates, outputs; columns of lead, x, u, p
   Column columns_;
   OneSided sides_;  // of the same rows and columns

@@ -40,6 +40,8 @@ for lead first; where LINEAR is false, equations() takes lead, too, and the solu
                       tuple("LEFT_OUT", f_.left_out) + "LINEAR = " + (f_.linear ? "True" : "False") +
                       "\nT0 = " + number_text(f_.t) + "\n" + tuple("START", f_.start) +
                       tuple("DEFAULTS", f_.parameters) + tuple("START_INPUTS", f_.inputs);
+    out += "\n\ndef defaults(np):\n    \"\"\"p of the model.\"\"\"\n" + list("out", f_.exact_parameters) +
+           "    return out\n";
     if (!f_.explicit_rates())
       out += std::string("\n\ndef equations(np, t, x, u, p") + (f_.linear ? "" : ", lead") +
              "):\n    \"\"\"The matrix, row by row, and the right side.\"\"\"\n" +

@@ -29,6 +29,7 @@ struct RateFormulas {
   Column equations;                   // one for each of lead
   bool linear = true;                 // in lead
   Column input_formulas;              // u as the model has it, in t, x, p; empty where some hold what is solved for
+  Column open_input_formulas;         // the same, with u where a formula holds other inputs
   std::vector<std::string> output_names;
   Column outputs;
   std::vector<std::string> left_out;  // outputs that hold multipliers, which independent velocities do not have

@@ -48,8 +48,14 @@ void SweepTable::choose(const std::vector<std::size_t>& columns) {
   chosen_ = {kCase};
   const std::size_t time = 1 + varied_ + kTime;
   if (!times_.empty()) chosen_.push_back(time);
-  for (std::size_t k : columns)
+  const auto add = [&](std::size_t k) {
     if (std::find(chosen_.begin(), chosen_.end(), k) == chosen_.end()) chosen_.push_back(k);
+  };
+  for (std::size_t k = 1; k <= varied_; ++k)
+    if (std::find(columns.begin(), columns.end(), k) == columns.end()) add(k);
+  for (std::size_t k : columns) add(k);
+  const std::size_t reductions = 1 + varied_ + kBeforeState + state_;
+  for (std::size_t k = 0; k < reduced_; ++k) add(reductions + k);
 }
 
 void SweepTable::add_word(const std::string& name) {

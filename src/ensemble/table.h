@@ -19,7 +19,9 @@ class SweepTable {
   const std::vector<SweepColumn>& available() const { return available_; }
   // The ones that are written; at first those without the number of steps, and without events if none ends a motion.
   std::vector<SweepColumn> columns() const;
-  // Writes these columns of the available ones, after those that say which row it is: case, and t if there are times.
+  // Writes these columns of the available ones, in their order. Those that say which row it is stand before them, where
+  // they are not among them: case, t if there are times, and what varies. The reductions, which were asked for by their
+  // names, stand behind them.
   void choose(const std::vector<std::size_t>& columns);
   // Adds a column of one word after the number of the case; each call of `rows` tells the word.
   void add_word(const std::string& name);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace anholon {
@@ -30,8 +31,8 @@ System with_symbols(const Scenario& s, const std::set<std::size_t>& inputs) {
   return system;
 }
 
-// Those of the inputs that act as they should when they are set.
-std::set<std::size_t> free_ones(const Scenario& s, const System& system, std::set<std::size_t> inputs) {
+// Those of the inputs that act as they should when they are set. `in_inputs`: also those that act in other inputs alone.
+std::set<std::size_t> free_ones(const Scenario& s, const System& system, std::set<std::size_t> inputs, bool in_inputs) {
   const Graph& g = *s.model->graph;
   std::set<std::size_t> occurring;
   for (std::size_t i = 0; i < system.size(); ++i)
@@ -45,6 +46,11 @@ std::set<std::size_t> free_ones(const Scenario& s, const System& system, std::se
     for (NodeId id : symbols({&e, 1}))
       if (const Node& n = g.node(id); n.kind == Kind::control) occurring.insert(n.index);
   };
+  if (in_inputs)
+    for (std::size_t k : inputs)
+      if (const Expr open = s.model->controls[k].open; open.graph)
+        for (NodeId id : symbols({&open, 1}))
+          if (const Node& n = g.node(id); n.kind == Kind::control && n.order == 0) occurring.insert(n.index);
   for (const Monitor& m : system.model->monitors) holds(m.value);
   for (const Event& e : system.model->events) {
     holds(e.when);
@@ -54,16 +60,16 @@ std::set<std::size_t> free_ones(const Scenario& s, const System& system, std::se
   return inputs;
 }
 
-}  // namespace
-
-OpenSystem open_inputs(Workspace& s) {
+// Of these inputs, those that can be set, as symbols.
+OpenSystem opened(Workspace& s, const std::set<std::size_t>& wanted, bool in_inputs) {
   std::set<std::size_t> inputs;
-  for (std::size_t k = 0; k < s.model->controls.size(); ++k)
+  for (std::size_t k : wanted)
     if (const Control& u = s.model->controls[k]; u.value && !u.constraint && known_before_solving(s, *u.value))
       inputs.insert(k);
   if (inputs.empty()) return {s.system, {}};
   System system = with_symbols(s, inputs);
-  if (const auto fewer = free_ones(s, system, inputs); fewer != inputs) {
+  // An input that is no symbol brings those that its formula holds into the equations.
+  for (std::set<std::size_t> fewer; (fewer = free_ones(s, system, inputs, in_inputs)) != inputs;) {
     inputs = fewer;
     system = with_symbols(s, inputs);
   }
@@ -71,6 +77,16 @@ OpenSystem open_inputs(Workspace& s) {
   for (std::size_t k : inputs) open.inputs.push_back({k, *s.model->controls[k].value});
   return open;
 }
+
+std::set<std::size_t> all_inputs(const Model& model) {
+  std::set<std::size_t> all;
+  for (std::size_t k = 0; k < model.controls.size(); ++k) all.insert(k);
+  return all;
+}
+
+}  // namespace
+
+OpenSystem open_inputs(Workspace& s) { return opened(s, all_inputs(*s.model), false); }
 
 // The value of a formula at the consistent start.
 static Rational value_at_start(const Scenario& s, const Model& model, Expr formula) {
@@ -94,7 +110,7 @@ static Rational value_at_start(const Scenario& s, const Model& model, Expr formu
 static std::string why_not(const Control& u) {
   return u.put_into.empty()
              ? "it keeps a constraint, holds accelerations or multipliers, or stands in an equation that "
-               "is differentiated, or no equation, output and event holds it"
+               "is differentiated, or acts by its rate, or no equation, output, event and other input holds it"
              : "its formula is put into " + u.put_into;
 }
 
@@ -104,14 +120,28 @@ static bool holds_rate_of(Expr e, const std::set<std::size_t>& inputs) {
   return false;
 }
 
+// The formula of an input, in which others that are given are the parameters of `m`. Their rates, which nobody gives, are
+// those of their formulas. `given`: the formulas of these inputs, with all others put in.
+static Expr with_inputs_as_parameters(const Model& m, std::size_t input, const std::map<std::size_t, Expr>& given) {
+  const Expr open = m.controls[input].open;
+  if (!open.graph) return given.at(input);
+  const Expr known = substitute({&open, 1}, [&](NodeId id) {
+    const Node& n = open.graph->node(id);
+    if (n.kind != Kind::control || n.order == 0 || !given.count(n.index)) return Expr{};
+    return total_derivative(given.at(n.index), n.order);
+  })[0];
+  return put_controls(m, {&known, 1})[0];
+}
+
 InputsAsParameters inputs_as_parameters(const Scenario& s, const std::vector<std::string>& names) {
-  Workspace own(s);
-  std::set<std::size_t> free;
-  for (const InputFormula& u : open_inputs(own).inputs) free.insert(u.control);
   std::vector<std::string> known;
   for (const Control& u : s.model->controls) known.push_back(u.name);
-  const std::shared_ptr<Model> m = given_model(s);
-  InputsAsParameters out{m, {}, {}, {}};
+  std::set<std::size_t> wanted;
+  for (std::size_t k = 0; k < known.size(); ++k)
+    if (names.empty() || std::find(names.begin(), names.end(), known[k]) != names.end()) wanted.insert(k);
+  Workspace own(s);
+  std::set<std::size_t> given;
+  for (const InputFormula& u : opened(own, wanted, true).inputs) given.insert(u.control);
   for (const std::string& name : names)
     if (const auto at = std::find(known.begin(), known.end(), name); at == known.end()) {
       const std::string near = did_you_mean(name, known);
@@ -119,14 +149,16 @@ InputsAsParameters inputs_as_parameters(const Scenario& s, const std::vector<std
                     !near.empty()   ? "did you mean '" + near + "'?"
                     : known.empty() ? "[input] declares inputs"
                                     : "");
-    } else if (!free.count(static_cast<std::size_t>(at - known.begin()))) {
+    } else if (!given.count(static_cast<std::size_t>(at - known.begin()))) {
       throw Failure({}, "the input '" + name + "' cannot be set from outside",
                     why_not(s.model->controls[static_cast<std::size_t>(at - known.begin())]));
     }
-  std::set<std::size_t> given;
-  for (const std::size_t k : free) {
+  const std::shared_ptr<Model> m = given_model(s);
+  InputsAsParameters out{m, {}, {}, {}, {}};
+  std::map<std::size_t, Expr> formulas;
+  for (const std::size_t k : given) {
     Control& u = m->controls[k];
-    if (!names.empty() && std::find(names.begin(), names.end(), u.name) == names.end()) continue;
+    formulas.emplace(k, *u.value);
     const Rational value = value_at_start(s, *m, *u.value);
     out.names.push_back(u.name);
     out.formulas.push_back(u.value->id);
@@ -134,7 +166,6 @@ InputsAsParameters inputs_as_parameters(const Scenario& s, const std::vector<std
     m->parameters.push_back({u.name, m->graph->number(value), "", u.span});
     m->names.parameters.push_back(u.name);
     if (!m->parameter_units.empty()) m->parameter_units.emplace_back();
-    given.insert(k);
   }
   std::erase_if(m->monitors, [&](const Monitor& o) {
     if (!holds_rate_of(o.open.graph ? o.open : o.value, given)) return false;
@@ -143,6 +174,7 @@ InputsAsParameters inputs_as_parameters(const Scenario& s, const std::vector<std
   });
   put_inputs_into_inputs(*m, given);
   put_inputs(*m);
+  for (const std::size_t k : given) out.open_formulas.push_back(with_inputs_as_parameters(*m, k, formulas).id);
   return out;
 }
 

@@ -22,10 +22,11 @@ OpenSystem open_inputs(Workspace& scenario);
 struct InputsAsParameters {
   std::shared_ptr<const Model> model;
   std::vector<std::string> names;
-  std::vector<NodeId> formulas;       // of the inputs, in the graph of the model
+  std::vector<NodeId> formulas;       // of the inputs, in the graph of the model, in t, state and parameters
+  std::vector<NodeId> open_formulas;  // the same, with those parameters that are inputs
   std::vector<std::string> left_out;  // monitors that hold the rate of an input, which nobody gives
 };
-// All inputs that can be set where `names` has none. Throws Failure for a name that is no input, or one that cannot be set.
+// All inputs that can be set where `names` has none, also those that act in other inputs alone. Throws Failure for a name that is no input, or one that cannot be set.
 InputsAsParameters inputs_as_parameters(const Scenario& scenario, const std::vector<std::string>& names = {});
 
 }  // namespace anholon

@@ -1,6 +1,7 @@
 #include "structure/stage.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace anholon {
 
@@ -38,7 +39,7 @@ StagePlan::StagePlan(const Mechanics& m, std::vector<StageEquation> of, Column i
 
 template <Number N>
 Stage<N>::Stage(const Mechanics& m, std::shared_ptr<const StagePlan> plan, const std::vector<N>& parameters)
-    : m_(m), plan_(std::move(plan)), machine_(plan_->tape, 0, parameters) {}
+    : m_(m), plan_(std::move(plan)), parameters_(parameters), machine_(plan_->tape, 0, parameters) {}
 
 namespace {
 
@@ -110,10 +111,11 @@ bool Stage<N>::read_equations(bool jacobian_stays) {
     undefined = i;
     residual[i] = machine_.value(i);
     if (!is_finite(residual[i])) return false;
-    if (!jacobian_stays && !read_slopes(i)) return false;
     scale[i] = machine_.terms(i, 0);
     for (std::size_t j = 0; j < n; ++j) {
-      const N& slope = jacobian(i, j);
+      N& slope = jacobian(i, j);
+      if (!jacobian_stays) slope = machine_.value(size() + i * n + j);
+      if (!is_finite(slope)) return false;
       if (!(abs(slope) > N(0))) continue;
       if (N part = abs(N(slope * at_[j])); part > scale[i]) scale[i] = part;
       if (N part = abs(slope) * largest_unknown * unit_roundoff<N>(); part > floor_[i]) floor_[i] = part;
@@ -122,23 +124,43 @@ bool Stage<N>::read_equations(bool jacobian_stays) {
     if (!(scale[i] > N(0))) scale[i] = N(1);
   }
   undefined = size();
+  if (!jacobian_stays) drop_round_off();
   return true;
 }
 
-// The row i of the Jacobian. What is no more than the round-off of the row, as the cosine of pi/2, is zero.
+// The round-off is that of doubles in all number types: values are typed in as doubles, and a start is one in all of them.
 template <Number N>
-bool Stage<N>::read_slopes(std::size_t i) {
-  const N round_off(1e-14);
-  N largest(0);
-  for (std::size_t j = 0; j < unknowns(); ++j) {
-    N& slope = jacobian(i, j);
-    slope = machine_.value(size() + i * unknowns() + j);
-    if (!is_finite(slope)) return false;
-    if (N size = abs(slope); size > largest) largest = size;
+void Stage<N>::drop_round_off() {
+  constexpr double kSmall = 64 * std::numeric_limits<double>::epsilon(),
+                   kMoved = 2 * std::numeric_limits<double>::epsilon();
+  if (!plan_->linear) return;
+  // By a few units in the last place, another number for each.
+  const auto moved = [](const N& value, std::size_t k) {
+    return N(value * N(1 + kMoved * static_cast<double>(1 + k % 3)));
+  };
+  std::optional<Machine<N>> machine;
+  const std::size_t n = unknowns();
+  for (std::size_t i = 0; i < size(); ++i) {
+    N largest(0);
+    for (std::size_t j = 0; j < n; ++j)
+      if (N v = abs(jacobian(i, j)); v > largest) largest = v;
+    for (std::size_t j = 0; j < n; ++j) {
+      N& slope = jacobian(i, j);
+      if (!(abs(slope) > N(0)) || abs(slope) > N(kSmall) * largest) continue;
+      if (!machine) {
+        machine = machine_;
+        std::vector<N> parameters = parameters_;
+        for (std::size_t k = 0; k < parameters.size(); ++k) parameters[k] = moved(parameters[k], k);
+        machine->set_parameters(parameters);
+        for (std::size_t k = 0; k < plan_->tape.inputs.size(); ++k) {
+          N& input = machine->series(plan_->tape.inputs[k].slot)[0];
+          input = moved(machine_.series(plan_->tape.inputs[k].slot)[0], k);
+        }
+        machine->evaluate();
+      }
+      if (N change = abs(N(machine->value(size() + i * n + j) - slope)); !(abs(slope) > change)) slope = N(0);
+    }
   }
-  for (std::size_t j = 0; j < unknowns(); ++j)
-    if (N& slope = jacobian(i, j); abs(slope) <= round_off * largest) slope = N(0);
-  return true;
 }
 
 template <Number N>

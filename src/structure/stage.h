@@ -114,8 +114,9 @@ class Stage {
   enum class Change : std::uint8_t { none, unknowns, all };
   Change bind_inputs(const InitialState<N>& s);
   bool read_equations(bool jacobian_stays);
-  bool read_slopes(std::size_t i);
   bool read_metric();
+  // Sets partial derivatives to zero that are not larger than the round-off of the known inputs and of the parameters.
+  void drop_round_off();
 
   std::vector<N> floor_, at_;  // the values of the unknowns
   std::vector<bool> kept_;     // empty: all
@@ -129,6 +130,7 @@ class Stage {
 
   const Mechanics& m_;
   std::shared_ptr<const StagePlan> plan_;
+  std::vector<N> parameters_;
   Machine<N> machine_;
 };
 

@@ -106,8 +106,8 @@ void add_sweep(CommandLine& line) {
        "count(EVENT), first(EVENT): how often an event fired, and its first time")
       ->type_name("WHAT,…");
   c->add_option("--columns", o.columns,
-                "which columns, or patterns with * and ?: theta,*',outcome; beside the usual ones there are event and "
-                "steps")
+                "which columns beside the case, what varies and the reductions, also by patterns with * and ?: "
+                "theta,*',outcome; beside the usual ones there are event and steps")
       ->type_name("NAME,…");
   c->add_option("--threads", o.threads, "default: as many as the machine has; the numbers are the same for any")
       ->type_name("N")
