@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "observe/rows/quad_row.h"
 #include "observe/watch.h"
 
 namespace anholon {
@@ -24,8 +25,7 @@ class SharperRun {
 
   SharperRun(Workspace& s, const SimulationOptions& o, const StepSettings& settings, RunToJudge<V>& run)
       : s_(s), o_(o), motion_(s, settings, run.quadratures, orders_of_rows(s)), outputs_(s, motion_.parameters()),
-        highest_(largest_order(s, motion_.program().d)), tolerance_(std::exp(settings.log_tolerance)), run_(run),
-        rows_(run.rows.take()) {
+        tolerance_(std::exp(settings.log_tolerance)), run_(run), rows_(run.rows.take()) {
     for (const SampledRow<V>& r : rows_) times_.push_back(time_of(r));
     compared_.resize(rows_.size());
   }
@@ -71,7 +71,7 @@ class SharperRun {
 
   // What was found, until where the run came.
   RowComparison comparison(double roundoff) {
-    RowComparison c(kept(columns_after_time(s_, highest_)), roundoff, o_.tolerance.get_d());
+    RowComparison c(kept(columns_after_time(s_, highest())), roundoff, o_.tolerance.get_d());
     for (std::optional<RowComparison::Row>& row : compared_)
       if (row) c.see(std::move(*row));
     if (lost_) c.lose(to_double(*lost_));
@@ -113,6 +113,7 @@ class SharperRun {
     return rows.get();
   }
 
+  int highest() const { return largest_order(s_, motion_.program().d); }
   static int orders_of_rows(const Scenario& s) {
     Column monitors;
     for (const Monitor& m : s.model->monitors) monitors.push_back(m.value);
@@ -276,11 +277,26 @@ class SharperRun {
     const std::size_t i = foretold.row;
     std::vector<W> run, sharper;
     for (const V& v : rows_[i].values) run.push_back(convert<W>(v));
-    row_values(s_, highest_, here, outputs, sharper);
+    if (!in_quad(foretold, sharper)) row_values(s_, highest(), here, outputs, sharper);
     const std::vector<double> missed = kept(missed_at(foretold, here));
     RowComparison::Row row = difference(s_, to_double(times_[i]), run, kept(std::move(sharper)), outputs);
     for (std::size_t j = 0; j < row.differences.size(); ++j) row.differences[j] += missed[j];
     if (!compared_[i] || weight(row) < weight(*compared_[i])) compared_[i] = std::move(row);
+  }
+
+  // A row of a second run in long double, of a run whose rows may be computed in long double, too. Rows beside kinks and
+  // events stay on their side of them; of many rows some are taken.
+  bool in_quad(const Foretold& foretold, std::vector<W>& values) {
+    constexpr std::size_t kMostInQuad = 16;
+    if constexpr (std::same_as<M, long double> && std::same_as<N, double>) {
+      const std::size_t stride = (rows_.size() + kMostInQuad - 1) / kMostInQuad;
+      if (run_.waiting || foretold.step == 0 || (rows_.size() - 1 - foretold.row) % stride != 0) return false;
+      if (!quad_) quad_.emplace(s_, highest(), orders_of_rows(s_));
+      return quad_->see(motion_.point(), values);
+    } else {
+      (void)foretold, (void)values;
+      return false;
+    }
   }
 
   // What short and sudden things both runs may have stepped over: where the polynomial of the step does not satisfy the
@@ -290,7 +306,7 @@ class SharperRun {
   std::vector<double> missed_at(const Foretold& foretold, const Point& here) {
     constexpr double kFarMore = 1e4;
     const std::size_t n = s_.system.coordinates;
-    std::vector<double> missed(columns_after_time(s_, highest_).size(), 0.0);
+    std::vector<double> missed(columns_after_time(s_, highest()).size(), 0.0);
     const double h = foretold.step;
     if (h == 0) return missed;
     for (std::size_t a = 0; a < n; ++a) {
@@ -342,7 +358,7 @@ class SharperRun {
   const SimulationOptions& o_;
   Motion<M> motion_;
   RowOutputs<W> outputs_;
-  int highest_;
+  std::optional<QuadRow> quad_;
   double tolerance_;  // of this run
   const RunToJudge<V>& run_;
   std::vector<SampledRow<V>> rows_;
@@ -382,50 +398,6 @@ void compare(Workspace& s, const SimulationOptions& o, const StepSettings& setti
 }
 
 }  // namespace
-
-template <Number W>
-void SampledRows<W>::add(const W& t, const std::vector<W>& values, std::size_t resets, const std::string& label) {
-  if (last_ && kept_.size() > 1 && (kept_[1].row.t > kept_[0].row.t ? t < last_->t : t > last_->t)) return;
-  const double pace = pace_to(t, values);
-  last_ = SampledRow<W>{t, values, resets, label};
-  if (in_group_ == 0)
-    kept_.push_back({*last_, pace});
-  else if (pace > kept_.back().pace)
-    kept_.back() = {*last_, pace};
-  in_group_ = (in_group_ + 1) % stride_;
-  if (kept_.size() < kMost || in_group_ != 0) return;
-  // Of each two neighbours the faster one; the first row has no pace.
-  std::vector<Candidate> fewer = {std::move(kept_[0])};
-  for (std::size_t i = 1; i < kept_.size(); i += 2) {
-    const std::size_t j = i + 1 < kept_.size() && kept_[i + 1].pace > kept_[i].pace ? i + 1 : i;
-    fewer.push_back(std::move(kept_[j]));
-  }
-  kept_ = std::move(fewer);
-  stride_ *= 2;
-}
-
-// How fast the numbers change from the last row to this one, each in relation to the largest that it has been.
-template <Number W>
-double SampledRows<W>::pace_to(const W& t, const std::vector<W>& values) {
-  magnitudes_.resize(values.size(), 0);
-  double pace = 0;
-  const double dt = last_ ? std::abs(to_double(W(t - last_->t))) : 0;
-  for (std::size_t j = 0; j < values.size(); ++j) {
-    magnitudes_[j] = std::max(magnitudes_[j], std::abs(to_double(values[j])));
-    if (!(dt > 0) || !(magnitudes_[j] > 0)) continue;
-    pace = std::max(pace, std::abs(to_double(W(values[j] - last_->values[j]))) / magnitudes_[j] / dt);
-  }
-  return pace;
-}
-
-template <Number W>
-std::vector<SampledRow<W>> SampledRows<W>::take() {
-  std::vector<SampledRow<W>> rows;
-  for (Candidate& c : kept_) rows.push_back(std::move(c.row));
-  if (last_ && !(rows.back().t == last_->t)) rows.push_back(std::move(*last_));
-  clear();
-  return rows;
-}
 
 template <Number N>
 double written_roundoff(const SimulationOptions& o) {
@@ -471,23 +443,13 @@ void estimate_error(Workspace& s, const SimulationOptions& o, RunToJudge<Wider<N
     numbers = "with other roundings";
     if constexpr (std::same_as<N, double>) compare<double, double>(s, o, settings, run, report);
   } else {
-    bool wide_enough = true;
-    if constexpr (std::same_as<N, long double>) wide_enough = !(tolerance.get_d() < to_double(unit_roundoff<N>()));
-    numbers = wide_enough ? "in long double" : "in quadruple precision";
-    settings.coarse_times = std::same_as<N, long double> && wide_enough;
-    if (wide_enough)
-      compare<long double, N>(s, o, settings, run, report);
-    else if constexpr (std::same_as<N, long double>)
-      compare<Quad, N>(s, o, settings, run, report);
+    numbers = std::same_as<N, double> ? "in long double" : "in quadruple precision";
+    compare<std::conditional_t<std::same_as<N, double>, long double, Quad>, N>(s, o, settings, run, report);
   }
   if (report.error)
     report.error->means = "a second run " + numbers + ", tolerance " + number_text(tolerance.get_d(), 3) + ", order " +
                           std::to_string(settings.order);
 }
-
-template class SampledRows<long double>;
-template class SampledRows<Quad>;
-template class SampledRows<Multi>;
 
 #define INSTANTIATE(N)                                                                                                 \
   template void estimate_error<N>(Workspace&, const SimulationOptions&, RunToJudge<Wider<N>>&, SimulationReport&);     \
