@@ -6,6 +6,7 @@
 #include "expr/degree.h"
 #include "expr/normal.h"
 #include "expr/table.h"
+#include "model/exponents.h"
 #include "setup/large_angles.h"
 #include "structure/redundancy.h"
 
@@ -301,7 +302,9 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
 
 Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
                       Scenario& s) {
-  Outcome o = prepare(clone(*model), form, choice, s);
+  const std::shared_ptr<Model> own = clone(*model);
+  if (choice.open_parameters) put_whole_exponents(*own, *choice.open_parameters);
+  Outcome o = prepare(own, form, choice, s);
   s.model->graph->freeze();
   return o;
 }
