@@ -20,6 +20,23 @@ bool all_proved_zero(const Column& es) {
   return true;
 }
 
+// Whether e changes with one of the symbols, be it by steps, which have no derivative: sign(x'), a choice by x' > 0.
+bool depends_on(Expr e, const Column& on) {
+  if (!all_proved_zero(gradient(e, on))) return true;
+  const Graph& g = *e.graph;
+  for (NodeId id : reachable({&e, 1})) {
+    const Node& n = g.node(id);
+    const bool steps = n.kind == Kind::select || n.kind == Kind::lookup ||
+                       (n.kind == Kind::function && (n.index == static_cast<std::uint32_t>(Function::sign) ||
+                                                     n.index == static_cast<std::uint32_t>(Function::abs)));
+    if (!steps) continue;
+    const Expr decides{e.graph, g.terms(id)[0].node};
+    for (NodeId symbol : symbols({&decides, 1}))
+      if (std::any_of(on.begin(), on.end(), [&](Expr x) { return x.id == symbol; })) return true;
+  }
+  return false;
+}
+
 ConstraintClass classify_one(const Mechanics& m, std::size_t r) {
   Graph& g = m.graph();
   const int order = m.order[r];
@@ -37,7 +54,7 @@ ConstraintClass classify_one(const Mechanics& m, std::size_t r) {
   Expr radial = g.zero();  // q^(m) dphi/dq^(m): equals d phi for phi homogeneous of degree d
   for (std::size_t a = 0; a < top.size(); ++a) {
     if (is_zero(m.Phi[r][a])) continue;
-    if (linear && !all_proved_zero(gradient(m.Phi[r][a], top))) linear = false;
+    linear = linear && !depends_on(m.Phi[r][a], top);
     radial += top[a] * m.Phi[r][a];
   }
   constexpr int kMost = 6;
