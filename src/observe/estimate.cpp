@@ -15,6 +15,8 @@ constexpr double kSafety = 2;
 constexpr int kSharper = 100;
 constexpr std::size_t kMostTimesLonger = 10;
 constexpr int kMoreDigits = 10;
+// What two runs in long double round alike is looked for at so many rows; how it adds up, in motions of so few steps.
+constexpr std::size_t kMostInQuad = 16, kFewSteps = 32;
 
 // The sharper run, in numbers M, of a motion computed in numbers N.
 template <Number M, Number N>
@@ -233,11 +235,17 @@ class SharperRun {
     if constexpr (std::same_as<M, double>)
       if (waiting_.rows && motion_.stepper().steps() > 0 && !motion_.stepper().one_sided()) {
         waiting_.block->add(motion_, t, {});
-        waiting_.foretold.push_back({i, leading_of_polynomials(t), inside_step(t) ? to_double(last_step()) : 0});
+        waiting_.foretold.push_back(foretold(i));
         return waiting_.block->full() ? compare_waiting() : Outcome{};
       }
     const Outcome at = motion_.at(t);
-    if (at.ok()) compare_with_point({i, leading_of_polynomials(t), inside_step(t) ? to_double(last_step()) : 0});
+    if (!at.ok()) return at;
+    Foretold f = foretold(i);
+    if (wanted_in_quad(i) && solved_in_quad()) {
+      f.lost = lost_on_the_way(i);
+      f.in_quad = !run_.waiting;  // else a kernel in doubles has made it
+    }
+    compare_with_point(f);
     return at;
   }
 
@@ -247,7 +255,12 @@ class SharperRun {
     std::size_t row;
     std::vector<W> leading;
     double step;
+    std::vector<double> lost = {};  // of each column, by what both runs round alike on their way
+    bool in_quad = false;           // the row is at hand in quadruple precision
   };
+  Foretold foretold(std::size_t i) const {
+    return {i, leading_of_polynomials(times_[i]), inside_step(times_[i]) ? to_double(last_step()) : 0};
+  }
 
   Outcome compare_waiting() {
     Outcome o;
@@ -277,26 +290,49 @@ class SharperRun {
     const std::size_t i = foretold.row;
     std::vector<W> run, sharper;
     for (const V& v : rows_[i].values) run.push_back(convert<W>(v));
-    if (!in_quad(foretold, sharper)) row_values(s_, highest(), here, outputs, sharper);
-    const std::vector<double> missed = kept(missed_at(foretold, here));
+    row_values(s_, highest(), here, outputs, sharper);
+    if constexpr (std::same_as<W, long double>)
+      if (foretold.in_quad) quad_->values(sharper);
+    std::vector<double> missed = missed_at(foretold, here);
+    for (std::size_t j = 0; j < foretold.lost.size(); ++j) missed[j] += foretold.lost[j];
+    missed = kept(std::move(missed));
     RowComparison::Row row = difference(s_, to_double(times_[i]), run, kept(std::move(sharper)), outputs);
     for (std::size_t j = 0; j < row.differences.size(); ++j) row.differences[j] += missed[j];
     if (!compared_[i] || weight(row) < weight(*compared_[i])) compared_[i] = std::move(row);
   }
 
-  // A row of a second run in long double, of a run whose rows may be computed in long double, too. Rows beside kinks and
-  // events stay on their side of them; of many rows some are taken.
-  bool in_quad(const Foretold& foretold, std::vector<W>& values) {
-    constexpr std::size_t kMostInQuad = 16;
+  // Looks at a row of a second run in long double, of a motion in double, in quadruple precision. Rows beside kinks and
+  // events stay on their side of them. REQUIRES: the motion has been taken to the row.
+  bool solved_in_quad() {
     if constexpr (std::same_as<M, long double> && std::same_as<N, double>) {
-      const std::size_t stride = (rows_.size() + kMostInQuad - 1) / kMostInQuad;
-      if (run_.waiting || foretold.step == 0 || (rows_.size() - 1 - foretold.row) % stride != 0) return false;
       if (!quad_) quad_.emplace(s_, highest(), orders_of_rows(s_));
-      return quad_->see(motion_.point(), values);
+      return quad_->solve(motion_.point());
     } else {
-      (void)foretold, (void)values;
       return false;
     }
+  }
+  bool wanted_in_quad(std::size_t i) const {
+    const std::size_t stride = (rows_.size() + kMostInQuad - 1) / kMostInQuad;
+    return std::same_as<M, long double> && std::same_as<N, double> && inside_step(times_[i]) &&
+           (rows_.size() - 1 - i) % stride == 0;
+  }
+
+  // In few steps the leading derivatives of both runs may have the same error all along.
+  std::vector<double> lost_on_the_way(std::size_t i) const {
+    if (motion_.stepper().steps() > kFewSteps) return {};
+    const double time = to_double(abs(W(times_[i] - t0_)));
+    const std::vector<double>& errors = quad_->leading_differences();
+    const std::size_t n = s_.system.coordinates, mechanical = s_.system.mechanical();
+    const std::vector<RunColumn> columns = columns_after_time(s_, highest());
+    std::vector<double> lost(columns.size(), 0.0);
+    for (std::size_t a = 0; a < n; ++a) {
+      double error = errors[a];
+      for (int k = motion_.program().d[a] - 1, order = 1; k >= 0; --k, ++order)
+        lost[static_cast<std::size_t>(k) * n + a] = error *= time / order;
+    }
+    for (std::size_t j = 0; j < columns.size(); ++j)
+      if (columns[j].kind == ColumnKind::state) lost[j] = errors[mechanical + columns[j].index] * time;
+    return lost;
   }
 
   // What short and sudden things both runs may have stepped over: where the polynomial of the step does not satisfy the

@@ -11,14 +11,21 @@ class QuadRow {
  public:
   // `stages`: the number of orders beyond the leading derivatives that rows show. `highest`: see columns_after_time().
   QuadRow(Workspace& scenario, int highest, int stages);
-  // The numbers of the columns after t at the state of a point; false, and no numbers, if the equations have no
-  // solution there.
-  bool see(const Expansion<long double>& point, std::vector<long double>& values);
+  // Solves the equations at the state of a point, which has been prepared and solved; false if they have no solution
+  // there.
+  bool solve(const Expansion<long double>& point);
+  // Then the numbers of the columns after t; false, and no numbers, if they have no values.
+  bool values(std::vector<long double>& values);
+  // By how much the leading derivative of each unknown is another one than at the point.
+  const std::vector<double>& leading_differences() const { return differences_; }
 
  private:
   Workspace& s_;
   int highest_, stages_;
-  RowOutputs<Quad> outputs_;
+  std::vector<Quad> parameters_;
+  std::optional<Expansion<Quad>> here_;
+  std::vector<double> differences_;
+  std::optional<RowOutputs<Quad>> outputs_;
 };
 
 }  // namespace anholon
