@@ -6,6 +6,7 @@
 
 #include "api/data.h"
 #include "dynamics/rate_formulas_of.h"
+#include "model/exponents.h"
 #include "setup/chosen_outputs.h"
 #include "setup/inputs.h"
 
@@ -105,13 +106,20 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
     of.model->without_contacts("dynamics");
     auto data = std::make_shared<Dynamics::Data>(system);
     const std::string form = of.scenario.system.form->name;
+    inner::StateChoice choice = of.choice;
+    choice.open_parameters.reset();  // the caller gives their values
+    if (inner::any_exponents(*of.model->model)) {
+      if (const inner::Outcome o = make_system(of.model->model, form, choice, data->opened); !o.ok())
+        return error_of(o);
+      data->scenario = &data->opened;
+    }
     if (options.outputs) {
       inner::Diagnostics diagnostics;
       const auto open = of.model->open_again(diagnostics);
       if (!open) return error_of(diagnostics, of.model->source);
       std::vector<inner::ChosenOutput> outputs;
       for (const DynamicsOptions::Output& o : *options.outputs) outputs.push_back({o.name, o.formula});
-      if (const inner::Outcome o = make_system(inner::with_outputs(*open, outputs), form, of.choice, data->opened);
+      if (const inner::Outcome o = make_system(inner::with_outputs(*open, outputs), form, choice, data->opened);
           !o.ok())
         return error_of(o);
       data->scenario = &data->opened;
@@ -123,12 +131,12 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
                        "leave the output out, or the input among the arguments");
       data->inputs = inputs.names, data->formulas = inputs.formulas, data->open = inputs.open_formulas;
       inner::Scenario opened;
-      if (const inner::Outcome o = make_system(inputs.model, form, of.choice, opened); !o.ok()) return error_of(o);
+      if (const inner::Outcome o = make_system(inputs.model, form, choice, opened); !o.ok()) return error_of(o);
       data->opened = std::move(opened);
       data->scenario = &data->opened;
     }
     inner::Workspace s(*data->scenario);
-    data->function = inner::Dynamics::make(s, of.choice, {options.minimal, data->inputs.size()}, data->obstacle);
+    data->function = inner::Dynamics::make(s, choice, {options.minimal, data->inputs.size()}, data->obstacle);
     if (!data->function)
       return mistake("there is no function x' = f(t, x) of these equations: " + data->obstacle,
                      "simulate integrates them all the same");

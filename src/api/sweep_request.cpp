@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "ensemble/case_scenario.h"
 #include "ensemble/parts/scenarios.h"
 #include "ensemble/request.h"
 #include "ensemble/with_contacts.h"
+#include "model/exponents.h"
 #include "result/choose_columns.h"
 
 namespace anholon::v1 {
@@ -101,11 +103,12 @@ std::vector<std::size_t> chosen_places(const std::vector<std::string>& asked, co
 PreparedPiece::PreparedPiece(System of, const inner::Outcome& of_system, std::string scenario_name,
                              const SweepOptions& asked)
     : system(std::move(of)), word(std::move(scenario_name)) {
-  scenario = scenario_for(asked.reduce, of_system);
   options.state = system.data().choice;
-  variation.emplace(variation_of(asked, *scenario->model, !word.empty()));
+  variation.emplace(variation_of(asked, *system.data().model->model, !word.empty()));
   must_not_be_given(variation->varied(), options.state);
   options.varied = variation->varied();
+  options.state.open_parameters = inner::varied_parameters(options);
+  scenario = scenario_for(asked.reduce, of_system);
   options.cases = variation->cases();
   options.numbers = [this](std::size_t number) { return inner::EnsembleCase{(*variation)(number), {}}; };
   const auto set = [&](const char* name, const std::vector<std::string>& words) {
@@ -135,7 +138,9 @@ const std::vector<inner::Contact>& PreparedPiece::moving() const {
 const inner::Scenario* PreparedPiece::scenario_for(const std::vector<std::string>& reductions,
                                                    const inner::Outcome& of_system) {
   const System::Data& of = system.data();
-  if (reductions.empty() && of_system.ok()) return &of.scenario;
+  const bool exponents_vary =
+      !inner::exponents_of(*inner::clone(*of.model->model), *options.state.open_parameters).empty();
+  if (reductions.empty() && of_system.ok() && !exponents_vary) return &of.scenario;
   inner::Diagnostics diagnostics;
   open_ = of.model->open_again(diagnostics);
   if (!open_) throw inner::Failure(diagnostics.list().front());
@@ -144,7 +149,7 @@ const inner::Scenario* PreparedPiece::scenario_for(const std::vector<std::string
   } catch (const inner::MistakeInWord& m) {
     refuse(m, "reduce");
   }
-  start = make_system(open_->model, of.scenario.system.form->name, of.choice, own_);
+  start = make_system(open_->model, of.scenario.system.form->name, options.state, own_);
   return &own_;
 }
 

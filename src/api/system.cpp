@@ -12,6 +12,7 @@ std::shared_ptr<const System::Data> system_of(const Model& model, const PrepareO
   auto data = std::make_shared<System::Data>();
   data->model = std::make_shared<const Model::Data>(model.data());
   data->choice = state_choice(options, *model.data().model);
+  data->choice.open_parameters.emplace();
   std::string form = options.form;
   if (form == "auto") form = inner::choose_form(model.data().model, data->choice).form->name;
   start = make_system(model.data().model, form, data->choice, data->scenario);

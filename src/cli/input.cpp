@@ -171,6 +171,7 @@ std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, 
 
 StateChoice state_choice(const SystemCommand& o, const Model& model) {
   StateChoice c;
+  c.open_parameters.emplace();
   for (const std::string& word : split(o.eliminate)) c.eliminate.push_back(coordinate_of(model, word, "--eliminate: "));
   if (!o.t.empty()) c.t = time_value(constant(o.t, "--t"), "--t: ");
   struct Given {

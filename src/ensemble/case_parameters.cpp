@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/exponents.h"
+
 namespace anholon {
 
 namespace {
@@ -77,6 +79,11 @@ CaseParameters::CaseParameters(Workspace& s, const std::vector<Varied>& varied) 
     for (const Axis& a : b.axes) checks_.back().axes.push_back(a.own), es.push_back(a.weight);
   }
   if (!es.empty()) bodies_ = compile(es);
+  const std::shared_ptr<Model> own = clone(model);
+  std::vector<std::size_t> indices;
+  for (const Varied& v : varied)
+    if (v.kind == Varied::Kind::parameter) indices.push_back(v.index);
+  if (const Column exponents = exponents_of(*own, indices); !exponents.empty()) exponents_ = compile(exponents);
   whole_ = implicit_system(s.model, *s.mechanics, *s.system.form, s.independent, s.elimination);
   goes_beyond_ = may_go_beyond(whole_, s.structure);
   equations_ = compile(whole_.equations);
@@ -140,6 +147,12 @@ Outcome CaseParameters::possible(const std::vector<double>& parameters) const {
 }
 
 bool CaseParameters::same_structure(const std::vector<double>& parameters) const {
+  if (exponents_) {
+    Machine<double> machine(*exponents_, 0, parameters);
+    machine.evaluate();
+    for (std::size_t i = 0; i < exponents_->roots.size(); ++i)
+      if (machine.value(i) == std::round(machine.value(i))) return false;
+  }
   // Equations may lose what determines an unknown where a factor vanishes that does not in the scenario.
   constexpr double kVanishes = 1e-100;
   bool vanishes = false;

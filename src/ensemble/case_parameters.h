@@ -19,7 +19,7 @@ class CaseParameters {
   Outcome possible(const std::vector<double>& parameters) const;
   // Whether the equations hold no derivative beyond those that are solved for (sigma_ij <= d_j - c_i). They may hold
   // one if a mass or a coefficient is zero in the file and not in the case. If a parameter vanishes, whether they still
-  // determine each unknown.
+  // determine each unknown. No exponent that varies is a whole number, which is put in.
   bool same_structure(const std::vector<double>& parameters) const;
 
  private:
@@ -28,6 +28,7 @@ class CaseParameters {
   bool any_ = false;  // whether a parameter is varied
   Tape tape_;
   std::optional<Tape> bodies_;
+  std::optional<Tape> exponents_;    // that vary
   std::optional<Tape> equations_;    // of whose structure the parameters decide
   std::vector<double> of_scenario_;  // parameters
   bool goes_beyond_ = false;         // whether some parameters may give them derivatives beyond

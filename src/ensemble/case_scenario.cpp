@@ -4,6 +4,13 @@
 
 namespace anholon {
 
+std::vector<std::size_t> varied_parameters(const EnsembleOptions& o) {
+  std::vector<std::size_t> list;
+  for (const Varied& v : o.varied)
+    if (v.kind == Varied::Kind::parameter) list.push_back(v.index);
+  return list;
+}
+
 std::vector<StateOverride> overrides_of(const EnsembleOptions& o, const EnsembleCase* numbers) {
   std::vector<StateOverride> list = o.state.overrides;
   for (std::size_t i = 0; i < o.varied.size(); ++i)
@@ -23,15 +30,21 @@ SimulationOptions options_of_case(const EnsembleOptions& o, const EnsembleCase& 
   return options;
 }
 
-Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& o, const EnsembleCase& numbers,
-                         Scenario& scenario) {
+static Outcome with_numbers(const Scenario& of_all, const EnsembleOptions& o, const EnsembleCase& numbers,
+                            const std::optional<std::vector<std::size_t>>& open_parameters, Scenario& scenario) {
   const std::shared_ptr<Model> model = given_model(of_all);
   for (std::size_t i = 0; i < o.varied.size(); ++i)
     if (o.varied[i].kind == Varied::Kind::parameter)
       model->parameters[o.varied[i].index].value = model->graph->number(numbers.values[i]);
   StateChoice state = o.state;
   state.overrides = overrides_of(o, &numbers);
+  state.open_parameters = open_parameters;
   return make_scenario(model, *of_all.system.form, state, scenario);
+}
+
+Outcome scenario_of_case(const Scenario& of_all, const EnsembleOptions& o, const EnsembleCase& numbers,
+                         Scenario& scenario) {
+  return with_numbers(of_all, o, numbers, std::vector<std::size_t>{}, scenario);
 }
 
 Outcome scenario_of_cases(const EnsembleOptions& o, Scenario& scenario) {
@@ -40,7 +53,7 @@ Outcome scenario_of_cases(const EnsembleOptions& o, Scenario& scenario) {
   for (std::size_t k = 0; k < std::min(kMost, o.cases); ++k) {
     const EnsembleCase numbers = o.numbers(k);
     Scenario s;
-    const Outcome outcome = scenario_of_case(scenario, o, numbers, s);
+    const Outcome outcome = with_numbers(scenario, o, numbers, o.state.open_parameters, s);
     if (k == 0) first = outcome;
     if (!outcome.ok()) continue;
     scenario = std::move(s);

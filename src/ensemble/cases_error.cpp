@@ -3,6 +3,7 @@
 #include "ensemble/case_parameters.h"
 #include "ensemble/case_scenario.h"
 #include "ensemble/columns.h"
+#include "model/exponents.h"
 #include "observe/estimate.h"
 #include "simulation/simulate.h"
 
@@ -20,7 +21,8 @@ bool made_by_kernel(const Scenario& s) {
 // what its run leaves.
 class FurtherRuns {
  public:
-  FurtherRuns(const Scenario& of_all, const EnsembleOptions& o) : of_all_(of_all), o_(o) {}
+  FurtherRuns(const Scenario& of_all, const EnsembleOptions& o)
+      : of_all_(of_all), o_(o), exponents_vary_(!exponents_of(*clone(*of_all.model), varied_parameters(o)).empty()) {}
 
   // The sharper run of a case, compared with its result.
   SimulationReport compare(const CaseResult& r);
@@ -32,6 +34,7 @@ class FurtherRuns {
 
   const Scenario& of_all_;
   const EnsembleOptions& o_;
+  bool exponents_vary_;  // the workspace of one case may have its exponents put in
   std::unique_ptr<Workspace> own_;
   std::optional<CaseParameters> parameters_;  // of the workspace
   RunToJudge<long double>::Plans compared_;
@@ -42,7 +45,7 @@ class FurtherRuns {
 Outcome FurtherRuns::begin(const EnsembleCase& numbers) {
   StateChoice state = o_.state;
   state.overrides = overrides_of(o_, &numbers);
-  if (own_ && parameters_->same_structure(parameters_->values<double>(numbers.values))) {
+  if (own_ && !exponents_vary_ && parameters_->same_structure(parameters_->values<double>(numbers.values))) {
     for (std::size_t i = 0; i < o_.varied.size(); ++i)
       if (o_.varied[i].kind == Varied::Kind::parameter) own_->set_parameter(o_.varied[i].index, numbers.values[i]);
     if (const std::optional<Outcome> begun = begin_anew(*own_, state)) return *begun;

@@ -176,6 +176,15 @@ Outcome OneSidedStart<N>::fault(PresentStep<N>& step, const W& h) const {
   return o;
 }
 
+// The search has left a trial in the expansion.
+template <Number N>
+Outcome OneSidedStart<N>::stop(PresentStep<N>& step, const W& h) {
+  stopped_ = true;
+  Outcome o = fault(step, h);
+  step.expander.cut_to(step.track.now, step.track.now.leading);
+  return o;
+}
+
 template class OneSidedStart<double>;
 template class OneSidedStart<long double>;
 template class OneSidedStart<Quad>;

@@ -24,6 +24,12 @@ class OneSidedStart {
   std::optional<std::vector<W>> take(PresentStep<N>& step, const W& h) const;
   // The fault, where there is no such step.
   Outcome fault(PresentStep<N>& step, const W& h) const;
+  // As fault(), where the motion came to the point and cannot go on from it: the expansion ends with the leading
+  // derivatives of the track again.
+  Outcome stop(PresentStep<N>& step, const W& h);
+  // Whether the motion stops at the point: nothing follows whose leading derivatives stand for those that the equations
+  // do not have there.
+  bool stopped() const { return stopped_; }
 
  private:
   std::optional<std::vector<W>> leading_after(PresentStep<N>& step, const W& h, std::vector<W> leading) const;
@@ -32,6 +38,7 @@ class OneSidedStart {
 
   Outcome fault_;
   std::vector<W> at_point_;  // the leading derivatives at the point; empty if the equations have none
+  bool stopped_ = false;
 };
 
 extern template class OneSidedStart<double>;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/assert.h"
 #include "integrate/series/kinks.h"
@@ -464,7 +465,8 @@ Outcome Stepper<N>::at(const W& t, Expansion<W>& point, bool leading) const {
   if (o.ok()) o = point.project();
   if (o.ok() && leading) o = point.solve();
   if (!one_sided_ || o.kind != OutcomeKind::not_a_number) return o;
-  // The equations have no value here: what the motion has right after the point stands for it.
+  // The equations have no value here: what the motion has right after the point stands for it, if it goes on.
+  if (one_sided_->stopped()) guess.assign(guess.size(), W(std::numeric_limits<double>::quiet_NaN()));
   point.load(t, state, guess);
   point.evaluate();
   return {};

@@ -104,7 +104,8 @@ class Stepper {
   // The solution where the last step began, or at the start: projected and solved. Its derivatives; with `values` those
   // of all formulas, too. Where a formula has no value there, the leading derivatives are those right after it.
   const Expansion<W>& point(bool values = false) const { return expander_.point(track_, values); }
-  // … and anywhere in the last step, in an expansion of the caller; on request without what leads the state.
+  // … and anywhere in the last step, in an expansion of the caller; on request without what leads the state. Where the
+  // motion stops as a formula has no value, the leading derivatives are not numbers.
   Outcome at(const W& t, Expansion<W>& point, bool leading = true) const;
   // The state anywhere in the last step by its polynomials, not projected, and a guess of the leading derivatives.
   void foretell(const W& t, std::vector<W>& state, std::vector<W>& leading) const {

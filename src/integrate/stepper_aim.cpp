@@ -215,7 +215,7 @@ bool Stepper<N>::aim_one_sided(const W& left) {
   W h = convert<W>(horizon_);
   if (!(h < abs(left))) h = abs(left);
   if (left < W(0)) h = -h;
-  if (!take_one_sided(h)) return fail(one_sided_->fault(step, h));
+  if (!take_one_sided(h)) return fail(one_sided_->stop(step, h));
   guard_.set_singular_ahead(false);
   end_.set_one_sided();
   if (!events_.empty()) h = convert<W>(convert<N>(h));

@@ -92,6 +92,8 @@ ParameterRange read_range(const std::string& text, const Model& model, const std
 }
 
 LinearStudy::LinearStudy(std::shared_ptr<const Model> model, LinearRequest request) : request_(std::move(request)) {
+  // Parameters and signals may get other values, or are varied.
+  request_.choice.open_parameters.reset();
   for (const StateVariable& z : model->states) states_.push_back(z.name);
   if (request_.equilibrium) model = at_rest(*model);
   model = with_signals(*model, signals_);

@@ -8,7 +8,9 @@
 #include "expr/generic_point.h"
 #include "expr/normal.h"
 #include "formula/units.h"
+#include "mechanics/jumps.h"
 #include "tape/point.h"
+#include "tape/tape.h"
 
 namespace anholon {
 
@@ -430,7 +432,7 @@ std::string unit_of(const Model& model, const Conserved& c) {
 
 Expr momentum_rate(const Mechanics& m, const Column& field) { return rate_along(m, rates(m), field); }
 
-std::vector<Conserved> conserved(const Mechanics& m) {
+static std::vector<Conserved> conserved_between_jumps(const Mechanics& m) {
   std::vector<Conserved> list;
   if (auto e = energy(m)) list.push_back(std::move(*e));
   const Model& model = *m.model;
@@ -458,9 +460,18 @@ std::vector<Conserved> conserved(const Mechanics& m) {
   return list;
 }
 
+std::vector<Conserved> conserved(const Mechanics& m) {
+  std::vector<Conserved> list = conserved_between_jumps(m);
+  Column values;
+  for (const Parameter& p : m.model->parameters) values.push_back(p.value);
+  const std::vector<double> parameters = evaluate_parameters<double>(m.graph(), values);
+  for (Conserved& c : list) c.jumps = may_jump(c.value, parameters);
+  return list;
+}
+
 void for_each_expression(Conserved& c, const ExprVisitor& f) {
-  auto& [name, because, value, terms, along, by] = c;
-  for_each_expression_of(f, name, because, value, terms, along, by);
+  auto& [name, because, value, terms, jumps, along, by] = c;
+  for_each_expression_of(f, name, because, value, terms, jumps, along, by);
 }
 
 }  // namespace anholon

@@ -11,6 +11,9 @@
 // if the first two sums cancel and xi is admissible, Phi xi = 0, for every constraint. The search covers fields affine
 // in q, which include cyclic coordinates, translations and rotations of the whole or of parts. Candidates are found by
 // linear algebra at random points; each result is proved by the exact zero test.
+//
+// The proofs hold where all formulas have derivatives. A continuous integral goes on through kinks; one that may jump,
+// such as an energy whose potential has a sign(x), is marked.
 #pragma once
 #include "mechanics/mechanics.h"
 
@@ -21,6 +24,7 @@ struct Conserved {
   std::string because;  // in words
   Expr value;           // masses substituted
   Column terms;         // the terms of the sum
+  bool jumps = false;   // it may change where a formula in it jumps: it is constant between
   // Of a momentum: coordinates whose units tell its unit, J*s*[by]/[along]; none where no component tells it.
   std::optional<std::size_t> along, by;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "observe/rows/quad_row.h"
 #include "observe/watch.h"
 
 namespace anholon {
@@ -14,6 +15,8 @@ constexpr double kSafety = 2;
 constexpr int kSharper = 100;
 constexpr std::size_t kMostTimesLonger = 10;
 constexpr int kMoreDigits = 10;
+// What two runs in long double round alike is looked for at so many rows; how it adds up, in motions of so few steps.
+constexpr std::size_t kMostInQuad = 16, kFewSteps = 32;
 
 // The sharper run, in numbers M, of a motion computed in numbers N.
 template <Number M, Number N>
@@ -24,8 +27,7 @@ class SharperRun {
 
   SharperRun(Workspace& s, const SimulationOptions& o, const StepSettings& settings, RunToJudge<V>& run)
       : s_(s), o_(o), motion_(s, settings, run.quadratures, orders_of_rows(s)), outputs_(s, motion_.parameters()),
-        highest_(largest_order(s, motion_.program().d)), tolerance_(std::exp(settings.log_tolerance)), run_(run),
-        rows_(run.rows.take()) {
+        tolerance_(std::exp(settings.log_tolerance)), run_(run), rows_(run.rows.take()) {
     for (const SampledRow<V>& r : rows_) times_.push_back(time_of(r));
     compared_.resize(rows_.size());
   }
@@ -71,7 +73,7 @@ class SharperRun {
 
   // What was found, until where the run came.
   RowComparison comparison(double roundoff) {
-    RowComparison c(kept(columns_after_time(s_, highest_)), roundoff, o_.tolerance.get_d());
+    RowComparison c(kept(columns_after_time(s_, highest())), roundoff, o_.tolerance.get_d());
     for (std::optional<RowComparison::Row>& row : compared_)
       if (row) c.see(std::move(*row));
     if (lost_) c.lose(to_double(*lost_));
@@ -113,6 +115,7 @@ class SharperRun {
     return rows.get();
   }
 
+  int highest() const { return largest_order(s_, motion_.program().d); }
   static int orders_of_rows(const Scenario& s) {
     Column monitors;
     for (const Monitor& m : s.model->monitors) monitors.push_back(m.value);
@@ -232,11 +235,17 @@ class SharperRun {
     if constexpr (std::same_as<M, double>)
       if (waiting_.rows && motion_.stepper().steps() > 0 && !motion_.stepper().one_sided()) {
         waiting_.block->add(motion_, t, {});
-        waiting_.foretold.push_back({i, leading_of_polynomials(t), inside_step(t) ? to_double(last_step()) : 0});
+        waiting_.foretold.push_back(foretold(i));
         return waiting_.block->full() ? compare_waiting() : Outcome{};
       }
     const Outcome at = motion_.at(t);
-    if (at.ok()) compare_with_point({i, leading_of_polynomials(t), inside_step(t) ? to_double(last_step()) : 0});
+    if (!at.ok()) return at;
+    Foretold f = foretold(i);
+    if (wanted_in_quad(i) && solved_in_quad()) {
+      f.lost = lost_on_the_way(i);
+      f.in_quad = !run_.waiting;  // else a kernel in doubles has made it
+    }
+    compare_with_point(f);
     return at;
   }
 
@@ -246,7 +255,12 @@ class SharperRun {
     std::size_t row;
     std::vector<W> leading;
     double step;
+    std::vector<double> lost = {};  // of each column, by what both runs round alike on their way
+    bool in_quad = false;           // the row is at hand in quadruple precision
   };
+  Foretold foretold(std::size_t i) const {
+    return {i, leading_of_polynomials(times_[i]), inside_step(times_[i]) ? to_double(last_step()) : 0};
+  }
 
   Outcome compare_waiting() {
     Outcome o;
@@ -276,11 +290,49 @@ class SharperRun {
     const std::size_t i = foretold.row;
     std::vector<W> run, sharper;
     for (const V& v : rows_[i].values) run.push_back(convert<W>(v));
-    row_values(s_, highest_, here, outputs, sharper);
-    const std::vector<double> missed = kept(missed_at(foretold, here));
+    row_values(s_, highest(), here, outputs, sharper);
+    if constexpr (std::same_as<W, long double>)
+      if (foretold.in_quad) quad_->values(sharper);
+    std::vector<double> missed = missed_at(foretold, here);
+    for (std::size_t j = 0; j < foretold.lost.size(); ++j) missed[j] += foretold.lost[j];
+    missed = kept(std::move(missed));
     RowComparison::Row row = difference(s_, to_double(times_[i]), run, kept(std::move(sharper)), outputs);
     for (std::size_t j = 0; j < row.differences.size(); ++j) row.differences[j] += missed[j];
     if (!compared_[i] || weight(row) < weight(*compared_[i])) compared_[i] = std::move(row);
+  }
+
+  // Looks at a row of a second run in long double, of a motion in double, in quadruple precision. Rows beside kinks and
+  // events stay on their side of them. REQUIRES: the motion has been taken to the row.
+  bool solved_in_quad() {
+    if constexpr (std::same_as<M, long double> && std::same_as<N, double>) {
+      if (!quad_) quad_.emplace(s_, highest(), orders_of_rows(s_));
+      return quad_->solve(motion_.point());
+    } else {
+      return false;
+    }
+  }
+  bool wanted_in_quad(std::size_t i) const {
+    const std::size_t stride = (rows_.size() + kMostInQuad - 1) / kMostInQuad;
+    return std::same_as<M, long double> && std::same_as<N, double> && inside_step(times_[i]) &&
+           (rows_.size() - 1 - i) % stride == 0;
+  }
+
+  // In few steps the leading derivatives of both runs may have the same error all along.
+  std::vector<double> lost_on_the_way(std::size_t i) const {
+    if (motion_.stepper().steps() > kFewSteps) return {};
+    const double time = to_double(abs(W(times_[i] - t0_)));
+    const std::vector<double>& errors = quad_->leading_differences();
+    const std::size_t n = s_.system.coordinates, mechanical = s_.system.mechanical();
+    const std::vector<RunColumn> columns = columns_after_time(s_, highest());
+    std::vector<double> lost(columns.size(), 0.0);
+    for (std::size_t a = 0; a < n; ++a) {
+      double error = errors[a];
+      for (int k = motion_.program().d[a] - 1, order = 1; k >= 0; --k, ++order)
+        lost[static_cast<std::size_t>(k) * n + a] = error *= time / order;
+    }
+    for (std::size_t j = 0; j < columns.size(); ++j)
+      if (columns[j].kind == ColumnKind::state) lost[j] = errors[mechanical + columns[j].index] * time;
+    return lost;
   }
 
   // What short and sudden things both runs may have stepped over: where the polynomial of the step does not satisfy the
@@ -290,7 +342,7 @@ class SharperRun {
   std::vector<double> missed_at(const Foretold& foretold, const Point& here) {
     constexpr double kFarMore = 1e4;
     const std::size_t n = s_.system.coordinates;
-    std::vector<double> missed(columns_after_time(s_, highest_).size(), 0.0);
+    std::vector<double> missed(columns_after_time(s_, highest()).size(), 0.0);
     const double h = foretold.step;
     if (h == 0) return missed;
     for (std::size_t a = 0; a < n; ++a) {
@@ -342,7 +394,7 @@ class SharperRun {
   const SimulationOptions& o_;
   Motion<M> motion_;
   RowOutputs<W> outputs_;
-  int highest_;
+  std::optional<QuadRow> quad_;
   double tolerance_;  // of this run
   const RunToJudge<V>& run_;
   std::vector<SampledRow<V>> rows_;
@@ -382,50 +434,6 @@ void compare(Workspace& s, const SimulationOptions& o, const StepSettings& setti
 }
 
 }  // namespace
-
-template <Number W>
-void SampledRows<W>::add(const W& t, const std::vector<W>& values, std::size_t resets, const std::string& label) {
-  if (last_ && kept_.size() > 1 && (kept_[1].row.t > kept_[0].row.t ? t < last_->t : t > last_->t)) return;
-  const double pace = pace_to(t, values);
-  last_ = SampledRow<W>{t, values, resets, label};
-  if (in_group_ == 0)
-    kept_.push_back({*last_, pace});
-  else if (pace > kept_.back().pace)
-    kept_.back() = {*last_, pace};
-  in_group_ = (in_group_ + 1) % stride_;
-  if (kept_.size() < kMost || in_group_ != 0) return;
-  // Of each two neighbours the faster one; the first row has no pace.
-  std::vector<Candidate> fewer = {std::move(kept_[0])};
-  for (std::size_t i = 1; i < kept_.size(); i += 2) {
-    const std::size_t j = i + 1 < kept_.size() && kept_[i + 1].pace > kept_[i].pace ? i + 1 : i;
-    fewer.push_back(std::move(kept_[j]));
-  }
-  kept_ = std::move(fewer);
-  stride_ *= 2;
-}
-
-// How fast the numbers change from the last row to this one, each in relation to the largest that it has been.
-template <Number W>
-double SampledRows<W>::pace_to(const W& t, const std::vector<W>& values) {
-  magnitudes_.resize(values.size(), 0);
-  double pace = 0;
-  const double dt = last_ ? std::abs(to_double(W(t - last_->t))) : 0;
-  for (std::size_t j = 0; j < values.size(); ++j) {
-    magnitudes_[j] = std::max(magnitudes_[j], std::abs(to_double(values[j])));
-    if (!(dt > 0) || !(magnitudes_[j] > 0)) continue;
-    pace = std::max(pace, std::abs(to_double(W(values[j] - last_->values[j]))) / magnitudes_[j] / dt);
-  }
-  return pace;
-}
-
-template <Number W>
-std::vector<SampledRow<W>> SampledRows<W>::take() {
-  std::vector<SampledRow<W>> rows;
-  for (Candidate& c : kept_) rows.push_back(std::move(c.row));
-  if (last_ && !(rows.back().t == last_->t)) rows.push_back(std::move(*last_));
-  clear();
-  return rows;
-}
 
 template <Number N>
 double written_roundoff(const SimulationOptions& o) {
@@ -471,23 +479,13 @@ void estimate_error(Workspace& s, const SimulationOptions& o, RunToJudge<Wider<N
     numbers = "with other roundings";
     if constexpr (std::same_as<N, double>) compare<double, double>(s, o, settings, run, report);
   } else {
-    bool wide_enough = true;
-    if constexpr (std::same_as<N, long double>) wide_enough = !(tolerance.get_d() < to_double(unit_roundoff<N>()));
-    numbers = wide_enough ? "in long double" : "in quadruple precision";
-    settings.coarse_times = std::same_as<N, long double> && wide_enough;
-    if (wide_enough)
-      compare<long double, N>(s, o, settings, run, report);
-    else if constexpr (std::same_as<N, long double>)
-      compare<Quad, N>(s, o, settings, run, report);
+    numbers = std::same_as<N, double> ? "in long double" : "in quadruple precision";
+    compare<std::conditional_t<std::same_as<N, double>, long double, Quad>, N>(s, o, settings, run, report);
   }
   if (report.error)
     report.error->means = "a second run " + numbers + ", tolerance " + number_text(tolerance.get_d(), 3) + ", order " +
                           std::to_string(settings.order);
 }
-
-template class SampledRows<long double>;
-template class SampledRows<Quad>;
-template class SampledRows<Multi>;
 
 #define INSTANTIATE(N)                                                                                                 \
   template void estimate_error<N>(Workspace&, const SimulationOptions&, RunToJudge<Wider<N>>&, SimulationReport&);     \

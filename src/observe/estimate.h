@@ -7,44 +7,10 @@
 #include "observe/options.h"
 #include "observe/report.h"
 #include "observe/rows/row_comparison.h"
+#include "observe/rows/sampled_rows.h"
 #include "observe/rows/waiting_rows.h"
 
 namespace anholon {
-
-// A row of the run, and how often events had changed the state before it.
-template <Number W>
-struct SampledRow {
-  W t{0};
-  std::vector<W> values;
-  std::size_t resets = 0;
-  std::string label;  // the time as it was asked for, where that says more
-};
-
-// Rows to be compared: all, or where there are many those between which the numbers change fastest, so that no short
-// phase is left out.
-template <Number W>
-class SampledRows {
- public:
-  // In the order of time; others are left out.
-  void add(const W& t, const std::vector<W>& values, std::size_t resets, const std::string& label = {});
-  void clear() { *this = {}; }
-  bool empty() const { return !last_; }
-  // The first, the last and those between.
-  std::vector<SampledRow<W>> take();
-
- private:
-  static constexpr std::size_t kMost = 256;
-  struct Candidate {
-    SampledRow<W> row;
-    double pace = 0;
-  };
-  double pace_to(const W& t, const std::vector<W>& values);
-
-  std::vector<Candidate> kept_;
-  std::optional<SampledRow<W>> last_;
-  std::vector<double> magnitudes_;
-  std::size_t stride_ = 1, in_group_ = 0;  // rows of which one is kept
-};
 
 // A moment at which an event fired.
 template <Number W>
@@ -97,9 +63,5 @@ RowComparison::Row difference(const Scenario& s, double t, const std::vector<W>&
   }
   return row;
 }
-
-extern template class SampledRows<long double>;
-extern template class SampledRows<Quad>;
-extern template class SampledRows<Multi>;
 
 }  // namespace anholon

@@ -1,6 +1,6 @@
 #include "program/fault.h"
 
-#include "model/model.h"
+#include "model/exponents.h"
 
 namespace anholon {
 
@@ -28,6 +28,27 @@ struct Described {
   std::uint32_t argument;  // the slot whose value explains the fault
 };
 
+// The power whose logarithm a slot is, as the user wrote it; empty if it is none.
+std::string power_of_log(const Program& p, std::uint32_t slot) {
+  const Instruction& in = p.tape.code[slot];
+  if (in.op != Op::function || in.index != static_cast<std::uint32_t>(Function::log)) return {};
+  const Graph& g = *p.system->model->graph;
+  for (std::uint32_t s = slot; s < p.tape.main_end; ++s) {
+    if (p.tape.nodes[s] == Tape::kNoNode) continue;
+    const std::optional<PowerParts> power = parts_of_power(g, p.tape.nodes[s]);
+    if (!power || power->base != p.tape.nodes[in.a]) continue;
+    const bool plain = power->factor == 1 && power->exponent.size() == 1 && power->exponent[0].second == 1;
+    const Expr exponent{p.system->model->graph.get(), plain ? power->exponent[0].first : 0};
+    const std::string base = short_text(p, in.a),
+                      of = plain ? print(exponent, p.system->model->names, Format::text) : std::string("...");
+    const auto atom = [](const std::string& text) {
+      return text.find_first_of(" +-*/^") == std::string::npos ? text : "(" + text + ")";
+    };
+    return atom(base) + "^" + atom(of);
+  }
+  return {};
+}
+
 // The formula of a slot, and its argument.
 Described described(const Program& p, std::uint32_t slot) {
   const Instruction& in = p.tape.code[slot];
@@ -43,6 +64,7 @@ Described described(const Program& p, std::uint32_t slot) {
   case Op::arctan2:
     return {"atan2(" + name(in.a) + ", " + name(in.b) + ")", in.a};
   case Op::function:
+    if (const std::string power = power_of_log(p, slot); !power.empty()) return {power, in.a};
     return {short_text(p, slot).empty() ? "a function of " + name(in.a) : short_text(p, slot), in.a};
   case Op::constant:
   case Op::pi:
@@ -88,6 +110,11 @@ Outcome fault_outcome(const Program& program, const Machine<N>& machine, int las
     if (!argument.empty())
       message += ", where " + argument + " = " + number_text(to_double(machine.series(d.argument)[0]), 6);
   }
+  if (!power_of_log(program, *slot).empty())
+    return {OutcomeKind::not_a_number, std::move(message),
+            "a power has a value at and below 0 only if its exponent is a fixed whole number: write abs(x)^n*sign(x) "
+            "for an "
+            "odd power of any sign of x, abs(x)^n for an even one"};
   return {OutcomeKind::not_a_number, std::move(message),
           "start or stop the motion away from this point, or change the formula so that it is smooth here"};
 }

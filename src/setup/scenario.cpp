@@ -6,6 +6,7 @@
 #include "expr/degree.h"
 #include "expr/normal.h"
 #include "expr/table.h"
+#include "model/exponents.h"
 #include "setup/large_angles.h"
 #include "structure/redundancy.h"
 
@@ -17,6 +18,23 @@ bool all_proved_zero(const Column& es) {
   for (Expr e : es)
     if (!proved_zero(e)) return false;
   return true;
+}
+
+// Whether e changes with one of the symbols, be it by steps, which have no derivative: sign(x'), a choice by x' > 0.
+bool depends_on(Expr e, const Column& on) {
+  if (!all_proved_zero(gradient(e, on))) return true;
+  const Graph& g = *e.graph;
+  for (NodeId id : reachable({&e, 1})) {
+    const Node& n = g.node(id);
+    const bool steps = n.kind == Kind::select || n.kind == Kind::lookup ||
+                       (n.kind == Kind::function && (n.index == static_cast<std::uint32_t>(Function::sign) ||
+                                                     n.index == static_cast<std::uint32_t>(Function::abs)));
+    if (!steps) continue;
+    const Expr decides{e.graph, g.terms(id)[0].node};
+    for (NodeId symbol : symbols({&decides, 1}))
+      if (std::any_of(on.begin(), on.end(), [&](Expr x) { return x.id == symbol; })) return true;
+  }
+  return false;
 }
 
 ConstraintClass classify_one(const Mechanics& m, std::size_t r) {
@@ -36,7 +54,7 @@ ConstraintClass classify_one(const Mechanics& m, std::size_t r) {
   Expr radial = g.zero();  // q^(m) dphi/dq^(m): equals d phi for phi homogeneous of degree d
   for (std::size_t a = 0; a < top.size(); ++a) {
     if (is_zero(m.Phi[r][a])) continue;
-    if (linear && !all_proved_zero(gradient(m.Phi[r][a], top))) linear = false;
+    linear = linear && !depends_on(m.Phi[r][a], top);
     radial += top[a] * m.Phi[r][a];
   }
   constexpr int kMost = 6;
@@ -301,7 +319,9 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
 
 Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
                       Scenario& s) {
-  Outcome o = prepare(clone(*model), form, choice, s);
+  const std::shared_ptr<Model> own = clone(*model);
+  if (choice.open_parameters) put_whole_exponents(*own, *choice.open_parameters);
+  Outcome o = prepare(own, form, choice, s);
   s.model->graph->freeze();
   return o;
 }

@@ -27,6 +27,9 @@ struct StateChoice {
   std::vector<StateOverride> overrides;
   std::optional<Rational> t;
   std::vector<std::size_t> eliminate;  // coordinates to eliminate; empty: chosen
+  // Exponents that are whole numbers are put in (model/exponents.h), but for those that depend on one of these
+  // parameters, which may get other values; nullopt: none is put in.
+  std::optional<std::vector<std::size_t>> open_parameters;
 };
 
 // A prepared system. Its graph is frozen and is its own, so reading a scenario never changes it and many threads may do

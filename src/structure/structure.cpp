@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "model/exponents.h"
 #include "tape/bind.h"
 
 namespace anholon {
@@ -246,12 +247,21 @@ std::optional<std::vector<std::vector<int>>> signature(const System& s, const Ta
   return sigma;
 }
 
+static bool any_power(const System& s) {
+  for (NodeId id : reachable(s.equations))
+    if (parts_of_power(*s.model->graph, id)) return true;
+  return false;
+}
+
 Outcome analyse(const System& s, const std::vector<double>& parameters, const ProbeHints& hints, Structure& out) {
   const std::size_t n = s.size();
   const auto sigma = signature(s, compile(s.equations), parameters, hints);
   if (!sigma)
     return {OutcomeKind::not_a_number, "the equations have no value near the initial data",
-            "look for roots or logarithms of negative numbers and divisions by zero at the start"};
+            std::string("look for roots or logarithms of negative numbers and divisions by zero at the start") +
+                (any_power(s) ? "; a power x^n has a value for x below 0 only if n is a fixed whole number: write "
+                                "abs(x)^n*sign(x) or abs(x)^n"
+                              : "")};
   out.sigma = *sigma;
   out.transversal = highest_transversal(out.sigma);
   if (out.transversal.empty()) {

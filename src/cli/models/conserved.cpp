@@ -11,17 +11,16 @@ static constexpr std::size_t kLongest = 160;
 
 static bool cyclic(const Conserved& c) { return c.name.rfind("momentum of ", 0) == 0; }
 
-void print_conserved(const Mechanics& m) {
-  const std::vector<Conserved> list = conserved(m);
-  if (list.empty()) return;
+// Those of a list that may jump, or the others; `where` says for which part of a motion.
+static void print_conserved(const Mechanics& m, const std::vector<Conserved>& list, bool jumps, const char* where) {
   std::string names;
-  const bool resets =
-      std::any_of(m.model->events.begin(), m.model->events.end(), [](const Event& e) { return !e.set.empty(); });
+  if (std::none_of(list.begin(), list.end(), [&](const Conserved& c) { return c.jumps == jumps; })) return;
   for (const Conserved& c : list)
-    if (cyclic(c)) names += (names.empty() ? "" : ", ") + c.name.substr(12);
-  say(stdout, "\nconserved along every motion%s (proved)%s\n", resets ? " between events" : "",
+    if (c.jumps == jumps && cyclic(c)) names += (names.empty() ? "" : ", ") + c.name.substr(12);
+  say(stdout, "\nconserved along every motion%s (proved)%s\n", where,
       names.empty() ? "" : (", cyclic: " + names).c_str());
   for (const Conserved& c : list) {
+    if (c.jumps != jumps) continue;
     const std::string formula = print(c.value, m.model->names, Format::text);
     const std::string unit = unit_of(*m.model, c);
     say(stdout, "  %s%s%s\n", c.name.c_str(), unit.empty() || unit == "1" ? "" : (" (" + unit + ")").c_str(),
@@ -29,11 +28,20 @@ void print_conserved(const Mechanics& m) {
   }
 }
 
+void print_conserved(const Mechanics& m) {
+  const std::vector<Conserved> list = conserved(m);
+  const bool resets =
+      std::any_of(m.model->events.begin(), m.model->events.end(), [](const Event& e) { return !e.set.empty(); });
+  print_conserved(m, list, false, resets ? " between events" : "");
+  print_conserved(m, list, true, resets ? " between events and jumps of the formula" : " between jumps of the formula");
+}
+
 void write_conserved(JsonWriter& j, const Mechanics& m) {
   j.key("conserved").open_array();
   for (const Conserved& c : conserved(m)) {
     j.open_object().key("name").string(c.name).key("cyclic").boolean(cyclic(c));
     j.key("formula").string(print(c.value, m.model->names, Format::text)).key("because").string(c.because);
+    if (c.jumps) j.key("jumps").boolean(true);
     if (const std::string unit = unit_of(*m.model, c); !unit.empty()) j.key("unit").string(unit);
     j.close();
   }

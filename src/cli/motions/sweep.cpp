@@ -14,6 +14,7 @@
 #include "cli/outputs.h"
 #include "cli/say.h"
 #include "cli/stop.h"
+#include "ensemble/case_scenario.h"
 #include "ensemble/parts/judgement.h"
 #include "ensemble/parts/scenarios.h"
 #include "ensemble/request.h"
@@ -115,6 +116,7 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   e.state = state_choice(o, *p.in.model);
   must_not_be_given(p.variation->varied(), e.state);
   e.varied = p.variation->varied();
+  e.state.open_parameters = varied_parameters(e);
   e.cases = p.variation->cases();
   e.numbers = [&variation = *p.variation](std::size_t k) { return EnsembleCase{variation(k), {}}; };
   e.threads = static_cast<std::size_t>(o.threads);

@@ -76,6 +76,10 @@ power is zero, at the start (a ball with quadratic drag falls from rest) or on t
 that holds, a thrust along a velocity that is zero) it stops, and the outcome names the formula. What is recorded at exactly that moment is the value there:
 `sign` is 0, `unit` has none (`nan`); accelerations are those right after it.
 
+**Powers.** `x^n` has a value at x = 0 and below only if `n` is known to be a whole number: a number of the formula, or a parameter such as `n = 3`, which is then put into the
+equations of a motion. A sweep over `n` derives each case with a whole exponent anew. For other exponents, and for those that depend on a mode, write `abs(x)^n*sign(x)` or
+`abs(x)^n`.
+
 **Conditions** `a > b`, `>=`, `<`, `<=` stand in `piecewise` only.
 
 )md";

@@ -707,6 +707,30 @@ x = 1
   EXPECT_NE(means("x''^3").find("in long double"), std::string::npos) << means("x''^3");
 }
 
+// Results and second runs compute a monitor in long double, where its terms cancel alike.
+TEST(Ensemble, CountsWhatCancelsInBothRuns) {
+  Sweep s(R"(coordinates = ["x"]
+parameters = {R = 1e6}
+particle = [{name = "p", mass = 1, position = "x*ex"}]
+force = [{on = "p", vector = "(1/(R + x)^2 - 1/R^2)*1e12*ex"}]
+monitor = {F = "(1/(R + x)^2 - 1/R^2)*1e12"}
+)");
+  s.options.varied = {initial(0, 0)};
+  s.cases({{Rational(1)}, {Rational(2)}});
+  s.options.to = 5;
+  s.options.estimate = ErrorEstimate::short_runs;
+  const std::vector<CaseResult> results = s.go();
+  ASSERT_TRUE(s.report.error.error) << s.report.error.none;
+  // In quadruple precision F is -1.9999470004373289187e-06.
+  const double error = std::abs(results[0].last.back() + 1.9999470004373289187e-06) / 2e-06;
+  EXPECT_GT(error, 1e-15);
+  for (const KindError& kind : s.report.error.error->kinds)
+    if (kind.kind == ColumnKind::monitor) {
+      EXPECT_LT(error, 10 * kind.error);
+      EXPECT_LT(kind.error, 1e-12);
+    }
+}
+
 TEST(Ensemble, HasNothingToSayWhereNoCaseFinishes) {
   Sweep s(kPendulum);
   s.options.varied = {parameter(s.model(), "g")};

@@ -128,6 +128,31 @@ field = "-mu/norm(here)^3*here"
   EXPECT_EQ(names_of(test::model_of(fall + "[observer]\nspin = \"w*t*ez\"\n")), Names{turning[1]});
 }
 
+// The proofs hold where formulas have derivatives: h + U keeps its value where U goes on, and not where U jumps.
+TEST(Conserved, IsMarkedWhereItsFormulaJumps) {
+  const auto jumps = [](const std::string& potential, const std::string& more = "") {
+    const auto model = test::model_of(
+        "coordinates = [\"x\", \"y\"]\nparameters = {k = 3, l = 1}\n" + more +
+        "[[particle]]\nname = \"P\"\nmass = 2\nposition = \"x*ex + y*ey\"\n[potential]\nU = \"" + potential + "\"\n");
+    const Mechanics m = mechanics(*model);
+    const std::vector<Conserved> list = conserved(m);
+    EXPECT_FALSE(list.empty()) << potential;
+    if (list.empty()) return false;
+    EXPECT_EQ(list.front().name, "energy") << potential;
+    for (std::size_t i = 1; i < list.size(); ++i) EXPECT_FALSE(list[i].jumps) << list[i].name;
+    return list.front().jumps;
+  };
+  for (const char* potential :
+       {"k*sign(x - l/2)", "piecewise(x > 0.5, k*x^2, k*x)", "k*atan2(y, x)", "abs(x) + sign(x)", "x^2*choose(x, 1, 2)",
+        "piecewise(x > 1, 1, x > 0, x^2, x)*sign(y)"})
+    EXPECT_TRUE(jumps(potential)) << potential;
+  for (const char* potential :
+       {"k*abs(x)", "k*max(x, l)^2", "piecewise(x > 0.5, k*x^2, k*x/2)", "k*x*sign(x)", "k*x^2*sign(x)*sign(y)*y",
+        "piecewise(x > l, k*(x - l)^2, x < -l, k*(x + l)^2, 0)", "piecewise(x > 1, x, x < -1, -x, 1)",
+        "k/2*max(sqrt(x^2 + y^2) - l, 0)^2", "x^2*choose(k, 1, 2)"})
+    EXPECT_FALSE(jumps(potential)) << potential;
+}
+
 TEST(Conserved, SpringsGivenAsTensions) {
   const std::string spring = R"toml(coordinates = ["x", "y"]
 [parameters]

@@ -147,5 +147,37 @@ TEST(OneSided, InManyDigitsAndByOtherMethods) {
   EXPECT_NEAR(rk.last("y'"), -std::tanh(2), 1e-10);
 }
 
+// The equations have no value where the motion ends, so the trial values of the search for one must not be in its row.
+TEST(OneSided, WhereNoMotionGoesOnNothingLeadsTheState) {
+  const std::string rolling = R"toml(coordinates = ["x", "y", "th"]
+frame.B = "rotz(th)"
+body = [{name = "s", mass = 2, inertia = 0.5, center = "x*ex + y*ey + 0.3*B.x", orientation = "B"}]
+force = [{on = "s", vector = "sqrt(1 - x)*B.x"}]
+constraint = [{name = "blade", equation = "-x'*sin(th) + y'*cos(th) = 0"}]
+initial = {"x'" = 1, "th'" = 0.4}
+monitor = {thrust = "sqrt(1 - x)", side = "lambda.blade"}
+)toml";
+  const std::string free = particle("acos(x)*ey - 3*ex", "initial = {x = 0.5, \"x'\" = 1.9}\nmonitor.a = \"x''\"");
+  const std::function<void(SimulationOptions&)> numbers[] = {
+      [](SimulationOptions&) {}, [](SimulationOptions& o) { o.precision = Precision::quad; },
+      [](SimulationOptions& o) { o.method = Method::runge_kutta; }};
+  for (const std::string& text : {rolling, free})
+    for (const auto& more : numbers) {
+      const Result r = run(text, 4, "routh", [&](SimulationOptions& o) {
+        o.every = Rational(1, 2);
+        more(o);
+      });
+      EXPECT_EQ(r.report.outcome.kind, OutcomeKind::not_a_number);
+      EXPECT_NEAR(r.last("x"), 1, 1e-11);
+      for (const char* name : {"x''", "y''", text == rolling ? "side" : "a"})
+        EXPECT_TRUE(std::isnan(r.last(name))) << name << " is " << r.last(name);
+      EXPECT_LT(r.report.newton, 1e-15);
+      for (const WatchedReport& m : r.report.monitors) {
+        EXPECT_LT(m.greatest.value, 1.001) << m.name;
+        EXPECT_GE(m.least.value, -3.001) << m.name;
+      }
+    }
+}
+
 }  // namespace
 }  // namespace anholon::one_sided_test

@@ -1,0 +1,154 @@
+#include "model/exponents.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace anholon {
+
+namespace {
+
+constexpr int kLargestExponent = 1000;  // that a formula may have
+
+bool is_log(const Node& n) { return n.kind == Kind::function && n.index == static_cast<std::uint32_t>(Function::log); }
+
+// e with the values of parameters, however they follow from one another, and these parameters. nullopt if e holds another
+// symbol.
+std::optional<Expr> with_values(const Model& model, Expr e, std::set<std::size_t>& used) {
+  const Graph& g = *model.graph;
+  for (std::size_t depth = 0; depth <= model.parameters.size(); ++depth) {
+    const std::vector<NodeId> in = symbols({&e, 1});
+    if (in.empty()) return e;
+    for (NodeId id : in) {
+      if (g.node(id).kind != Kind::parameter) return std::nullopt;
+      used.insert(g.node(id).index);
+    }
+    e = substitute({&e, 1}, [&](NodeId id) { return model.parameters[g.node(id).index].value; }).front();
+  }
+  return std::nullopt;
+}
+
+// An exponent of parameters that nothing changes along a motion.
+struct FixedExponent {
+  Expr value;
+  std::set<std::size_t> in_it, follows_from;  // parameters
+};
+
+std::optional<FixedExponent> fixed(const Model& model, Expr exponent) {
+  FixedExponent f;
+  for (NodeId id : symbols({&exponent, 1}))
+    if (const Node& n = model.graph->node(id); n.kind == Kind::parameter) f.in_it.insert(n.index);
+  const std::optional<Expr> value = with_values(model, exponent, f.follows_from);
+  const bool set_by_events = std::any_of(f.follows_from.begin(), f.follows_from.end(),
+                                         [&](std::size_t i) { return model.parameters[i].mode; });
+  if (set_by_events || !value) return std::nullopt;
+  f.value = *value;
+  return f;
+}
+
+bool whole(Expr e) {
+  return is_number(e) && number_value(e).is_integer() && !(abs(number_value(e)) > kLargestExponent);
+}
+
+// base^exponent with an exponent of parameters.
+struct GeneralPower {
+  Expr base, exponent;
+};
+
+std::optional<GeneralPower> general_power(Graph& g, NodeId id) {
+  const std::optional<PowerParts> p = parts_of_power(g, id);
+  if (!p || p->exponent.empty()) return std::nullopt;
+  std::vector<std::pair<Expr, Rational>> factors;
+  for (const auto& [node, weight] : p->exponent) {
+    factors.push_back({{&g, node}, weight});
+    for (NodeId symbol : symbols({&factors.back().first, 1}))
+      if (g.node(symbol).kind != Kind::parameter) return std::nullopt;
+  }
+  return GeneralPower{{&g, p->base}, p->factor * g.product(factors)};
+}
+
+Column all_expressions(Model& model) {
+  Column all;
+  for_each_expression(model, [&](Expr& e) {
+    if (e.graph) all.push_back(e);
+  });
+  return all;
+}
+
+bool depends(const FixedExponent& e, const std::vector<std::size_t>& on) {
+  return std::any_of(on.begin(), on.end(), [&](std::size_t i) { return e.follows_from.count(i) > 0; });
+}
+
+}  // namespace
+
+std::optional<PowerParts> parts_of_power(const Graph& g, NodeId id) {
+  const Node& n = g.node(id);
+  if (n.kind != Kind::function || n.index != static_cast<std::uint32_t>(Function::exp)) return std::nullopt;
+  NodeId argument = g.terms(id)[0].node;
+  PowerParts p{0, 1, {}};
+  if (g.node(argument).kind == Kind::sum) {
+    const std::span<const Term> terms = g.summands(argument);
+    if (terms.size() != 1) return std::nullopt;
+    p.factor = g.rational(terms[0].weight);
+    argument = terms[0].node;
+  }
+  const std::span<const Term> factors = g.terms(argument);
+  if (is_log(g.node(argument))) {
+    p.base = factors[0].node;
+    return p;
+  }
+  if (g.node(argument).kind != Kind::product) return std::nullopt;
+  bool known = false;
+  for (const Term& t : factors)
+    if (!known && is_log(g.node(t.node)) && g.rational(t.weight) == 1)
+      known = true, p.base = g.terms(t.node)[0].node;
+    else
+      p.exponent.push_back({t.node, g.rational(t.weight)});
+  return known ? std::optional(std::move(p)) : std::nullopt;
+}
+
+void put_whole_exponents(Model& model, const std::vector<std::size_t>& open) {
+  Graph& g = *model.graph;
+  const Column all = all_expressions(model);
+  std::unordered_map<NodeId, Expr> by;
+  std::set<std::size_t> known;
+  for (NodeId id : reachable(all)) {
+    const std::optional<GeneralPower> p = general_power(g, id);
+    const std::optional<FixedExponent> e = p ? fixed(model, p->exponent) : std::nullopt;
+    if (!e || !whole(e->value) || depends(*e, open)) continue;
+    const Expr base = replace_nodes({&p->base, 1}, by).front();
+    if (is_zero(base)) continue;
+    by.emplace(id, pow(base, number_value(e->value)));
+    known.insert(e->in_it.begin(), e->in_it.end());
+  }
+  if (by.empty()) return;
+  for (const std::size_t i : known) {
+    std::set<std::size_t> used;
+    by.emplace(g.parameter(static_cast<std::uint32_t>(i)).id, *with_values(model, model.parameters[i].value, used));
+    std::string& doc = model.parameters[i].doc;
+    doc += doc.empty() ? "in a whole exponent: put in as a number" : " (in a whole exponent: put in as a number)";
+  }
+  const Column replaced = replace_nodes(all, by);
+  std::size_t next = 0;
+  for_each_expression(model, [&](Expr& e) {
+    if (e.graph) e = replaced[next++];
+  });
+}
+
+Column exponents_of(Model& model, const std::vector<std::size_t>& parameters) {
+  Column list;
+  for (NodeId id : reachable(all_expressions(model))) {
+    const std::optional<GeneralPower> p = general_power(*model.graph, id);
+    if (const auto e = p ? fixed(model, p->exponent) : std::nullopt; e && depends(*e, parameters))
+      list.push_back(p->exponent);
+  }
+  return list;
+}
+
+bool any_exponents(const Model& model) {
+  std::vector<std::size_t> all(model.parameters.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return !exponents_of(*clone(model), all).empty();
+}
+
+}  // namespace anholon
