@@ -28,11 +28,12 @@ bool SlipStart::hold(Outcome& outcome) {
   bodies_.against_friction(p, c);
   const std::vector<ContactSolution> list = consistent_modes(p);
   if (list.size() != 1 || list[0].modes[c].touch != Touch::slips) return true;
-  held_[c] = {trial};
-  const long double h = time_to_grow(c, list[0].x, trial);
+  const long double rate = bodies_.dynamics.slip_acceleration(c, list[0].x) / trial;
+  held_[c] = {trial, true, rate};
+  const long double h = time_to_grow(c, rate);
   if (!(h > 2 * trial)) return true;
   if (const Hold how = hold_for(c, h - trial, outcome); how != Hold::to_its_end) return how != Hold::motion_ends;
-  held_[c] = {h};
+  held_[c].time = h;
   if (holds_again(c)) bodies_.excluded[c].stick = false;
   return true;
 }
@@ -50,9 +51,11 @@ bool SlipStart::was_held(std::size_t c) const { return together_ > 0 && bodies_.
 
 long double SlipStart::first_slip(std::size_t c, const std::vector<long double>& accelerations) const {
   const long double seed = kSeed * std::max(bodies_.dynamics.speed(), 1.0L);
-  const auto [time, grows] = held_[c];
+  const auto [time, grows, rate] = held_[c];
   if (!(time > 0)) return seed;
-  return std::max(seed, bodies_.dynamics.slip_acceleration(c, accelerations) * time / (grows ? 2 : 1));
+  const long double a = bodies_.dynamics.slip_acceleration(c, accelerations);
+  // The integral of a = rate t + c t^2.
+  return std::max(seed, grows ? a * time / 3 + rate * time * time / 6 : a * time);
 }
 
 void SlipStart::guess_directions(ContactProblem& p) const {
@@ -201,21 +204,20 @@ bool SlipStart::hold_to_grow(Outcome& outcome) {
   for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
     if (!was_held(c) || bodies_.contacts[c].slip.size() != 2 || list[0].modes[c].touch != Touch::slips) continue;
     slipping.push_back(c);
-    held_[c] = {together_};
-    h = std::max(h, time_to_grow(c, list[0].x, together_));
+    const long double rate = bodies_.dynamics.slip_acceleration(c, list[0].x) / together_;
+    held_[c] = {together_, true, rate};
+    h = std::max(h, time_to_grow(c, rate));
   }
   if (!(h > 2 * together_)) return true;
   if (!hold_together(h - together_, outcome)) return false;
   together_ = h;
-  for (const std::size_t c : slipping) held_[c] = {h};
+  for (const std::size_t c : slipping) held_[c].time = h;
   return true;
 }
 
-long double SlipStart::time_to_grow(std::size_t c, const std::vector<long double>& accelerations,
-                                    long double trial) const {
+long double SlipStart::time_to_grow(std::size_t c, long double rate) const {
   constexpr long double kHeld = 1e-7L, kMost = 3e-2L, kRoundOff = 1e-9L;
   const ContactDynamics::Place& at = bodies_.dynamics.place(c);
-  const long double rate = bodies_.dynamics.slip_acceleration(c, accelerations) / trial;
   // A contact that never moved has terms of unknown size.
   const long double scale = at.slip_scale > kRoundOff * at.slip_reach ? at.slip_scale : 1;
   return std::min(std::sqrt(2 * kHeld * scale / rate), kMost / std::max(bodies_.dynamics.speed(), 1.0L));

@@ -54,8 +54,8 @@ class SlipStart {
   bool hold_together(long double time, Outcome& outcome);
   // As hold() does for one contact: those of two components are held until their slip has a velocity by which it is followed.
   bool hold_to_grow(Outcome& outcome);
-  // How long a contact that was held for `trial` is to be held until the slip velocity is kHeld of its terms.
-  long double time_to_grow(std::size_t c, const std::vector<long double>& accelerations, long double trial) const;
+  // How long a contact is to be held until the slip velocity is kHeld of its terms, by the rate of its slip acceleration.
+  long double time_to_grow(std::size_t c, long double rate) const;
   // Whether the friction that is needed to hold a contact, which was too large, no longer is: a disc that rocks needs most
   // where it turns back.
   bool holds_again(std::size_t c);
@@ -76,7 +76,8 @@ class SlipStart {
   // The time for which a contact that begins to slip was held. The acceleration of the slip then
   struct Held {
     long double time = 0;
-    bool grows = true;  // is zero where the slip begins; else it hardly changes
+    bool grows = true;     // is zero where the slip begins; else it hardly changes
+    long double rate = 0;  // of one that grows, where the slip begins
   };
   std::vector<Held> held_;
   struct Waiting {
