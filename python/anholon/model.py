@@ -13,6 +13,7 @@ from ._errors import Interrupted, ModelError, MotionError
 from ._names import names_of
 from ._numbers import Number, float_of, list_of, text_of, texts_of, varied_list, whole
 from ._progress import Progress, Shown
+from ._recipe import Recipe
 from ._source import Source
 from ._sweep_case import runs_through_scenarios
 from ._sweep_filling import number_of_cases, SweepRequest, Words
@@ -163,6 +164,7 @@ class Model(Analysed):
         """
         options = {"to": to, "every": every, "tolerance": tolerance, "method": method, "digits": digits, "order": order, "most-steps": most_steps}
         words = {name: text_of(value) for name, value in options.items() if value is not None}
+        eliminate = eliminate if isinstance(eliminate, str) else list(eliminate)
         if error_estimate is not None:
             words["error-estimate"] = "always" if error_estimate else "never"
         for name, value in others.items():
@@ -173,17 +175,11 @@ class Model(Analysed):
         except MotionError as error:
             return Run(self, None, error.outcome)
         times = list_of(at)
-
-        def again() -> _core.Run:
-            made, raised = _core.simulate(system, {**words, "error-estimate": "never"}, times, True, stop, None)
-            if isinstance(raised, BaseException):
-                raise raised
-            return made
-
         end = float_of(times[-1] if times else words.get("to"))
         with Shown(progress, self.title, end, start=system.start) as tell:
             core, raised = _core.simulate(system, words, times, dense, stop, tell)
-        run = Run(self, core, core.outcome, again)
+        cut = raised is not None or (stop is not None and core.outcome.kind == "interrupted")
+        run = Run(self, core, core.outcome, Recipe(self, form, texts_of(initial), eliminate, words, times, stop, cut))
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted(run) from None
         if isinstance(raised, BaseException):

@@ -5,11 +5,12 @@ from __future__ import annotations
 import html
 import json
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _arrow, _core, _display, _widget
 from ._errors import ColumnError, ModelError, MotionError
+from ._recipe import KeptRun, Recipe
 
 if TYPE_CHECKING:
     import numpy as np
@@ -77,6 +78,9 @@ class Figure:
 class Run:
     """One motion. ``run["theta"]`` is an array of what the library holds, without a copy; it cannot be written to.
 
+    It can be pickled, so that processes of a pool return it: with its numbers, events and report. Pages, files and
+    ``run(t)`` are computed again there.
+
     Example:
         >>> import anholon as an
         >>> run = an.load("disc").simulate(to=2, every="0.5")
@@ -86,14 +90,20 @@ class Run:
         (5,)
     """
 
-    def __init__(self, model: Model, core: _core.Run | None, outcome: _core.Outcome, again: Callable[[], _core.Run] | None = None) -> None:
-        self._core = core
+    def __init__(self, model: Model, core: _core.Run | None, outcome: _core.Outcome, recipe: Recipe | None = None) -> None:
+        self._core: _core.Run | KeptRun | None = core
         self._dense = core if core is not None and core.has_dense else None
-        self._again = again
+        self._recipe = recipe
         self._columns = {} if core is None else {column.name: column for column in core.columns}
         self.model: Model = model
         #: How the motion ended, with a remedy where it stopped before its end. A motion never raises: see expect().
         self.outcome: _core.Outcome = outcome
+
+    def __getstate__(self) -> dict[str, Any]:
+        """To another process go the numbers, the events and the report. It computes the rest again where it is asked for."""
+        recipe = self._recipe and self._recipe.for_another_process()
+        kept = None if self._core is None or recipe is None else KeptRun(self._core, recipe)
+        return {**self.__dict__, "_core": kept, "_dense": None, "_recipe": recipe}
 
     # ---- arrays ----
 
@@ -225,9 +235,9 @@ class Run:
             hint = f"run[{t!r}] is the column of that name" if isinstance(t, str) else "run(1.5), run([1, 2.5])"
             raise ModelError(f"run(t) takes times in seconds, one number or an array, not {t!r:.60}\nhint: {hint}") from None
         if self._dense is None:
-            if self._again is None:
+            if self._recipe is None:
                 raise MotionError(repr(self.outcome), self.outcome)
-            self._dense = self._again()
+            self._dense = self._recipe.run({"error-estimate": "never"}, dense=True)
         most = self._dense.report.order
         if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or not 0 <= order <= most:
             raise ModelError(f"order is a whole number from 0 to {most}, the order of the polynomials of this run, not {order!r:.60}\nhint: run(t, order=1) has the rates")
@@ -314,7 +324,7 @@ class Run:
         """Columns, rows and the report, as ``anholon simulate --json`` prints them."""
         return json.loads(self._required().json())
 
-    def _required(self) -> _core.Run:
+    def _required(self) -> _core.Run | KeptRun:
         if self._core is None:
             raise MotionError(repr(self.outcome), self.outcome)
         return self._core

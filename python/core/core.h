@@ -146,4 +146,14 @@ void bind_motions(nb::module_& m);
 void bind_sweeps(nb::module_& m);
 void bind_sweep_folders(nb::module_& m);
 
+// Makes a class of numbers and texts one that pickle takes to another process.
+template <class T, class... Members>
+void picklable(nb::class_<T>& c, Members T::*... members) {
+  c.def("__getstate__", [members...](const T& of) { return std::make_tuple(of.*members...); });
+  c.def("__setstate__", [members...](T& of, const std::tuple<Members...>& state) {
+    new (&of) T{};
+    std::apply([&](const Members&... values) { ((of.*members = values), ...); }, state);
+  });
+}
+
 }  // namespace anholon::python

@@ -49,33 +49,37 @@ void bind_system(nb::module_& m) {
 }
 
 void bind_run(nb::module_& m) {
-  nb::class_<Column>(m, "Column", "A column of a run.")
-      .def_ro("name", &Column::name)
+  nb::class_<Column> column(m, "Column", "A column of a run.");
+  column.def_ro("name", &Column::name)
       .def_ro("kind", &Column::kind, "'coordinates', 'velocities', 'multipliers', 'reactions', …")
       .def_ro("unit", &Column::unit, "Empty where the model names none.")
       .def_ro("order", &Column::order, "Of the derivative.")
       .def_ro("latex", &Column::latex, "Its symbol, in the notation of the model.")
       .def_ro("mathml", &Column::mathml)
       .def("__repr__", [](const Column& c) { return c.unit.empty() ? c.name : c.name + " [" + c.unit + "]"; });
-  nb::class_<Event::Change>(m, "Change", "A value that an event has changed.")
-      .def_ro("name", &Event::Change::name)
+  picklable(column, &Column::name, &Column::kind, &Column::unit, &Column::order, &Column::latex, &Column::mathml);
+  nb::class_<Event::Change> change(m, "Change", "A value that an event has changed.");
+  change.def_ro("name", &Event::Change::name)
       .def_ro("before", &Event::Change::before)
       .def_ro("after", &Event::Change::after);
-  nb::class_<Event>(m, "Event", "An event that happened.")
-      .def_ro("name", &Event::name)
+  picklable(change, &Event::Change::name, &Event::Change::before, &Event::Change::after);
+  nb::class_<Event> event(m, "Event", "An event that happened.");
+  event.def_ro("name", &Event::name)
       .def_ro("t", &Event::t, "s.")
       .def_ro("changes", &Event::changes)
       .def_ro("stop", &Event::stop, "It ended the motion.")
       .def("__repr__",
            [](const Event& e) { return nb::cast<std::string>(nb::str("{} at t = {!r}").format(e.name, e.t)); });
-  nb::class_<Trust>(m, "Trust", "Digits of the columns of one kind that can be trusted.")
-      .def_ro("kind", &Trust::kind)
+  picklable(event, &Event::name, &Event::t, &Event::changes, &Event::stop);
+  nb::class_<Trust> trust(m, "Trust", "Digits of the columns of one kind that can be trusted.");
+  trust.def_ro("kind", &Trust::kind)
       .def_ro("digits", &Trust::digits)
       .def_ro("error", &Trust::error, "Of the worst column, in relation to its largest value.")
       .def_ro("worst", &Trust::worst, "The worst column.")
       .def("__repr__", [](const Trust& t) { return t.kind + ": " + std::to_string(t.digits) + " digits"; });
-  nb::class_<Watched>(m, "Watched", "A quantity that was watched from the first row to the last.")
-      .def_ro("name", &Watched::name)
+  picklable(trust, &Trust::kind, &Trust::digits, &Trust::error, &Trust::worst);
+  nb::class_<Watched> watched(m, "Watched", "A quantity that was watched from the first row to the last.");
+  watched.def_ro("name", &Watched::name)
       .def_ro("first", &Watched::first)
       .def_ro("last", &Watched::last)
       .def_ro("least", &Watched::least)
@@ -84,6 +88,8 @@ void bind_run(nb::module_& m) {
       .def_ro("conserved", &Watched::conserved, "It is known to be an integral of the motion.")
       .def("__repr__",
            [](const Watched& w) { return nb::cast<std::string>(nb::str("{} = {!r}").format(w.name, w.last)); });
+  picklable(watched, &Watched::name, &Watched::first, &Watched::last, &Watched::least, &Watched::greatest,
+            &Watched::largest_change, &Watched::conserved);
   nb::class_<Report> report(
       m, "Report",
       "How far a run can be trusted. All residuals are relative to the greatest of their terms along the "
@@ -107,6 +113,10 @@ void bind_run(nb::module_& m) {
       .def_ro("rows_looked_at", &Report::rows_looked_at,
               "At so many rows the residuals were computed; the report of a long run looks at ever fewer.");
   shown(report, "report");
+  picklable(report, &Report::newton, &Report::projected, &Report::constraints, &Report::before_projection,
+            &Report::power, &Report::smallest_sigma, &Report::smallest_sigma_t, &Report::steps, &Report::order,
+            &Report::method, &Report::seconds, &Report::trust, &Report::no_trust, &Report::watched, &Report::warnings,
+            &Report::notes, &Report::rows_looked_at);
   nb::class_<Run>(m, "Run")
       .def_prop_ro("outcome", &Run::outcome)
       .def_prop_ro("rows", &Run::rows)

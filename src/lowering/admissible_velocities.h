@@ -48,7 +48,7 @@ class AdmissibleVelocities {
       std::size_t v, w;
       Expr square;  // a_v^2 + a_w^2
     };
-    std::optional<Pair> pair;
+    std::optional<Pair> pair = std::nullopt;
   };
   std::optional<Row> row(Expr constraint);
   std::optional<Row::Pair> pair_of(const Row& r);

@@ -1,0 +1,110 @@
+"""How a motion is computed, so that it can be computed again: for more of it, or in another process."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from . import _core
+from ._errors import ModelError
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from .model import Model
+
+    Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """The model of a motion with all options that change it."""
+
+    model: Model
+    form: str
+    initial: dict[str, str]
+    eliminate: str | list[str]
+    words: dict[str, str]
+    times: list[str]
+    stop: Callable[[], bool] | None = None
+    cut: bool = False  # it was ended from outside, so that it is no longer the same
+
+    def run(self, words: dict[str, str] | None = None, *, dense: bool = False) -> _core.Run:
+        """The motion, the same bits again."""
+        system = self.model._system(self.form, self.initial, self.eliminate)
+        made, raised = _core.simulate(system, {**self.words, **(words or {})}, self.times, dense, self.stop, None)
+        if isinstance(raised, BaseException):
+            raise raised
+        return made
+
+    def for_another_process(self) -> Recipe:
+        """The same without what stops it, which may belong to this process."""
+        return replace(self, stop=None)
+
+
+class KeptRun:
+    """What a run takes to another process: its numbers, events and report. The rest is computed again where it is asked for."""
+
+    has_dense: bool = False
+
+    def __init__(self, core: _core.Run | KeptRun, recipe: Recipe) -> None:
+        self.columns: list[_core.Column] = core.columns
+        self.rows: int = core.rows
+        self.events: list[_core.Event] = core.events
+        self.report: _core.Report = core.report
+        self._block: Array = core.block(0, len(self.columns)).copy(order="F")
+        self._recipe = recipe
+        self._made: _core.Run | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_made": None}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._block.flags.writeable = False
+
+    def column(self, name: str) -> Array:
+        """The numbers of a column."""
+        return self._block[:, [column.name for column in self.columns].index(name)]
+
+    def block(self, first: int, count: int) -> Array:
+        """The numbers of columns side by side, shape (rows, count)."""
+        return self._block[:, first : first + count]
+
+    def made(self) -> _core.Run:
+        """The run itself, computed again.
+
+        Raises:
+            ModelError: it was ended from outside.
+        """
+        if self._recipe.cut:
+            raise ModelError("a run that was stopped from outside takes its numbers, events and report to another process, and no more\nhint: save it, or make its page, where it was computed")
+        if self._made is None:
+            self._made = self._recipe.run()
+        return self._made
+
+    def text(self, row: int, column: str) -> str:
+        """A number with all its digits."""
+        return self.made().text(row, column)
+
+    def page(self, forms: list[str], proof: bool) -> str:
+        """The page of the run."""
+        return self.made().page(forms, proof)
+
+    def picture_data(self) -> str:
+        """What the picture plays."""
+        return self.made().picture_data()
+
+    def figure(self, columns: list[str], x: str) -> str:
+        """Columns as SVG."""
+        return self.made().figure(columns, x)
+
+    def json(self) -> str:
+        """The text of ``anholon simulate --json``."""
+        return self.made().json()
+
+    def write(self, path: str) -> str:
+        """Writes a file."""
+        return self.made().write(path)
