@@ -14,7 +14,7 @@ namespace {
 // Choices inside of choices are taken one after the other, up to this depth.
 constexpr int kDeepest = 16;
 // Products of terms for a proof; a longer one is given up, and the expression is said to jump.
-constexpr long kMostWork = 1'000'000;
+constexpr long kMostOfProof = 1'000'000;
 
 bool varies(Expr e) {
   for (NodeId id : symbols({&e, 1}))
@@ -39,7 +39,7 @@ Expr decides(Expr e) {
 int same_sign(Expr a, Expr b) {
   if (a == b) return 1;
   if (a == -b) return -1;
-  const std::optional<Expr> ratio = is_zero(b) ? std::nullopt : expanded(a / b, kMostWork);
+  const std::optional<Expr> ratio = is_zero(b) ? std::nullopt : expanded(a / b, kMostOfProof);
   return ratio && is_number(*ratio) ? sgn(number_value(*ratio)) : 0;
 }
 
@@ -68,7 +68,7 @@ Expr on_side(Expr e, Expr s, int side) {
 }
 
 std::optional<Expr> denominator(Expr e) {
-  const std::optional<NormalForm> f = normal_form(e, {}, kMostWork);
+  const std::optional<NormalForm> f = normal_form(e, {}, kMostOfProof);
   return f ? std::optional(expression(f->denominator, f->generators)) : std::nullopt;
 }
 
@@ -100,7 +100,7 @@ std::optional<Expr> where_zero(Expr e, Expr s) {
     if (g.node(id).kind == Kind::parameter || g.node(id).kind == Kind::pi) continue;
     const Expr symbol{e.graph, id}, slope = partial(s, symbol);
     if (varies(slope) || is_zero(slope)) continue;
-    const Expr root = expanded(symbol - s / slope, kMostWork).value_or(symbol - s / slope);
+    const Expr root = expanded(symbol - s / slope, kMostOfProof).value_or(symbol - s / slope);
     const Expr there = substitute({&e, 1}, [&](NodeId other) { return other == id ? root : Expr{}; }).front();
     return there;
   }
@@ -114,7 +114,7 @@ bool vanishes_with(Expr difference, Expr s, const std::vector<double>& parameter
     if (proved_zero(chosen(*there, parameters))) return true;
   const std::optional<Expr> own = denominator(difference), divided = denominator(difference / s);
   if (!own || !divided) return false;
-  const std::optional<Expr> more = expanded(*divided / *own, kMostWork);
+  const std::optional<Expr> more = expanded(*divided / *own, kMostOfProof);
   return more && !varies(*more);
 }
 
