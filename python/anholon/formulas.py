@@ -242,11 +242,11 @@ class Formulas:
 
         library = _Library(mpmath, _SHORT | {"abs": "fabs"}, lambda condition, a, b: a if condition else b)
         t = mpmath.mpf(t)
-        u, p = self._completed(library, t, x, u, p, mpmath.mpf)
+        inputs, parameters = self._completed(library, t, x, u, p, mpmath.mpf)
         lead = None
         if not self._module["LINEAR"]:
-            lead = self.dynamics._core.leading(float(t), *([float(v) for v in values] for values in (x, u, p)))
-        return self.evaluate(library, solve, t, x, u, p, mpmath.mpf, lead)
+            lead = self.dynamics._core.leading(float(t), *([float(v) for v in values] for values in (x, inputs, parameters)))
+        return self.evaluate(library, solve, t, x, inputs, parameters, mpmath.mpf, lead)
 
 
 class SymPyRates:
