@@ -106,32 +106,36 @@ class Rewriting {
   Expr product(NodeId id) {
     Factors factors;
     for (const Term& t : g_.terms(id)) factors[t.node] = g_.rational(t.weight);
+    Expr all = g_.one();
     for (const Term& t : g_.terms(id)) {
       const Node& n = g_.node(t.node);
       if (n.kind != Kind::function || static_cast<Function>(n.index) != Function::sign) continue;
-      take_sign(factors, t.node, g_.terms(t.node)[0].node);
+      all = all * without_sign(factors, t.node, g_.terms(t.node)[0].node);
     }
-    Expr all = g_.one();
     for (const auto& [base, power] : factors)
       all = all * (power.is_integer() ? pow(at(base), power) : root(at(base), power));
-    return extra_ ? all * *std::exchange(extra_, std::nullopt) : all;
+    return all;
   }
-  void take_sign(Factors& factors, NodeId sign, NodeId u) {
-    const Rational power = factors.at(sign);
+  // Takes sign(u) out of the factors if they hold u or |u|, and returns what stands for both; 1 if that is among the factors.
+  Expr without_sign(Factors& factors, NodeId sign, NodeId u) {
     const auto positive = [](const Rational& r) { return r.is_integer() && r > 0; };
-    if (!positive(power)) return;
+    const Rational power = factors.at(sign);
+    if (!positive(power)) return g_.one();
     const bool odd = !Rational(power / 2).is_integer();
-    const Expr size = root(at(u) * at(u), {1, 2});
-    const auto put = [&](Expr e) { extra_ = extra_ ? *extra_ * e : e; };
-    const auto own = factors.find(u);
-    const auto absolute = factors.find(abs(node(u)).id);
+    const auto own = factors.find(u), absolute = factors.find(abs(node(u)).id);
     if (own != factors.end() && positive(own->second)) {
       factors.erase(sign);
-      if (odd) own->second = own->second - 1, put(size);
-    } else if (absolute != factors.end() && positive(absolute->second)) {
-      factors.erase(sign);
-      if (odd) absolute->second = absolute->second - 1, put(at(u));
+      if (!odd) return g_.one();
+      own->second = own->second - 1;
+      return root(at(u) * at(u), {1, 2});
     }
+    if (absolute != factors.end() && positive(absolute->second)) {
+      factors.erase(sign);
+      if (!odd) return g_.one();
+      absolute->second = absolute->second - 1;
+      return at(u);
+    }
+    return g_.one();
   }
 
   // x^e of a fraction e. Of square roots, even powers of factors common to all terms of x stand before the root.
@@ -187,7 +191,6 @@ class Rewriting {
 
   Graph& g_;
   std::unordered_map<NodeId, Expr> done_;
-  std::optional<Expr> extra_;
 };
 
 // Whether e holds a function, or a root, that is written anew.

@@ -154,7 +154,6 @@ std::string Subject::values_of(const Parameters& of) {
 }
 
 std::optional<Comparison> Subject::by_formulas(Expr difference) {
-  const auto has_formula = [](const Numbered& n) { return !n.input && !symbols({&n.value, 1}).empty(); };
   const Parameters needed = needed_for(difference, has_formula);
   if (needed.empty()) return std::nullopt;
   Comparison c = with_numbers(needed).decide(difference);
@@ -166,7 +165,7 @@ Comparison Subject::compare(const PublishedEquation& equation) {
   Comparison c;
   try {
     const Expr P = difference(equation);
-    if (comparer_.decide(P).verdict != Verdict::proved)
+    if (std::any_of(numbered_.begin(), numbered_.end(), has_formula) && comparer_.decide(P).verdict != Verdict::proved)
       if (auto proved = by_formulas(P)) return *std::move(proved);
     c = comparer_.compare(equation, words_, alphabet_);
   } catch (const Failure& f) {

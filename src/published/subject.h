@@ -44,6 +44,7 @@ class Subject {
     bool input = false;
     std::size_t index = 0;
   };
+  static bool has_formula(const Numbered& n) { return !n.input && !symbols({&n.value, 1}).empty(); }
   // The derived equations with the numbers of the file in place of some of them.
   struct WithNumbers;
   using Parameters = std::vector<std::size_t>;  // places in numbered_
