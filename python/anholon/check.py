@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from . import _core, _display
+from . import _display
 
 if TYPE_CHECKING:
+    from . import _core
     from .model import Model
 
 
@@ -20,9 +21,14 @@ class Check:
         ['rolling.x', 'rolling.y']
     """
 
-    def __init__(self, model: Model, core: _core.System) -> None:
+    def __init__(self, model: Model, form: str, initial: dict[str, str]) -> None:
         self.model: Model = model
-        self._core = core
+        self._form, self._initial = form, initial
+        self._core = model._system(form, initial, ())
+
+    def __reduce__(self) -> tuple[type[Check], tuple[Model, str, dict[str, str]]]:
+        """Another process looks at the model again."""
+        return Check, (self.model, self._form, self._initial)
 
     @property
     def degrees_of_freedom(self) -> int:

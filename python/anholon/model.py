@@ -97,7 +97,7 @@ class Model(Analysed):
             >>> check.degrees_of_freedom, check.constraints[0].kind
             (3, 'linear')
         """
-        return Check(self, self._system(form, texts_of(initial), ()))
+        return Check(self, form, texts_of(initial))
 
     # ---- its motion ----
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _arrow, _core, _display
 from ._errors import ModelError
+from ._kept_sweep import KeptSweep
 from ._numbers import Number, text_of, whole
 from .run import Figure
 
@@ -70,7 +71,7 @@ def grid(low: Number, high: Number, count: int) -> Law:
     return Law(f"{text_of(low)}:{text_of(high)}:{whole('count', count, 0)}")
 
 
-def scenarios_of(core: _core.Sweep) -> dict[str, npt.NDArray[Any]]:
+def scenarios_of(core: _core.Sweep | KeptSweep) -> dict[str, npt.NDArray[Any]]:
     """The scenario of each case by the name "case"; nothing if no scenarios vary."""
     import numpy as np
 
@@ -103,11 +104,16 @@ class Sweep(Mapping[str, "Array"]):
 
     def __init__(self, model: Model, core: _core.Sweep, names: list[str], reduced: list[str]) -> None:
         self.model: Model = model
-        self._core = core
+        self._core: _core.Sweep | KeptSweep = core
         self._reduced = [name for name in core.columns if name in reduced]
         #: The values that vary, one array for each name, shape (cases,). Scenarios come first, as ``case``, an array of texts.
         self.varied: dict[str, npt.NDArray[Any]] = scenarios_of(core)
         self.varied.update((name, core.varied(name)) for name in names if name not in self.varied)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """To another process go all numbers and outcomes. Files and figures by the program's own hand are made where it was computed."""
+        numbers = [name for name in self.varied if name != "case" or not self._core.scenarios]
+        return {**self.__dict__, "_core": KeptSweep(self._core, numbers)}
 
     def __getitem__(self, name: str) -> Array:
         """A column at the end of each motion, shape (cases,), in SI units.

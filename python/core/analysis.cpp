@@ -22,21 +22,24 @@ std::vector<std::string> texts_of(const LinearModel& l) {
 const char* truth(Verdict v) { return v == Verdict::proved ? "true" : v == Verdict::refuted ? "false" : "unknown"; }
 
 void bind_compare(nb::module_& m) {
-  nb::class_<ChangedPlace>(m, "ChangedPlace", "A place of a published equation that is to be changed.")
-      .def_ro("wrong", &ChangedPlace::from, "What stands there.")
+  nb::class_<ChangedPlace> place(m, "ChangedPlace", "A place of a published equation that is to be changed.");
+  place.def_ro("wrong", &ChangedPlace::from, "What stands there.")
       .def_ro("right", &ChangedPlace::to, "What should stand there.")
       .def_ro("place", &ChangedPlace::place, "'second term of the left side'.")
       .def_ro("line", &ChangedPlace::line, "In the text of the equations, from 1.")
       .def_ro("column", &ChangedPlace::column, "From 1, in characters.")
       .def("__repr__", [](const ChangedPlace& p) { return p.place + ": " + p.from + " should be " + p.to; });
-  nb::class_<Suggestion>(m, "Suggestion", "A change that makes a published equation true.")
-      .def_ro("places", &Suggestion::places, "One place, or several that change together.")
+  picklable(place, &ChangedPlace::from, &ChangedPlace::to, &ChangedPlace::place, &ChangedPlace::line,
+            &ChangedPlace::column);
+  nb::class_<Suggestion> suggestion(m, "Suggestion", "A change that makes a published equation true.");
+  suggestion.def_ro("places", &Suggestion::places, "One place, or several that change together.")
       .def_ro("reads", &Suggestion::reads, "The changed equation.")
       .def_ro("proved", &Suggestion::proved, "Whether the changed equation is proved to be true.")
       .def_ro("text", &Suggestion::text, "The change as a sentence with its line and column.")
       .def("__repr__", [](const Suggestion& s) { return s.text + (s.proved ? "" : " (not proved)"); });
-  nb::class_<ComparedEquation>(m, "ComparedEquation", "A published equation, compared with the derived ones.")
-      .def_ro("label", &ComparedEquation::label)
+  picklable(suggestion, &Suggestion::places, &Suggestion::reads, &Suggestion::proved, &Suggestion::text);
+  nb::class_<ComparedEquation> equation(m, "ComparedEquation", "A published equation, compared with the derived ones.");
+  equation.def_ro("label", &ComparedEquation::label)
       .def_ro("text", &ComparedEquation::text)
       .def_prop_ro(
           "verdict", [](const ComparedEquation& e) { return std::string(truth(e.verdict)); },
@@ -64,6 +67,9 @@ void bind_compare(nb::module_& m) {
         return text + ", " +
                (e.verdict == Verdict::unknown ? e.detail : (e.verdict == Verdict::proved ? "" : "nearest: ") + e.what);
       });
+  picklable(equation, &ComparedEquation::label, &ComparedEquation::text, &ComparedEquation::verdict,
+            &ComparedEquation::what, &ComparedEquation::difference, &ComparedEquation::detail, &ComparedEquation::point,
+            &ComparedEquation::suggestions, &ComparedEquation::with_numbers);
   m.def(
       "compare",
       [](const Model& model, const std::string& equations, bool file, const std::string& name,

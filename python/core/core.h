@@ -146,13 +146,22 @@ void bind_motions(nb::module_& m);
 void bind_sweeps(nb::module_& m);
 void bind_sweep_folders(nb::module_& m);
 
+// Pickle keeps the value of an enumeration as its number.
+template <class V>
+auto kept(const V& value) {
+  if constexpr (std::is_enum_v<V>)
+    return static_cast<int>(value);
+  else
+    return value;
+}
+
 // Makes a class of numbers and texts one that pickle takes to another process.
 template <class T, class... Members>
 void picklable(nb::class_<T>& c, Members T::*... members) {
-  c.def("__getstate__", [members...](const T& of) { return std::make_tuple(of.*members...); });
-  c.def("__setstate__", [members...](T& of, const std::tuple<Members...>& state) {
+  c.def("__getstate__", [members...](const T& of) { return std::make_tuple(kept(of.*members)...); });
+  c.def("__setstate__", [members...](T& of, const std::tuple<decltype(kept(std::declval<Members>()))...>& state) {
     new (&of) T{};
-    std::apply([&](const Members&... values) { ((of.*members = values), ...); }, state);
+    std::apply([&](const auto&... values) { ((of.*members = static_cast<Members>(values)), ...); }, state);
   });
 }
 

@@ -70,12 +70,13 @@ void bind_model(nb::module_& m) {
 }
 
 void bind_equations(nb::module_& m) {
-  nb::class_<Equations>(m, "Equations")
-      .def_ro("form", &Equations::form)
+  nb::class_<Equations> equations(m, "Equations");
+  equations.def_ro("form", &Equations::form)
       .def_ro("text", &Equations::text)
       .def_ro("latex", &Equations::latex)
       .def_ro("mathml", &Equations::mathml)
       .def_ro("json", &Equations::json);
+  picklable(equations, &Equations::form, &Equations::text, &Equations::latex, &Equations::mathml, &Equations::json);
   m.def(
       "derive",
       [](const Model& model, const std::string& form, const std::string& expand, bool steps, bool reactions) {
@@ -86,8 +87,8 @@ void bind_equations(nb::module_& m) {
 }
 
 void bind_proofs(nb::module_& m) {
-  nb::class_<FormVerdict>(m, "FormVerdict", "Whether a form agrees with Routh's equations.")
-      .def_ro("form", &FormVerdict::form)
+  nb::class_<FormVerdict> verdict(m, "FormVerdict", "Whether a form agrees with Routh's equations.");
+  verdict.def_ro("form", &FormVerdict::form)
       .def_prop_ro(
           "verdict",
           [](const FormVerdict& v) {
@@ -101,18 +102,21 @@ void bind_proofs(nb::module_& m) {
         return v.form + ": " + nb::cast<std::string>(nb::cast(v).attr("verdict")) +
                (v.detail.empty() ? "" : ", " + v.detail);
       });
-  nb::class_<Proof>(m, "Proof")
-      .def_ro("forms", &Proof::forms)
+  picklable(verdict, &FormVerdict::form, &FormVerdict::verdict, &FormVerdict::detail);
+  nb::class_<Proof> proof(m, "Proof");
+  proof.def_ro("forms", &Proof::forms)
       .def_ro("certificate", &Proof::certificate)
       .def_prop_ro("all_proved", &Proof::all_proved);
-  nb::class_<Verification>(m, "Verification", "What an independent check of a certificate found.")
-      .def_ro("claims", &Verification::claims)
+  picklable(proof, &Proof::forms, &Proof::certificate, &Proof::stopped);
+  nb::class_<Verification> verification(m, "Verification", "What an independent check of a certificate found.");
+  verification.def_ro("claims", &Verification::claims)
       .def_ro("confirmed", &Verification::confirmed)
       .def_prop_ro("all_confirmed", &Verification::all_confirmed)
       .def("__bool__", &Verification::all_confirmed)
       .def("__repr__", [](const Verification& v) {
         return std::to_string(v.confirmed) + " of " + std::to_string(v.claims) + " claims confirmed";
       });
+  picklable(verification, &Verification::claims, &Verification::confirmed);
   m.def(
       "prove",
       [](const Model& model, const std::vector<std::string>& forms) {

@@ -42,8 +42,10 @@ class Dynamics {
   };
   const std::vector<State>& states() const { return states_; }
   bool minimal() const { return map_ != nullptr; }
-  // Whether the equations are linear in what they are solved for.
-  bool linear() const { return !program_->nonlinear; }
+  // Whether accelerations and multipliers follow from linear equations.
+  bool linear() const { return !program_->several_solutions; }
+  // Whether they do, and rates of the model's states follow from them by formulas that are not linear.
+  bool rates_follow() const { return program_->nonlinear && linear(); }
   const std::vector<double>& start() const { return start_; }
   double start_time() const { return start_time_; }
   // Indices of the parameters that do not follow from others, which p holds; how many inputs follow all parameters.

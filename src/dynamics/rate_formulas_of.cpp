@@ -68,12 +68,14 @@ class Builder {
 
  private:
   // x: the state of the motion, in the order of Dynamics::put_state_of_motion; lead: what the system is solved for.
+  // Where rates of the model's states alone are nonlinear in accelerations and multipliers, they are explicit.
   void in_all_velocities() {
     const System& s = s_.system;
     const std::vector<int>& d = s_.structure.d;
+    const std::size_t solved = of_.rates_follow() ? s.mechanical() : s.size();
     f_.model = s_.model;
     f_.linear = of_.linear();
-    for (std::size_t j = 0; j < s.size(); ++j)
+    for (std::size_t j = 0; j < solved; ++j)
       f_.lead.add(motion_.leading_names[j], s.symbol(j, static_cast<unsigned>(d[j])));
     const auto add = [&](std::size_t j, int k) {
       f_.x.symbols.push_back(s.symbol(j, static_cast<unsigned>(k)));
@@ -86,8 +88,17 @@ class Builder {
     for (std::size_t j = s.mechanical(); j < s.size(); ++j)
       for (int k = 0; k < d[j]; ++k) add(j, k);
     ANHOLON_ASSERT(f_.x.symbols.size() == of_.states().size());
-    f_.equations = motion_.residual;
+    f_.equations.assign(motion_.residual.begin(), motion_.residual.begin() + static_cast<std::ptrdiff_t>(solved));
     f_.input_formulas = input_formulas_;
+    if (solved == s.size()) return;
+    Column derivatives, rates;  // equation j is  (state j)' - rate
+    for (std::size_t j = solved; j < s.size(); ++j) {
+      ANHOLON_ASSERT(d[j] == 1);
+      derivatives.push_back(s.symbol(j, 1));
+      rates.push_back(derivatives.back() - motion_.residual[j]);
+    }
+    f_.rates = put(f_.rates, derivatives, rates);
+    f_.outputs = put(f_.outputs, derivatives, rates);
   }
 
   // x = q, p, z with explicit rates. What holds multipliers or derivatives beyond accelerations is left out.

@@ -157,7 +157,7 @@ bool Stepper<N>::aim_with_care(const W& end) {
   W h = horizon();
   // Not from what is left to the end: steps must not depend on where a run is to stop, if another one is to go on from
   // there.
-  if (program_->nonlinear) h = abs(guard_.on_the_branch(step, forward ? h : W(-h), record()));
+  if (program_->several_solutions) h = abs(guard_.on_the_branch(step, forward ? h : W(-h), record()));
   const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * abs(time());
   if (!(h > floor))
     return fail({OutcomeKind::step_collapse, "the step size fell below what the time can resolve",

@@ -40,7 +40,7 @@ bool is_free(Method asked, const StepSettings& settings) { return asked == Metho
 
 std::string only_taylor(const Model& model, const Program& program) {
   if (!model.events.empty()) return "does not look for events";
-  if (program.nonlinear)
+  if (program.several_solutions)
     return "cannot tell solutions that meet apart: the leading derivatives enter the equations nonlinearly";
   return {};
 }

@@ -105,7 +105,7 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
 
 template <Number N>
 Outcome Expansion<N>::unsolved() const {
-  if (program_->nonlinear)
+  if (program_->several_solutions)
     return {OutcomeKind::no_convergence, "Newton's iteration for the leading derivatives did not converge",
             "the equations may have no real solution here (a branch ends), or another branch is near: give a guess"};
   return {OutcomeKind::no_convergence,

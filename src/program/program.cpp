@@ -9,6 +9,19 @@ namespace anholon {
 // From so many unknowns on, J may be sparse.
 static constexpr std::size_t kMany = 64;
 
+// Whether nonlinear equations may have several solutions. Accelerations and multipliers follow from the mechanical
+// equations alone where these hold no rate of a state; if they are linear in them, the rates follow, whatever their formulas.
+static bool may_have_several_solutions(const Program& p, const std::vector<std::uint32_t>& nonlinear) {
+  const std::size_t mechanical = p.system->mechanical();
+  const auto roots = p.tape.roots.begin();
+  const std::vector<std::uint32_t> needed = precedents(p.tape, {roots, roots + static_cast<std::ptrdiff_t>(mechanical)});
+  const auto needs = [&](std::uint32_t slot) { return std::binary_search(needed.begin(), needed.end(), slot); };
+  return std::any_of(nonlinear.begin(), nonlinear.end(), needs) ||
+         std::any_of(p.inputs.begin(), p.inputs.end(), [&](const ProgramInput& in) {
+           return in.leading && in.variable >= mechanical && needs(in.slot);
+         });
+}
+
 Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures, bool shared) {
   Program p;
   p.system = &system;
@@ -39,6 +52,7 @@ Program program(const System& system, const Structure& structure, std::span<cons
   }
 
   const std::vector<Instruction>& code = p.tape.code;
+  std::vector<std::uint32_t> nonlinear;
   const auto tainted = [&](std::uint32_t slot, std::uint8_t lead) {
     return p.tangent_row[slot] != Program::kUntainted && code[slot].lead == lead;
   };
@@ -78,11 +92,13 @@ Program program(const System& system, const Structure& structure, std::span<cons
     const bool product = in.op == Op::multiply || in.op == Op::scale;
     if (in.lead == 0 && in.op != Op::linear && in.op != Op::select && in.op != Op::rate &&
         (product ? t.a && t.b : in.op != Op::divide || t.b))
-      p.nonlinear = true;
+      nonlinear.push_back(s);
     t.row = static_cast<std::uint32_t>(p.tangent_rows++);
     p.tangent_row[s] = t.row;
     p.tainted.push_back(t);
   }
+  p.nonlinear = !nonlinear.empty();
+  p.several_solutions = p.nonlinear && may_have_several_solutions(p, nonlinear);
   if (p.unknowns() >= kMany) p.linearized = linearized(p);
   return p;
 }

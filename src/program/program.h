@@ -38,6 +38,7 @@ struct Program {
   std::size_t tangent_rows = 0;
   std::size_t quadratures = 0;                   // roots after the equations
   bool nonlinear = false;                        // leading derivatives enter nonlinearly: J depends on them
+  bool several_solutions = false;                // and not in rates of the model's states alone
   std::shared_ptr<const Linearized> linearized;  // of programs with many unknowns
 
   static constexpr std::uint32_t kUntainted = 0xffffffffU;

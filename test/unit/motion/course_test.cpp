@@ -194,6 +194,40 @@ TEST(Course, KinksAreMetToTheTolerance) {
   }
 }
 
+// A blade whose edge wears by the force on it, while a part of the mass is thrown off.
+const char* const kWear = R"(
+coordinates = ["x", "y", "th"]
+[[body]]
+name = "plate"
+mass = "1 + 0.1*exp(-wear)"
+inertia = 0.1
+center = "x*ex + y*ey + 0.2*(cos(th)*ex + sin(th)*ey)"
+angle = "th"
+[[constraint]]
+name = "blade"
+equation = "y'*cos(th) - x'*sin(th) = 0"
+[state]
+wear = {rate = "sqrt(1 + lambda.blade^2 + th''^2)", initial = 0}
+[initial]
+"x'" = 1
+"th'" = 1
+)";
+
+// Accelerations and multipliers follow from linear equations here, and the rate follows from them.
+TEST(Course, RatesOfStatesMayBeNonlinear) {
+  // Does the mass follow the state, its rate is in the equations.
+  std::string text = kWear;
+  text.replace(text.find("1 + 0.1*exp(-wear)"), 18, "1");
+  const Result taylor = motion(text, 5, {Method::taylor, power_of_ten(14)});
+  ASSERT_TRUE(taylor.report.outcome.ok()) << taylor.report.outcome.message;
+  for (const Method method : {Method::runge_kutta, Method::bdf}) {
+    const Result other = motion(text, 5, {method, power_of_ten(9)});
+    ASSERT_TRUE(other.report.outcome.ok()) << other.report.outcome.message;
+    EXPECT_LT(difference(other, taylor), 1e-7);
+    EXPECT_GT(other.report.method.evaluations, 0U);
+  }
+}
+
 // Left to the error test alone, each kink costs a dozen refusals and as many short steps.
 TEST(Course, StepsEndAtKinks) {
   const Result rk = motion(kTable, 20, {Method::runge_kutta, power_of_ten(8)});
