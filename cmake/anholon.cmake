@@ -196,12 +196,12 @@ function(anholon_install_licences place component)
   endforeach()
 endfunction()
 
-# The source folder is baked in here and nowhere else, so that ccache can serve the other layers
-# to a second checkout.
+# The source folder is baked in here and in modelfile/shipped.cpp alone, so that ccache can serve the rest to a second
+# checkout.
 function(anholon_cli_definitions target)
   # The types of the public headers stay in their namespace, as the layers have types of these names.
   target_compile_definitions(${target} PRIVATE ANHOLON_LIBRARY
-    ANHOLON_MODELS_DIR="${PROJECT_SOURCE_DIR}/models" ANHOLON_PAPERS_DIR="${PROJECT_SOURCE_DIR}/papers"
+    ANHOLON_PAPERS_DIR="${PROJECT_SOURCE_DIR}/papers"
     ANHOLON_VERSION="${PROJECT_VERSION}")
 endfunction()
 

@@ -57,7 +57,7 @@ Result<std::vector<ComparedEquation>> compare(const Model& model, const std::str
 Result<std::vector<ComparedEquation>> compare_file(const Model& model, const std::string& path,
                                                    const CompareOptions& options) {
   return guarded(model.data().source,
-                 [&] { return compared(model, inner::equation_text(path, ANHOLON_MODELS_DIR), options); });
+                 [&] { return compared(model, inner::equation_text(path), options); });
 }
 
 }  // namespace anholon::v1

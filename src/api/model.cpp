@@ -121,13 +121,13 @@ Result<std::vector<Form>> Model::forms() const {
 
 std::vector<ShippedModel> shipped_models() {
   std::vector<ShippedModel> list;
-  for (const inner::ShippedFile& f : inner::shipped_files(inner::Shipped::models, ANHOLON_MODELS_DIR))
+  for (const inner::ShippedFile& f : inner::shipped_files(inner::Shipped::models))
     list.push_back({f.name, f.path, f.title});
   return list;
 }
 
 Result<Model> read_file(const std::string& path, const ReadOptions& options) {
-  return guarded({}, [&] { return opened(inner::model_text(path, ANHOLON_MODELS_DIR), options); });
+  return guarded({}, [&] { return opened(inner::model_text(path), options); });
 }
 
 Result<Model> read_text(const std::string& text, const ReadOptions& options, const std::string& name) {

@@ -10,7 +10,7 @@
 
 namespace anholon::cli {
 
-std::vector<ShippedFile> shipped(Shipped kind) { return shipped_files(kind, ANHOLON_MODELS_DIR); }
+std::vector<ShippedFile> shipped(Shipped kind) { return shipped_files(kind); }
 
 void print_diagnostic(const Diagnostic& d, const SourceText& source) {
   std::fflush(stdout);
@@ -68,7 +68,7 @@ static std::pair<std::string, std::string> assignment(const std::string& text, c
   return {normal_name(text.substr(0, equals)), text.substr(equals + 1)};
 }
 
-Reader read(const ModelCommand& o) { return read(o, model_text(o.model, ANHOLON_MODELS_DIR)); }
+Reader read(const ModelCommand& o) { return read(o, model_text(o.model)); }
 
 Reader read(const ModelCommand& o, SourceText source) {
   Reader r;

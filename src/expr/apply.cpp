@@ -50,38 +50,74 @@ bool negative(const Graph& g, NodeId id) {
   return n.kind == Kind::sum && g.rational(g.terms(id)[0].weight) < 0;
 }
 
-// sin and cos at a rational multiple of pi with rational value.
-std::optional<Rational> value_at_pi(const Graph& g, Function f, NodeId x) {
+// x = rest + turns * pi.
+struct Turned {
+  Rational turns;
+  Expr rest;
+};
+
+// Returns nullopt if x holds no multiple of pi as a term.
+std::optional<Turned> turned(Graph& g, NodeId x) {
   const Node& n = g.node(x);
-  Rational turns;  // x = turns * pi
-  if (n.kind == Kind::pi)
-    turns = 1;
-  else if (n.kind == Kind::sum && n.count == 1 && g.node(g.terms(x)[0].node).kind == Kind::pi)
-    turns = g.rational(g.terms(x)[0].weight);
-  else
-    return std::nullopt;
-  if (f != Function::sin && f != Function::cos) return std::nullopt;
-  Rational sixths = turns * 6;
-  if (!sixths.is_integer()) return std::nullopt;
-  mpz_class k = f == Function::cos ? mpz_class(sixths.get_num() + 3) : sixths.get_num();
-  const unsigned long step = mpz_fdiv_ui(k.get_mpz_t(), 12);  // sin(step * pi/6)
-  switch (step) {
+  if (n.kind == Kind::pi) return Turned{1, g.zero()};
+  if (n.kind != Kind::sum) return std::nullopt;
+  for (const Term& t : g.terms(x))
+    if (g.node(t.node).kind == Kind::pi) {
+      const Rational turns = g.rational(t.weight);
+      return Turned{turns, Expr{&g, x} - turns * Expr{&g, t.node}};
+    }
+  return std::nullopt;
+}
+
+// sin(k pi/12) for k = 0 to 3: the others follow from these.
+std::optional<Expr> sine_of_twelfths(Graph& g, unsigned long k) {
+  switch (k) {
   case 0:
-  case 6:
-    return Rational(0);
-  case 1:
-  case 5:
-    return Rational(1, 2);
+    return g.zero();
+  case 2:
+    return g.number(Rational(1, 2));
   case 3:
-    return Rational(1);
-  case 7:
-  case 11:
-    return Rational(-1, 2);
-  case 9:
-    return Rational(-1);
+    return Rational(1, 2) * sqrt(g.number(2));
   default:
     return std::nullopt;
   }
+}
+
+// cos(k pi/12) for k = 0 to 3.
+std::optional<Expr> cosine_of_twelfths(Graph& g, unsigned long k) {
+  switch (k) {
+  case 0:
+    return g.one();
+  case 2:
+    return Rational(1, 2) * sqrt(g.number(3));
+  case 3:
+    return Rational(1, 2) * sqrt(g.number(2));
+  default:
+    return std::nullopt;
+  }
+}
+
+// sin x, or cos x = sin(x + pi/2), for an x with a multiple of pi as a term: what is left of that term is between -pi/4
+// and pi/4, so sin(x + pi/2) is cos x and sin(x + pi/3) is cos(x - pi/6). Returns nullopt where nothing is to be taken out.
+std::optional<Expr> sine_of_turned(Graph& g, bool cosine, Expr x) {
+  const std::optional<Turned> t = turned(g, x.id);
+  if (!t) return std::nullopt;
+  const Rational quarters = floor(2 * t->turns + Rational(1, 2));
+  const Rational left = t->turns - quarters / 2;
+  const Rational four = 4, k = quarters + (cosine ? 1 : 0);
+  const long quarter = Rational(k - four * floor(k / four)).to_long();  // sin(x + quarter pi/2)
+  const Rational sign = quarter >= 2 ? -1 : 1;
+  if (is_zero(t->rest)) {
+    const Rational twelfths = 12 * abs(left);
+    if (twelfths.is_integer()) {
+      const auto n = static_cast<unsigned long>(twelfths.to_long());
+      const auto v = quarter % 2 == 1 ? cosine_of_twelfths(g, n) : sine_of_twelfths(g, n);
+      if (v) return (quarter % 2 == 0 && left < 0 ? -sign : sign) * *v;
+    }
+  }
+  if (quarters == 0) return std::nullopt;
+  const Expr rest = left == 0 ? t->rest : t->rest + left * g.pi();
+  return sign * g.apply(quarter % 2 == 1 ? Function::cos : Function::sin, rest);
 }
 
 }  // namespace
@@ -99,7 +135,8 @@ int find_function(const std::string& name) {
 Expr Graph::apply(Function f, Expr x) {
   if (is_number(x.id))
     if (auto v = exact_value(f, value(x.id))) return number(*v);
-  if (auto v = value_at_pi(*this, f, x.id)) return number(*v);
+  if (f == Function::sin || f == Function::cos)
+    if (const auto v = sine_of_turned(*this, f == Function::cos, x)) return *v;
   if (negative(*this, x.id)) {
     switch (parity(f)) {
     case Parity::even:

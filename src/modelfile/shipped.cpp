@@ -23,9 +23,9 @@ static std::string title_of(const std::string& text) {
   return {};
 }
 
-std::vector<ShippedFile> shipped_files(Shipped kind, const char* in_source) {
+std::vector<ShippedFile> shipped_files(Shipped kind) {
   std::vector<ShippedFile> list;
-  for (const fs::path& folder : data_folders("models", in_source)) {
+  for (const fs::path& folder : data_folders("models", ANHOLON_MODELS_DIR)) {
     std::error_code error;
     if (!fs::is_directory(folder, error)) continue;
     for (const fs::directory_entry& e : fs::recursive_directory_iterator(folder, error)) {
@@ -43,30 +43,36 @@ std::vector<ShippedFile> shipped_files(Shipped kind, const char* in_source) {
   return list;
 }
 
-SourceText model_text(const std::string& path_or_name, const char* in_source) {
-  SourceText source{path_or_name, {}};
-  std::string why;
-  if (read_file(path_or_name, source.text, &why)) return source;
-  std::vector<std::string> known;
-  for (const ShippedFile& m : shipped_files(Shipped::models, in_source)) {
-    known.push_back(m.name);
-    if (m.name != path_or_name || !read_file(m.path, source.text)) continue;
+std::optional<SourceText> shipped_model(const std::string& name) {
+  SourceText source;
+  for (const ShippedFile& m : shipped_files(Shipped::models)) {
+    if ((m.name != name && m.name + ".toml" != name) || !read_file(m.path, source.text)) continue;
     source.name = m.name + ".toml";
     source.path = m.path;
     return source;
   }
+  return std::nullopt;
+}
+
+SourceText model_text(const std::string& path_or_name) {
+  SourceText source{path_or_name, {}};
+  std::string why;
+  if (read_file(path_or_name, source.text, &why)) return source;
+  if (std::optional<SourceText> shipped = shipped_model(path_or_name)) return std::move(*shipped);
+  std::vector<std::string> known;
+  for (const ShippedFile& m : shipped_files(Shipped::models)) known.push_back(m.name);
   const std::string near = did_you_mean(path_or_name, known);
   throw Failure({}, "cannot read the model '" + path_or_name + "': " + why,
                 near.empty() ? "a path to a .toml file, or a name that `anholon models` lists"
                              : "did you mean the shipped model '" + near + "'?");
 }
 
-SourceText equation_text(const std::string& path_or_name, const char* in_source) {
+SourceText equation_text(const std::string& path_or_name) {
   SourceText source{path_or_name, {}};
   std::string why;
   if (read_file(path_or_name, source.text, &why)) return source;
   std::vector<std::string> known;
-  for (const ShippedFile& e : shipped_files(Shipped::equations, in_source)) {
+  for (const ShippedFile& e : shipped_files(Shipped::equations)) {
     known.push_back(e.name);
     if (e.name != path_or_name && e.name + ".eq" != path_or_name) continue;
     source.name = e.name + ".eq";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <unordered_map>
 
 #include "expr/normal.h"
@@ -76,11 +77,33 @@ class Rewriting {
     }
     case Function::sin:
     case Function::cos:
+      return of_angle(u, f == Function::cos);
     case Function::tan:
-      return g_.apply(f, u);  // the zero test expands their sums
+      return of_angle(u, false) / of_angle(u, true);
     default:
       return g_.apply(f, reduced(u));
     }
+  }
+
+  // sin u or cos u. Where u holds a multiple of pi/12, of which the graph takes out those of pi/2, that has numbers as its
+  // sine and cosine. The zero test expands other sums.
+  Expr of_angle(Expr u, bool cosine) {
+    const Function f = cosine ? Function::cos : Function::sin;
+    const std::optional<Rational> turns = multiple_of_pi(u);
+    const Rational twelfths = turns ? 12 * *turns : Rational(0);
+    if (!turns || !twelfths.is_integer() || abs(twelfths) > 3) return g_.apply(f, u);
+    const Expr rest = u - *turns * g_.pi(), two = sqrt(g_.number(2)), three = sqrt(g_.number(3));
+    const Expr sines[] = {g_.zero(), Rational(1, 4) * two * (three - g_.one()), g_.number({1, 2}), Rational(1, 2) * two};
+    const Expr cosines[] = {g_.one(), Rational(1, 4) * two * (three + g_.one()), Rational(1, 2) * three, sines[3]};
+    const long k = abs(twelfths).to_long();
+    const Expr c = cosines[k], s = twelfths < 0 ? -sines[k] : sines[k];
+    return cosine ? cos(rest) * c - sin(rest) * s : sin(rest) * c + cos(rest) * s;
+  }
+  std::optional<Rational> multiple_of_pi(Expr u) const {
+    if (g_.node(u.id).kind != Kind::sum) return std::nullopt;
+    for (const Term& t : g_.terms(u.id))
+      if (g_.node(t.node).kind == Kind::pi) return g_.rational(t.weight);
+    return std::nullopt;
   }
 
   Expr reduced(Expr u) {
@@ -141,7 +164,8 @@ class Rewriting {
   // x^e of a fraction e. Of square roots, even powers of factors common to all terms of x stand before the root.
   Expr root(Expr x, const Rational& e) {
     x = reduced(x);
-    if (is_number(x) || e.get_den() != 2) return pow(x, e);
+    if (is_number(x)) return root_of_number(number_value(x), e);
+    if (e.get_den() != 2) return pow(x, e);
     Factors common = even_powers(x.id);
     Expr before = g_.one();
     for (const auto& [base, power] : common) {
@@ -152,6 +176,17 @@ class Rewriting {
     }
     if (!common.empty()) x = reduced(x);
     return before * pow(x, e);
+  }
+
+  // sqrt(6) is sqrt(2) sqrt(3).
+  Expr root_of_number(const Rational& x, const Rational& e) {
+    constexpr long kLargest = 1'000'000;
+    if (!(x > 0) || x.get_num() > kLargest || x.get_den() > kLargest) return pow(g_.number(x), e);
+    Expr all = g_.one();
+    for (const auto& [whole, power] : {std::pair{x.get_num(), e}, std::pair{x.get_den(), -e}})
+      for (long left = whole.get_si(), p = 2; left > 1; p = p * p <= left ? p + 1 : left)
+        for (; left % p == 0; left /= p) all = all * pow(g_.number(p), power);
+    return all;
   }
 
   // The even powers of the factors that all terms have.
@@ -201,7 +236,9 @@ bool may_be_written_anew(Expr e) {
     const Node& n = g.node(id);
     if (n.kind == Kind::function) {
       const Function f = static_cast<Function>(n.index);
-      return f != Function::sin && f != Function::cos && f != Function::tan;
+      if (f != Function::sin && f != Function::cos) return true;
+      const std::span<const Term> terms = g.terms(g.terms(id)[0].node);
+      return std::any_of(terms.begin(), terms.end(), [&](const Term& t) { return g.node(t.node).kind == Kind::pi; });
     }
     if (n.kind != Kind::product) return n.kind == Kind::atan2 || n.kind == Kind::select || n.kind == Kind::lookup;
     const std::span<const Term> terms = g.terms(id);

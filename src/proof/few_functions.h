@@ -5,8 +5,9 @@
 namespace anholon {
 
 // The absolute value is the root of a square, and u sign(u) is |u|. Exponentials of sums are products, and the hyperbolic
-// functions are exponentials. Arguments and radicands are reduced, so that equal ones are one node, and radicands give up
-// their even powers. Equal to e wherever both are defined.
+// functions are exponentials. Sines and cosines of multiples of pi/12 are numbers, and tan is sin/cos. Arguments and
+// radicands are reduced, so that equal ones are one node, and radicands give up their even powers. Equal to e wherever both
+// are defined.
 Expr in_few_functions(Expr e);
 
 // As shown_zero(), also by these relations.

@@ -102,7 +102,7 @@ int compare(const CompareCommand& o) {
         "error: no equations are named\nhint: anholon compare MODEL EQUATIONS, a file with one equation per line\n"};
   const Reader in = in_mode(read(o), o, "compare");
   const Model& model = *in.model;
-  const SourceText source = equation_text(o.equations, ANHOLON_MODELS_DIR);
+  const SourceText source = equation_text(o.equations);
   Subject subject({in.model, in.names}, state_choice(o, model));
   Diagnostics diagnostics;
   const std::vector<PublishedEquation> equations = subject.read(source, diagnostics);

@@ -57,7 +57,7 @@ void open(const std::string& name, StudioOptions& options) {
   if (const ResultFormat* format = format_of(name); format && std::filesystem::is_regular_file(name, none))
     throw UsageError{"error: " + name + " is a file of results in " + format->name +
                      "\nhint: the studio opens a model, or a sweep in a folder\n"};
-  options.source = model_text(name, ANHOLON_MODELS_DIR);
+  options.source = model_text(name);
   options.shipped = options.source.path != "" || !std::filesystem::is_regular_file(name, none);
 }
 

@@ -52,7 +52,7 @@ coordinate = ["x"]
 error: unknown key 'coordinate' in the model file; did you mean 'coordinates'?
 ```
 
-`base` starts from another file, whose place is relative to this one. Tables are put together key by key, elements of lists by
+`base` starts from another file, whose place is relative to this one, or from a shipped model by its name. Tables are put together key by key, elements of lists by
 their `name`; those without a counterpart are added at the end; every other value (a list of names or numbers, too) is replaced.
 Nothing can be taken away. A base may have a base; `--case` may name the cases of all of them.
 

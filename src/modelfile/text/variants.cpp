@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "base/read_file.h"
+#include "modelfile/shipped.h"
 #include "modelfile/text/collect.h"
 
 namespace anholon {
@@ -164,6 +165,18 @@ class Overlay {
   bool scenario_;
 };
 
+// The file on which `source` builds: one beside it, or a shipped model by its name. `read`: with its text.
+SourceText base_of(const SourceText& source, const fs::path& here, const Item& base, bool read) {
+  SourceText below;
+  below.name = (fs::path(source.name).parent_path() / base.text()).lexically_normal().string();
+  below.path = (here.parent_path() / base.text()).string();
+  std::string why;
+  if (!read || read_file(below.path, below.text, &why)) return below;
+  if (std::optional<SourceText> shipped = shipped_model(base.text())) return std::move(*shipped);
+  throw Failure(base.formula.whole(), "cannot read the base '" + below.name + "': " + why,
+                "a path from the folder of this file, or the name of a shipped model (anholon models)");
+}
+
 Item read_over(SourceText& all, std::size_t file, std::vector<fs::path>& open) {
   // Makes a copy, because the list of files grows.
   const SourceText source = file == 0 ? SourceText{all.name, all.text, all.path} : all.others[file - 1];
@@ -171,7 +184,9 @@ Item read_over(SourceText& all, std::size_t file, std::vector<fs::path>& open) {
   const Item* base = root.find("base");
   if (!base) return root;
   if (base->kind != Item::Kind::string) throw Failure(base->span, "base is the name of a file", "base = \"disc.toml\"");
-  const fs::path here = source.path.empty() ? source.name : source.path, path = here.parent_path() / base->text();
+  const fs::path here = source.path.empty() ? source.name : source.path;
+  SourceText below = base_of(source, here, *base, file >= all.others.size());
+  const fs::path path = below.path;
   open.push_back(fs::weakly_canonical(here));
   if (const auto again = std::find(open.begin(), open.end(), fs::weakly_canonical(path)); again != open.end()) {
     std::string way;
@@ -180,16 +195,8 @@ Item read_over(SourceText& all, std::size_t file, std::vector<fs::path>& open) {
   }
   if (file >= kMostFiles)
     throw Failure(base->formula.whole(), "more than " + std::to_string(kMostFiles) + " files that build on each other");
-  SourceText below;
-  below.name = (fs::path(source.name).parent_path() / base->text()).lexically_normal().string();
-  below.path = path.string();
   // A text that is already in memory, as in the file of a run, is not read from disk.
-  if (file >= all.others.size()) {
-    std::string why;
-    if (!read_file(path, below.text, &why))
-      throw Failure(base->formula.whole(), "cannot read the base '" + below.name + "': " + why);
-    all.others.push_back(std::move(below));
-  }
+  if (file >= all.others.size()) all.others.push_back(std::move(below));
   Item merged = read_over(all, file + 1, open);
   Diagnostics problems;
   Overlay(problems, false).root(merged, root);

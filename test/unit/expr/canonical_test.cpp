@@ -149,8 +149,34 @@ TEST(Folding, EveryRationalMultipleOfPiHasTheRightSine) {
     EXPECT_LE(test::distance(test::value(sin(angle), test::Point()), sin(radians)), 1e-38) << k << " pi/6";
     EXPECT_LE(test::distance(test::value(cos(angle), test::Point()), cos(radians)), 1e-38) << k << " pi/6";
     folded += is_number(sin(angle));
+    const Rational quarters(k, 4);
+    const Multi of_quarters = pi<Multi>() * Multi(k) / Multi(4);
+    const Expr sine = sin(quarters * s.g.pi()), cosine = cos(quarters * s.g.pi());
+    EXPECT_LE(test::distance(test::value(sine, test::Point()), sin(of_quarters)), 1e-38) << k << " pi/4";
+    EXPECT_LE(test::distance(test::value(cosine, test::Point()), cos(of_quarters)), 1e-38) << k << " pi/4";
+    EXPECT_EQ(sine * sine + cosine * cosine, s.g.one());
   }
   EXPECT_GT(folded, 30) << "two of three of these sines are rational";
+}
+
+TEST(Folding, MultiplesOfPiComeOutOfSums) {
+  Symbols s;
+  const Expr quarter = Rational(1, 2) * s.g.pi(), x = s.x;
+  EXPECT_EQ(cos(quarter - x), sin(x));
+  EXPECT_EQ(sin(quarter - x), cos(x));
+  EXPECT_EQ(sin(x + s.g.pi()), -sin(x));
+  EXPECT_EQ(cos(x - 3 * quarter), -sin(x));
+  EXPECT_EQ(sin(x + Rational(1, 3) * s.g.pi()), cos(x - Rational(1, 6) * s.g.pi()));
+  EXPECT_NE(sin(x + Rational(1, 8) * s.g.pi()), sin(x));
+  const PrecisionScope precision(40);
+  test::Point point;
+  point.set(x, Multi(3) / Multi(7));
+  for (int k = -60; k <= 60; ++k) {
+    const Expr angle = 2 * x + Rational(k, 20) * s.g.pi();
+    const Multi radians = Multi(6) / Multi(7) + pi<Multi>() * Multi(k) / Multi(20);
+    EXPECT_LE(test::distance(test::value(sin(angle), point), sin(radians)), 1e-37) << k << " pi/20";
+    EXPECT_LE(test::distance(test::value(cos(angle), point), cos(radians)), 1e-37) << k << " pi/20";
+  }
 }
 
 // A point of a chain is the point before it and one link: x_i = x_(i-1) + l cos(q_i).

@@ -10,8 +10,9 @@ namespace {
 
 struct Symbols {
   Graph g;
-  Expr x = g.jet(0, 0), y = g.jet(1, 0), p = g.parameter(0);
+  Expr x = g.jet(0, 0), y = g.jet(1, 0), p = g.parameter(0), turn = g.pi();
 
+  Expr number(const Rational& r) const { return x.graph->number(r); }
   bool shown(Expr e) const { return shown_zero_in_few_functions(e, Effort::full); }
 
   // Formulas in all functions that are written anew.
@@ -31,7 +32,10 @@ struct Symbols {
             pow(1 + x * x, {-1, 2}),
             pow(pow(x, 2) + pow(u, 2), {1, 3}),
             sqrt(sin(x) * sin(x) + cos(x) * cos(x)) + atan2(abs(x) * x, 1 + u * u),
-            select(u, abs(x), -(x * sign(x)))};
+            select(u, abs(x), -(x * sign(x))),
+            sin(u + Rational(1, 3) * turn) * tan(x - Rational(5, 6) * turn),
+            cos(x + Rational(7, 12) * turn) - tan(y + Rational(1, 4) * turn),
+            sqrt(number(360)) * pow(number(Rational(10, 21)), {3, 2})};
   }
 };
 
@@ -58,6 +62,10 @@ TEST(FewFunctions, ShowWhatIsEqual) {
   EXPECT_TRUE(s.shown(pow(cosh(x), 2) - pow(sinh(x), 2) - 1));
   EXPECT_TRUE(s.shown(tanh(2 * x) - 2 * tanh(x) / (1 + pow(tanh(x), 2))));
   EXPECT_TRUE(s.shown(exp(2 * log(x)) - x * x));
+  const Expr third = Rational(1, 3) * s.turn, root3 = sqrt(s.number(3));
+  EXPECT_TRUE(s.shown(2 * sin(x + third) - sin(x) - root3 * cos(x)));
+  EXPECT_TRUE(s.shown(tan(x + s.turn) - tan(x)));
+  EXPECT_TRUE(s.shown(4 * cos(Rational(5, 12) * s.turn) - sqrt(s.number(6)) + sqrt(s.number(2))));
 }
 
 // The mutants: each holds at points of one sign, or differs by a term.
@@ -73,6 +81,10 @@ TEST(FewFunctions, DoNotShowWhatDiffers) {
   EXPECT_FALSE(s.shown(exp(x + y) - exp(x) * exp(2 * y)));
   EXPECT_FALSE(s.shown(pow(cosh(x), 2) + pow(sinh(x), 2) - 1));
   EXPECT_FALSE(s.shown(log(x * x) - 2 * log(x) + y));
+  const Expr third = Rational(1, 3) * s.turn, root3 = sqrt(s.number(3));
+  EXPECT_FALSE(s.shown(2 * sin(x + third) - sin(x) + root3 * cos(x)));
+  EXPECT_FALSE(s.shown(tan(x + Rational(1, 2) * s.turn) - tan(x)));
+  EXPECT_FALSE(s.shown(sqrt(s.number(6)) - sqrt(s.number(2)) - root3));
 }
 
 }  // namespace
