@@ -25,6 +25,7 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
     rows_.end_segment(true);
     rows_.last_state(bodies_.at);
     bodies_.dynamics.pass(from, bodies_.at);
+    bodies_.near.segment_has_ended((bodies_.at.t - from.t).get_d());
     nothing_has_changed();
     return bodies_.at.t < end_;
   }
@@ -41,6 +42,7 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
   }
   rows_.last_state(bodies_.at);
   bodies_.dynamics.pass(from, bodies_.at);
+  bodies_.near.segment_has_ended((bodies_.at.t - from.t).get_d());
   // The components that hold are chosen anew.
   const bool holds_others = bodies_.at.t > from.t && may_hold_others(r);
   if (holds_others) forget_singularity(r);
@@ -79,6 +81,7 @@ bool ModeSegments::note(const std::vector<EventReport>& events, const std::map<s
     if (at == known.end()) continue;
     changed = true;
     const auto [contact, change] = at->second;
+    if (change == ModeChange::hits) bodies_.near.reached(contact);
     if (change == ModeChange::turns) bodies_.turned[contact] = true;
     if (change == ModeChange::leaves) bodies_.excluded[contact].touch = true;
     if (change == ModeChange::slips) bodies_.excluded[contact].stick = true, slips_(contact);

@@ -27,7 +27,7 @@ ContactProblem TouchingBodies::with_touching() const {
     ContactRows& rows = p.contacts[c];
     rows.may_touch = near.closed(c) && near.gap_rate(c) == 0 && !excluded[c].touch;
     rows.may_stick = !excluded[c].stick;
-    if (excluded[c].touch) rows.before = before;
+    if (excluded[c].touch) rows.before = before * near.late();
     rows.moves = rows.moves && !slip_has_ended(c);
     // A gap that is open, or opens, is not bounded by its acceleration.
     if (!near.closed(c) || near.gap_rate(c) > 0) rows.normal.assign(at.q.size(), 0), rows.normal_rate = 0;

@@ -2,19 +2,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contact/law/consistent_modes.h"
 
 namespace anholon {
 
-bool RoundOff::closed(std::size_t c) const {
-  constexpr long double kClosed = 1e-12L;
-  return dynamics_.place(c).gap <= kClosed * place_size(c);
+void RoundOff::segment_has_ended(long double length) {
+  length_ = length;
+  reached_.assign(contacts_.size(), false);
 }
 
+bool RoundOff::closed(std::size_t c) const { return reached_[c] || dynamics_.place(c).gap <= uncertainty(c); }
+
 bool RoundOff::negligible(std::size_t c) const {
-  constexpr long double kMissed = 1e-8L;
-  return dynamics_.place(c).gap > -kMissed;
+  constexpr long double kMissed = 1e-8L, kFactor = 1000;
+  return dynamics_.place(c).gap > -std::max(kMissed, kFactor * uncertainty(c));
+}
+
+long double RoundOff::uncertainty(std::size_t c) const {
+  constexpr long double kClosed = 1e-12L, kMoved = 16 * std::numeric_limits<double>::epsilon();
+  long double fastest = 0;
+  for (std::size_t a = 0; a < at_.q.size(); ++a)
+    fastest = std::max(fastest, std::abs(dynamics_.accelerations().contacts[c].normal[a] * dynamics_.most(a)));
+  return kClosed * place_size(c) +
+         kMoved * (length_ * fastest + std::abs(at_.t.get_d()) * std::abs(dynamics_.place(c).gap_rate));
+}
+
+long double RoundOff::late() const {
+  constexpr long double kTime = 16 * std::numeric_limits<double>::epsilon();
+  return length_ > 0 ? 1 + kTime * std::abs(at_.t.get_d()) / (length_ * kSame) : 1;
 }
 
 long double RoundOff::place_size(std::size_t c) const {
