@@ -60,7 +60,8 @@ for lead first; where LINEAR is false, equations() takes lead, too, and the solu
 
  private:
   // A list with these entries.
-  std::string list(const std::string& name, const Column& es) {
+  std::string list(const std::string& name, const Column& formulas) {
+    const Column es = with_guarded_branches(formulas);
     std::vector<std::string> targets;
     for (std::size_t i = 0; i < es.size(); ++i) targets.push_back(name + "[" + std::to_string(i) + "]");
     return "    " + name + " = [0.0] * " + std::to_string(es.size()) + "\n" + writer_.body(es, targets, true).text;

@@ -1,6 +1,60 @@
 #include "emit/rate_formulas.h"
 
+#include <unordered_map>
+
 namespace anholon {
+
+namespace {
+
+bool varies(Expr e) {
+  const std::vector<NodeId> list = symbols({&e, 1});
+  return std::any_of(list.begin(), list.end(), [&](NodeId id) { return e.graph->node(id).kind != Kind::parameter; });
+}
+
+// What may have no value in a branch, each with a number at which it has one: radicands, divisors and arguments.
+std::unordered_map<NodeId, Rational> risks(Expr branch) {
+  std::unordered_map<NodeId, Rational> list;
+  const Graph& g = *branch.graph;
+  const auto add = [&](NodeId id, const Rational& safe) {
+    if (!g.is_number(id) && varies({branch.graph, id})) list.emplace(id, safe);
+  };
+  for (const NodeId id : reachable({&branch, 1})) {
+    const Node& n = g.node(id);
+    if (n.kind == Kind::product)
+      for (const Term& t : g.terms(id))
+        if (const Rational& e = g.rational(t.weight); !e.is_integer() || e < 0) add(t.node, 2);
+    if (n.kind != Kind::function) continue;
+    const NodeId argument = g.terms(id)[0].node;
+    const Function f = static_cast<Function>(n.index);
+    if (f == Function::log || f == Function::acosh) add(argument, 2);
+    if (f == Function::asin || f == Function::acos || f == Function::atanh) add(argument, Rational(1, 2));
+  }
+  return list;
+}
+
+}  // namespace
+
+Column with_guarded_branches(const Column& es) {
+  if (es.empty()) return es;
+  Graph& g = *es[0].graph;
+  std::unordered_map<NodeId, Expr> guarded;
+  for (const NodeId id : reachable(es)) {
+    if (g.node(id).kind != Kind::select) continue;
+    std::vector<Expr> parts;  // the condition, and both values
+    for (const Term& t : g.terms(id)) parts.push_back({&g, t.node});
+    parts = replace_nodes(parts, guarded);
+    for (const std::size_t k : {1U, 2U}) {
+      std::unordered_map<NodeId, Expr> safe;
+      for (const auto& [node, number] : risks(parts[k])) {
+        const Expr e{&g, node}, otherwise = g.number(number);
+        safe.emplace(node, k == 1 ? select(parts[0], e, otherwise) : select(parts[0], otherwise, e));
+      }
+      if (!safe.empty()) parts[k] = replace_nodes({&parts[k], 1}, safe)[0];
+    }
+    guarded.emplace(id, select(parts[0], parts[1], parts[2]));
+  }
+  return guarded.empty() ? es : replace_nodes(es, guarded);
+}
 
 std::vector<Column> RateFormulas::matrix() const {
   std::vector<Column> rows;

@@ -6,6 +6,7 @@
 #include "formula/formula.h"
 #include "formula/functions.h"
 #include "formula/habits.h"
+#include "formula/roots.h"
 #include "formula/rotations.h"
 #include "formula/units.h"
 
@@ -101,7 +102,7 @@ Expr integer_power(Expr base, const Rational& exponent, Span at) {
                   exponent.get_num() == 1 && exponent.get_den() == 3
                       ? "the real cube root of -8 is -8^(1/3), without brackets"
                       : "take the power of the absolute value: abs(a)^(1/3)");
-  return pow(base, exponent);
+  return power_by_sides(base, exponent);
 }
 
 Value power(Value a, Value b, Span at) {
@@ -294,7 +295,7 @@ Value call(const Syntax& s, Names& names) {
     in.expect(1);
     if (is_number(in.number(0)) && number_value(in.number(0)) < 0)
       throw Failure(s.span, "square root of a negative number");
-    return sqrt(in.number(0));
+    return power_by_sides(in.number(0), {1, 2});
   }
   if (f == "atan2") return in.expect(2), atan2(in.number(0), in.number(1));
   if (f == "min" || f == "max") {
