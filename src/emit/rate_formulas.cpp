@@ -1,5 +1,6 @@
 #include "emit/rate_formulas.h"
 
+#include <algorithm>
 #include <unordered_map>
 
 namespace anholon {
