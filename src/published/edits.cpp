@@ -89,7 +89,9 @@ Syntax scaled(const Syntax& s, bool twice) {
 Syntax multiplied(const Syntax& factor, const Syntax& s) {
   if (s.op != Syntax::Op::multiply) return with(Syntax::Op::multiply, {factor, s}, {{Syntax::Op::multiply, {}}});
   Syntax out = s;
-  const std::ptrdiff_t at = s.args[0].op == Syntax::Op::number ? 1 : 0;
+  const bool divided = s.operators[0].op == Syntax::Op::divide;
+  const bool behind = s.args[0].op == Syntax::Op::number || (s.args[0].op == Syntax::Op::negate && !divided);
+  const std::ptrdiff_t at = behind ? 1 : 0;
   if (at == 1 && s.operators[0].op == Syntax::Op::divide)
     return with(Syntax::Op::multiply, {factor, s}, {{Syntax::Op::multiply, {}}});
   out.args.insert(out.args.begin() + at, factor);
@@ -126,7 +128,12 @@ const std::pair<const char*, const char*> kFunctions[] = {
 class Search {
  public:
   Search(Vocabulary& words, const Alphabet& alphabet, unsigned most_dots)
-      : words_(words), alphabet_(alphabet), most_dots_(most_dots) {}
+      : words_(words), alphabet_(alphabet), most_dots_(most_dots) {
+    for (const Words& group : {alphabet.coordinates, alphabet.others, words.local_names()})
+      for (const std::string& n : group) factors_.push_back(named(n));
+    for (const std::string& n : alphabet.coordinates) factors_.push_back(with(Syntax::Op::prime, {named(n)}));
+    for (const std::string& n : alphabet.free) factors_.push_back(named(n));
+  }
 
   std::vector<Edit> of(const Syntax& difference) {
     for (std::uint32_t side : {0U, 1U}) {
@@ -169,8 +176,7 @@ class Search {
       add(Edit::Kind::coefficient, Effect::multiplies, number("2"));
       add(Edit::Kind::coefficient, Effect::multiplies,
           with(Syntax::Op::multiply, {number("1"), number("2")}, {{Syntax::Op::divide, {}}}));
-      for (const Words* group : {&alphabet_.coordinates, &alphabet_.others})
-        for (const std::string& n : *group) add(Edit::Kind::factor, Effect::multiplies, named(n));  // a factor is lost
+      for (const Syntax& lost : factors_) add(Edit::Kind::factor, Effect::multiplies, lost);
     }
     // For the base of a power the exponent is changed instead.
     const auto square = [&] {
@@ -350,6 +356,7 @@ class Search {
   Vocabulary& words_;
   const Alphabet& alphabet_;
   unsigned most_dots_;
+  std::vector<Syntax> factors_;  // that a term may have lost
   Path path_;
   int in_function_ = 0;
   std::vector<Edit> list_;

@@ -91,6 +91,12 @@ void Vocabulary::join(Syntax& s) const {
   for (Syntax& a : s.args) join(a);
 }
 
+std::vector<std::string> Vocabulary::local_names() const {
+  std::vector<std::string> list;
+  for (const auto& [name, value] : lets_) list.push_back(name);
+  return list;
+}
+
 void Vocabulary::let(const std::string& name, Syntax value, Span span) {
   if (!is_identifier(name))
     throw Failure(span, "'" + name.substr(0, 40) + "' is not a name",

@@ -35,6 +35,8 @@ class Vocabulary final : public Names {
   void join(Syntax& s) const;
   // Throws Failure if the name is taken. `value` is joined.
   void let(const std::string& name, Syntax value, Span span);
+  // The names of the definitions so far.
+  std::vector<std::string> local_names() const;
 
   // The value of a joined formula along the motion, with masses substituted, quasi-velocities expressed in coordinates,
   // and rates in place of the derivatives of states.

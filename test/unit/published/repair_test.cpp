@@ -121,6 +121,15 @@ TEST(Repair, LostDotsInFactorsOfOneProduct) {
   EXPECT_EQ(r.readings("m*(m*x)*(w + w') = m*(p - k*x - m'*u + m*(2*w*y' + w'*y + w^2*x))*(w + w)"), Texts{derived});
 }
 
+TEST(Repair, FactorsThatATermHasLost) {
+  Repaired p(kPolar);
+  ASSERT_EQ(p.compare("m*(r^2*psi'' + 2*r*r'*psi') = 2*lambda*r^2*psi'").verdict, Verdict::proved);
+  EXPECT_EQ(p.change("m*(r^2*psi'' + 2*r*r') = 2*lambda*r^2*psi'"), "2*r*r' -> 2*psi'*r*r'");
+  EXPECT_EQ(p.change("m*(r^2*psi'' + 2*r*psi') = 2*lambda*r^2*psi'"), "2*r*psi' -> 2*r'*r*psi'");
+  Repaired r(kRocket);
+  EXPECT_EQ(r.change("m*x'' = p' - k*x - m'*u + m*(2*w + w'*y + w^2*x)"), "2*w -> 2*y'*w");
+}
+
 TEST(Repair, ASymbolThatLostItsDotsEverywhere) {
   Repaired r(kRocket);
   const std::string wrong =
