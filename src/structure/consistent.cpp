@@ -21,11 +21,25 @@ Outcome StateSolver<N>::positions_and_velocities() {
   if (Outcome o = solve(plan.positions, [&] { return plan.kept ? plan.kept_positions : kept_of(plan.positions); });
       !o.ok())
     return o;
+  const std::optional<InitialState<N>> before = plan.both ? std::optional(state_) : std::nullopt;
   if (Outcome o = solve(plan.velocities, [&] { return plan.kept ? plan.kept_velocities : kept_of(plan.velocities); });
-      !o.ok())
-    return o;
+      !o.ok()) {
+    if (!before || !move_positions(plan, *before)) return o;
+  }
   say_least_change();
   return {};
+}
+
+// Solves for positions and velocities together. Returns false if none fit; the state is then as it was.
+template <Number N>
+bool StateSolver<N>::move_positions(const StartPlan& plan, const InitialState<N>& before) {
+  const InitialState<N> failed = state_;
+  state_ = before;
+  by_flow_ = true;
+  const Outcome o = solve(plan.both, [&] { return plan.kept ? plan.kept_both : kept_of(plan.both); });
+  by_flow_ = false;
+  if (!o.ok()) state_ = failed;
+  return o.ok();
 }
 
 // The model's states start with the values of the file.

@@ -75,23 +75,32 @@ StartPlan::StartPlan(const Mechanics& m, const std::vector<StateOverride>& overr
   if (!mass && !(of_positions.empty() && of_velocities.empty())) mass = &(of_both = mass_matrix(m));
   positions = planned(m, of_positions, m.q, kPositions, mass);
   velocities = planned(m, of_velocities, m.qd, kVelocities, mass);
+  std::vector<StageEquation> of_all;
+  Column q_and_qd = m.q;
+  if (std::any_of(of_velocities.begin(), of_velocities.end(), [](const StageEquation& e) { return e.condition; })) {
+    of_all = of_positions;
+    of_all.insert(of_all.end(), of_velocities.begin(), of_velocities.end());
+    q_and_qd.insert(q_and_qd.end(), m.qd.begin(), m.qd.end());
+    both = planned(m, of_all, q_and_qd, kPositions | kVelocities, mass);
+  }
   kept = !overrides.empty();
   if (!kept) return;
+  kept_both = planned(m, left_of(of_all, q_and_qd, overrides, m.graph()), q_and_qd, kPositions | kVelocities, mass);
   kept_positions = planned(m, left_of(of_positions, m.q, overrides, m.graph()), m.q, kPositions, mass);
   kept_velocities = planned(m, left_of(of_velocities, m.qd, overrides, m.graph()), m.qd, kVelocities, mass);
 }
 
 StartPlan StartPlan::copy() const {
   StartPlan p = *this;
-  for (Stages* stages : {&p.positions, &p.velocities, &p.kept_positions, &p.kept_velocities})
+  for (Stages* stages : {&p.positions, &p.velocities, &p.both, &p.kept_positions, &p.kept_velocities, &p.kept_both})
     if (*stages) *stages = std::make_shared<StagePlan>(**stages);
   return p;
 }
 
 void for_each_expression(StartPlan& p, const ExprVisitor& f) {
-  auto& [values, positions, velocities, kept, kept_positions, kept_velocities] = p;
+  auto& [values, positions, velocities, both, kept, kept_positions, kept_velocities, kept_both] = p;
   static_cast<void>(values), static_cast<void>(kept);  // without handles
-  for (StartPlan::Stages* stages : {&positions, &velocities, &kept_positions, &kept_velocities})
+  for (StartPlan::Stages* stages : {&positions, &velocities, &both, &kept_positions, &kept_velocities, &kept_both})
     if (*stages) for_each_expression(const_cast<StagePlan&>(**stages), f);
 }
 

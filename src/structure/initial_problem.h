@@ -27,9 +27,11 @@ struct StartPlan {
 
   Tape values;  // t, the states, then guesses and given values
   using Stages = std::shared_ptr<const StagePlan>;
-  Stages positions, velocities;            // null where there is nothing to solve
-  bool kept = false;                       // made for overrides:
-  Stages kept_positions, kept_velocities;  // without conditions that are only about what is overridden
+  Stages positions, velocities;  // null where there is nothing to solve
+  // Of both, where there are conditions on velocities: positions may have to move if no velocities fit.
+  Stages both;
+  bool kept = false;                                  // made for overrides:
+  Stages kept_positions, kept_velocities, kept_both;  // without conditions that are only about what is overridden
 
   // The same plan with stages of its own; the handles are left as they are.
   StartPlan copy() const;

@@ -305,8 +305,9 @@ initial = {qddot = {x = 0.2}, qdddot = {x = 0.05}}
 ```
 
 - Every coordinate and its derivatives may be a key: `theta`, `"theta'"`, `"D(theta, 3)"`. What is not given follows from the constraints, and what they leave free
-  is as near to the guess, 0 without one, as the mass norm allows. That is not 0 where a constraint forbids it: a torus wheel that leans and spins with `phi' = 8`, without a `psi'`, gets
-  one of several turns per second. Give all velocities of a rolling body. `check` says of each value where it comes from.
+  is as near to the guess, 0 without one, as the mass norm allows. All that is free changes by the least amount together, so a velocity that could be 0 need not be: a torus
+  wheel that leans and spins with `phi' = 8`, without a `psi'`, must move its centre, and the least motion that does so turns it with `psi' = -4`. Give all velocities of a
+  rolling body. `check` says of each value where it comes from.
 - A value is a number or a formula of parameters. Relations between unknowns stand under `conditions`, which may hold accelerations and
   `lambda.NAME`: they are solved with the equations of motion (`"theta'' = 0"`: a steady motion). `--q` and `--qdot` give
   numbers for positions and velocities; an acceleration has no such option, as it follows from the state, and a condition on it finds a state that has it.
