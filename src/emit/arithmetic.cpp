@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <optional>
 #include <unordered_map>
 
 #include "base/assert.h"
@@ -202,6 +203,14 @@ class Builder {
     return whole(intern({Kind::power, {}, exponent, {}, {node_of(v)}}));
   }
 
+  // exp(c*log(x)) as x^c.
+  std::optional<Value> power_of_logarithm(const Value& v) {
+    if (v.node == kNone) return std::nullopt;
+    const Node& n = out_.nodes[v.node];
+    if (n.kind != Kind::function || static_cast<Function>(n.index) != Function::log) return std::nullopt;
+    return power(whole(n.of[0]), v.coefficient);
+  }
+
   Value of_slot(std::uint32_t s) {
     const Instruction& in = tape_.code[s];
     switch (in.op) {
@@ -217,6 +226,8 @@ class Builder {
     case Op::power:
       return power(values_[in.a], tape_.rationals[in.index]);
     case Op::function:
+      if (static_cast<Function>(in.index) == Function::exp)
+        if (const auto power = power_of_logarithm(values_[in.a])) return *power;
       return whole(intern({Kind::function, {}, {}, {}, {node_of(values_[in.a])}, in.index}));
     case Op::arctan2:
       return whole(intern({Kind::arctan2, {}, {}, {}, {node_of(values_[in.a]), node_of(values_[in.b])}}));

@@ -54,9 +54,108 @@ Writer::Text Writer::power(NodeId base, const Rational& exponent) const {
   return {wrapped(x, kAtom) + "**" + (e.find('/') == std::string::npos ? e : "(" + e + ")"), kPower};
 }
 
+const GeneralPowers* Writer::powers(NodeId id) {
+  const auto [at, fresh] = general_.try_emplace(id);
+  if (fresh) at->second = general_powers(g_, id);
+  return at->second ? &*at->second : nullptr;
+}
+
+std::vector<Term> Writer::without_powers(NodeId product, GeneralPowers& out) {
+  const std::span<const Term> all = g_.terms(product);
+  std::set<NodeId> joined;
+  const auto whole_power_of = [&](const Term& t, NodeId base) {
+    return t.node == base && g_.rational(t.weight).is_integer();
+  };
+  for (const Term& t : all) {
+    const GeneralPowers* p = g_.rational(t.weight) == 1 ? powers(t.node) : nullptr;
+    const bool joins = p && std::any_of(p->powers.begin(), p->powers.end(), [&](const GeneralPower& one) {
+                         return std::any_of(all.begin(), all.end(),
+                                            [&](const Term& other) { return whole_power_of(other, one.base); });
+                       });
+    if (!joins) continue;
+    for (const GeneralPower& one : p->powers) join_powers(out.powers, one);
+    out.rest.insert(out.rest.end(), p->rest.begin(), p->rest.end());
+    out.constant += p->constant;
+    joined.insert(t.node);
+  }
+  std::vector<Term> terms;
+  for (const Term& t : all) {
+    const auto same = std::find_if(out.powers.begin(), out.powers.end(),
+                                   [&](const GeneralPower& p) { return whole_power_of(t, p.base); });
+    if (same != out.powers.end())
+      same->constant += g_.rational(t.weight);
+    else if (!joined.count(t.node))
+      terms.push_back(t);
+  }
+  return terms;
+}
+
+std::vector<Writer::Use> Writer::read_by(NodeId id) {
+  std::vector<Use> list;
+  const auto add = [&](const GeneralPowers& p) {
+    for (const NodeId node : p.operands()) list.push_back({node, 1});
+  };
+  if (const GeneralPowers* p = powers(id)) {
+    add(*p);
+  } else if (g_.node(id).kind == Kind::product) {
+    GeneralPowers joined;
+    for (const Term& t : without_powers(id, joined)) list.push_back({t.node, g_.rational(t.weight)});
+    add(joined);
+  } else {
+    for (const Term& t : g_.summands(id)) list.push_back({t.node, 1});
+  }
+  return list;
+}
+
+// The nodes that are read, operands first.
+std::vector<NodeId> Writer::needed(const Column& es) {
+  std::vector<NodeId> ids;
+  std::vector<bool> seen(g_.size(), false);
+  const auto add = [&](NodeId id) {
+    if (!seen[id]) ids.push_back(id);
+    seen[id] = true;
+  };
+  for (Expr e : es) add(e.id);
+  for (std::size_t i = 0; i < ids.size(); ++i)
+    for (const Use& u : read_by(ids[i])) add(u.node);
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+std::vector<Writer::Piece> Writer::factors(const GeneralPowers& all) const {
+  const auto sum = [&](const std::vector<FactorOfExponent>& terms, const Rational& constant) {
+    std::string out;
+    const auto add = [&](const Rational& c, const std::string& body) {
+      out += out.empty() ? c < 0 ? "-" : "" : c < 0 ? " - " : " + ";
+      out += body.empty() ? number(abs(c)) : abs(c) == 1 ? body : number(abs(c)) + "*" + body;
+    };
+    for (const FactorOfExponent& f : terms) {
+      std::string body;
+      for (const auto& [node, exponent] : f.of)
+        body += (body.empty()   ? (exponent < 0 ? "1.0/" : "")
+                 : exponent < 0 ? "/"
+                                : "*") +
+                wrapped(power(node, abs(exponent)), f.of.size() == 1 && exponent > 0 ? kProduct : kPower);
+      add(f.factor, body);
+    }
+    if (constant != 0 || terms.empty()) add(constant, "");
+    return out;
+  };
+  const bool c = language_ == Language::c;
+  std::vector<Piece> out;
+  for (const GeneralPower& p : all.powers)
+    out.push_back({'*', (c ? "pow(" : "np.power(") + text_.at(p.base).s + ", " + sum(p.terms, p.constant) + ")"});
+  std::vector<FactorOfExponent> rest;
+  for (const auto& [node, coefficient] : all.rest) rest.push_back({coefficient, {{node, 1}}});
+  if (!rest.empty() || all.constant != 0)
+    out.push_back({'*', std::string(function_name(Function::exp, language_)) + "(" + sum(rest, all.constant) + ")"});
+  return out;
+}
+
 // Roots and reciprocals that are used more than once get variables.
 void Writer::name_powers(NodeId id, Statements& body) {
-  for (const Term& t : g_.terms(id)) {
+  GeneralPowers general;
+  for (const Term& t : without_powers(id, general)) {
     const Rational& e = g_.rational(t.weight);
     const auto uses = power_uses_.find({t.node, e});
     if (uses == power_uses_.end() || uses->second < 2 || powers_.count(uses->first)) continue;
@@ -74,7 +173,10 @@ std::vector<Writer::Piece> Writer::product(NodeId id) {
   const auto factor = [](const Text& x) {
     return x.s.find('/') == std::string::npos ? wrapped(x, kProduct) : wrapped(x, kPower);
   };
-  for (const Term& t : g_.terms(id)) {
+  GeneralPowers general;
+  const std::vector<Term> terms = without_powers(id, general);
+  if (!general.powers.empty()) out = factors(general);
+  for (const Term& t : terms) {
     const Rational& e = g_.rational(t.weight);
     if (const auto named = powers_.find({t.node, e}); named != powers_.end())
       out.push_back({'*', named->second});
@@ -225,7 +327,10 @@ void Writer::write(NodeId id, Statements& body) {
   case Kind::atan2:
   case Kind::select:
   case Kind::lookup:
-    pieces = {{'*', call(id)}};
+    if (const GeneralPowers* p = powers(id))
+      pieces = factors(*p), strength = pieces.size() > 1 ? kProduct : kAtom;
+    else
+      pieces = {{'*', call(id)}};
     break;
   }
   std::size_t length = 0;
@@ -267,14 +372,12 @@ Statements Writer::body(const Column& es, const std::vector<std::string>& target
   power_uses_.clear();
   powers_.clear();
   next_ = 0;
-  const std::vector<NodeId> ids = reachable(es);
+  const std::vector<NodeId> ids = needed(es);
   for (Expr e : es) ++uses_[e.id];
   for (NodeId id : ids)
-    for (const Term& t : g_.summands(id)) {
-      const bool power = g_.node(id).kind == Kind::product;
-      const Rational e = power ? g_.rational(t.weight) : Rational(1);
-      uses_[t.node] += power ? bases(e) : 1;
-      if (power && (e < 0 || !e.is_integer())) ++power_uses_[{t.node, e}];
+    for (const auto& [node, e] : read_by(id)) {
+      uses_[node] += bases(e);
+      if (e < 0 || !e.is_integer()) ++power_uses_[{node, e}];
     }
   load(ids, body);
   for (NodeId id : ids) write(id, body);

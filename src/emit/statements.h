@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "emit/names.h"
+#include "print/powers.h"
 
 namespace anholon::emit {
 
@@ -43,6 +44,18 @@ class Writer {
   std::vector<Piece> pieces(NodeId id);
   std::vector<Piece> sum(NodeId id);
   std::vector<Piece> product(NodeId id);
+  // A node that a text holds, to this power.
+  struct Use {
+    NodeId node;
+    Rational exponent;
+  };
+  // exp(n*log(x)) is pow(x, n), which has a value for x <= 0 where n is a whole number. null: `id` is no power.
+  const GeneralPowers* powers(NodeId id);
+  // The factors of a product without such powers, and without whole powers of their bases, which go to `out`.
+  std::vector<Term> without_powers(NodeId product, GeneralPowers& out);
+  std::vector<Use> read_by(NodeId id);
+  std::vector<NodeId> needed(const Column& es);
+  std::vector<Piece> factors(const GeneralPowers& powers) const;
   std::string call(NodeId id);
   Text power(NodeId base, const Rational& exponent) const;
   void name_powers(NodeId product, Statements& body);
@@ -58,6 +71,7 @@ class Writer {
   std::unordered_map<NodeId, std::size_t> uses_;
   std::map<std::pair<NodeId, Rational>, std::size_t> power_uses_;  // of roots and reciprocals
   std::map<std::pair<NodeId, Rational>, std::string> powers_;      // those that have a variable
+  std::unordered_map<NodeId, std::optional<GeneralPowers>> general_;
   std::size_t next_ = 0;
   bool used_sign_ = false;
 };

@@ -165,6 +165,12 @@ void StraightLine::write_rates() {
     case Op::divide:
       set(s, quotient_of(in.a, in.b));
       break;
+    case Op::function:
+      if (const auto power = general_power(in)) {
+        set(s, {{*power, kOne}});
+        break;
+      }
+      [[fallthrough]];
     default:
       set(s, {{named(operation(in, [&](std::uint32_t k) { return operand(k); })), kOne}});
     }
@@ -287,6 +293,13 @@ StraightLine::Form StraightLine::product_of(std::uint32_t a, std::uint32_t b) {
 
 StraightLine::Form StraightLine::quotient_of(std::uint32_t a, std::uint32_t b) {
   const Term x = term_of(a);
+  // x^n/x is x^(n - 1), which has a value for x = 0.
+  if (const auto power = powers_.find(x.text); power != powers_.end() && power->second.first == operand(b)) {
+    Coefficient exponent = power->second.second;
+    exponent[{}] -= 1;
+    std::erase_if(exponent, [](const auto& term) { return term.second == 0; });
+    return {{power_of(operand(b), exponent), x.coefficient}};
+  }
   return {{named(x.text + "/" + operand(b)), x.coefficient}};
 }
 

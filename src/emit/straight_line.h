@@ -6,6 +6,7 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -56,6 +57,10 @@ class StraightLine {
   Form sum_of(const Instruction& in);
   Form product_of(std::uint32_t a, std::uint32_t b);
   Form quotient_of(std::uint32_t a, std::uint32_t b);
+  // exp(n*log(x)) of a slot as pow(x, n); nullopt if it is none.
+  std::optional<std::string> general_power(const Instruction& in);
+  std::optional<std::pair<std::uint32_t, Coefficient>> logarithm(std::uint32_t slot) const;
+  std::string power_of(const std::string& base, const Coefficient& exponent);
   Form scaled(std::uint32_t slot, const Coefficient& by);
   Term term_of(std::uint32_t slot);
   // Gives a slot this form. A form that several readers would each compute again becomes a named value.
@@ -87,7 +92,9 @@ class StraightLine {
   std::vector<std::string> name_;                        // of arguments, literals, and slots that constants need
   std::vector<Form> forms_;                              // of slots that vary
   std::unordered_map<std::string, std::string> values_;  // the name of what is computed
-  std::map<Coefficient, std::size_t> places_;            // of constants in c
+  std::unordered_map<std::string, std::pair<std::string, Coefficient>>
+      powers_;                                 // base and exponent of the values pow(x, n)
+  std::map<Coefficient, std::size_t> places_;  // of constants in c
   std::vector<Coefficient> constants_;
   std::vector<std::size_t> zeros_;  // roots that vanish
   std::string text_, constants_text_;

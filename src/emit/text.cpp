@@ -202,7 +202,7 @@ std::vector<std::string> head(const System& s, const Structure& structure, const
       add(std::string(index.size() < 4 ? 4 - index.size() : 0, ' ') + index + "  " + meanings[i]);
     }
   };
-  add(model.title);
+  if (!model.title.empty()) add(model.title);
   add(std::string(s.form->title) + ", " + s.form->equation + " of " + s.form->source);
   if (!o.made_by.empty()) add("Written by: " + o.made_by);
   add("");

@@ -319,6 +319,19 @@ Column substitute(std::span<const Expr> es, const std::function<Expr(NodeId)>& r
   return rebuild(es, [&](NodeId id) { return is_symbol(g.node(id).kind) ? replacement(id) : Expr{}; });
 }
 
+Column put(std::span<const Expr> es, const Column& from, const Column& to) {
+  std::unordered_map<NodeId, Expr> image;
+  for (std::size_t i = 0; i < from.size(); ++i)
+    if (!(from[i] == to[i])) image.emplace(from[i].id, to[i]);
+  if (image.empty()) return {es.begin(), es.end()};
+  return substitute(es, [&](NodeId id) {
+    const auto it = image.find(id);
+    return it == image.end() ? Expr{} : it->second;
+  });
+}
+
+Expr put(Expr e, const Column& from, const Column& to) { return put(std::span<const Expr>(&e, 1), from, to)[0]; }
+
 Column replace_nodes(std::span<const Expr> es, const std::unordered_map<NodeId, Expr>& replacement) {
   return rebuild(es, [&](NodeId id) {
     const auto it = replacement.find(id);

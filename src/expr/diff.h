@@ -33,6 +33,10 @@ Column pullback(std::span<const Expr> outputs, std::span<const Expr> seeds, std:
 // nullptr to keep the symbol.
 Column substitute(std::span<const Expr> es, const std::function<Expr(NodeId)>& replacement);
 
+// As above: to[k] in place of the symbol from[k].
+Column put(std::span<const Expr> es, const Column& from, const Column& to);
+Expr put(Expr e, const Column& from, const Column& to);
+
 // As above for any nodes: replaces those in the table, whatever their operands.
 Column replace_nodes(std::span<const Expr> es, const std::unordered_map<NodeId, Expr>& replacement);
 

@@ -7,6 +7,10 @@
 
 namespace anholon {
 
+bool is_piece_of_table(std::string_view member) {
+  return member == "knot" || (member.size() == 2 && member[0] == 'c' && member[1] >= '0' && member[1] <= '3');
+}
+
 int smoothness(Fit fit) { return static_cast<int>(fit) - 1; }
 
 namespace {

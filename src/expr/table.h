@@ -6,6 +6,7 @@
 // rationals.
 #pragma once
 #include <optional>
+#include <string_view>
 
 #include "expr/expr.h"
 
@@ -37,6 +38,9 @@ class TableFunction {
   std::uint32_t knot_;
   std::vector<std::uint32_t> coefficients_;
 };
+
+// Whether `member` names a piece of a table f, f.knot or f.c0, f.c1, …, which is a step function.
+bool is_piece_of_table(std::string_view member);
 
 // The number of continuous derivatives of a fit; -1 if the fit jumps.
 int smoothness(Fit fit);

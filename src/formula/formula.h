@@ -58,7 +58,7 @@ struct Syntax {
     power,
     prime,
     index,
-    apply,  // P[i-1], and T[i](a, b) (args[0] is T[i]); a parsed formula holds names and calls instead
+    apply,  // P[i-1], T[i](a, b) (args[0] is T[i]) and f.c0(x); a parsed formula holds names and calls instead
     add,    // args joined by operators add, subtract
     subtract,
     multiply,  // args joined by operators multiply, divide, dot, cross

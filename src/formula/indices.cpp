@@ -34,6 +34,12 @@ std::string element(const Syntax& index, const Indices* indices) {
   return member_name(index.text, values);
 }
 
+// T[2], and f.c0 for a member of a name.
+std::string name_of_function(const Syntax& s, const Indices* indices) {
+  if (s.op != Syntax::Op::member) return element(s, indices);
+  return print(with_indices(s.args[0], indices)) + "." + s.text;
+}
+
 std::string letters(const Indices* indices) {
   std::string list;
   for (const Indices* i = indices; i; i = i->outer.get())
@@ -164,7 +170,7 @@ Syntax with_indices(Syntax s, const Indices* indices) {
     }
     break;
   case Syntax::Op::apply:
-    s.text = element(s.args[0], indices);
+    s.text = name_of_function(s.args[0], indices);
     s.op = Syntax::Op::call;
     s.args.erase(s.args.begin());
     break;

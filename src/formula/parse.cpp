@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "base/utf8.h"
+#include "expr/table.h"
 #include "formula/formula.h"
 #include "formula/functions.h"
 #include "formula/habits.h"
@@ -25,7 +26,7 @@ class Parser {
     lexemes_ = lexemes(source);
   }
 
-  // Whether the formula contains brackets after names: P[2].
+  // Whether the formula contains brackets after names, P[2], or calls of pieces, f.c0(x).
   bool indexed() const { return indexed_; }
 
   Syntax formula() {
@@ -320,10 +321,21 @@ class Parser {
           for (Syntax& a : arguments(Token::right, "]")) s.args.push_back(std::move(a));
           indexed_ = true;
         }
+        if (peek().token == Token::open && is_piece_of_table(member.text)) s = call_of_piece(std::move(s), at);
       } else {
         return s;
       }
     }
+  }
+
+  // f.c0(x), T[2].knot(x)
+  Syntax call_of_piece(Syntax piece, const Lexeme& at) {
+    std::vector<Syntax> all = one(std::move(piece));
+    for (Syntax& a : arguments(Token::close, ")")) all.push_back(std::move(a));
+    Syntax s = make(Syntax::Op::apply, at, std::move(all));
+    s.end = lexemes_[at_ - 1].offset + 1;
+    indexed_ = true;
+    return s;
   }
 
   // Reports "x'(t)": coordinates and their derivatives are written without an argument.

@@ -32,16 +32,6 @@ bool contains(Expr e, const Column& v) {
   return false;
 }
 
-Column put(const Column& es, const Column& from, const Column& to) {
-  std::unordered_map<NodeId, Expr> image;
-  for (std::size_t i = 0; i < from.size(); ++i) image.emplace(from[i].id, to[i]);
-  return substitute(es, [&](NodeId id) {
-    const auto it = image.find(id);
-    return it == image.end() ? Expr{} : it->second;
-  });
-}
-Expr put(Expr e, const Column& from, const Column& to) { return put(Column{e}, from, to)[0]; }
-
 Expr written_out(Expr e, std::size_t first, const Column& rates) {
   const auto series = [&](NodeId id) {
     const Node& n = e.graph->node(id);

@@ -10,10 +10,6 @@ std::size_t varying_nodes(Expr e);
 bool is_constant(Expr e);
 bool contains(Expr e, const Column& symbols);
 
-// Symbols replaced.
-Column put(const Column& es, const Column& from, const Column& to);
-Expr put(Expr e, const Column& from, const Column& to);
-
 // Jets of coordinates from `first` on, which stand for these expressions and their total derivatives (System::rates),
 // written out.
 Expr written_out(Expr e, std::size_t first, const Column& rates);

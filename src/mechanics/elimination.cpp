@@ -8,19 +8,6 @@ namespace anholon {
 
 namespace {
 
-// Replaces the symbols `from` by `to`.
-Column put(const Column& X, const Column& from, const Column& to) {
-  if (X.empty()) return X;
-  std::unordered_map<NodeId, Expr> image;
-  for (std::size_t i = 0; i < from.size(); ++i)
-    if (!(from[i] == to[i])) image.emplace(from[i].id, to[i]);
-  if (image.empty()) return X;
-  return substitute(X, [&](NodeId id) {
-    const auto it = image.find(id);
-    return it == image.end() ? Expr{} : it->second;
-  });
-}
-
 bool depends(std::span<const Expr> es, const Column& on) {
   for (NodeId id : symbols(es))
     for (Expr s : on)

@@ -10,8 +10,6 @@ namespace {
 
 constexpr int kLargestExponent = 1000;  // that a formula may have
 
-bool is_log(const Node& n) { return n.kind == Kind::function && n.index == static_cast<std::uint32_t>(Function::log); }
-
 // e with the values of parameters, however they follow from one another, and these parameters. nullopt if e holds another
 // symbol.
 std::optional<Expr> with_values(const Model& model, Expr e, std::set<std::size_t>& used) {
@@ -51,11 +49,11 @@ bool whole(Expr e) {
 }
 
 // base^exponent with an exponent of parameters.
-struct GeneralPower {
+struct FixedPower {
   Expr base, exponent;
 };
 
-std::optional<GeneralPower> general_power(Graph& g, NodeId id) {
+std::optional<FixedPower> fixed_power(Graph& g, NodeId id) {
   const std::optional<PowerParts> p = parts_of_power(g, id);
   if (!p || p->exponent.empty()) return std::nullopt;
   std::vector<std::pair<Expr, Rational>> factors;
@@ -64,7 +62,7 @@ std::optional<GeneralPower> general_power(Graph& g, NodeId id) {
     for (NodeId symbol : symbols({&factors.back().first, 1}))
       if (g.node(symbol).kind != Kind::parameter) return std::nullopt;
   }
-  return GeneralPower{{&g, p->base}, p->factor * g.product(factors)};
+  return FixedPower{{&g, p->base}, p->factor * g.product(factors)};
 }
 
 Column all_expressions(Model& model) {
@@ -81,39 +79,13 @@ bool depends(const FixedExponent& e, const std::vector<std::size_t>& on) {
 
 }  // namespace
 
-std::optional<PowerParts> parts_of_power(const Graph& g, NodeId id) {
-  const Node& n = g.node(id);
-  if (n.kind != Kind::function || n.index != static_cast<std::uint32_t>(Function::exp)) return std::nullopt;
-  NodeId argument = g.terms(id)[0].node;
-  PowerParts p{0, 1, {}};
-  if (g.node(argument).kind == Kind::sum) {
-    const std::span<const Term> terms = g.summands(argument);
-    if (terms.size() != 1) return std::nullopt;
-    p.factor = g.rational(terms[0].weight);
-    argument = terms[0].node;
-  }
-  const std::span<const Term> factors = g.terms(argument);
-  if (is_log(g.node(argument))) {
-    p.base = factors[0].node;
-    return p;
-  }
-  if (g.node(argument).kind != Kind::product) return std::nullopt;
-  bool known = false;
-  for (const Term& t : factors)
-    if (!known && is_log(g.node(t.node)) && g.rational(t.weight) == 1)
-      known = true, p.base = g.terms(t.node)[0].node;
-    else
-      p.exponent.push_back({t.node, g.rational(t.weight)});
-  return known ? std::optional(std::move(p)) : std::nullopt;
-}
-
 void put_whole_exponents(Model& model, const std::vector<std::size_t>& open) {
   Graph& g = *model.graph;
   const Column all = all_expressions(model);
   std::unordered_map<NodeId, Expr> by;
   std::set<std::size_t> known;
   for (NodeId id : reachable(all)) {
-    const std::optional<GeneralPower> p = general_power(g, id);
+    const std::optional<FixedPower> p = fixed_power(g, id);
     const std::optional<FixedExponent> e = p ? fixed(model, p->exponent) : std::nullopt;
     if (!e || !whole(e->value) || depends(*e, open)) continue;
     const Expr base = replace_nodes({&p->base, 1}, by).front();
@@ -138,7 +110,7 @@ void put_whole_exponents(Model& model, const std::vector<std::size_t>& open) {
 Column exponents_of(Model& model, const std::vector<std::size_t>& parameters) {
   Column list;
   for (NodeId id : reachable(all_expressions(model))) {
-    const std::optional<GeneralPower> p = general_power(*model.graph, id);
+    const std::optional<FixedPower> p = fixed_power(*model.graph, id);
     if (const auto e = p ? fixed(model, p->exponent) : std::nullopt; e && depends(*e, parameters))
       list.push_back(p->exponent);
   }

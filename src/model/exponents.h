@@ -5,16 +5,9 @@
 // is x^4/4.
 #pragma once
 #include "model/model.h"
+#include "print/powers.h"
 
 namespace anholon {
-
-// The parts of a node exp(b*log(a)) with b a factor times powers of nodes.
-struct PowerParts {
-  NodeId base;
-  Rational factor;
-  std::vector<std::pair<NodeId, Rational>> exponent;
-};
-std::optional<PowerParts> parts_of_power(const Graph& g, NodeId id);
 
 // Puts whole exponents in, up to 1000, in a model whose graph may still grow: those of parameters that no event sets and
 // that do not depend on one of `open`.

@@ -111,9 +111,26 @@ void Defect::piece(const DenseStep& step, const Ball& begin, const Ball& end, in
   const PieceBounds b = over(shifted(step.coefficients, center - step.begin), center, radius);
   const bool beside_kink =
       !b.smooth && b.is_finite() && halvings < kMostHalvingsAtKinks && pieces_of_step_ < kMostPieces && says_more(b);
-  if (b.sharp || (halvings >= kMostHalvings && !beside_kink)) return keep(b);
+  if (b.sharp || (halvings >= kMostHalvings && !beside_kink)) {
+    if (!b.smooth && says_more(b)) gave_up_at(center);
+    // Shorter pieces are those beside a kink, by whose rounded time they may have the formula of its other side.
+    if (b.smooth && halvings <= kMostHalvings) put_larger(b, worst_smooth_);
+    return keep(b);
+  }
   piece(step, begin, center, halvings + 1);
   piece(step, center, end, halvings + 1);
+}
+
+// REQUIRES: the residuals have been evaluated on the piece.
+void Defect::gave_up_at(const Ball& center) {
+  if (const std::string formula = residuals_.turning(); !formula.empty())
+    kink_ = RigorousReport::Kink{formula, center.midpoint_multi().to_double()};
+}
+
+void Defect::put_larger(const Bounds& b, Bounds& in) {
+  in.newton = max(in.newton, b.newton);
+  in.projected = max(in.projected, b.projected);
+  in.constraints = max(in.constraints, b.constraints);
 }
 
 // Whether the bounds are larger than those of the pieces before.
@@ -155,6 +172,14 @@ void Defect::step(const DenseStep& step) {
 
 std::optional<RigorousReport> Defect::report() const {
   if (pieces_ == 0) return std::nullopt;
+  // Beside a kink that is no jump the bounds are about those of the other pieces.
+  const auto larger = [&](const Ball& all, const Ball& smooth) {
+    constexpr int kMuch = 1'000'000;
+    return reaches_beyond(all, max(smooth, quiet_) * Ball(kMuch));
+  };
+  const bool by_kink = larger(worst_.newton, worst_smooth_.newton) ||
+                       larger(worst_.projected, worst_smooth_.projected) ||
+                       larger(worst_.constraints, worst_smooth_.constraints);
   const auto times = times_ == 0 ? std::nullopt : std::optional(reached_);
   return RigorousReport{times,
                         pieces_,
@@ -162,7 +187,8 @@ std::optional<RigorousReport> Defect::report() const {
                         worst_.projected.bound_text(),
                         worst_.constraints.bound_text(),
                         joints_.bound_text(),
-                        bits_};
+                        bits_,
+                        by_kink ? kink_ : std::nullopt};
 }
 
 }  // namespace anholon

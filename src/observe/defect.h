@@ -48,6 +48,12 @@ struct RigorousReport {
   std::size_t pieces = 0;            // in which these were found
   std::string newton, projected, constraints, joints;  // bounds, rounded upwards; "inf" where there is none
   long bits = 0;                                       // of the midpoints of balls
+  // Where the bounds stay large, because a formula has a kink or jumps there.
+  struct Kink {
+    std::string formula;
+    double t = 0;
+  };
+  std::optional<Kink> kink = {};
 };
 
 class Defect {
@@ -75,6 +81,9 @@ class Defect {
   PieceBounds at_time(const DenseStep& step, const Ball& time);
   PieceBounds over(const BallSeries& centered, const Ball& center, const Ball& radius);
   void piece(const DenseStep& step, const Ball& begin, const Ball& end, int halvings);  // so many so far
+  // Looks for what keeps the bounds of a piece large that contains this time.
+  void gave_up_at(const Ball& center);
+  static void put_larger(const Bounds& b, Bounds& in);
   bool says_more(const Bounds& b) const;
   void keep(const Bounds& b);
 
@@ -83,8 +92,9 @@ class Defect {
   slong bits_;
   Ball begin_, end_, quiet_;
   ResidualSeries residuals_;
-  BallSeries last_;  // derivatives of the unknowns where the last step ended
-  Bounds worst_;
+  BallSeries last_;              // derivatives of the unknowns where the last step ended
+  Bounds worst_, worst_smooth_;  // of all pieces, and of those that lie away from kinks
+  std::optional<RigorousReport::Kink> kink_;
   Ball joints_;
 };
 

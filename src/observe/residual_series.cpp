@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "print/print.h"
 #include "setup/output_tape.h"
 #include "tape/bind.h"
+#include "tape/operands.h"
 
 namespace anholon {
 
@@ -68,6 +70,26 @@ Ball ResidualSeries::newton_scale() {
   for (std::size_t i = scale_; i < tape_.roots.size(); ++i)
     if (machine_->value(i).is_finite()) scale = max(scale, lower_end(abs(machine_->value(i))));
   return scale;
+}
+
+std::string ResidualSeries::turning() const {
+  const auto zero_at = [&](std::uint32_t slot) { return machine_->series(slot)[0].contains_zero(); };
+  for (std::uint32_t s = 0; s < tape_.main_end; ++s) {
+    const Instruction& in = tape_.code[s];
+    bool turns = false;
+    if (turns_at_zero(in))
+      turns = zero_at(in.a);
+    else if (in.op == Op::select)
+      turns = zero_at(in.first);
+    else if (in.op == Op::power && !tape_.rationals[in.index].is_integer())
+      turns = zero_at(in.a);
+    else if (in.op == Op::lookup)
+      for (const Rational& knot : tape_.step_functions[in.index].knots)
+        turns = turns || machine_->series(in.a)[0].contains(knot);
+    if (turns && tape_.nodes[s] != Tape::kNoNode)
+      return print(Expr{s_.model->graph.get(), tape_.nodes[s]}, s_.model->names, Format::text);
+  }
+  return {};
 }
 
 const Ball* ResidualSeries::phi(std::size_t constraint, std::size_t coordinate) const {

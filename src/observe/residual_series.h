@@ -35,6 +35,10 @@ class ResidualSeries {
   // out: a bound in relation to less is a bound as well.
   Ball newton_scale();
 
+  // The formula with a kink or a jump within the ball of the time at which the residuals have been evaluated last; empty
+  // if there is none.
+  std::string turning() const;
+
   // Series that, added to the multipliers, leave least of Newton's residual, order by order, by least squares; empty if
   // there are none. No bound rests on their being right: balls say what is left.
   BallSeries correction(std::size_t orders) const;

@@ -3,26 +3,13 @@
 #include <algorithm>
 #include <map>
 
+#include "print/powers.h"
 #include "print/print_names.h"
+#include "print/spelling.h"
 
 namespace anholon {
 
 namespace {
-
-enum Strength : int { kSum = 1, kProduct = 2, kPower = 3, kAtom = 4 };
-
-struct Printed {
-  std::string text;
-  int strength = kAtom;
-  std::string opposite = {};  // the text of -e, if the text of e starts with a minus sign
-  int opposite_strength = kAtom;
-};
-
-// "\\sin" -> "sin", "\\operatorname{sgn}" -> "sgn".
-std::string function_name(const std::string& latex) {
-  const std::size_t brace = latex.find('{');
-  return brace == std::string::npos ? latex.substr(1) : latex.substr(brace + 1, latex.size() - brace - 2);
-}
 
 std::string written_name(const std::string& name, Format format) {
   switch (format) {
@@ -36,9 +23,9 @@ std::string written_name(const std::string& name, Format format) {
   return name;
 }
 
-class Printer {
+class Printer : Spelling {
  public:
-  Printer(Graph& g, const SymbolNames& names, Format format) : g_(g), names_(names), format_(format) {
+  Printer(Graph& g, const SymbolNames& names, Format format) : Spelling(format, kLongestPrint), g_(g), names_(names) {
     for (const auto& [id, name] : names.defined) {
       const std::span<const Term> terms = g.terms(id);
       if (g.node(id).kind == Kind::product && terms.size() == 1 && g.rational(terms[0].weight).get_num() == 1)
@@ -53,20 +40,20 @@ class Printer {
       if (!seen[e.id]) seen[e.id] = true, ids.push_back(e.id);
     for (std::size_t i = 0; i < ids.size(); ++i) {
       if (names_.defined.count(ids[i])) continue;
-      for (const Term& t : operands(ids[i]))
-        if (!seen[t.node]) seen[t.node] = true, ids.push_back(t.node);
+      for (const NodeId o : read_by(ids[i]))
+        if (!seen[o]) seen[o] = true, ids.push_back(o);
     }
     std::sort(ids.begin(), ids.end());
     for (Expr e : es) ++uses_[e.id];
     for (NodeId id : ids)
       if (!names_.defined.count(id))
-        for (const Term& t : operands(id)) ++uses_[t.node];
+        for (const NodeId o : read_by(id)) ++uses_[o];
     for (NodeId id : ids) {
       done_[id] = node(id);
       if (names_.defined.count(id)) continue;
       // The text of an operand is released at its last use: a deep formula needs no more memory than its length.
-      for (const Term& t : operands(id))
-        if (--uses_[t.node] == 0) done_.erase(t.node);
+      for (const NodeId o : read_by(id))
+        if (--uses_[o] == 0) done_.erase(o);
     }
     std::vector<std::string> out;
     for (Expr e : es) out.push_back(done_[e.id].text);
@@ -80,8 +67,8 @@ class Printer {
       if (!seen[e.id]) seen[e.id] = root[e.id] = true, ids.push_back(e.id);
     for (std::size_t i = 0; i < ids.size(); ++i) {
       if (!root[ids[i]] && names_.defined.count(ids[i])) continue;
-      for (const Term& t : operands(ids[i]))
-        if (!seen[t.node]) seen[t.node] = true, ids.push_back(t.node);
+      for (const NodeId o : read_by(ids[i]))
+        if (!seen[o]) seen[o] = true, ids.push_back(o);
     }
     std::sort(ids.begin(), ids.end());
     std::unordered_map<NodeId, std::string> texts;
@@ -98,8 +85,23 @@ class Printer {
  private:
   std::span<const Term> operands(NodeId id) const { return names_.short_sums ? g_.summands(id) : g_.terms(id); }
 
-  bool latex() const { return format_ == Format::latex; }
-  bool mathml() const { return format_ == Format::mathml; }
+  // exp(n*log(x)) as x^n, which is read as the same node; null if `id` is printed as it is.
+  const GeneralPower* power_of(NodeId id) {
+    const Node& n = g_.node(id);
+    if (n.kind != Kind::function || static_cast<Function>(n.index) != Function::exp) return nullptr;
+    const auto [at, fresh] = powers_.try_emplace(id);
+    if (fresh && !names_.defined.count(g_.terms(id)[0].node)) at->second = general_powers(g_, id);
+    const std::optional<GeneralPowers>& p = at->second;
+    return p && p->powers.size() == 1 && p->rest.empty() && p->constant == 0 ? &p->powers[0] : nullptr;
+  }
+
+  // The nodes whose texts the text of a node holds.
+  std::vector<NodeId> read_by(NodeId id) {
+    if (power_of(id)) return powers_.at(id)->operands();
+    std::vector<NodeId> list;
+    for (const Term& t : operands(id)) list.push_back(t.node);
+    return list;
+  }
 
   // The sort key of a node among its neighbours.
   struct Rank {
@@ -153,8 +155,13 @@ class Printer {
     }
     r.constant = r.kind <= 2 || r.kind >= 7;
     // Operands have been ranked before (ids ascend), so the recursion is not deep.
-    for (const Term& t : g_.terms(id))
-      if (const auto o = rank_.find(t.node); o != rank_.end()) {
+    std::vector<NodeId> of;
+    if (power_of(id))
+      of = read_by(id);
+    else
+      for (const Term& t : g_.terms(id)) of.push_back(t.node);
+    for (const NodeId operand : of)
+      if (const auto o = rank_.find(operand); o != rank_.end()) {
         if (o->second.order > r.order) r.order = o->second.order, r.inside = true;
         if (o->second.order == r.order) r.inside &= o->second.inside;
         r.constant &= o->second.constant;
@@ -164,11 +171,6 @@ class Printer {
       r.inside = true;
     if (n.kind == Kind::sum && r.constant) r.kind = 3;
     return rank_[id] = r;
-  }
-
-  std::string cut(std::string s) const {
-    if (s.size() <= kLongestPrint) return s;
-    return mathml() ? "<mtext>…</mtext>" : "…";
   }
 
   // The spelling given by [notation], or by the rules for names.
@@ -228,6 +230,7 @@ class Printer {
       return {derivative_name(name, n.order, format_)};
     }
     case Kind::function: {
+      if (const GeneralPower* p = power_of(id)) return text_of(*this, done_, *p);
       const FunctionInfo& f = info(static_cast<Function>(n.index));
       return {call(f.name, f.latex, done_[g_.terms(id)[0].node].text)};
     }
@@ -249,11 +252,6 @@ class Printer {
     return {};
   }
 
-  std::string brackets(const std::string& s) const {
-    if (mathml()) return row("<mo>(</mo>" + s + "<mo>)</mo>");
-    return latex() ? "\\left(" + s + "\\right)" : "(" + s + ")";
-  }
-
   // piecewise(s >= 0, a, b)
   Printed branches(NodeId id) const {
     const std::span<const Term> t = g_.terms(id);
@@ -267,46 +265,10 @@ class Printer {
     return {cut("piecewise(" + s + " >= 0, " + a + ", " + b + ")")};
   }
 
-  std::string call(const std::string& name, const std::string& latex_text, const std::string& arguments) const {
-    if (mathml()) return cut("<mi>" + function_name(latex_text) + "</mi><mo>&#x2061;</mo>" + brackets(arguments));
-    return cut((latex() ? latex_text : name) + brackets(arguments));
-  }
-
-  std::string fraction(const std::string& top, const std::string& bottom) const {
-    if (mathml()) return "<mfrac>" + row(top) + row(bottom) + "</mfrac>";
-    return latex() ? "\\frac{" + top + "}{" + bottom + "}" : top + "/" + bottom;
-  }
-
-  std::string whole(const mpz_class& n) const { return mathml() ? "<mn>" + n.get_str() + "</mn>" : n.get_str(); }
-  std::string minus() const { return mathml() ? "<mo>−</mo>" : "-"; }
-
-  Printed negated(Printed p) const { return {minus() + p.text, kSum, std::move(p.text), p.strength}; }
-
-  Printed number(const Rational& r) const {
-    if (r < 0) return negated(number(-r));
-    if (r.is_integer()) return {whole(r.get_num())};
-    return {fraction(whole(r.get_num()), whole(r.get_den())), kProduct};
-  }
-
-  std::string wrap(const std::string& text, int its_strength, int strength) const {
-    return its_strength >= strength ? text : brackets(text);
-  }
-  std::string wrap(const Printed& p, int strength) const { return wrap(p.text, p.strength, strength); }
-
-  std::string join(const std::string& a, const std::string& b) const {
-    return a.empty() ? b : b.empty() ? a : a + (mathml() ? "<mo>&#x2062;</mo>" : latex() ? " \\, " : "*") + b;
-  }
-
   // c * term without its sign.
   std::string weighted(const Rational& c, NodeId id) const {
     if (g_.is_number(id) && g_.value(id) == 1) return number(c).text;
-    const Printed& p = done_.at(id);
-    const std::string body = p.opposite.empty() ? wrap(p, kProduct) : wrap(p.opposite, p.opposite_strength, kProduct);
-    if (c == 1) return body;
-    if (c.is_integer()) return join(whole(c.get_num()), body);
-    if (format_ != Format::text) return join(number(c).text, body);
-    const std::string top = c.get_num() == 1 ? body : join(whole(c.get_num()), body);
-    return top + "/" + c.get_den().get_str();
+    return Spelling::weighted(c, done_.at(id));
   }
 
   Printed sum(NodeId id) {
@@ -353,19 +315,6 @@ class Printer {
     return out;
   }
 
-  Printed power(const Printed& base, const Rational& exponent) const {
-    if (exponent == 1) return base;
-    if (exponent == Rational(1, 2)) {
-      if (mathml()) return {"<msqrt>" + base.text + "</msqrt>"};
-      return {latex() ? "\\sqrt{" + base.text + "}" : "sqrt(" + base.text + ")"};
-    }
-    const std::string b = wrap(base, kAtom);
-    if (mathml()) return {"<msup>" + row(b) + row(number(exponent).text) + "</msup>", kPower};
-    if (latex()) return {"{" + b + "}^{" + exponent.get_str() + "}", kPower};
-    const bool plain = exponent.is_integer() && exponent > 0;
-    return {b + "^" + (plain ? exponent.get_str() : "(" + exponent.get_str() + ")"), kPower};
-  }
-
   Printed product(NodeId id) {
     std::vector<Term> terms(g_.terms(id).begin(), g_.terms(id).end());
     std::stable_sort(terms.begin(), terms.end(),
@@ -405,11 +354,11 @@ class Printer {
 
   Graph& g_;
   const SymbolNames& names_;
-  Format format_;
   std::map<std::pair<NodeId, mpz_class>, std::string> roots_;  // defined names of x^(1/k)
   std::unordered_map<NodeId, Printed> done_;
   std::unordered_map<NodeId, std::size_t> uses_;
   std::unordered_map<NodeId, Rank> rank_;
+  std::unordered_map<NodeId, std::optional<GeneralPowers>> powers_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "expr/normal.h"
+#include "proof/by_signs.h"
 
 namespace anholon {
 
@@ -13,9 +14,12 @@ namespace {
 
 constexpr long kMostOfArgument = 20'000;  // products of terms, to reduce an argument
 
+// Logarithms as they are, or those of absolute values of factors: ln(x^2 y) is ln(x^2) + ln(y^2)/2.
+enum class Logarithms : std::uint8_t { kept, split };
+
 class Rewriting {
  public:
-  explicit Rewriting(Graph& g) : g_(g) {}
+  Rewriting(Graph& g, Logarithms logarithms) : g_(g), logarithms_(logarithms) {}
 
   Expr of(Expr e) {
     for (const NodeId id : reachable({&e, 1})) done_.emplace(id, rewritten(id));
@@ -75,6 +79,14 @@ class Rewriting {
       const Expr square = pow(exponential(u), 2);
       return (square - 1) / (1 + square);
     }
+    case Function::log:
+      if (logarithms_ == Logarithms::split) return logarithm(u, 0);
+      return log(reduced(u));
+    case Function::asin:
+    case Function::acos:
+    case Function::atan:
+      if (const auto angle = known_angle(f, u)) return *angle;
+      return g_.apply(f, reduced(u));
     case Function::sin:
     case Function::cos:
       return of_angle(u, f == Function::cos);
@@ -109,6 +121,56 @@ class Rewriting {
   Expr reduced(Expr u) {
     if (is_number(u)) return u;
     return expanded(u, kMostOfArgument).value_or(u);
+  }
+
+  // The angles that are rational multiples of pi at rational arguments.
+  std::optional<Expr> known_angle(Function f, Expr u) {
+    if (!is_number(u)) return std::nullopt;
+    const Rational& x = number_value(u);
+    std::optional<Rational> part;  // of pi
+    if (f == Function::atan && abs(x) == 1) part = x / 4;
+    if (f != Function::atan && (x == 0 || abs(x) == 1)) part = x / 2;
+    if (f != Function::atan && abs(x) == Rational(1, 2)) part = x / 3;
+    if (!part) return std::nullopt;
+    return (f == Function::acos ? Rational(1, 2) - *part : *part) * g_.pi();
+  }
+
+  // ln u = ln |u| for u > 0 is the sum of r_i ln(b_i^2)/2 over the factors b_i^r_i of u.
+  Expr logarithm(Expr u, int depth) {
+    constexpr int kDeepest = 8;  // roots within roots
+    u = reduced(u);
+    if (is_number(u)) return logarithm_of(number_value(u));
+    if (depth == kDeepest) return log(u);
+    Expr all = g_.zero();
+    NodeId factors = u.id;
+    if (g_.node(u.id).kind == Kind::sum && g_.terms(u.id).size() == 1) {
+      all = logarithm_of(abs(g_.rational(g_.terms(u.id)[0].weight)));
+      factors = g_.terms(u.id)[0].node;
+    }
+    for (const auto& [base, power] : factors_of(factors)) {
+      const Node& n = g_.node(base);
+      const bool nested = n.kind == Kind::product || (n.kind == Kind::sum && g_.terms(base).size() == 1);
+      const bool of_exp = n.kind == Kind::function && static_cast<Function>(n.index) == Function::exp;
+      const Expr b = node(base);
+      all = all + power * (of_exp   ? node(g_.terms(base)[0].node)
+                           : nested ? logarithm(b, depth + 1)
+                                    : Rational(1, 2) * log(reduced(b * b)));
+    }
+    return all;
+  }
+  // Of a number, by its small primes.
+  Expr logarithm_of(const Rational& x) {
+    constexpr unsigned long kLargest = 100;
+    if (x <= 0) return log(g_.number(x));
+    Expr all = g_.zero();
+    for (const int sign : {1, -1}) {
+      mpz_class rest = sign > 0 ? x.get_num() : x.get_den();
+      for (unsigned long p = 2; p < kLargest && rest > 1; ++p)
+        for (; mpz_divisible_ui_p(rest.get_mpz_t(), p); rest /= p)
+          all = all + Rational(sign) * log(g_.number(static_cast<long>(p)));
+      if (rest > 1) all = all + Rational(sign) * log(g_.number(Rational(rest)));
+    }
+    return all;
   }
 
   // exp(c_1 a_1 + c_2 a_2 + …) as the product of exp(a_i)^c_i, which is y^c_i where a_i is ln y.
@@ -225,8 +287,16 @@ class Rewriting {
   }
 
   Graph& g_;
+  Logarithms logarithms_;
   std::unordered_map<NodeId, Expr> done_;
 };
+
+}  // namespace
+
+Expr in_few_functions(Expr e) { return Rewriting(*e.graph, Logarithms::kept).of(e); }
+Expr with_split_logarithms(Expr e) { return Rewriting(*e.graph, Logarithms::split).of(e); }
+
+namespace {
 
 // Whether e holds a function, or a root, that is written anew.
 bool may_be_written_anew(Expr e) {
@@ -246,16 +316,31 @@ bool may_be_written_anew(Expr e) {
   });
 }
 
-}  // namespace
+bool holds_logarithm(Expr e) {
+  const std::vector<NodeId> ids = reachable({&e, 1});
+  return std::any_of(ids.begin(), ids.end(), [&](NodeId id) {
+    const Node& n = e.graph->node(id);
+    return n.kind == Kind::function && static_cast<Function>(n.index) == Function::log;
+  });
+}
 
-Expr in_few_functions(Expr e) { return Rewriting(*e.graph).of(e); }
+bool shown_zero_in(Expr few, Expr e, Effort effort) { return !(few == e) && shown_zero(few, effort); }
+
+// By one way of writing or the other.
+bool shown_zero_written_anew(Expr e, Effort effort) {
+  return shown_zero_in(in_few_functions(e), e, effort) ||
+         (holds_logarithm(e) && shown_zero_in(with_split_logarithms(e), e, effort));
+}
+
+}  // namespace
 
 bool shown_zero_in_few_functions(Expr e, Effort effort) {
   if (shown_zero(e, effort)) return true;
   if (!may_be_written_anew(e)) return false;
   try {
-    const Expr few = in_few_functions(e);
-    return !(few == e) && shown_zero(few, effort);
+    return shown_zero_written_anew(e, effort) || shown_zero_by_signs(e, [&](Expr in_case) {
+             return shown_zero(in_case, effort) || shown_zero_written_anew(in_case, effort);
+           });
   } catch (const Failure&) {
     return false;  // a denominator vanishes
   }

@@ -9,8 +9,10 @@ namespace anholon {
 // radicands are reduced, so that equal ones are one node, and radicands give up their even powers. Equal to e wherever both
 // are defined.
 Expr in_few_functions(Expr e);
+// Also with logarithms of products as sums of logarithms of squares, which have values for negative factors, too.
+Expr with_split_logarithms(Expr e);
 
-// As shown_zero(), also by these relations.
+// As shown_zero(), also by these relations, and by cases of the signs that decide in choices.
 bool shown_zero_in_few_functions(Expr e, Effort effort);
 
 }  // namespace anholon

@@ -9,14 +9,6 @@ namespace anholon {
 
 namespace {
 
-Expr with(Expr e, const std::vector<std::pair<Expr, Expr>>& values) {
-  return substitute({&e, 1}, [&](NodeId id) {
-    for (const auto& [symbol, value] : values)
-      if (symbol.id == id) return value;
-    return Expr{};
-  })[0];
-}
-
 // psi = 0 solved for the symbol s in which it is affine or quadratic. `sign`: that of a root.
 struct Solved {
   Expr value;
@@ -24,14 +16,11 @@ struct Solved {
 };
 
 std::optional<Solved> solved_for(Expr psi, Expr s, Expr sign) {
-  Graph& g = *psi.graph;
   const auto holds_s = [&](Expr e) {
     const std::vector<NodeId> ids = symbols({&e, 1});
     return std::binary_search(ids.begin(), ids.end(), s.id);
   };
-  const auto at_zero = [&](Expr e) {
-    return substitute({&e, 1}, [&](NodeId id) { return id == s.id ? g.zero() : Expr{}; })[0];
-  };
+  const auto at_zero = [&](Expr e) { return put(e, {s}, {psi.graph->zero()}); };
   try {
     const Expr slope = partial(psi, s);
     Expr curve = partial(slope, s);
@@ -52,7 +41,7 @@ std::optional<Solved> solved_for(Expr psi, Expr s, Expr sign) {
 bool SolvedEquations::add(Expr psi, Column& open) {
   constexpr std::uint32_t kFirstSign = 100'000;  // beyond all quasi-velocities
   constexpr std::size_t kMostSigns = 4;
-  psi = with(psi, solution_);
+  psi = put(psi, symbols_, values_);
   // Affine equations come before quadratic ones: a root makes all later expressions longer.
   std::size_t best = open.size();
   std::optional<Solved> found;
@@ -64,8 +53,9 @@ bool SolvedEquations::add(Expr psi, Column& open) {
     found = v;
   }
   if (!found || (found->by_root && signs_.size() == kMostSigns)) return false;
-  for (auto& [symbol, value] : solution_) value = with(value, {{open[best], found->value}});
-  solution_.push_back({open[best], found->value});
+  values_ = put(values_, {open[best]}, {found->value});
+  symbols_.push_back(open[best]);
+  values_.push_back(found->value);
   if (found->by_root) signs_.push_back(sign);
   open.erase(open.begin() + static_cast<std::ptrdiff_t>(best));
   return true;
@@ -74,12 +64,11 @@ bool SolvedEquations::add(Expr psi, Column& open) {
 Column SolvedEquations::branches(Expr e) const {
   try {
     Column list;
-    const Expr on = with(e, solution_);
+    const Expr on = put(e, symbols_, values_);
     for (unsigned branch = 0; branch < 1U << signs_.size(); ++branch) {
-      std::vector<std::pair<Expr, Expr>> signs;
-      for (std::size_t k = 0; k < signs_.size(); ++k)
-        signs.push_back({signs_[k], e.graph->number(branch >> k & 1 ? -1 : 1)});
-      list.push_back(with(on, signs));
+      Column signs;
+      for (std::size_t k = 0; k < signs_.size(); ++k) signs.push_back(e.graph->number(branch >> k & 1 ? -1 : 1));
+      list.push_back(put(on, signs_, signs));
     }
     return list;
   } catch (const Failure&) {

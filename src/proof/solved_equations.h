@@ -11,13 +11,13 @@ class SolvedEquations {
   // Solves psi = 0, with the solutions so far put in, for one of `open`, in which it is affine or quadratic, and takes this one out
   // of `open`. Returns false if it cannot, or if there are too many branches.
   bool add(Expr psi, Column& open);
-  bool empty() const { return solution_.empty(); }
+  bool empty() const { return symbols_.empty(); }
   // e with the solutions put in, on each branch of the quadratic equations; none if they have no value.
   Column branches(Expr e) const;
 
  private:
-  std::vector<std::pair<Expr, Expr>> solution_;  // symbol, value
-  Column signs_;                                 // symbols in it that stand for 1 or -1
+  Column symbols_, values_;  // the solutions
+  Column signs_;             // symbols in the values that stand for 1 or -1
 };
 
 }  // namespace anholon

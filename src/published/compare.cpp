@@ -20,20 +20,14 @@ constexpr std::size_t kMostCombined = 6;  // equations in a combination that is 
 // Whether e is zero by algebra; if the whole is too large, by its coefficients of the symbols in which it is affine.
 bool zero_by_parts(Expr e, const Column& symbols) {
   if (shown_zero_in_few_functions(e, Effort::brief)) return true;
-  Graph& g = *e.graph;
   const Column slopes = gradient(e, symbols);
-  const auto at_zero = [&](Expr x) {
-    return substitute({&x, 1}, [&](NodeId id) {
-      return std::any_of(symbols.begin(), symbols.end(), [&](Expr s) { return s.id == id; }) ? g.zero() : Expr{};
-    })[0];
-  };
   for (Expr slope : slopes)
     for (Expr curve : gradient(slope, symbols))
       if (!is_zero(curve)) return shown_zero_in_few_functions(e, Effort::full);
   try {
     return std::all_of(slopes.begin(), slopes.end(),
                        [&](Expr x) { return is_zero(x) || shown_zero_in_few_functions(x, Effort::full); }) &&
-           shown_zero_in_few_functions(at_zero(e), Effort::full);
+           shown_zero_in_few_functions(put(e, symbols, Column(symbols.size(), e.graph->zero())), Effort::full);
   } catch (const Failure&) {
     return false;
   }

@@ -28,13 +28,6 @@ bool Comparer::of_higher_order(Expr P, Comparison& out) {
   equations.insert(equations.end(), phi.begin(), phi.end());
   Rows A;
   for (Expr r : routh) A.push_back(gradient(r, accelerations));
-  const auto put = [](Expr e, const Column& symbols_of, const Column& values) {
-    return substitute({&e, 1}, [&](NodeId id) {
-      for (std::size_t k = 0; k < symbols_of.size(); ++k)
-        if (symbols_of[k].id == id) return values[k];
-      return Expr{};
-    })[0];
-  };
   if (highest == m) try {
       PointValues at = generic_values(0);
       Column divisors;

@@ -6,6 +6,7 @@
 //   phi.NAME, lambda.NAME            a constraint (left - right) and its multiplier; phi and lambda, if there is only one
 //   f.y, C.y.x                       y^(m) = f.y solved from the constraints, and df.y/dx^(m)  [L 3.8]
 //   g.x, B.x.u                       x^(m) as a function of quasi-velocities, and dg.x/du      [N 4.2]
+//   f.c0(x), f.c1(x), …, f.knot(x)   the pieces of a table f, as derive prints them: f(x) is their polynomial in x - f.knot(x)
 //   mu.NAME, m_NAME                  the frozen mass of a body, and its mass
 //   FORM.x, FORM.left.x, FORM.right.x   left - right of a form's equation, with _ for the - of its name
 //   partial(e, v)                    the partial derivative by a derivative of a coordinate, by t, or by another symbol
@@ -62,11 +63,14 @@ class Vocabulary final : public Names {
     Syntax syntax;
     Value value;
   };
+  // lambda.blade.x -> {"lambda", "blade", "x"}
+  static std::vector<std::string> split(const std::string& path);
   bool is_word(const std::string& first) const;
   std::optional<Value> word(const std::string& first, const std::vector<std::string>& rest, Span span);
   const Column* column(const std::string& name);
   std::size_t coordinate(const std::string& name, Span span) const;
   std::size_t coordinate(const Value& v, Span span) const;
+  std::optional<Expr> piece_of_table(const std::string& name, const std::vector<Value>& arguments, const Syntax& s);
   Expr along(const Column& column, const std::string& direction, Span span);
   Expr of_form(const Formulation& form, const std::vector<std::string>& rest, Span span);
   Expr solved(const std::string& y, Span span);

@@ -44,7 +44,7 @@ class Derive {
     const bool all = q.left.size() == m_.q.size();
     for (std::size_t a = 0; a < q.left.size(); ++a)
       d_.equations.push_back(
-          {all ? d_.model->coordinates[a].name : e_.free.names[a], arranged(q.left[a]), arranged(q.right[a])});
+          {all ? d_.model->coordinates[a].name : e_.free.names[a], finished(q.left[a]), finished(q.right[a])});
     for (std::size_t r = 0; r < m_.phi.size(); ++r)
       d_.constraints.push_back({d_.model->constraints[r].name, arranged(m_.phi[r]), m_.graph().zero()});
     rates();
@@ -54,6 +54,17 @@ class Derive {
   }
 
  private:
+  // A final equation, in which the second moments of bodies have their formulas: their names say nothing to a reader.
+  Expr finished(Expr e) {
+    Column weights, values;
+    for (std::size_t i = 0; i < d_.model->masses.size(); ++i) {
+      const VaryingMass& m = d_.model->masses[i];
+      if (!m.weight) continue;
+      weights.push_back(m_.graph().mass(static_cast<std::uint32_t>(i)));
+      values.push_back(m.value);
+    }
+    return arranged(put(e, weights, values));
+  }
   Expr arranged(Expr e) { return arranger_.in_parts(m_.q.size()) ? e : arranger_(e, d_.names); }
 
   void rates() {

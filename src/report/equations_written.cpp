@@ -1,4 +1,6 @@
 // Derivations in the output formats.
+#include <algorithm>
+
 #include "base/escape.h"
 #include "base/json.h"
 #include "report/equations.h"
@@ -32,12 +34,28 @@ Sides printed(const Derivation& d, const std::vector<Line>& lines, Format format
   return s;
 }
 
-// The masses that vary, without those whose formula is their name.
+// Whether a line holds the symbol of a mass.
+bool holds(const Derivation& d, std::size_t mass) {
+  Column all;
+  const auto add = [&](const std::vector<Line>& lines) {
+    for (const Line& l : lines) {
+      if (l.left) all.push_back(*l.left);
+      all.push_back(l.right);
+    }
+  };
+  for (const auto* sections : {&d.steps, &d.reactions})
+    for (const Section& s : *sections) add(s.second);
+  for (const auto* lines : {&d.equations, &d.constraints, &d.rates}) add(*lines);
+  const std::vector<NodeId> in = symbols(all);
+  return std::binary_search(in.begin(), in.end(), d.model->graph->mass(static_cast<std::uint32_t>(mass)).id);
+}
+
+// The masses that vary, without those whose formula is their name, and the second moments that are left.
 std::vector<std::pair<std::string, std::string>> masses(const Derivation& d, Format format) {
   std::vector<std::pair<std::string, std::string>> list;
   for (std::size_t i = 0; i < d.model->masses.size(); ++i) {
     const std::string& name = d.names.masses[i];
-    if (name == mass_text(d, i, Format::text)) continue;
+    if (name == mass_text(d, i, Format::text) || (d.model->masses[i].weight && !holds(d, i))) continue;
     list.push_back(
         {print(d.model->graph->mass(static_cast<std::uint32_t>(i)), d.names, format), mass_text(d, i, format)});
   }
@@ -106,10 +124,11 @@ std::vector<Line> joined(const std::vector<Line>& lines) {
 }
 
 std::string as_text(const std::vector<Derivation>& list) {
-  std::string out = shown(list[0].model->title) + "\n";
+  const std::string& title = list[0].model->title;
+  std::string out = title.empty() ? std::string() : shown(title) + "\n";
   for (const Derivation& d : list) {
-    out +=
-        (list.size() > 1 ? "\n" : "") + std::string(d.form->title) + ", " + citation(*d.form) + with_order(d) + "\n\n";
+    out += (list.size() > 1 && !out.empty() ? "\n" : "") + std::string(d.form->title) + ", " + citation(*d.form) +
+           with_order(d) + "\n\n";
     const auto section = [&](const Section& s) {
       out += s.first + "\n";
       for (const auto& [left, right] : rows(d, s.second, Format::text)) out += "  " + left + " = " + right + "\n";
@@ -141,7 +160,8 @@ std::string as_latex(const std::vector<Derivation>& all) {
     out += "\\end{align}\n";
   };
   for (const Derivation& d : all) {
-    out += "% " + shown(d.model->title) + ": " + d.form->title + ", " + citation(*d.form) + with_order(d) + "\n";
+    out += "% " + (d.model->title.empty() ? std::string() : shown(d.model->title) + ": ") + d.form->title + ", " +
+           citation(*d.form) + with_order(d) + "\n";
     const auto section = [&](const Section& s) {
       out += "% " + s.first + "\n";
       std::vector<std::string> list;

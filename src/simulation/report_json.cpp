@@ -162,6 +162,14 @@ class ReportWriter {
                                      {"constraints", &r.constraints},
                                      {"joints", &r.joints}})
       j_.key(key).number(*bound);
+    if (r.kink)
+      j_.key("kink")
+          .open_object()
+          .key("formula")
+          .string(r.kink->formula)
+          .key("t")
+          .number(number_text(r.kink->t))
+          .close();
     j_.key("bits").integer(r.bits).close();
   }
 
@@ -321,6 +329,7 @@ RigorousReport rigorous_report(const Fields& f) {
   r.newton = f.written("newton").text(), r.projected = f.written("projected").text();
   r.constraints = f.written("constraints").text(), r.joints = f.written("joints").text();
   r.bits = f.integer("bits");
+  if (f.has("kink")) r.kink = RigorousReport::Kink{f.object("kink").text("formula"), f.object("kink").number("t")};
   return r;
 }
 

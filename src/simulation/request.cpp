@@ -48,9 +48,10 @@ Rational set_times(const MotionSettings& settings, const Scenario& s, const Aske
   const Rational start = start_of(s, o);
   std::vector<WrittenTime> at = settings.at;
   // An end that somebody asks for takes the place of what the file asks for beyond it.
-  if (o.to && of_file(at) && o.to != s.model->simulate.to &&
-      std::erase_if(at, [&](const WrittenTime& t) { return !lies_between(t.value, start, *o.to); }) > 0)
-    asker.note("rows that the file asks for beyond t = " + number_text(o.to->get_d()) + " are left out");
+  const bool left_out =
+      o.to && of_file(at) && o.to != s.model->simulate.to &&
+      std::erase_if(at, [&](const WrittenTime& t) { return !lies_between(t.value, start, *o.to); }) > 0;
+  if (left_out) asker.note("rows that the file asks for beyond t = " + number_text(o.to->get_d()) + " are left out");
   for (const WrittenTime& t : at) o.at.push_back(t.value);
   if (!of_file(at))
     for (const WrittenTime& t : at) o.at_text.push_back(is_number_as_written(t.text) ? t.text : "");
@@ -63,6 +64,10 @@ Rational set_times(const MotionSettings& settings, const Scenario& s, const Aske
     throw Failure({}, "no end time", asker.example("to", "10") + ", or [simulate] to = 10 in the model file");
   if (o.to) must_lie_between(o.at, start, *o.to, asker);
   const Rational end = o.to ? *o.to : o.at.front() < start ? o.at.front() : o.at.back();
+  if (o.to && !o.at.empty() && !left_out)
+    if (const Rational last = end < start ? o.at.front() : o.at.back(); last != end)
+      asker.note("the motion goes on after the last row, t = " + number_text(last.get_d()) + ", to its end, t = " +
+                 number_text(end.get_d()) + ", where " + asker.called("at") + " asks for no row");
   if (end < start)
     asker.note("the end lies before the start, t = " + number_text(start.get_d()) +
                ": the motion is computed backwards");

@@ -191,6 +191,27 @@ vector = ["-x - 0.1*x''^3 - y''", "1 - 0.2*sinh(x'' + y'')", "0"]
 x = 3
 "y'" = 1
 ''',
+    # Exponents that are parameters.
+    "powers": '''
+coordinates = ["x", "y"]
+[parameters]
+m = 2
+k = 3
+n = 2.5
+[[particle]]
+name = "a"
+mass = "m"
+position = ["x", "y", "0"]
+[potential]
+spring = "k*x^(n + 1)/(n + 1) + k*(1 + y^2)^(n/2)"
+[[force]]
+on = "a"
+vector = ["-y^n*x^(n + 1)", "-2*y^(n - 1)", "0"]
+[initial]
+x = 0.8
+y = 0.6
+"x'" = 0.1
+''',
     # Every elementary function, roots and powers, large and small numbers.
     "functions": '''
 coordinates = ["x", "y", "z"]
@@ -479,6 +500,16 @@ def check_inputs(c, module, program, path):
     c.u = None
 
 
+def check_powers(c, module):
+    """A whole exponent that is set in p serves coordinates that are negative or zero, too."""
+    c.p[c.parameter_names.index("n")] = 3
+    for x, y in ((-0.5, -0.4), (0.0, 0.0), (-0.3, 0.7)):
+        expected = [(-3 * x**3 - y**3 * x**4) / 2, (-9 * y * (1 + y * y) ** 0.5 - 2 * y**2) / 2]
+        same(c.solved("leading", 2, 0.0, [x, y, 0.1, 0.2]), expected, f"C leading at {x}, {y}")
+        if module is not None:
+            same(module.leading(0.0, [x, y, 0.1, 0.2], list(c.p)[:3]), expected, f"Python leading at {x}, {y}")
+
+
 def check_refusal(c, module, state, status):
     """Where there is no answer, C says why, and Python raises or gives nan."""
     got = c.call("leading", 0.0, c.array(state), c.p, c.array([0.0] * len(c.lead_names)))
@@ -540,6 +571,8 @@ def check(program, form, name, path, folder):
         check_refusal(c, module, [0, 0, 10, 0, 0, 0], 1)
     if name == "functions":  # the logarithm of a negative number
         check_refusal(c, module, [0.4, -10, 0.2, 0.3, -0.5, -0.2], 3)
+    if name == "powers":
+        check_powers(c, module)
     if name == "inputs":
         check_inputs(c, module, program, path)
     if name == "launcher":

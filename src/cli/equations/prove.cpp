@@ -197,7 +197,7 @@ int prove(const ProveCommand& o) {
   if (o.json) {
     hand_out(json(model, p, c, names, seconds) + "\n");
   } else {
-    say(stdout, "%s\n\n", model.title.c_str());
+    if (!model.title.empty()) say(stdout, "%s\n\n", model.title.c_str());
     print_matrix(p);
     say(stdout, "\n");
     print_differences(p, names);

@@ -70,8 +70,8 @@ void print_text(const Scenario& s, const StateReport& r, int digits) {
   const auto line = [&](const std::string& name, const std::string& value) {
     say(stdout, "  %-18s %*s\n", name.c_str(), width, value.c_str());
   };
-  say(stdout, "%s\n%s, %s\n\nstate at t = %s\n", s.model->title.c_str(), s.system.form->title, s.system.form->equation,
-      r.t.c_str());
+  if (!s.model->title.empty()) say(stdout, "%s\n", s.model->title.c_str());
+  say(stdout, "%s, %s\n\nstate at t = %s\n", s.system.form->title, s.system.form->equation, r.t.c_str());
   for (const auto& [name, value] : r.q) line(name, value);
   for (const auto& [name, value] : r.qdot) line(name + "'", value);
   say(stdout, "\naccelerations\n");

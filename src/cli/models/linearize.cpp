@@ -321,7 +321,8 @@ int linearize(const LinearizeCommand& o) {
   else if (o.csv)
     print_csv(s, l, start.ok() ? values : std::nullopt, o.digits());
   else if (failed.ok() || l.results.size() > 1) {
-    say(stdout, "%s\n%s, %s\n\n", s.model->title.c_str(), s.system.form->title, s.system.form->equation);
+    if (!s.model->title.empty()) say(stdout, "%s\n", s.model->title.c_str());
+    say(stdout, "%s, %s\n\n", s.system.form->title, s.system.form->equation);
     if (values)
       print_range(s, l, *values, o.digits());
     else

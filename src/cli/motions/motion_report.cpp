@@ -136,6 +136,11 @@ void print_report(const Scenario& s, const SimulationReport& r, const Units& uni
         "constraints %s, steps join within %s\n",
         (g.times ? "at " + std::to_string(*g.times) + " times" : std::string("for all t")).c_str(), g.newton.c_str(),
         g.projected.c_str(), g.constraints.c_str(), g.joints.c_str());
+    if (g.kink)
+      say(stderr,
+          "the bounds are large beside t = %s, where %s has a kink or jumps: --rigorous 64 bounds the residuals at "
+          "times beside it, and a formula without jumps has bounds for all t\n",
+          number_text(g.kink->t, 6).c_str(), g.kink->formula.c_str());
   }
   say(stderr, "%s%zu steps of order %d, %zu rows, smallest scaled singular value %s at t = %s, %.3g s\n",
       (r.second ? beside(r) + ": " : "").c_str(), r.steps, r.order, r.rows, small(r.smallest_sigma).c_str(),

@@ -72,6 +72,35 @@ TEST(Text, LooksAsAPersonWouldWriteIt) {
   for (const auto& [text, expected] : samples) EXPECT_EQ(print(n.number(text), names, Format::text), expected);
 }
 
+TEST(Text, PowersWithFormulasAsExponents) {
+  PlainNames n;
+  const SymbolNames names = test::plain_symbol_names();
+  const std::pair<const char*, const char*> samples[] = {{"x^a", "x^a"},
+                                                         {"x*y*z^a", "x*y*z^a"},
+                                                         {"x^(a + 1)/x", "x^(a + 1)/x"},
+                                                         {"b*(x^2 + y^2)^(-a)", "b*(x^2 + y^2)^(-a)"},
+                                                         {"x^(2*a)", "x^(2*a)"},
+                                                         {"x^(a/2)", "x^(a/2)"},
+                                                         {"x^(2*(a - b))", "x^(2*(a - b))"},
+                                                         {"x^(a*b^2 - 3)", "x^(a*b^2 - 3)"},
+                                                         {"(x^a)^2", "(x^a)^2"},
+                                                         {"2^a", "2^a"},
+                                                         {"x^sin(a)", "x^sin(a)"},
+                                                         {"exp(2*log(x))", "exp(2*log(x))"},
+                                                         {"exp(a*log(x) + y)", "exp(a*log(x) + y)"},
+                                                         {"log(x)*exp(a)", "log(x)*exp(a)"},
+                                                         {"-x^a", "-x^a"}};
+  for (const auto& [text, expected] : samples) {
+    const Expr e = n.number(text);
+    const std::string printed = print(e, names, Format::text);
+    EXPECT_EQ(printed, expected);
+    EXPECT_EQ(n.number(printed).id, e.id) << text;
+  }
+  EXPECT_EQ(print(n.number("b*x^(a + 1)"), names, Format::latex), "b \\, {x}^{a + 1}");
+  EXPECT_EQ(print(n.number("x^a"), names, Format::mathml),
+            "<msup><mrow><mi>x</mi></mrow><mrow><mi>a</mi></mrow></msup>");
+}
+
 TEST(Text, BeyondTheLongestPrintIsCut) {
   PlainNames n;
   Expr e = n.number("x");

@@ -68,6 +68,74 @@ TEST(FewFunctions, ShowWhatIsEqual) {
   EXPECT_TRUE(s.shown(4 * cos(Rational(5, 12) * s.turn) - sqrt(s.number(6)) + sqrt(s.number(2))));
 }
 
+TEST(FewFunctions, SplitLogarithmsKeepTheValue) {
+  const Symbols s;
+  const auto &x = s.x, &y = s.y;
+  const std::vector<Expr> formulas = {log(x * x),
+                                      log(6 * pow(x, 2) * pow(1 + y * y, -3)),
+                                      log(sqrt(x * x * pow(x - 2 * y, 2))),
+                                      log(abs(x)) * log(exp(y) * pow(x, 4)),
+                                      log(Rational(5, 6) * abs(y)),
+                                      exp(s.p * log(x * x)) + log(1 + pow(x - y, 2))};
+  for (int k = 0; k < 40; ++k) {
+    PointValues at([&](const Node& n) { return std::sin(7.0 * k + 3.0 * n.index + 1) * 2; });
+    for (const Expr e : formulas) {
+      const double value = at(e), split = at(with_split_logarithms(e));
+      EXPECT_NEAR(split, value, 1e-11 * (1 + std::abs(value))) << "point " << k << ", node " << e.id;
+    }
+  }
+}
+
+TEST(FewFunctions, ShowLogarithmsOfProducts) {
+  Symbols s;
+  const auto &x = s.x, &y = s.y;
+  EXPECT_TRUE(s.shown(log(x * x) - 2 * log(abs(x))));
+  EXPECT_TRUE(s.shown(log(x * x) - 2 * log(x)));  // where both have values
+  EXPECT_TRUE(s.shown(log(6 * x * y) - log(s.g.number(2)) - log(s.g.number(3)) - log(x) - log(y)));
+  EXPECT_TRUE(s.shown(log(sqrt(1 + y * y)) - Rational(1, 2) * log(1 + y * y)));
+  EXPECT_TRUE(s.shown(log(pow(x - y, 2)) - 2 * log(abs(y - x))));
+  EXPECT_TRUE(s.shown(log(exp(x) * pow(y, 2)) - x - 2 * log(abs(y))));
+  EXPECT_FALSE(s.shown(log(x * x) - log(abs(x))));
+  EXPECT_FALSE(s.shown(log(x * x + y * y) - 2 * log(abs(x + y))));
+  EXPECT_FALSE(s.shown(log(x * y) - log(x) + log(y)));
+  EXPECT_FALSE(s.shown(log(6 * x) - log(x) - log(s.g.number(5))));
+}
+
+TEST(FewFunctions, ShowAnglesOfRationalNumbers) {
+  Symbols s;
+  const Expr one = s.g.one();
+  EXPECT_TRUE(s.shown(4 * atan(one) - one.graph->pi()));
+  EXPECT_TRUE(s.shown(atan(-one) + Rational(1, 4) * one.graph->pi()));
+  EXPECT_TRUE(s.shown(6 * asin(Rational(1, 2) * one) - one.graph->pi()));
+  EXPECT_TRUE(s.shown(2 * asin(-one) + one.graph->pi()));
+  EXPECT_TRUE(s.shown(3 * acos(Rational(1, 2) * one) - one.graph->pi()));
+  EXPECT_TRUE(s.shown(3 * acos(Rational(-1, 2) * one) - 2 * one.graph->pi()));
+  EXPECT_TRUE(s.shown(acos(-one) - one.graph->pi()));
+  EXPECT_TRUE(s.shown(2 * acos(s.g.zero()) - one.graph->pi()));
+  EXPECT_FALSE(s.shown(3 * atan(one) - one.graph->pi()));
+  EXPECT_FALSE(s.shown(3 * acos(Rational(-1, 2) * one) - one.graph->pi()));
+}
+
+TEST(FewFunctions, ShowChoicesBySigns) {
+  Symbols s;
+  const auto &x = s.x, &y = s.y;
+  const Expr zero = s.g.zero(), one = s.g.one();
+  const auto above = [&](Expr u, Expr then, Expr otherwise) { return select(-u, otherwise, then); };  // u > 0
+  EXPECT_TRUE(s.shown(select(x, x, -x) - abs(x)));
+  EXPECT_TRUE(s.shown(above(x, x, -x) - abs(x)));
+  EXPECT_TRUE(s.shown(above(x, one, above(-x, -one, zero)) - sign(x)));
+  EXPECT_TRUE(s.shown(select(x - y, x, y) - Rational(1, 2) * (x + y + abs(x - y))));
+  EXPECT_TRUE(s.shown(select(2 * x - 2 * y, x, y) + select(y - x, x, y) - x - y));
+  EXPECT_TRUE(s.shown(select(x, x * x, zero) + select(-x, x * x, zero) - x * x));
+  EXPECT_TRUE(s.shown(select(x, log(x * x), 2 * log(-x)) - 2 * log(abs(x))));
+  // The mutants: the first differs where x is zero.
+  EXPECT_FALSE(s.shown(above(x, one, -one) - sign(x)));
+  EXPECT_FALSE(s.shown(select(x, one, -one) - sign(x)));
+  EXPECT_FALSE(s.shown(select(x, x, -x) - x));
+  EXPECT_FALSE(s.shown(select(x - y, x, y) - Rational(1, 2) * (x + y - abs(x - y))));
+  EXPECT_FALSE(s.shown(select(x, x + y, y - x) - abs(x)));
+}
+
 // The mutants: each holds at points of one sign, or differs by a term.
 TEST(FewFunctions, DoNotShowWhatDiffers) {
   const Symbols s;

@@ -163,6 +163,30 @@ TEST(Vocabulary, QuasiVelocities) {
             "what is differentiated by a quasi-velocity is not expressed in quasi-velocities");
 }
 
+// The names that derive prints for the polynomials of a table.
+TEST(Vocabulary, PiecesOfTables) {
+  Words w(R"toml(coordinates = ["x"]
+parameters = {m = 2}
+particle = [{name = "p", mass = "m", position = "x*ex"}]
+potential.V = "c(x)"
+[[table]]
+name = "c"
+x = [0, 1, 2, 4]
+y = [0, 1, 4, 3]
+fit = "spline"
+[initial]
+x = 1
+)toml");
+  EXPECT_EQ(w.verdict("e: m*x'' = c.knot(x)*(2*c.c2(x) + 3*c.c3(x)*(2*x - c.knot(x))) - c.c1(x) - 3*x^2*c.c3(x) - "
+                      "2*x*c.c2(x)"),
+            "true");
+  EXPECT_EQ(w.verdict("let d = x - c.knot(x)\ne: c(x) = c.c0(x) + d*(c.c1(x) + d*(c.c2(x) + d*c.c3(x)))"), "true");
+  EXPECT_EQ(w.verdict("e: m*x'' = c.c1(x)"), "false");
+  EXPECT_EQ(w.error("e: c.c4(x) = 0"), "an operator is missing before '('");
+  EXPECT_EQ(w.error("e: d.c1(x) = 0"), "unknown function 'd.c1'");
+  EXPECT_EQ(w.error("e: c.c1(x, x) = 0"), "c.c1 takes 1 argument, 2 are given");
+}
+
 TEST(Vocabulary, OldNamesOfForms) {
   EXPECT_EQ(find_formulation("misevic-rusov-quasi"), find_formulation("micevic-rusov-quasi"));
 }

@@ -77,6 +77,26 @@ TEST(ConsistentState, PositionsComeFirstThenTheDerivedConstraint) {
   EXPECT_NEAR(s.qd[1], -3, 8 * kRoundoff);  // x x' + y y' = 0
 }
 
+// y' = x' sin(y - 3/10): with x' given, y' = 0 asks for a place.
+TEST(ConsistentState, ConditionsOnVelocitiesMovePositions) {
+  const std::string law = constraint("y' = x'*sin(y - 0.3)"), moving = "\"x'\" = 1\nconditions = [\"y' = 0\"]\n";
+  InitialState<double> s;
+  ASSERT_TRUE(solve(text(law, "x = 0\n" + moving), s).ok());
+  EXPECT_NEAR(s.q[1], 0.3, kRoundoff);
+  EXPECT_EQ(s.q_origin[1], Origin::derived);
+  EXPECT_EQ(s.q[0], 0);
+  EXPECT_EQ(s.qd[0], 1);
+  EXPECT_NEAR(s.qd[1], 0, kRoundoff);
+  // Where velocities fit, positions stay.
+  ASSERT_TRUE(solve(text(law, "conditions = [\"y' = x' - 1\"]\n"), s).ok());
+  EXPECT_EQ(s.q[1], 0);
+  // A place that is given stays.
+  EXPECT_FALSE(solve(text(law, "y = 0.5\n" + moving), s).ok());
+  // The same with the values of a command.
+  ASSERT_TRUE(solve(text(law, "conditions = [\"y' = 0\"]\n"), s, {{1, 0, 2}}).ok());
+  EXPECT_NEAR(s.q[1], 0.3, kRoundoff);
+}
+
 TEST(ConsistentState, TheGuessNamesTheBranch) {
   InitialState<double> s;
   ASSERT_TRUE(solve(text(constraint("x^2 + y^2 = 25"), "x = 3\nguess = {y = -1}\n\"x'\" = 0\n"), s).ok());

@@ -9,11 +9,7 @@
 namespace anholon::forms {
 
 static Column at_zero(const Column& X, const Column& symbols) {
-  return substitute(X, [&](NodeId id) {
-    for (Expr s : symbols)
-      if (s.id == id) return s.graph->zero();
-    return Expr{};
-  });
+  return symbols.empty() ? X : put(X, symbols, Column(symbols.size(), symbols[0].graph->zero()));
 }
 
 static Expr inner(const Column& a, const Column& b) {
