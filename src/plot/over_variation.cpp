@@ -23,6 +23,7 @@ double quantile(const std::vector<double>& sorted, double part) {
 RunFile over_variation(const NamedColumn& x, const std::vector<NamedColumn>& columns) {
   std::map<double, std::vector<std::vector<double>>> groups;  // of each x the numbers of each column
   bool several = false;
+  for (const double point : x.points) groups[point].resize(columns.size());
   for (std::size_t k = 0; k < x.values.size(); ++k)
     for (std::size_t c = 0; c < columns.size(); ++c) {
       if (!std::isfinite(x.values[k]) || !std::isfinite(columns[c].values[k])) continue;
@@ -50,6 +51,27 @@ RunFile over_variation(const NamedColumn& x, const std::vector<NamedColumn>& col
     }
   }
   return run;
+}
+
+std::vector<NamedRun> runs_of_cases(const std::vector<double>& numbers, const NamedColumn& x, const NamedColumn& column,
+                                    const std::function<std::string(std::size_t row)>& name) {
+  std::vector<NamedRun> runs;
+  for (std::size_t from = 0, to = 0; from < numbers.size(); from = to) {
+    NamedRun one;
+    if (!x.unit.empty()) one.run.units[x.name] = x.unit;
+    if (!column.unit.empty()) one.run.units[column.name] = column.unit;
+    one.run.table.set_columns({x.name, column.name});
+    bool any = false;
+    for (; to < numbers.size() && numbers[to] == numbers[from]; ++to) {
+      one.run.table.values.growing(0).push_back(x.values[to]);
+      one.run.table.values.growing(1).push_back(column.values[to]);
+      any = any || (std::isfinite(x.values[to]) && std::isfinite(column.values[to]));
+    }
+    if (!any) continue;
+    one.name = name(from);
+    runs.push_back(std::move(one));
+  }
+  return runs;
 }
 
 }  // namespace anholon::plot
