@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -198,12 +199,27 @@ std::vector<NamedRun> drawn_sweep(const PlotCommand& o, Target t, FigureOptions&
   return std::move(picture.curves);
 }
 
-// The run with the formulas of its model that are named.
-std::vector<NamedRun> read_runs(const PlotCommand& o, const std::vector<std::string>& columns) {
+// The run, and those that stand among the words of columns: names of files that are no columns of the run. `columns` is
+// left with the others.
+std::vector<NamedRun> read_runs(const PlotCommand& o, std::vector<std::string>& columns) {
   std::vector<NamedRun> runs{{read_result(o.run), ""}};
+  const RunTable first = runs[0].run.table;  // `runs` grows
+  std::erase_if(columns, [&](const std::string& word) {
+    std::error_code none;
+    const bool file = std::filesystem::is_regular_file(word, none) ||
+                      (format_of(word) && word.find_last_of('.') != std::string::npos);
+    if (!file || first.find(word) < first.columns.size()) return false;
+    if (v1::SweepCases::are_in(word))
+      throw UsageError{"error: " + word +
+                       " holds a sweep, and a figure of several files shows runs\nhint: anholon plot " + word +
+                       " NAME -o sweep.svg\n"};
+    runs.push_back({read_result(word), word});
+    return true;
+  });
+  if (runs.size() > 1) runs[0].name = o.run;
   std::vector<std::string> names = columns;
   if (!o.abscissa.empty()) names.push_back(o.abscissa);
-  add_formulas(runs[0].run, names);
+  for (NamedRun& each : runs) add_formulas(each.run, names);
   return runs;
 }
 
