@@ -53,21 +53,25 @@ RunFile over_variation(const NamedColumn& x, const std::vector<NamedColumn>& col
   return run;
 }
 
-std::vector<NamedRun> runs_of_cases(const std::vector<double>& numbers, const NamedColumn& x, const NamedColumn& column,
+std::vector<NamedRun> runs_of_cases(const std::vector<double>& numbers, const NamedColumn& x,
+                                    const std::vector<NamedColumn>& columns,
                                     const std::function<std::string(std::size_t row)>& name) {
+  std::vector<const NamedColumn*> all{&x};
+  std::vector<std::string> names{x.name};
+  for (const NamedColumn& c : columns) all.push_back(&c), names.push_back(c.name);
   std::vector<NamedRun> runs;
   for (std::size_t from = 0, to = 0; from < numbers.size(); from = to) {
     NamedRun one;
-    if (!x.unit.empty()) one.run.units[x.name] = x.unit;
-    if (!column.unit.empty()) one.run.units[column.name] = column.unit;
-    one.run.table.set_columns({x.name, column.name});
+    one.run.table.set_columns(names);
     bool any = false;
-    for (; to < numbers.size() && numbers[to] == numbers[from]; ++to) {
-      one.run.table.values.growing(0).push_back(x.values[to]);
-      one.run.table.values.growing(1).push_back(column.values[to]);
-      any = any || (std::isfinite(x.values[to]) && std::isfinite(column.values[to]));
-    }
+    for (; to < numbers.size() && numbers[to] == numbers[from]; ++to)
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        one.run.table.values.growing(k).push_back(all[k]->values[to]);
+        any = any || (k > 0 && std::isfinite(x.values[to]) && std::isfinite(all[k]->values[to]));
+      }
     if (!any) continue;
+    for (const NamedColumn* c : all)
+      if (!c->unit.empty()) one.run.units[c->name] = c->unit;
     one.name = name(from);
     runs.push_back(std::move(one));
   }

@@ -7,11 +7,11 @@
 
 namespace anholon::v1 {
 
-// What is asked of a figure: one column, or none for the outcomes; the columns along the axes, or none for those that vary;
-// or a column whose histogram is shown.
+// What is asked of a figure: columns, or none for the outcomes; the columns along the axes, or none for those that vary; or
+// a column whose histogram is shown. `dashes` stand before the names of options in hints.
 struct SweepPictureRequest {
   std::vector<std::string> columns;
-  std::string x, y, histogram, title;
+  std::string x, y, histogram, title, dashes;
 };
 
 // A map over two variations, a histogram, or curves.
@@ -23,9 +23,9 @@ struct SweepPicture {
   std::string note;                           // "1 of 20 parts", which the title tells, too; empty: all are there
 };
 
-// What a sweep shows of a column over x and y (default: the first two that vary). If cases have rows at several times, the
-// column is drawn over x (default: t), a curve for each of up to kMostCurves cases; of more cases over t, the quantiles.
-// Throws Failure without a place.
+// What a sweep shows of columns over x, or of one over x and y (default: the first two that vary). If cases have rows at
+// several times, the columns are drawn over x (default: t), a curve for each of up to kMostCurves cases; of more cases over
+// t, the quantiles. Throws Failure without a place.
 inline constexpr std::size_t kMostCurves = 8;
 SweepPicture picture_of_sweep(const SweepCases& cases, const SweepPictureRequest& o);
 

@@ -173,8 +173,8 @@ std::vector<NamedRun> drawn_sweep(const PlotCommand& o, Target t, FigureOptions&
   const auto must_be_written = [](const std::string& why) {
     if (!why.empty()) throw UsageError{"error: " + why + "\n"};
   };
-  v1::SweepPicture picture =
-      v1::picture_of_sweep(v1::SweepCases(o.run), {split(o.columns), o.abscissa, o.ordinate, o.histogram, o.title});
+  v1::SweepPicture picture = v1::picture_of_sweep(
+      v1::SweepCases(o.run), {split(o.columns), o.abscissa, o.ordinate, o.histogram, o.title, "--"});
   if (!picture.note.empty())
     say(stderr, "note: %s holds %s; what is missing is left empty\n", o.run.c_str(), picture.note.c_str());
   const auto draw = [&](auto& drawn) {

@@ -47,8 +47,9 @@ TEST(OverVariation, ACurveIsInterruptedWhereCasesAreMissing) {
 }
 
 TEST(RunsOfCases, AreTheRowsOfEachCase) {
-  const std::vector<NamedRun> runs = runs_of_cases({0, 0, 1, 2}, {"t", "s", {0, 1, 0, 0}}, {"x", "m", {5, 6, kNone, 7}},
-                                                   [](std::size_t row) { return "row " + std::to_string(row); });
+  const std::vector<NamedRun> runs =
+      runs_of_cases({0, 0, 1, 2}, {"t", "s", {0, 1, 0, 0}}, {{"x", "m", {5, 6, kNone, 7}}},
+                    [](std::size_t row) { return "row " + std::to_string(row); });
   ASSERT_EQ(runs.size(), 2U);  // case 1 has no number
   EXPECT_EQ(runs[0].name, "row 0");
   EXPECT_EQ(runs[1].name, "row 3");
