@@ -126,7 +126,7 @@ void print_report(const Scenario& s, const SimulationReport& r, const Units& uni
         small(w.largest_change).c_str());
   for (const WatchedReport& w : r.monitors) {
     const std::string unit = behind(units, w.name);
-    // Columns of contacts jump with the modes, and gaps begin and end at zero: their size is no measure of a change.
+    // Columns of contacts and of switched constraints jump, and gaps begin at zero: size is no measure of a change.
     const bool of_model = std::any_of(s.model->monitors.begin(), s.model->monitors.end(),
                                       [&](const Monitor& m) { return m.name == w.name; });
     say(stderr, "monitor %s: from %s to %s%s, between %s and %s%s%s\n", w.name.c_str(), w.first.text().c_str(),
