@@ -3,6 +3,7 @@
 #pragma once
 #include "anholon/motion.h"
 #include "anholon/sweep.h"
+#include "anholon/sweep_folder.h"
 
 namespace anholon::v1 {
 
@@ -38,5 +39,10 @@ struct SweepFigureOptions {
 // the motions as curves over it, or their quantiles of 10, 50 and 90 % if several cases have the same value; where two vary,
 // a map of one column. Errors: columns that do not exist; several columns in a map; no number varies (diagnostics).
 ANHOLON_API Result<std::string> figure(const Sweep& sweep, const SweepFigureOptions& options = {});
+// The same of the parts of a folder that are there; without columns the outcomes are drawn. If parts are missing, a map has
+// the whole grid, with empty cells, and the title tells how many parts there are. If cases have rows at several times, columns
+// are drawn over t, or over x: a curve for each of up to eight cases, of more the quantiles over t. Errors: as above; no part
+// is there; a part is damaged.
+ANHOLON_API Result<std::string> figure(const SweepFolder& folder, const SweepFigureOptions& options = {});
 
 }  // namespace anholon::v1

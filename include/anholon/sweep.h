@@ -34,8 +34,8 @@ struct SweepOptions {
   std::optional<Number> tolerance = {};
   std::vector<Number> at = {};            // times at which the state of each case is kept, too
   std::vector<std::string> columns = {};  // names or patterns with * and ?; empty: all
-  // "max(FORMULA)", min, mean or last: over the whole motion of a case, by its Taylor polynomials; the formula is a
-  // monitor or any formula of the model. "count(EVENT)": how often an event of the model or of a contact fired;
+  // "max(FORMULA)", min or mean: over the whole motion of a case, by its Taylor polynomials; "last(FORMULA)": at its end; the
+  // formula is a monitor or any formula of the model. "count(EVENT)": how often an event of the model or of a contact fired;
   // "first(EVENT)": its first time, NaN if it did not fire. Each is a column.
   std::vector<std::string> reduce = {};
   std::size_t threads = 0;                              // 0: as many as the machine has

@@ -1,5 +1,6 @@
 // Sweeps in folders: parts that are complete or absent, which any number of processes compute.
 #pragma once
+#include <map>
 #include <variant>
 
 #include "anholon/motion.h"
@@ -64,6 +65,9 @@ class ANHOLON_API SweepFolder {
   // The columns of these names, of the parts that are there; all columns if no name is given. Errors: as above, or there
   // is no such column.
   Result<std::vector<FolderColumn>> read(const std::vector<std::string>& names = {}) const;
+  // The values that the columns of grids, lists and tables take over the whole sweep, by the name of the column. A column that
+  // is drawn is not among them, nor is a grid with more than 65536 values, or any column if files of the model are missing.
+  std::map<std::string, std::vector<double>> points() const;
   // Computes parts that are missing. All calls share the equations, and the calls of several threads may overlap. Errors:
   // the folder was opened by its name alone.
   Result<FolderDone> fill(const FolderWork& work = {}) const;

@@ -124,7 +124,10 @@ class Interrupted(KeyboardInterrupt):
     """
 
     def __init__(self, result: Run | Sweep | SweepFolder) -> None:
-        super().__init__("interrupted; what was computed is in .result")
+        from .sweep_folder import SweepFolder
+
+        folder = isinstance(result, SweepFolder)
+        super().__init__("interrupted; the complete parts are in the folder, and the same call goes on" if folder else "interrupted; what was computed is in .result")
         self.result: Any = result
 
 

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ._errors import ModelError
 
+if TYPE_CHECKING:
+    from .sweep_folder import SweepFolder
+
 Columns = Mapping[str, npt.NDArray[Any]]
+
+MOST_CURVES = 8
 
 
 def axes_of(varied: Sequence[str], x: str | None, y: str | None) -> list[str]:
@@ -56,6 +61,69 @@ def map_over(ax: Any, table: Columns, axes: Sequence[str], name: str, units: Map
         ax.figure.colorbar(ax.scatter(x, y, c=values), ax=ax, label=label(name, units))
     ax.set_xlabel(label(axes[0], units))
     ax.set_ylabel(label(axes[1], units))
+
+
+def plot_folder(folder: SweepFolder, names: list[str], x: str | None, y: str | None, ax: Any) -> Any:
+    """The parts of a folder that are there: curves over t where cases have several rows, else over what varies, or a map."""
+    shown = names or ["outcome"]
+    for name in [*shown, *(axis for axis in (x, y) if axis is not None)]:
+        if name not in folder:
+            raise KeyError(f"there is no column {name!r}; there are {', '.join(folder)}")
+    missing = len(folder.missing)
+    if missing == folder.parts:
+        raise ModelError(f"no part is in {folder.path}\nhint: folder.fill() computes them")
+    if ax is None:
+        import matplotlib.pyplot as plt
+
+        _, ax = plt.subplots()
+    if missing:
+        ax.set_title(f"{folder.parts - missing} of {folder.parts} parts")
+    varied = [name for name in folder.varied if name not in shown]
+    wanted = [*shown, *varied, "case", *(name for name in ("case_name", "t", x, y) if name is not None and name in folder)]
+    table = folder.to_dict(list(dict.fromkeys(wanted)))
+    at_times = "t" in table and bool((np.diff(table["case"]) == 0).any())
+    if at_times and y is None and x not in varied and all(table[name].dtype != object for name in shown):
+        over = x or "t"
+        if np.unique(table["case"]).size <= MOST_CURVES:
+            cases_over(ax, table, over, shown, varied)
+        elif over == "t":
+            curves(ax, table, over, shown, {})
+        else:
+            raise ModelError(f"{np.unique(table['case']).size} cases are too many curves for one figure\nhint: without x their quantiles over t, or x and y for a map")
+        return ax
+    axes = axes_of(varied, x, y)
+    for axis in axes:
+        if table[axis].dtype == object:
+            raise ModelError(f"an axis shows numbers, and {axis!r} holds words\nhint: x names a column of numbers")
+    if len(axes) == 1:
+        curves(ax, table, axes[0], shown, {})
+        return ax
+    if len(shown) > 1:
+        raise ModelError(f"a map over two variations shows one column, and there are {len(shown)}\nhint: one name, or none for the outcomes")
+    map_over(ax, table, axes, shown[0], {})
+    if missing:
+        points = folder._core.points()
+        for axis, limits in zip(axes, (ax.set_xlim, ax.set_ylim), strict=True):
+            if len(points.get(axis, ())) > 1:
+                low, high = min(points[axis]), max(points[axis])
+                limits(low - (high - low) / 20, high + (high - low) / 20)
+    return ax
+
+
+def cases_over(ax: Any, table: Columns, x: str, names: Sequence[str], varied: Sequence[str]) -> None:
+    """A curve of each case and column over x."""
+    numbers = table["case"]
+    for case in np.unique(numbers):
+        rows = numbers == case
+        first = int(np.flatnonzero(rows)[0])
+        parts = [str(table["case_name"][first])] if "case_name" in table else []
+        parts += [f"{name} = {table[name][first]:.6g}" for name in varied]
+        for name in names:
+            ax.plot(table[x][rows], table[name][rows], label=", ".join(([name] if len(names) > 1 else []) + (parts or [f"case {case}"])).replace("$", r"\$"))
+    ax.set_xlabel(label(x, {}))
+    if len(names) == 1:
+        ax.set_ylabel(label(names[0], {}))
+    ax.legend()
 
 
 def label(name: str, units: Mapping[str, str]) -> str:

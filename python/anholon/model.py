@@ -273,7 +273,7 @@ class Model(Analysed):
                 in any case.
             reduce: columns over the whole motion of a case: ``"max(theta')"``, ``"min(height)"``, ``"mean(...)"``,
                 ``"last(...)"`` of an output or of any formula of the model. They are those of the Taylor polynomials,
-                not of some times. ``"count(EVENT)"`` tells how often an event of the model or of a contact fired, as in
+                not of some times, and the last value is that at the end. ``"count(EVENT)"`` tells how often an event of the model or of a contact fired, as in
                 ``"count(floor.hits)"``, and ``"first(EVENT)"`` its first time, NaN if it did not fire.
             cases: how many, where values are drawn; the cases go round the combinations of the lists.
             together: the lists have the same length and go together, one case for each place: ``vary`` is a table, as a

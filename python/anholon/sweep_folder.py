@@ -6,11 +6,13 @@ import json
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from . import _core
 from ._errors import ModelError
 from ._progress import Progress
+from .run import Figure
 
 if TYPE_CHECKING:
     import numpy as np
@@ -211,6 +213,55 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         if not 0 <= case < self.cases:
             raise IndexError(f"there are {self.cases} cases")
         return run_of(self._core, lambda: computing(self.path), case, options)
+
+    def figure(self, *names: str, x: str | None = None, y: str | None = None) -> Figure:
+        """The parts that are there as SVG, by the program's own hand: what ``anholon plot`` shows of the folder.
+
+        Where one number varies, columns are curves over it; where two vary, one column is a map over them. Cases that have rows
+        at several times are curves over ``t``, up to eight of them, and else the quantiles of 10, 50 and 90 % at each time. If
+        parts are missing, a map has the whole grid, and the title tells how many parts there are.
+
+        Args:
+            names: columns to draw, or patterns with * and ?; the outcomes if there are none.
+            x: the column along the horizontal axis; the first that varies, or ``t``, if it is None.
+            y: the column along the vertical axis of a map; the second that varies if it is None.
+
+        Raises:
+            ModelError: there is no such column; several columns in a map; no number varies; no part is there.
+
+        Example:
+            >>> import anholon as an, tempfile
+            >>> falls = an.load("disc").sweep({"phi'": [5, 6, 7]}, to=1, out=tempfile.mkdtemp() + "/falls")
+            >>> falls.figure("theta").svg[:4]
+            '<svg'
+        """
+        return Figure(self._core.figure(list(names), x or "", y or ""))
+
+    def plot(self, *names: str, x: str | None = None, y: str | None = None, ax: Any = None) -> Any:
+        """Draws what :meth:`figure` shows: Matplotlib's axes, or a :class:`Figure` without Matplotlib.
+
+        If several cases have the same x, a curve is their median, in a band from 10 to 90 %.
+
+        Args:
+            names: columns to draw; the outcomes if there are none.
+            x: the column along the horizontal axis; the first that varies, or ``t``, if it is None.
+            y: the column along the vertical axis of a map; the second that varies if it is None.
+            ax: axes of Matplotlib; new ones if it is None.
+
+        Raises:
+            KeyError: there is no such column.
+            ModelError: several columns in a map; no number varies; no part is there.
+
+        Example:
+            >>> import anholon as an, tempfile
+            >>> falls = an.load("disc").sweep({"phi'": an.grid(5, 7, 5), "m": [1, 2]}, to=1, out=tempfile.mkdtemp() + "/falls")
+            >>> axes = falls.plot("theta")
+        """
+        if ax is None and find_spec("matplotlib") is None:
+            return self.figure(*names, x=x, y=y)
+        from . import _sweep_plot
+
+        return _sweep_plot.plot_folder(self, list(names), x, y, ax)
 
     def scan(self) -> polars.LazyFrame:
         """A lazy frame of polars over the parts that are there: it reads the columns and rows that are asked for. Needs polars."""

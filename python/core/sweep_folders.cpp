@@ -1,3 +1,4 @@
+#include "anholon/page.h"
 #include "anholon/sweep_folder.h"
 #include "core.h"
 #include "sweep_options.h"
@@ -96,6 +97,14 @@ void bind_sweep_folders(nb::module_& m) {
             return all;
           },
           "names"_a)
+      .def("points", [](const SweepFolder& f) { return unlocked([&] { return f.points(); }); })
+      .def(
+          "figure",
+          [](const SweepFolder& f, const std::vector<std::string>& columns, const std::string& x,
+             const std::string& y) {
+            return value_of(unlocked([&] { return figure(f, SweepFigureOptions{columns, x, y}); }));
+          },
+          "columns"_a, "x"_a, "y"_a)
       .def(
           "fill",
           [](const SweepFolder& f, std::optional<std::vector<std::size_t>> parts, std::size_t share, std::size_t shares,

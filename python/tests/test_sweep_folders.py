@@ -81,7 +81,7 @@ def test_ctrl_c_keeps_complete_parts(tmp_path: pathlib.Path, disc: an.Model) -> 
         signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
 
     threading.Thread(target=press, daemon=True).start()
-    with pytest.raises(an.Interrupted) as stopped:
+    with pytest.raises(an.Interrupted, match="the same call goes on") as stopped:
         disc.sweep({"phi'": many}, to=5, out=folder, chunk=500)
     kept = stopped.value.result
     assert isinstance(kept, an.SweepFolder) and 0 < kept.progress().parts < kept.parts

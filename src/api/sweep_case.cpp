@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/json.h"
-#include "ensemble/case_table.h"
+#include "ensemble/variation.h"
 #include "formula/formula.h"
 #include "numeric/number.h"
 #include "report/columns.h"
@@ -22,6 +22,8 @@ using inner::SweepStore;
 constexpr const char* kOrders[] = {"q", "qdot", "qddot", "qdddot"};
 constexpr const char* kMultipliers[] = {"lambda", "lambdadot"};
 constexpr std::string_view kInitial = "(0)";
+// Begins the names under which Python and C++ keep what varies.
+constexpr std::string_view kVary = "vary ";
 
 // "a=1 b=8 cm,c=2" as words of one name each; a name ends at = or, of what is drawn, at ~.
 // A comma in brackets belongs to a name: k[1,2].
@@ -79,7 +81,6 @@ std::vector<std::string> varied(const SweepStore& store) {
   std::vector<std::string> names;
   for (const std::string& word : words_of(store.asked("vary")))
     if (name_in(word) != "case") names.push_back(inner::normal_name(name_in(word)));
-  constexpr std::string_view kVary = "vary ";
   for (const auto& [what, text] : store.request().asked)
     if (what.starts_with(kVary) && what != "vary case") names.push_back(inner::normal_name(what.substr(kVary.size())));
   if (const std::string& table = store.asked("table of cases"); !table.empty()) {
@@ -328,6 +329,42 @@ Result<System> system_of_words(const SweepStore& store, const std::vector<AskedW
     if (const std::string form = word(words, "form"); !form.empty()) options.form = form;
     return prepare(*model, options);
   });
+}
+
+std::map<std::string, std::vector<double>> points_of_axes(const SweepStore& store) {
+  constexpr std::size_t kMostPoints = 65536;
+  std::map<std::string, std::vector<double>> points;
+  ReadOptions reading;
+  reading.mode = words_of(store.asked("mode"));
+  const Result<Model> model = opened(source_of(store), reading);
+  if (!model) return points;
+  const inner::Model& of = *model->data().model;
+  const auto take = [&](const auto& add) {
+    try {
+      inner::Variation variation;
+      add(variation);
+      variation.finish({}, "cases");
+      if (variation.cases() > kMostPoints) return;
+      for (std::size_t k = 0; k < variation.cases(); ++k) {
+        const std::vector<inner::Rational> values = variation(k);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+          const inner::Varied& v = variation.varied()[i];
+          const std::string column = v.name + (v.kind == inner::Varied::Kind::initial ? std::string(kInitial) : "");
+          points[column].push_back(inner::from_rational<double>(values[i]));
+        }
+      }
+    } catch (const Failure&) {  // the values are drawn
+    } catch (const inner::MistakeInWord&) {
+    }
+  };
+  std::vector<std::string> words = words_of(store.asked("vary"));
+  for (const auto& [what, text] : store.request().asked)
+    if (what.starts_with(kVary)) words.push_back(text);
+  for (const std::string& word : words)
+    if (name_in(word) != "case") take([&](inner::Variation& v) { v.add(word, of); });
+  if (const std::string& table = store.asked("table of cases"); !table.empty())
+    take([&](inner::Variation& v) { v.add(std::make_shared<const inner::CaseTable>(table, "of the sweep"), of); });
+  return points;
 }
 
 MotionOptions options_of_case(const SweepStore& store, const MotionOptions& given) {

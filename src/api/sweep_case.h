@@ -36,6 +36,10 @@ Result<System> system_of_case(const inner::SweepStore& store, std::size_t number
 // The same from the words of a case. Errors: as `prepare`.
 Result<System> system_of_words(const inner::SweepStore& store, const std::vector<AskedWord>& of_case);
 
+// The values that the columns of grids, lists and tables take over the whole sweep, by the name of the column, in double. A
+// column that is drawn is not among them, nor is a grid with very many values, or any column if the model cannot be read.
+std::map<std::string, std::vector<double>> points_of_axes(const inner::SweepStore& store);
+
 // The options of the motion of any case: those of the sweep where `given` does not say otherwise.
 MotionOptions options_of_case(const inner::SweepStore& store, const MotionOptions& given);
 

@@ -113,6 +113,7 @@ FolderColumn empty_column(const inner::ParquetColumn& like) {
 
 }  // namespace
 
+std::map<std::string, std::vector<double>> SweepFolder::points() const { return points_of_axes(data_->store); }
 const std::string& SweepFolder::path() const { return data_->store.folder(); }
 // A damaged plan is an error of the functions that return a Result; these tell what is there without it.
 std::size_t SweepFolder::cases() const {

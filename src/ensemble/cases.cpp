@@ -60,6 +60,7 @@ void EnsemblePlan::make() {
   }
   Column monitors;
   for (const Monitor& m : model.monitors) monitors.push_back(m.value);
+  for (const Expr e : o.reductions.ends) monitors.push_back(s.graph().own(e));
   stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitors));
   leading = stages > 0 || std::any_of(s.structure.d.begin(),
                                       s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates),
@@ -231,7 +232,19 @@ bool CaseWalk::another_method_pays() {
 CaseWay CaseWalk::arrive() {
   result_->t = to_double(stepper_->time());
   result_->steps = stepper_->steps();
-  return stop(keep(stepper_->time(), result_->last) ? CaseWay::plain : CaseWay::simulation);
+  const bool kept = keep(stepper_->time(), result_->last);
+  if (kept && reducer_) tell_ends();
+  return stop(kept ? CaseWay::plain : CaseWay::simulation);
+}
+
+// The last values of formulas, at the point that was kept.
+void CaseWalk::tell_ends() {
+  std::vector<double> values;
+  const std::size_t monitors = plan_->scenario.model->monitors.size();
+  for (std::size_t i = 0; i < plan_->options.reductions.ends.size(); ++i)
+    values.push_back(to_double(outputs_->value(monitors + i)));
+  reducer_->ends(std::move(values));
+  reducer_->values(result_->reduced);
 }
 
 // Takes what fired in the last step. Where something is set at the very end of a motion, `simulate` decides.
@@ -302,7 +315,8 @@ bool CaseWalk::keep(const W& t, std::vector<double>& values) {
   for (const EnsemblePlan::Outputs::Entry& e : plan_->outputs->inputs)
     outputs_->series(e.slot)[0] = e.variable ? point_->derivative(*e.variable, e.order) : point_->time();
   outputs_->evaluate();
-  for (std::size_t i = 0; i < plan_->outputs->tape.roots.size(); ++i) values.push_back(to_double(outputs_->value(i)));
+  for (std::size_t i = 0; i < plan_->scenario.model->monitors.size(); ++i)
+    values.push_back(to_double(outputs_->value(i)));
   return true;
 }
 
@@ -451,14 +465,21 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
   options.method = o.method;
   options.kernel = o.kernel;
   Reducer reducer(o.reductions, o.tolerance.get_d());
-  if (!o.reductions.formulas.empty()) {
+  const std::size_t ends = o.reductions.ends.size(), formulas = o.reductions.formulas.size();
+  if (formulas + ends > 0) {
     options.followed = o.reductions.formulas;
-    options.dense = [&](const StepPolynomials& step) {
+    options.followed.insert(options.followed.end(), o.reductions.ends.begin(), o.reductions.ends.end());
+    options.followed_at_ends = ends;
+    options.dense = [&, ends, formulas](const StepPolynomials& step) {
       (void)reducer.step(
           {step.end - step.begin, step.one_sided ? 0 : step.order - 1, step.followed, [&](std::size_t i, double x) {
              const auto [value, made_of] = step.followed_value(i, x);
              return FormulaValue{value, made_of};
            }});
+      std::vector<double> values;
+      for (std::size_t i = 0; i < ends; ++i)
+        values.push_back(step.followed_value(formulas + i, step.end - step.begin).first);
+      reducer.ends(std::move(values));
     };
   }
   EnsembleRowFilter rows(o.at, r);

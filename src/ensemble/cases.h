@@ -44,7 +44,7 @@ class EnsemblePlan {
   std::vector<std::optional<SetByEvent>> sets;       // of each event, if it sets something
   std::optional<NearestState<long double>> nearest;  // with constraints, if an event sets something
   struct Outputs {
-    Tape tape;
+    Tape tape;  // of the monitors, then of the ends of the reductions
     struct Entry {
       std::uint32_t slot;
       std::optional<std::size_t> variable;  // nullopt: t
@@ -101,6 +101,7 @@ class CaseWalk {
   bool reduce();
   bool rows();
   bool keep(const W& t, std::vector<double>& values);
+  void tell_ends();
 
   const EnsemblePlan* plan_ = nullptr;
   CaseResult* result_ = nullptr;

@@ -196,9 +196,10 @@ void Reductions::add(const std::string& word, const OpenModel& model, const std:
   }
   const Expr e = formula_of(word, open + 1, text, model, moving);
   must_hold_no_forces(word, open + 1, text, e, *model.model, moving);
-  const auto same = std::find(formulas.begin(), formulas.end(), e);
-  list.push_back({*known, static_cast<std::size_t>(same - formulas.begin()), word});
-  if (same == formulas.end()) formulas.push_back(e);
+  std::vector<Expr>& place = *known == Reduction::Kind::last ? ends : formulas;
+  const auto same = std::find(place.begin(), place.end(), e);
+  list.push_back({*known, static_cast<std::size_t>(same - place.begin()), word});
+  if (same == place.end()) place.push_back(e);
 }
 
 // ---- over the steps -----------------------------------------------------------------------------------------------------
@@ -213,10 +214,11 @@ void Reducer::restart() {
                    kNone = std::numeric_limits<double>::quiet_NaN();
   seen_.assign(of_->formulas.size(), {});
   for (Seen& s : seen_) s.most = -kInfinity, s.fewest = kInfinity, s.last = kNone;
+  ends_.assign(of_->ends.size(), kNone);
   fired_.assign(of_->events.size(), {});
   for (Fired& f : fired_) f.first = kNone;
   for (const Reduction& r : of_->list) {
-    if (r.of_event()) continue;
+    if (r.of_event() || r.kind == Reduction::Kind::last) continue;
     Seen& s = seen_[r.of];
     s.greatest = s.greatest || r.kind == Reduction::Kind::greatest;
     s.least = s.least || r.kind == Reduction::Kind::least;
@@ -349,6 +351,7 @@ void Reducer::event(const std::string& name, double t) {
 
 void Reducer::lose_formulas() {
   for (Seen& s : seen_) s.lost = true;
+  ends_.assign(of_->ends.size(), std::numeric_limits<double>::quiet_NaN());
 }
 
 void Reducer::values(std::vector<double>& to) const {
@@ -356,6 +359,10 @@ void Reducer::values(std::vector<double>& to) const {
   for (const Reduction& r : of_->list) {
     if (r.of_event()) {
       to.push_back(r.kind == Reduction::Kind::count ? fired_[r.of].times : fired_[r.of].first);
+      continue;
+    }
+    if (r.kind == Reduction::Kind::last) {
+      to.push_back(ends_[r.of]);
       continue;
     }
     const Seen& s = seen_[r.of];
@@ -372,8 +379,6 @@ void Reducer::values(std::vector<double>& to) const {
       to.push_back(none ? kNone : length_ == 0 ? s.last : (s.integral + s.carry) / length_);
       break;
     case Reduction::Kind::last:
-      to.push_back(none ? kNone : s.last);
-      break;
     case Reduction::Kind::count:
     case Reduction::Kind::first:
       break;

@@ -5,6 +5,7 @@
 // as short as the tolerance asks for the series of these formulas (StepSettings::known). Where a polynomial is not the
 // formula over the whole step (the radius of convergence of the formula is shorter than that of the motion, or the formula
 // has no series, as a norm that is zero), pieces of the step get polynomials of their own, through values of the formula.
+// A last value is that of the formula at the end alone: no step is shorter for its sake.
 #pragma once
 #include <string>
 #include <vector>
@@ -18,13 +19,14 @@ namespace anholon {
 
 struct Reduction {
   enum class Kind : std::uint8_t { greatest, least, mean, last, count, first } kind = Kind::greatest;
-  std::size_t of = 0;  // the formula, or the event
+  std::size_t of = 0;  // of a last value among the ends, of a count or a first time the event, else the formula
   std::string name;    // "max(height)", as it was written
   bool of_event() const { return kind == Kind::count || kind == Kind::first; }
 };
 
 struct Reductions {
-  std::vector<Expr> formulas;
+  std::vector<Expr> formulas;       // whose values along the motion are asked for
+  std::vector<Expr> ends;           // whose last values are asked for
   std::vector<std::string> events;  // their names in the report of a motion
   std::vector<Reduction> list;
 
@@ -53,7 +55,9 @@ class Reducer {
   // what was collected is wrong.
   [[nodiscard]] bool step(const ReducedStep& step);
   void event(const std::string& name, double t);
-  // The motion has stretches without polynomials: no formula has a value.
+  // The values of the ends where the motion is; those at its end are told last.
+  void ends(std::vector<double> values) { ends_ = std::move(values); }
+  // The motion has stretches without polynomials: no formula has a value, and no end.
   void lose_formulas();
   // Of a formula NaN without a step or without a value on the way, of first(EVENT) NaN without an occurrence.
   void values(std::vector<double>& to) const;
@@ -74,6 +78,7 @@ class Reducer {
   const Reductions* of_;
   double tolerance_;
   std::vector<Seen> seen_;
+  std::vector<double> ends_;
   std::vector<Fired> fired_;
   std::vector<double> polynomial_;
   double length_ = 0;

@@ -28,7 +28,8 @@ void must_be_had(const Reductions& reductions, const Scenario& s, const Asker& a
                   "leave out " + asker.called("method") + ", or use " + asker.example("method", "taylor"));
   for (const Reduction& r : reductions.list) {
     if (r.of_event()) continue;
-    if (const Expr e = reductions.formulas[r.of]; orders_needed(s, {&e, 1}) > 0)
+    const std::vector<Expr>& among = r.kind == Reduction::Kind::last ? reductions.ends : reductions.formulas;
+    if (const Expr e = among[r.of]; orders_needed(s, {&e, 1}) > 0)
       throw Failure({}, "'" + r.name + "' holds derivatives beyond those that are solved for",
                     "write the formula with lower derivatives");
   }

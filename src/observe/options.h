@@ -51,6 +51,7 @@ struct SimulationOptions {
   // Formulas of which `dense` is told, too: expressions of the scenario without derivatives beyond those solved for. Steps
   // are as short as their series ask for.
   std::vector<Expr> followed;
+  std::size_t followed_at_ends = 0;  // so many of the last ones are asked for at the ends of steps, and shorten none
   std::function<void(const std::string&)> note;  // told of the notes of the report as soon as there is one
   std::size_t most_steps = 50'000'000;
   bool kernel = true;  // where there is one: its pivots, chosen at the start, are seen in the last digits

@@ -106,7 +106,7 @@ class Layout {
   double legend(const Panel& p, double top) {
     double x = left_, y = top + kSmall;
     for (const Series& s : p.series) {
-      const RichText text = rich_label(s.name, s.unit, f_.labels);
+      const RichText text = series_label(s, f_.labels);
       const double width = kEntry + kGap + width_of(text, kSmall) + 2.5 * kGap;
       if (x > left_ && x + width > right_ + 2.5 * kGap) x = left_, y += kSmall + kGap;
       d_.strokes.push_back({{{x, y - 0.32 * kSmall}, {x + kEntry, y - 0.32 * kSmall}}, Role::series, s.number});
@@ -124,11 +124,8 @@ class Layout {
     if (p.series.size() > 1) {
       top = legend(p, top);
     } else {
-      d_.words.push_back({{kGap + kSize, (top + bottom) / 2},
-                          rich_label(p.series[0].name, p.series[0].unit, f_.labels),
-                          kSize,
-                          Anchor::middle,
-                          true});
+      d_.words.push_back(
+          {{kGap + kSize, (top + bottom) / 2}, series_label(p.series[0], f_.labels), kSize, Anchor::middle, true});
       top += kGap;
     }
     const double height = own_ ? box_ : std::max(10.0, bottom - top), width = right_ - left_;

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/diagnostic.h"
+#include "base/escape.h"
 #include "result/choose_columns.h"
 
 namespace anholon::plot {
@@ -84,7 +85,55 @@ void smooth(Figure& f, const std::vector<std::vector<double>>& derivatives) {
     }
 }
 
+// Chooses the vertical axes so that all series fit.
+void fit_panels(Figure& f, bool log) {
+  for (Panel& p : f.panels) {
+    Range ys;
+    for (const Series& s : p.series)
+      for (const double v : s.y)
+        if (std::isfinite(v) && (!log || v > 0)) ys.see(v);
+    if (ys.empty())
+      throw Failure(Span{},
+                    "the column '" + p.series[0].name + "' has no " + (log ? "positive " : "") + "number to be shown",
+                    log ? "without --log" : "another column, or other times");
+    p.y = axis_for(ys.least, ys.greatest, log, false);
+  }
+}
+
+void see_finite(Range& range, const std::vector<double>& values) {
+  for (const double v : values)
+    if (std::isfinite(v)) range.see(v);
+}
+
+// Adds the series of a figure to the panels of the same columns.
+void add_series(Figure& to, Figure from, const std::string& of, bool each) {
+  for (Panel& panel : from.panels) {
+    const std::string& name = panel.series.front().name;
+    const auto same = std::find_if(to.panels.begin(), to.panels.end(),
+                                   [&](const Panel& p) { return !each || p.series.front().name == name; });
+    Panel& place = same == to.panels.end() ? to.panels.emplace_back() : *same;
+    for (Series& s : panel.series) {
+      s.of = of, s.x = from.x, s.number = place.series.size();
+      place.series.push_back(std::move(s));
+    }
+  }
+}
+
 }  // namespace
+
+RichText series_label(const Series& s, LabelStyle style) {
+  RichText label = rich_label(s.name, s.unit, style);
+  if (!s.of.empty()) label.push_back({", " + shown(s.of)});
+  return label;
+}
+
+std::string series_text(const Series& s, LabelStyle style) {
+  return text_label(s.name, s.unit, style) + (s.of.empty() ? "" : ", " + shown(s.of));
+}
+
+std::string series_latex(const Series& s) {
+  return latex_label(s.name, s.unit) + (s.of.empty() ? "" : ", " + latex_escape(s.of));
+}
 
 std::vector<std::size_t> select_columns(const RunTable& table, const std::vector<std::string>& names, std::size_t x) {
   return names.empty() ? coordinates(table, x) : chosen_columns(table.columns, names, x);
@@ -133,8 +182,7 @@ Figure make_figure(const RunFile& run, const FigureOptions& o) {
   f.rows = rows.size();
   f.x = taken(x);
   Range xs;
-  for (const double v : f.x)
-    if (std::isfinite(v)) xs.see(v);
+  see_finite(xs, f.x);
   if (xs.empty()) throw Failure(Span{}, "the column '" + f.x_name + "' has no number to be shown", "another --x");
   f.x_axis = axis_for(xs.least, xs.greatest, false, f.x_name == "t");
 
@@ -156,18 +204,33 @@ Figure make_figure(const RunFile& run, const FigureOptions& o) {
     derivatives.push_back(derivative < table.columns.size() ? taken(derivative) : std::vector<double>());
   }
   if (o.smooth && x == time) smooth(f, derivatives);
-  for (Panel& p : f.panels) {
-    Range ys;
-    for (const Series& s : p.series)
-      for (const double v : s.y)
-        if (std::isfinite(v) && (!o.log || v > 0)) ys.see(v);
-    if (ys.empty())
-      throw Failure(Span{},
-                    "the column '" + p.series[0].name + "' has no " + (o.log ? "positive " : "") + "number to be shown",
-                    o.log ? "without --log" : "another column, or other times");
-    p.y = axis_for(ys.least, ys.greatest, o.log, false);
-  }
+  fit_panels(f, o.log);
   return f;
+}
+
+Figure make_figure(const std::vector<NamedRun>& runs, const FigureOptions& o) {
+  if (runs.size() == 1 && runs[0].name.empty()) return make_figure(runs[0].run, o);
+  Figure all;
+  Range xs;
+  for (const NamedRun& each : runs) {
+    Figure one;
+    try {
+      one = make_figure(each.run, o);
+    } catch (Failure& f) {
+      f.diagnostic.message = each.name + ": " + f.diagnostic.message;
+      throw;
+    }
+    see_finite(xs, one.x);
+    if (all.x_name.empty()) {
+      all = one;
+      all.rows = 0, all.x.clear(), all.panels.clear();
+    }
+    all.rows += one.rows;
+    add_series(all, std::move(one), each.name, o.each);
+  }
+  all.x_axis = axis_for(xs.least, xs.greatest, false, all.x_name == "t");
+  fit_panels(all, o.log);
+  return all;
 }
 
 namespace {
@@ -254,20 +317,23 @@ class AlongAPath {
   double direction_ = 0, low_ = 0, high_ = 0, distance_ = 0;
 };
 
+const std::vector<double>& abscissa(const Figure& f, const Series& s) { return s.x.empty() ? f.x : s.x; }
+
 template <class Keeper>
 std::vector<std::vector<Point>> kept(const Figure& f, const Panel& panel, const Series& s, double width,
                                      double height) {
   std::vector<std::vector<Point>> pieces;
   std::optional<Keeper> keeper;
-  for (std::size_t i = 0; i < std::min(f.x.size(), s.y.size()); ++i) {
-    const bool there = std::isfinite(f.x[i]) && std::isfinite(s.y[i]) && (!panel.y.log || s.y[i] > 0);
+  const std::vector<double>& x = abscissa(f, s);
+  for (std::size_t i = 0; i < std::min(x.size(), s.y.size()); ++i) {
+    const bool there = std::isfinite(x[i]) && std::isfinite(s.y[i]) && (!panel.y.log || s.y[i] > 0);
     if (!there) {
       if (keeper) keeper->flush();
       keeper.reset();
       continue;
     }
     if (!keeper) keeper.emplace(pieces.emplace_back());
-    keeper->add({width * f.x_axis.place(f.x[i]), height * panel.y.place(s.y[i])});
+    keeper->add({width * f.x_axis.place(x[i]), height * panel.y.place(s.y[i])});
   }
   if (keeper) keeper->flush();
   return pieces;
@@ -277,7 +343,8 @@ std::vector<std::vector<Point>> kept(const Figure& f, const Panel& panel, const 
 
 std::vector<std::vector<Point>> curve(const Figure& f, const Panel& panel, const Series& s, double width,
                                       double height) {
-  const bool in_order = std::is_sorted(f.x.begin(), f.x.end()) || std::is_sorted(f.x.rbegin(), f.x.rend());
+  const std::vector<double>& x = abscissa(f, s);
+  const bool in_order = std::is_sorted(x.begin(), x.end()) || std::is_sorted(x.rbegin(), x.rend());
   return in_order ? kept<ByColumns>(f, panel, s, width, height) : kept<AlongAPath>(f, panel, s, width, height);
 }
 

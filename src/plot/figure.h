@@ -26,8 +26,15 @@ struct FigureOptions {
 struct Series {
   std::string name, unit;
   std::vector<double> y;
-  std::size_t number = 0;  // its colour
+  std::size_t number = 0;      // its colour
+  std::string of = {};         // the run or the case that it belongs to, where a figure has several
+  std::vector<double> x = {};  // its own abscissa; empty: that of the figure
 };
+// The label of a series: its name with its unit, and what it belongs to.
+RichText series_label(const Series& series, LabelStyle style);
+// As above, in one line of a terminal, or for TeX.
+std::string series_text(const Series& series, LabelStyle style);
+std::string series_latex(const Series& series);
 
 struct Panel {
   std::vector<Series> series;
@@ -36,8 +43,8 @@ struct Panel {
 
 struct Figure {
   std::string title, x_name, x_unit;
-  std::size_t rows = 0;  // rows shown; smooth curves have more points
-  std::vector<double> x;
+  std::size_t rows = 0;   // rows shown; smooth curves have more points
+  std::vector<double> x;  // empty if each series has its own
   Axis x_axis;
   std::vector<Panel> panels;
   LabelStyle labels = LabelStyle::unicode;
@@ -47,6 +54,14 @@ struct Figure {
 
 // Throws Failure with the existing columns if a name is not one of them, or if no row is left to show.
 Figure make_figure(const RunFile& run, const FigureOptions& options);
+
+struct NamedRun {
+  RunFile run;
+  std::string name;
+};
+// The same columns of several runs in the same panels. Throws Failure as above, also if a run has no rows to be shown; a
+// message that concerns one of the runs names it.
+Figure make_figure(const std::vector<NamedRun>& runs, const FigureOptions& options);
 
 // Extends the axes so that one unit has the same length along x as along y, if each panel is a box of this width and
 // height.

@@ -32,7 +32,7 @@ std::uint32_t scale_colour(double place) {
 
 // The cell of each row along one axis; leaves the middles of the cells in the column.
 std::vector<std::size_t> cells_along(NamedColumn& c) {
-  std::vector<double> different;
+  std::vector<double> different = c.points;
   for (const double v : c.values)
     if (std::isfinite(v)) different.push_back(v);
   std::sort(different.begin(), different.end());
@@ -269,7 +269,7 @@ void add_finer(HeatMap& m, const NamedColumn& x, const NamedColumn& y, const Nam
 }
 
 NamedColumn first_generation(const NamedColumn& c, const std::vector<unsigned>& generations) {
-  NamedColumn first{c.name, c.unit, {}, c.meaning};
+  NamedColumn first{c.name, c.unit, {}, c.meaning, c.points};
   for (std::size_t row = 0; row < c.values.size(); ++row)
     if (generations.empty() || generations[row] == 0) first.values.push_back(c.values[row]);
   return first;

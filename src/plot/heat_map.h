@@ -10,6 +10,8 @@ struct NamedColumn {
   std::string name, unit;
   std::vector<double> values;
   std::string meaning = {};  // in words
+  // What the column of an axis takes in the whole sweep, where cases are missing: the axis shows these values, too.
+  std::vector<double> points = {};
 };
 // The label of the axis of a column: "m (kg), mass of the disc". An initial value x(0) is named as what it is the value of.
 RichText axis_label(const NamedColumn& column, const std::string& note, LabelStyle style);
@@ -32,7 +34,7 @@ struct HeatMap {
   double width = 16, height = 11;  // cm
 };
 
-// A cell for each pair of values that occurs; of a column with more than kMostCells different values, evenly spaced
+// A cell for each pair of values that occurs or is among the points of the axes; of a column with more than kMostCells different values, evenly spaced
 // cells. A cell with several cases has their mean, or their most frequent word. Throws Failure without a place if no case
 // has finite coordinates. A case of generation g > 0 (plot of a refined sweep) lies between the values of the first
 // generation and gets a cell that is 2^g times as small; without `generations` all cases are of the first one.

@@ -23,6 +23,7 @@ double quantile(const std::vector<double>& sorted, double part) {
 RunFile over_variation(const NamedColumn& x, const std::vector<NamedColumn>& columns) {
   std::map<double, std::vector<std::vector<double>>> groups;  // of each x the numbers of each column
   bool several = false;
+  for (const double point : x.points) groups[point].resize(columns.size());
   for (std::size_t k = 0; k < x.values.size(); ++k)
     for (std::size_t c = 0; c < columns.size(); ++c) {
       if (!std::isfinite(x.values[k]) || !std::isfinite(columns[c].values[k])) continue;
@@ -50,6 +51,31 @@ RunFile over_variation(const NamedColumn& x, const std::vector<NamedColumn>& col
     }
   }
   return run;
+}
+
+std::vector<NamedRun> runs_of_cases(const std::vector<double>& numbers, const NamedColumn& x,
+                                    const std::vector<NamedColumn>& columns,
+                                    const std::function<std::string(std::size_t row)>& name) {
+  std::vector<const NamedColumn*> all{&x};
+  std::vector<std::string> names{x.name};
+  for (const NamedColumn& c : columns) all.push_back(&c), names.push_back(c.name);
+  std::vector<NamedRun> runs;
+  for (std::size_t from = 0, to = 0; from < numbers.size(); from = to) {
+    NamedRun one;
+    one.run.table.set_columns(names);
+    bool any = false;
+    for (; to < numbers.size() && numbers[to] == numbers[from]; ++to)
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        one.run.table.values.growing(k).push_back(all[k]->values[to]);
+        any = any || (k > 0 && std::isfinite(x.values[to]) && std::isfinite(all[k]->values[to]));
+      }
+    if (!any) continue;
+    for (const NamedColumn* c : all)
+      if (!c->unit.empty()) one.run.units[c->name] = c->unit;
+    one.name = name(from);
+    runs.push_back(std::move(one));
+  }
+  return runs;
 }
 
 }  // namespace anholon::plot

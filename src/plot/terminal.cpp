@@ -140,8 +140,7 @@ class Terminal {
     std::string line = indent;
     std::size_t width = indent.size();
     for (const Series& s : p.series) {
-      const std::string label = text_label(s.name, s.unit, f_.labels),
-                        sign = lettered ? std::string(1, letter(s)) : "──";
+      const std::string label = series_text(s, f_.labels), sign = lettered ? std::string(1, letter(s)) : "──";
       const std::size_t w = shown_width(label) + shown_width(sign) + 3;
       if (width > indent.size() && width + w > static_cast<std::size_t>(size_.columns))
         stripped(out_, line), line = indent, width = indent.size();

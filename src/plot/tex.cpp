@@ -33,7 +33,7 @@ void series(std::string& out, const Figure& f, const Panel& p, const Series& s, 
     out += line + "\n};\n";
     first = false;
   }
-  if (number_of > 1) out += "\\addlegendentry{" + latex_label(s.name, s.unit) + "}\n";
+  if (number_of > 1) out += "\\addlegendentry{" + series_latex(s) + "}\n";
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ std::string draw_tex(const Figure& f) {
     std::string options;
     const auto add = [&](const std::string& o) { options += (options.empty() ? "" : ", ") + o; };
     if (i == 0 && !f.title.empty()) add("title={" + latex_escape(f.title) + "}");
-    if (p.series.size() == 1) add("ylabel={" + latex_label(p.series[0].name, p.series[0].unit) + "}");
+    if (p.series.size() == 1) add("ylabel={" + series_latex(p.series[0]) + "}");
     if (p.y.log) add("ymode=log");
     out += "\\nextgroupplot" + (options.empty() ? "" : "[" + options + "]") + "\n";
     for (const Series& s : p.series) series(out, f, p, s, p.series.size());

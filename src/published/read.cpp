@@ -67,7 +67,7 @@ class Lines {
     while (!label.empty() && (label.back() == ' ' || label.back() == '\t')) label.remove_suffix(1);
     const std::size_t width = std::max<std::size_t>(1, utf8_length(label));
     if (colon == std::string_view::npos || label.find('#') != std::string_view::npos)
-      return refuse(number, 0, width, "an equation starts with a label", "4.1: " + std::string(label.substr(0, 40)));
+      return refuse(number, 0, width, "an equation starts with a label", labelled(label.substr(0, kInHint)));
     if (label.empty()) return refuse(number, 0, 1, "the label is empty", "4.1: x' = y");
     for (const FileEntry& e : entries)
       if (e.label == label && !e.definition)
@@ -77,6 +77,19 @@ class Lines {
     entries.push_back({std::string(label), {number, 1, static_cast<std::uint32_t>(width)}, {}, {}, false});
     const std::size_t before = utf8_length(line.substr(0, colon + 1));
     entries.back().add(line.substr(colon + 1), {number, static_cast<std::uint32_t>(before + 1), 1});
+  }
+
+  static constexpr std::size_t kInHint = 40;
+  // A line without its colon: after the first word, if it is followed by a space and a further word on the left; else a label
+  // is missing.
+  static std::string labelled(std::string_view line) {
+    const std::size_t space = std::min(line.find_first_of(" \t"), line.size());
+    const std::size_t rest = std::min(line.find_first_not_of(" \t", space), line.size());
+    constexpr std::string_view kOperators = "+-*/^=)";
+    if (rest == line.size() || kOperators.find(line[rest]) != std::string_view::npos ||
+        line.substr(0, space).find_first_of("+-*/^=(") != std::string_view::npos)
+      return "4.1: " + std::string(line);
+    return std::string(line.substr(0, space)) + ": " + std::string(line.substr(rest));
   }
 
   // The name and the position of the '=' of `let NAME = …`; npos if the line is not a definition.

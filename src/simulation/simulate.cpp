@@ -29,7 +29,7 @@ StepSettings step_settings(const Model& model, const SimulationOptions& o) {
   StepSettings s{natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
   s.integrals = 1;   // the power
   s.known_from = 1;  // the masses, whose sign is looked at
-  s.known_to = s.known_from + model.masses.size() + o.followed.size();
+  s.known_to = s.known_from + model.masses.size() + o.followed.size() - o.followed_at_ends;
   s.multipliers = o.rigorous.has_value();
   return s;
 }

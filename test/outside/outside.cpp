@@ -184,6 +184,9 @@ void sweep_over_scenarios() {
          "the folder names the scenarios");
   expect(theta && std::equal(theta->begin(), theta->end(), all->column("theta").begin(), all->column("theta").end()),
          "the folder has the numbers of the sweep in memory");
+  const auto drawn = anholon::figure(*folder, {.columns = {"theta"}});
+  expect(drawn && drawn->starts_with("<svg") && !anholon::figure(*folder, {.columns = {"thet"}}), "a folder is drawn");
+  expect(folder->points().at("theta(0)") == std::vector<double>{0.1, 0.2}, "a folder tells the points of its grid");
   const auto numbers = folder->numbers(2);
   expect(numbers && numbers->size() == 2 && (*numbers)[0].second == "late" && (*numbers)[1].second == "1/10",
          "a case tells its scenario");

@@ -94,6 +94,16 @@ void write_json(JsonWriter& j, const EquationFinding& f) {
   j.close();
 }
 
+// A file, a shipped one, or what comes through a pipe.
+SourceText equations_named(const std::string& name) {
+  if (name != "-") return equation_text(name);
+  SourceText source{"<standard input>", {}};
+  std::string why;
+  if (!read_file("/dev/stdin", source.text, &why))
+    throw UsageError{"error: cannot read the standard input: " + why + "\n"};
+  return source;
+}
+
 }  // namespace
 
 int compare(const CompareCommand& o) {
@@ -102,7 +112,7 @@ int compare(const CompareCommand& o) {
         "error: no equations are named\nhint: anholon compare MODEL EQUATIONS, a file with one equation per line\n"};
   const Reader in = in_mode(read(o), o, "compare");
   const Model& model = *in.model;
-  const SourceText source = equation_text(o.equations);
+  const SourceText source = equations_named(o.equations);
   Subject subject({in.model, in.names}, state_choice(o, model));
   Diagnostics diagnostics;
   const std::vector<PublishedEquation> equations = subject.read(source, diagnostics);

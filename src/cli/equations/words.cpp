@@ -61,7 +61,8 @@ void add_compare(CommandLine& line) {
       "Where changes of up to four places make a false equation true, they are named.\n"
       "Exit status: 0 all are true, 1 one is false or stays unknown, 2 bad input.\n"
       "Example: anholon compare luo-zhao-example-1-symbolic luo-zhao-example-1.as-read");
-  c->add_option("EQUATIONS", o.equations, "a file of equations, or the name of a shipped one");
+  c->add_option("EQUATIONS", o.equations,
+                "a file of equations, the name of a shipped one, or - for what comes through a pipe");
   parameters(c, o), mode_of_contacts(c, o);
   c->add_option("--eliminate", o.eliminate, "coordinates for which the constraints are solved (default: chosen)")
       ->type_name("NAME,…")

@@ -1,5 +1,6 @@
 #include "cli/motions/motion_report.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "cli/say.h"
@@ -125,9 +126,12 @@ void print_report(const Scenario& s, const SimulationReport& r, const Units& uni
         small(w.largest_change).c_str());
   for (const WatchedReport& w : r.monitors) {
     const std::string unit = behind(units, w.name);
-    say(stderr, "monitor %s: from %s to %s%s, between %s and %s%s, largest change %s of its size\n", w.name.c_str(),
-        w.first.text().c_str(), w.last.text().c_str(), unit.c_str(), w.least.text().c_str(), w.greatest.text().c_str(),
-        unit.c_str(), small(w.largest_change).c_str());
+    // Columns of contacts and of switched constraints jump, and gaps begin at zero: size is no measure of a change.
+    const bool of_model = std::any_of(s.model->monitors.begin(), s.model->monitors.end(),
+                                      [&](const Monitor& m) { return m.name == w.name; });
+    say(stderr, "monitor %s: from %s to %s%s, between %s and %s%s%s\n", w.name.c_str(), w.first.text().c_str(),
+        w.last.text().c_str(), unit.c_str(), w.least.text().c_str(), w.greatest.text().c_str(), unit.c_str(),
+        of_model ? (", largest change " + small(w.largest_change) + " of its size").c_str() : "");
   }
   if (r.rigorous) {
     const RigorousReport& g = *r.rigorous;

@@ -100,10 +100,10 @@ void add_sweep(CommandLine& line) {
       ->type_name("HOW")
       ->check(CLI::IsMember({"random", "sobol"}));
   c->add_option("--seed", o.seed, "other draws (default 0)")->type_name("N");
-  c->add_option(
-       "--reduce", o.reduce,
-       "over each motion: max(FORMULA), min(FORMULA), mean(FORMULA) or last(FORMULA), by its Taylor polynomials; "
-       "count(EVENT), first(EVENT): how often an event fired, and its first time")
+  c->add_option("--reduce", o.reduce,
+                "over each motion: max(FORMULA), min(FORMULA) or mean(FORMULA), by its Taylor polynomials; "
+                "last(FORMULA), at its end; "
+                "count(EVENT), first(EVENT): how often an event fired, and its first time")
       ->type_name("WHAT,…");
   c->add_option("--columns", o.columns,
                 "which columns beside the case, what varies and the reductions, also by patterns with * and ?: "

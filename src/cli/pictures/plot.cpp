@@ -5,15 +5,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include "api/pictures/sweep_cases.h"
+#include "api/pictures/sweep_picture.h"
 #include "base/json.h"
 #include "cli/motions/result_file.h"
 #include "cli/motions/run_formulas.h"
-#include "cli/pictures/plot_sweep.h"
-#include "cli/pictures/sweep_cases.h"
 #include "cli/pictures/sweep_page.h"
 #include "cli/say.h"
 #include "plot/drawing.h"
@@ -132,14 +133,19 @@ std::string ranges(const Figure& f) {
   j.open_object().key("x").open_object().key("name").string(f.x_name).key("axis");
   range(f.x_axis.from, f.x_axis.to);
   j.key("range");
-  least_and_greatest(f.x);
+  std::vector<double> all_x = f.x;
+  for (const Panel& p : f.panels)
+    for (const Series& s : p.series) all_x.insert(all_x.end(), s.x.begin(), s.x.end());
+  least_and_greatest(all_x);
   j.close().key("rows").integer(static_cast<long long>(f.rows)).key("panels").open_array();
   for (const Panel& p : f.panels) {
     j.open_object().key("axis");
     range(p.y.from, p.y.to);
     j.key("series").open_array();
     for (const Series& s : p.series) {
-      j.open_object().key("name").string(s.name).key("label").string(text_label(s.name, s.unit, f.labels)).key("range");
+      j.open_object().key("name").string(s.name);
+      if (!s.of.empty()) j.key("of").string(s.of);
+      j.key("label").string(series_text(s, f.labels)).key("range");
       least_and_greatest(s.y);
       j.close();
     }
@@ -162,31 +168,59 @@ std::string write_figure(const Figure& f, Target t, const std::string& path) {
   return t == Target::terminal ? std::string() : write_drawing(lay_out(f), f.title, t, path);
 }
 
-// Draws a sweep as a map, a histogram or a page; of a curve over one variation, which is drawn as a run is, returns the
-// table and sets its options.
-std::optional<RunFile> drawn_sweep(const PlotCommand& o, Target t, FigureOptions& options) {
-  if (t == Target::terminal || t == Target::tex)
-    throw UsageError{"error: a sweep is drawn as .svg, .pdf, .png or .html\nhint: -o falls.svg\n"};
+// Draws a sweep as a map or a histogram; of curves, which are drawn as runs are, returns the runs and sets the options.
+std::vector<NamedRun> drawn_sweep(const PlotCommand& o, Target t, FigureOptions& options) {
   const auto must_be_written = [](const std::string& why) {
     if (!why.empty()) throw UsageError{"error: " + why + "\n"};
   };
-  SweepPicture picture = picture_of_sweep(o);
+  v1::SweepPicture picture = v1::picture_of_sweep(
+      v1::SweepCases(o.run), {split(o.columns), o.abscissa, o.ordinate, o.histogram, o.title, "--"});
+  if (!picture.note.empty())
+    say(stderr, "note: %s holds %s; what is missing is left empty\n", o.run.c_str(), picture.note.c_str());
   const auto draw = [&](auto& drawn) {
     drawn.labels = options.labels;
     if (!o.size.empty()) drawn.width = options.width, drawn.height = options.height;
-    must_be_written(write_drawing(lay_out(drawn), o.title, t, o.output));
+    must_be_written(write_drawing(lay_out(drawn), drawn.title, t, o.output));
   };
   if (picture.map || picture.histogram) {
+    if (t == Target::terminal || t == Target::tex)
+      throw UsageError{
+          "error: a map or a histogram of a sweep is drawn as .svg, .pdf, .png or .html\nhint: -o falls.svg\n"};
     if (o.log)
       throw UsageError{"error: --log belongs to curves: a map and a histogram have no logarithmic scale\n"
                        "hint: leave out --log\n"};
     picture.map ? draw(*picture.map) : draw(*picture.histogram);
-    return std::nullopt;
+    return {};
   }
-  options.x = picture.abscissa;
-  options.names.assign(picture.table.table.columns.begin() + 1, picture.table.table.columns.end());
+  options.x = picture.options.x;
+  options.names = picture.options.names;
+  options.title = picture.options.title;
   options.smooth = false;
-  return std::move(picture.table);
+  return std::move(picture.curves);
+}
+
+// The run, and those that stand among the words of columns: names of files that are no columns of the run. `columns` is
+// left with the others.
+std::vector<NamedRun> read_runs(const PlotCommand& o, std::vector<std::string>& columns) {
+  std::vector<NamedRun> runs{{read_result(o.run), ""}};
+  const RunTable first = runs[0].run.table;  // `runs` grows
+  std::erase_if(columns, [&](const std::string& word) {
+    std::error_code none;
+    const bool file = std::filesystem::is_regular_file(word, none) ||
+                      (format_of(word) && word.find_last_of('.') != std::string::npos);
+    if (!file || first.find(word) < first.columns.size()) return false;
+    if (v1::SweepCases::are_in(word))
+      throw UsageError{"error: " + word +
+                       " holds a sweep, and a figure of several files shows runs\nhint: anholon plot " + word +
+                       " NAME -o sweep.svg\n"};
+    runs.push_back({read_result(word), word});
+    return true;
+  });
+  if (runs.size() > 1) runs[0].name = o.run;
+  std::vector<std::string> names = columns;
+  if (!o.abscissa.empty()) names.push_back(o.abscissa);
+  for (NamedRun& each : runs) add_formulas(each.run, names);
+  return runs;
 }
 
 }  // namespace
@@ -214,7 +248,7 @@ int plot(const PlotCommand& o) {
   given.rows = 0;
   take_size(o.size, t, options, given);
 
-  const bool of_sweep = SweepCases::are_in(o.run);
+  const bool of_sweep = v1::SweepCases::are_in(o.run);
   if (!of_sweep && !o.ordinate.empty())
     throw UsageError{"error: --y belongs to a sweep\nhint: anholon plot run.h5 NAME\n"};
   if (!of_sweep && !o.histogram.empty())
@@ -230,20 +264,16 @@ int plot(const PlotCommand& o) {
     throw UsageError{
         "error: --log belongs to curves: a page of a sweep has no logarithmic scale\nhint: leave out --log\n"};
   if (t == Target::html) return write_page_of_sweep(o);
-  RunFile run;
+  std::vector<NamedRun> runs;
   if (of_sweep) {
-    auto drawn = drawn_sweep(o, t, options);
-    if (!drawn) return kOk;
-    run = std::move(*drawn);
+    runs = drawn_sweep(o, t, options);
+    if (runs.empty()) return kOk;
   } else {
-    run = read_result(o.run);
-    std::vector<std::string> names = split(o.columns);
-    if (!o.abscissa.empty()) names.push_back(o.abscissa);
-    add_formulas(run, std::move(names));
+    runs = read_runs(o, options.names);
   }
   Figure figure;
   try {
-    figure = make_figure(run, options);
+    figure = make_figure(runs, options);
   } catch (const Failure& e) {
     throw UsageError{"error: " + e.diagnostic.message +
                      (e.diagnostic.hint.empty() ? "" : "\nhint: " + e.diagnostic.hint) + "\n"};

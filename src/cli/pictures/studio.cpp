@@ -7,10 +7,10 @@
 
 #include <spawn.h>
 
+#include "api/pictures/sweep_cases.h"
 #include "base/platform/installed.h"
 #include "cli/input.h"
 #include "cli/pictures/child.h"
-#include "cli/pictures/sweep_cases.h"
 #include "cli/pictures/sweep_page.h"
 #include "cli/say.h"
 #include "result/format.h"
@@ -47,7 +47,7 @@ void open(const std::string& name, StudioOptions& options) {
   if (std::filesystem::is_directory(name, none))
     throw UsageError{"error: the folder " + name + " holds no sweep\nhint: anholon sweep MODEL --vary … -o " + name +
                      "/ makes one; anholon studio mine.toml opens a model\n"};
-  if (std::filesystem::is_regular_file(name, none) && SweepCases::are_in(name))
+  if (std::filesystem::is_regular_file(name, none) && v1::SweepCases::are_in(name))
     throw UsageError{
         "error: " + name +
         " holds the cases of a sweep and not their model, so the studio cannot compute their motions\nhint: "

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <set>
 
+#include "api/pictures/sweep_cases.h"
 #include "base/escape.h"
 #include "base/json.h"
-#include "cli/pictures/sweep_cases.h"
 #include "cli/say.h"
 #include "report/assets.h"
 #include "report/columns.h"
@@ -95,7 +95,7 @@ std::string script_data(const std::string& id, std::string data) {
 }
 
 // The axes of the map: those that are asked for, then what varies.
-std::vector<std::string> axes_of(const SweepCases& cases, const PlotCommand& o) {
+std::vector<std::string> axes_of(const v1::SweepCases& cases, const PlotCommand& o) {
   std::vector<std::string> names;
   for (const std::string& given : {o.abscissa, o.ordinate})
     if (!given.empty()) names.push_back(given);
@@ -117,14 +117,14 @@ void write_progress(JsonWriter& j, const SweepStore& store) {
 }
 
 // How the cases ended, as numbers that differ where the outcomes do; empty if the sweep does not tell.
-std::vector<double> outcomes(const SweepCases& cases, const std::vector<std::size_t>& rows) {
+std::vector<double> outcomes(const v1::SweepCases& cases, const std::vector<std::size_t>& rows) {
   std::vector<std::string> words;
   const std::vector<std::string>& names = cases.names();
   if (std::find(names.begin(), names.end(), "outcome") == names.end()) return {};
   return chosen(cases.read({"outcome"}, words)[0].values, rows);
 }
 
-void write_column(JsonWriter& j, const SweepCases& cases, const std::string& name,
+void write_column(JsonWriter& j, const v1::SweepCases& cases, const std::string& name,
                   const std::vector<std::size_t>& rows) {
   std::vector<std::string> words;
   const plot::NamedColumn c = cases.read({name}, words)[0];
@@ -137,7 +137,7 @@ void write_column(JsonWriter& j, const SweepCases& cases, const std::string& nam
 }  // namespace
 
 SweepMap map_of_sweep(const PlotCommand& o) {
-  const SweepCases cases(o.run);
+  const v1::SweepCases cases(o.run);
   const std::vector<std::string> axis_names = axes_of(cases, o), asked = split(o.columns);
   if (asked.size() > 1) throw Failure({}, "a page of a sweep begins with one column", "its menu has all columns");
   const std::string shown = asked.empty() ? "outcome" : asked[0];

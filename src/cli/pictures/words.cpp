@@ -71,6 +71,7 @@ void add_plot(CommandLine& line) {
                    "Examples: anholon plot run.h5\n"
                    "          anholon plot run.h5 theta \"theta'\" --each --from 2 --to 5\n"
                    "          anholon plot run.h5 y --x x --title \"path of the contact\"\n"
+                   "          anholon plot run.h5 other.h5 theta             theta of both, one over the other\n"
                    "          anholon plot run.h5 'lambda.*' -o forces.pdf --size 8cmx5cm\n"
                    "          anholon plot falls/ outcome -o falls.svg       cells over the two that vary\n"
                    "          anholon plot falls/ -o falls.html --motions 24  a page with the motions of 24 cases\n"
@@ -79,8 +80,12 @@ void add_plot(CommandLine& line) {
                 "a run: " + known_files("FILE") +
                     ", or - for what comes through a pipe; or a sweep: a folder, a .csv or .parquet file")
       ->required();
-  c->add_option("COLUMN", o.columns, "names of columns, or patterns");
-  c->add_option("--x", o.abscissa, "the column along the horizontal axis (default: t)")->type_name("COLUMN");
+  c->add_option("COLUMN", o.columns,
+                "names of columns, or patterns; the names of further runs, whose curves lie over those of the first");
+  c->add_option("--x", o.abscissa,
+                "the column along the horizontal axis (default: t; of a sweep the first that varies, or t if cases "
+                "have several rows)")
+      ->type_name("COLUMN");
   c->add_option("--y", o.ordinate, "of a sweep: the column along the vertical axis (default: the second that varies)")
       ->type_name("COLUMN");
   c->add_option("--histogram", o.histogram, "of a sweep: how often the numbers or words of this column occur")

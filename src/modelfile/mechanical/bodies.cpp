@@ -263,7 +263,9 @@ void BodyReader::read_axes(Body& body, const Item* inertia, const Item* axes) {
       if (!(moment[i][j] == moment[j][i]) && !proved_zero(moment[i][j] - moment[j][i]))
         throw Failure(inertia->span, "the inertia matrix is not symmetric",
                       "J_xy stands twice, with the sign of -∫ x y dm");
-  check_inertia(body, moment, inertia->span);
+  const Item& about_z = full ? inertia->items[2].items[2] : inertia->items[2];
+  check_inertia(body, moment, inertia->span,
+                about_z.kind == Item::Kind::string ? "\"" + about_z.text() + "\"" : about_z.text());
   const Expr trace2 = half * (moment[0][0] + moment[1][1] + moment[2][2]);
   Expr weight[3];
   for (int k = 0; k < 3; ++k) weight[k] = trace2 - moment[k][k];
@@ -308,7 +310,7 @@ void BodyReader::shape_axes(Body& body, Expr mass, Span span) {
 
 // E = 1/2 tr(J) 1 - J must not have a negative eigenvalue (for principal axes: each moment is at
 // most the sum of the two others).
-void BodyReader::check_inertia(const Body& body, const Expr (&moment)[3][3], Span span) {
+void BodyReader::check_inertia(const Body& body, const Expr (&moment)[3][3], Span span, const std::string& of_plane) {
   double j[3][3];
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k) {
@@ -332,9 +334,17 @@ void BodyReader::check_inertia(const Body& body, const Expr (&moment)[3][3], Spa
     const int k = (i + 1) % 3;
     if (e[i][i] < -slack || e[i][i] * e[k][k] - e[i][k] * e[k][i] < -slack * std::abs(trace)) wrong = true;
   }
+  // A single moment, about z, is meant for a motion in the plane.
+  const auto about_one_axis = [&] {
+    int moments = 0;
+    for (const auto& row : j)
+      for (const double v : row) moments += v != 0 ? 1 : 0;
+    return moments == 1 && j[2][2] != 0;
+  };
   if (wrong)
     throw Failure(span, "no body has this inertia: '" + body.name + "' violates the triangle inequality",
-                  "each principal moment is at most the sum of the two others");
+                  about_one_axis() ? "in a motion in the plane one number is enough: inertia = " + of_plane
+                                   : "each principal moment is at most the sum of the two others");
 }
 
 // ---- forces ----------------------------------------------------------------------------------

@@ -28,7 +28,7 @@ class BodyReader {
   Expr frozen(Expr value, const std::string& name, Span span);
   Force::Place place(const Item& item);
   void check_position(const Vector& place, const Item& item, const std::string& what);
-  void check_inertia(const Body& body, const Expr (&moment)[3][3], Span span);
+  void check_inertia(const Body& body, const Expr (&moment)[3][3], Span span, const std::string& of_plane);
 
   Scope& scope_;
   Model& model_;

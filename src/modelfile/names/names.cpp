@@ -93,6 +93,10 @@ void Scope::unknown(const std::string& name, Span span) const {
   };
   if (const std::string habit = habit_of_name(name, varies); !habit.empty())
     throw Failure(span, "unknown name '" + name.substr(0, 60) + "'", habit);
+  if (contact_forces.declares(name))
+    throw Failure(span, "'" + name + "' is a contact, and its gap has no name in formulas",
+                  "write the gap with points and coordinates, as P.z - R; lambda." + name +
+                      " is the normal force, in monitors, outputs and events");
   const std::string near = did_you_mean(name, known);
   throw Failure(span,
                 "unknown name '" + name.substr(0, 60) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),

@@ -158,6 +158,33 @@ initial = {"z'" = 10}
   EXPECT_EQ(run.report.in_workspaces, 0U);
 }
 
+// Last values are those of the formulas at the end: cos(40 x) turns often in the one step of the motion, which stays one step,
+// and the distance has no series at the start.
+TEST(Reduction, LastValuesShortenNoStep) {
+  const std::string text = R"toml(
+coordinates = ["x", "z"]
+gravity.field = "-10*ez"
+particle = [{name = "p", mass = 1, position = "x*ex + z*ez"}]
+initial = {"z'" = 10}
+)toml";
+  const std::vector<std::string> words{"last(cos(40*x))", "last(sqrt(x^2+z^2))", "last(sqrt(x))"};
+  Sweep without(text, {}), run(text, words);
+  for (Sweep* s : {&without, &run}) s->options.varied = {{Varied::Kind::initial, 0, 1, "x'"}};
+  const auto plain = without.go(4, 1);
+  const auto list = run.go(4, 1);
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const CaseResult& r = list[k];
+    ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
+    const double end = 3 * r.values[0];
+    EXPECT_EQ(r.steps, plain[k].steps);
+    EXPECT_EQ(r.last, plain[k].last);
+    EXPECT_NEAR(r.reduced[0], std::cos(40 * end), 1e-11);
+    EXPECT_NEAR(r.reduced[1], std::hypot(end, 15), 1e-12);
+    EXPECT_NEAR(r.reduced[2], std::sqrt(end), 1e-12);
+  }
+  EXPECT_EQ(run.report.in_workspaces, 0U);
+}
+
 // A norm at rest, and an angle at the ends of its range: values beside them stand for theirs.
 TEST(Reduction, FormulasMayHaveNoDerivativesOnTheWay) {
   Sweep run(R"toml(

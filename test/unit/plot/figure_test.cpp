@@ -54,6 +54,47 @@ std::string trouble(const RunFile& r, const FigureOptions& o) {
   }
 }
 
+TEST(SeveralRuns, LieOverEachOtherWithTheirOwnTimes) {
+  const std::vector<NamedRun> runs{{run({"t", "x", "y"}, {{0, 1, 2}, {1, 2, 3}, {5, 5, 6}}), "a.csv"},
+                                   {run({"t", "y", "x"}, {{0, 4}, {7, 8}, {-1, 9}}), "b.csv"}};
+  const Figure together = make_figure(runs, of({"x"}));
+  ASSERT_EQ(together.panels.size(), 1U);
+  const std::vector<Series>& s = together.panels[0].series;
+  ASSERT_EQ(s.size(), 2U);
+  EXPECT_EQ(s[0].x, (std::vector<double>{0, 1, 2}));
+  EXPECT_EQ(s[1].x, (std::vector<double>{0, 4}));
+  EXPECT_EQ(s[1].y, (std::vector<double>{-1, 9}));
+  EXPECT_EQ(series_text(s[1], LabelStyle::plain), "x, b.csv");
+  EXPECT_EQ(series_latex(s[1]), "$x$, b.csv");
+  EXPECT_NE(s[0].number, s[1].number);
+  EXPECT_EQ(together.rows, 5U);
+  EXPECT_EQ(together.x_axis.to, 4);
+  EXPECT_LT(together.panels[0].y.from, -1);
+  EXPECT_GT(together.panels[0].y.to, 9);
+  // The second curve goes over the whole width, and the first over its half.
+  const auto first = curve(together, together.panels[0], s[0], 100, 100),
+             second = curve(together, together.panels[0], s[1], 100, 100);
+  EXPECT_NEAR(first.back().back().x, 50, 1);
+  EXPECT_NEAR(second.back().back().x, 100, 1);
+  FigureOptions each = of({"x", "y"});
+  each.each = true;
+  const Figure apart = make_figure(runs, each);
+  ASSERT_EQ(apart.panels.size(), 2U);
+  EXPECT_EQ(apart.panels[1].series[0].name, "y");
+  EXPECT_EQ(apart.panels[1].series[1].name, "y");
+}
+
+TEST(SeveralRuns, TellWhichOneLacksAColumn) {
+  const std::vector<NamedRun> runs{{run({"t", "x"}, {{0, 1}, {1, 2}}), "a.csv"},
+                                   {run({"t", "y"}, {{0, 1}, {1, 2}}), "b.csv"}};
+  try {
+    make_figure(runs, of({"x"}));
+    FAIL();
+  } catch (const Failure& f) {
+    EXPECT_EQ(f.diagnostic.message, "b.csv: there is no column 'x'");
+  }
+}
+
 TEST(Ticks, AreRound) {
   const Ticks t = ticks({0, 10, false}, 6);
   EXPECT_EQ(t.labels, (std::vector<std::string>{"0", "2", "4", "6", "8", "10"}));

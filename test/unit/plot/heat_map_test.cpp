@@ -37,6 +37,19 @@ TEST(HeatMap, CutsManyValuesIntoCells) {
   for (std::size_t k = 0; k < kMostCells; ++k) EXPECT_NEAR(m.values[k], m.x.values[k], 1000.0 / kMostCells);
 }
 
+TEST(HeatMap, HasTheCellsOfPointsWhereCasesAreMissing) {
+  const NamedColumn x{"x", "", {2, 2}, "", {2, 4, 6}}, y{"y", "", {1, 0}, "", {0, 1}};
+  const HeatMap m = make_heat_map(x, y, {"v", "", {5, 3}}, {});
+  EXPECT_EQ(m.x.values, (std::vector<double>{2, 4, 6}));
+  EXPECT_EQ(m.values[0], 3);
+  EXPECT_EQ(m.values[3], 5);
+  for (const std::size_t empty : {1U, 2U, 4U, 5U}) EXPECT_TRUE(std::isnan(m.values[empty]));
+  // A cell reaches to the middle between two points; by themselves the cases would fill the width.
+  const std::vector<HeatMap::Finer> cells = cells_of_cases(x, y, {});
+  EXPECT_EQ(cells[0].from.x, 1);
+  EXPECT_EQ(cells[0].to.x, 3);
+}
+
 TEST(HeatMap, DrawsFurtherGenerationsAtTheirSizes) {
   const NamedColumn x{"x", "", {0, 2, 6, 1, 0.5, 4}}, y{"y", "", {0, 1, 0, 0, 0, 0.5}};
   const HeatMap m = make_heat_map(x, y, {"v", "", {1, 2, 3, 4, 5, 6}}, {}, {0, 0, 0, 1, 2, 1});

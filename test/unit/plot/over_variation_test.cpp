@@ -38,5 +38,25 @@ TEST(OverVariation, SeveralCasesOfAValueAreQuantiles) {
   EXPECT_EQ(column(run, 3), (std::vector<double>{9, 7}));
 }
 
+TEST(OverVariation, ACurveIsInterruptedWhereCasesAreMissing) {
+  const RunFile run = over_variation({"m", "", {1, 3}, "", {1, 2, 3}}, {{"x", "", {10, 30}}});
+  EXPECT_EQ(column(run, 0), (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(column(run, 1)[0], 10);
+  EXPECT_TRUE(std::isnan(column(run, 1)[1]));
+  EXPECT_EQ(column(run, 1)[2], 30);
+}
+
+TEST(RunsOfCases, AreTheRowsOfEachCase) {
+  const std::vector<NamedRun> runs =
+      runs_of_cases({0, 0, 1, 2}, {"t", "s", {0, 1, 0, 0}}, {{"x", "m", {5, 6, kNone, 7}}},
+                    [](std::size_t row) { return "row " + std::to_string(row); });
+  ASSERT_EQ(runs.size(), 2U);  // case 1 has no number
+  EXPECT_EQ(runs[0].name, "row 0");
+  EXPECT_EQ(runs[1].name, "row 3");
+  EXPECT_EQ(runs[0].run.table.columns, (std::vector<std::string>{"t", "x"}));
+  EXPECT_EQ(runs[0].run.units.at("x"), "m");
+  EXPECT_EQ(column(runs[0].run, 1), (std::vector<double>{5, 6}));
+}
+
 }  // namespace
 }  // namespace anholon::plot::over_variation_test

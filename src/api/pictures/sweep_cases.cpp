@@ -1,21 +1,30 @@
-#include "cli/pictures/sweep_cases.h"
+#include "api/pictures/sweep_cases.h"
 
 #include <algorithm>
 #include <fstream>
 
 #include "api/sweep_case.h"
+#include "base/join.h"
 #include "base/read_file.h"
 #include "modelfile/read.h"
 #include "observe/rows/quantity_units.h"
 #include "result/format.h"
 #include "result/table.h"
 
-namespace anholon::cli {
+namespace anholon::v1 {
 
 namespace {
 
+using inner::Diagnostics;
+using inner::Failure;
+using inner::ParquetColumn;
+using inner::ParquetTable;
+using inner::SweepStore;
+using inner::Words;
+using inner::plot::NamedColumn;
+
 bool heads_a_sweep(const std::vector<std::string>& names) {
-  return !names.empty() && names[0] == "case" && names.size() > 1 && names[1] != "t";
+  return !names.empty() && names[0] == "case" && names.size() > 1;
 }
 
 // The table of a CSV file that `anholon sweep` wrote. A column with a cell that is no number holds words.
@@ -30,7 +39,7 @@ ParquetTable table_of_csv(std::string_view text, const std::string& path) {
     text.remove_prefix(std::min(end + 1, text.size()));
     if (line.ends_with('\r')) line.remove_suffix(1);
     if (line.empty()) continue;
-    const std::vector<std::string> cells = table.columns.empty() ? split_csv(line) : csv_cells(line);
+    const std::vector<std::string> cells = table.columns.empty() ? inner::split_csv(line) : inner::csv_cells(line);
     if (table.columns.empty()) {
       for (const std::string& name : cells) table.columns.push_back({name, {}});
       numbers.resize(cells.size()), words.resize(cells.size()), worded.resize(cells.size());
@@ -41,7 +50,7 @@ ParquetTable table_of_csv(std::string_view text, const std::string& path) {
                             " cells, and the first line names " + std::to_string(table.columns.size()));
     for (std::size_t k = 0; k < cells.size(); ++k) {
       double value = std::numeric_limits<double>::quiet_NaN();
-      if (!cells[k].empty() && !parse_number(cells[k], value)) worded[k] = true;
+      if (!cells[k].empty() && !inner::parse_number(cells[k], value)) worded[k] = true;
       numbers[k].push_back(value), words[k].add(cells[k]);
     }
   }
@@ -74,7 +83,7 @@ void append(std::vector<double>& to, const ParquetColumn& from, std::vector<std:
 
 std::string text_of(const std::string& path) {
   std::string text, why;
-  if (!read_file(path, text, &why)) throw Failure({}, "cannot read " + path + ": " + why);
+  if (!inner::read_file(path, text, &why)) throw Failure({}, "cannot read " + path + ": " + why);
   return text;
 }
 
@@ -82,12 +91,12 @@ std::string text_of(const std::string& path) {
 
 bool SweepCases::are_in(const std::string& path) {
   if (SweepStore::is_there(path)) return true;
-  if (format_of(path) == &plain_format()) {
+  if (inner::format_of(path) == &inner::plain_format()) {
     std::string line;
     std::ifstream file(path);
     std::getline(file, line);
     if (line.ends_with('\r')) line.pop_back();
-    return heads_a_sweep(split_csv(line));
+    return heads_a_sweep(inner::split_csv(line));
   }
   // Files of other formats may be large: the first bytes tell.
   char beginning[4] = {};
@@ -95,10 +104,10 @@ bool SweepCases::are_in(const std::string& path) {
       std::string_view(beginning, sizeof beginning) != "PAR1")
     return false;
   std::string text;
-  if (!read_file(path, text, nullptr)) return false;
+  if (!inner::read_file(path, text, nullptr)) return false;
   std::vector<std::string> names;
   try {
-    for (const ParquetColumn& c : read_parquet(text).columns) names.push_back(c.name);
+    for (const ParquetColumn& c : inner::read_parquet(text).columns) names.push_back(c.name);
   } catch (const Failure&) {
     return false;  // the reader of runs tells what is wrong
   }
@@ -112,14 +121,38 @@ SweepCases::SweepCases(const std::string& path) {
     read_model();
   } else {
     const std::string text = text_of(path);
-    file_ = format_of(path) == &plain_format() ? table_of_csv(text, path) : read_parquet(text);
+    file_ = inner::format_of(path) == &inner::plain_format() ? table_of_csv(text, path) : inner::read_parquet(text);
     for (const ParquetColumn& c : file_.columns) names_.push_back(c.name);
   }
-  // What varies stands between the number of the case and its outcome.
+  see_what_varies();
+  if (store_ && !store_->missing().empty())
+    for (auto& [name, points] : points_of_axes(*store_)) known_[name].points = std::move(points);
+}
+
+// What varies stands between the number of the case and its outcome. Without outcomes, the columns behind it are unknown:
+// where cases have several rows, the ones that vary are the same in all rows of a case.
+void SweepCases::see_what_varies() {
+  std::vector<double> numbers;
+  std::vector<std::string> words;
+  if (has("case") && has("t")) numbers = read({"case"}, words)[0].values;
+  at_times_ = std::adjacent_find(numbers.begin(), numbers.end()) != numbers.end();
+  const auto changes_in_a_case = [&](const std::string& name) {
+    const std::vector<double> values = read({name}, words)[0].values;
+    for (std::size_t k = 1; k < numbers.size(); ++k)
+      if (numbers[k] == numbers[k - 1] && values[k] != values[k - 1]) return true;
+    return false;
+  };
+  const bool known = has("outcome");
   for (const std::string& name : names_) {
     if (name == "outcome") break;
-    if (name != "case" && name != "t" && name != "case_name") varied_.push_back(name);
+    if (name == "case" || name == "t" || name == "case_name") continue;
+    if (!known && at_times_ && changes_in_a_case(name)) break;
+    varied_.push_back(name);
   }
+}
+
+bool SweepCases::has(const std::string& name) const {
+  return std::find(names_.begin(), names_.end(), name) != names_.end();
 }
 
 void SweepCases::each_table(const std::function<void(const ParquetTable&)>& take) const {
@@ -127,22 +160,20 @@ void SweepCases::each_table(const std::function<void(const ParquetTable&)>& take
   for (const std::size_t part : store_->present()) take(store_->read(part));
 }
 
-std::vector<plot::NamedColumn> SweepCases::read(const std::vector<std::string>& wanted,
-                                                std::vector<std::string>& words) const {
-  std::vector<plot::NamedColumn> all;
+std::vector<NamedColumn> SweepCases::read(const std::vector<std::string>& wanted,
+                                          std::vector<std::string>& words) const {
+  std::vector<NamedColumn> all;
   std::vector<std::size_t> places;
   for (const std::string& name : wanted) {
     const auto at = std::find(names_.begin(), names_.end(), name);
-    if (at == names_.end()) {
-      std::string list;
-      for (const std::string& n : names_) list += (list.empty() ? "" : ", ") + n;
-      throw Failure({}, "the sweep has no column '" + name + "'", "its columns are " + list);
-    }
+    if (at == names_.end())
+      throw Failure({}, "the sweep has no column '" + name + "'", "its columns are " + inner::joined(names_, ", "));
     places.push_back(static_cast<std::size_t>(at - names_.begin()));
     const std::string of = name.ends_with("(0)") ? name.substr(0, name.size() - 3) : name;
-    const auto unit = units_.find(of), meaning = meanings_.find(of);
-    all.push_back(
-        {name, unit == units_.end() ? "" : unit->second, {}, meaning == meanings_.end() ? "" : meaning->second});
+    NamedColumn& column = all.emplace_back();
+    if (const auto known = known_.find(of); known != known_.end()) column = known->second;
+    if (const auto known = known_.find(name); known != known_.end()) column.points = known->second.points;
+    column.name = name;
   }
   each_table([&](const ParquetTable& table) {
     for (std::size_t k = 0; k < all.size(); ++k) append(all[k].values, table.columns.at(places[k]), words);
@@ -154,26 +185,28 @@ std::vector<unsigned> SweepCases::generations() const {
   std::vector<unsigned> list;
   if (!store_ || store_->generations().size() == 1) return list;
   std::vector<std::string> none;
-  const std::vector<plot::NamedColumn> numbers = read({"case"}, none);
+  const std::vector<NamedColumn> numbers = read({"case"}, none);
   for (const double number : numbers[0].values)
-    list.push_back(static_cast<unsigned>(generation_of(store_->generations(), static_cast<std::size_t>(number))));
+    list.push_back(
+        static_cast<unsigned>(inner::generation_of(store_->generations(), static_cast<std::size_t>(number))));
   return list;
 }
 
 // `report` shows a motion with its changes of mode, and Python that of one mode.
 std::string SweepCases::command() const {
-  return store_ && store_->asked("mode").empty() ? v1::command_of_sweep(*store_) : std::string();
+  return store_ && store_->asked("mode").empty() ? command_of_sweep(*store_) : std::string();
 }
 
 // Units and meanings come from the model in the folder; a model that refers to files that are not there has none.
 void SweepCases::read_model() {
   Diagnostics diagnostics;
-  const auto open = open_model(SourceText{store_->folder(), store_->asked("model")}, diagnostics);
+  const auto open = inner::open_model(inner::SourceText{store_->folder(), store_->asked("model")}, diagnostics);
   if (!open) return;
-  units_ = quantity_units(*open->model, contacts(*open->names));
-  const Model& model = *open->model;
+  for (const auto& [name, unit] : inner::quantity_units(*open->model, inner::contacts(*open->names)))
+    known_[name].unit = unit;
+  const inner::Model& model = *open->model;
   for (std::size_t k = 0; k < std::min(model.parameters.size(), model.parameter_units.size()); ++k)
-    meanings_.emplace(model.parameters[k].name, model.parameters[k].doc);
+    known_[model.parameters[k].name].meaning = model.parameters[k].doc;
 }
 
-}  // namespace anholon::cli
+}  // namespace anholon::v1

@@ -1,0 +1,50 @@
+// The cases of a sweep as a picture needs them: columns of a folder, of a CSV file or of a Parquet file.
+#pragma once
+#include <functional>
+#include <map>
+
+#include "api/data.h"
+#include "ensemble/store/sweep_store.h"
+#include "plot/heat_map.h"
+
+namespace anholon::v1 {
+
+class SweepCases {
+ public:
+  // Whether a path names a folder or a file that holds a sweep.
+  static bool are_in(const std::string& path);
+  // Throws Failure without a place.
+  explicit SweepCases(const std::string& path);
+
+  const std::vector<std::string>& names() const { return names_; }
+  const std::vector<std::string>& varied() const { return varied_; }
+  bool has(const std::string& name) const;
+  // Whether cases have several rows, at times that a column tells.
+  bool rows_at_times() const { return at_times_; }
+  // The folder; null for a file.
+  const inner::SweepStore* store() const { return store_ ? &*store_ : nullptr; }
+
+  // Columns by name; the words of a column of words are added to `words`, and its values are their indices. If parts are
+  // missing, what varies has the points of the whole sweep. Throws Failure without a place if there is no such column.
+  std::vector<inner::plot::NamedColumn> read(const std::vector<std::string>& names,
+                                             std::vector<std::string>& words) const;
+  // The generation of each row that `read` returns; empty if there is one generation.
+  std::vector<unsigned> generations() const;
+  // The command that computes the motion of a case, without the numbers of the case; empty for a file, which does not
+  // tell the model. A model that is known by its text alone is model.toml.
+  std::string command() const;
+
+ private:
+  void read_model();
+  void see_what_varies();
+  void each_table(const std::function<void(const inner::ParquetTable&)>& take) const;
+
+  std::optional<inner::SweepStore> store_;
+  inner::ParquetTable file_;
+  std::vector<std::string> names_, varied_;
+  bool at_times_ = false;
+  std::map<std::string, inner::plot::NamedColumn>
+      known_;  // units, meanings and points, by columns and their quantities
+};
+
+}  // namespace anholon::v1

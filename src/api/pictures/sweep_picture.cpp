@@ -1,0 +1,134 @@
+#include "api/pictures/sweep_picture.h"
+
+#include <algorithm>
+#include <charconv>
+
+#include "base/join.h"
+#include "plot/over_variation.h"
+
+namespace anholon::v1 {
+
+namespace {
+
+using inner::Failure;
+using inner::plot::NamedColumn;
+
+// A number of a legend, in few digits.
+std::string in_legend(double v) {
+  constexpr int kDigits = 6;
+  char buffer[64];
+  const auto r = std::to_chars(buffer, buffer + sizeof buffer, v, std::chars_format::general, kDigits);
+  return {buffer, r.ptr};
+}
+
+std::vector<std::string> axes_of(const SweepCases& cases, const SweepPictureRequest& o,
+                                 const std::vector<std::string>& shown) {
+  const auto is_in = [](const std::vector<std::string>& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  std::vector<std::string> axes;
+  for (const std::string& given : {o.x, o.y})
+    if (!given.empty()) axes.push_back(given);
+  for (const std::string& name : cases.varied())
+    if (axes.size() < 2 && !is_in(shown, name) && !is_in(axes, name)) axes.push_back(name);
+  if (axes.empty())
+    throw Failure({}, "the columns of the sweep do not tell what varies",
+                  o.dashes + "x and " + o.dashes + "y name columns of the sweep");
+  return axes;
+}
+
+// A curve of each case over x, or of many cases their quantiles over t. Returns false if the picture is another one: the
+// cases have a row each, words are shown, or an axis that varies was named.
+bool take_curves(SweepPicture& picture, const SweepCases& cases, const SweepPictureRequest& o,
+                 const std::vector<std::string>& shown) {
+  const std::vector<std::string>& varied = cases.varied();
+  if (!cases.rows_at_times() || !o.y.empty() || std::find(varied.begin(), varied.end(), o.x) != varied.end())
+    return false;
+  std::vector<std::string> words, no_words;
+  const std::vector<NamedColumn> of = cases.read(shown, words);
+  const std::string abscissa = o.x.empty() ? "t" : o.x;
+  if (!words.empty()) return false;
+  const std::vector<NamedColumn> first = cases.read({"case", abscissa}, words);
+  if (!words.empty()) return false;
+  const std::vector<NamedColumn> numbers = cases.read(varied, no_words);
+  const bool named = cases.has("case_name");
+  const NamedColumn scenario = named ? cases.read({"case_name"}, words)[0] : NamedColumn();
+  const auto name = [&](std::size_t row) {
+    std::string text = named ? words[static_cast<std::size_t>(scenario.values[row])] : "";
+    for (const NamedColumn& n : numbers) text += (text.empty() ? "" : ", ") + n.name + " = " + in_legend(n.values[row]);
+    return text.empty() ? "case " + in_legend(first[0].values[row]) : text;
+  };
+  picture.curves = inner::plot::runs_of_cases(first[0].values, first[1], of, name);
+  if (picture.curves.empty())
+    throw Failure({}, "no case has a number of '" + inner::joined(shown, ", ") + "' over '" + abscissa + "'",
+                  "another column");
+  picture.options.x = abscissa;
+  picture.options.names = shown;
+  if (picture.curves.size() <= kMostCurves) return true;
+  if (abscissa != "t")
+    throw Failure({}, std::to_string(picture.curves.size()) + " cases are too many curves for one figure",
+                  "without " + o.dashes + "x their quantiles over t, or " + o.dashes + "x and " + o.dashes +
+                      "y for cells");
+  picture.curves = {{inner::plot::over_variation(first[1], of), ""}};
+  const std::vector<std::string>& columns = picture.curves[0].run.table.columns;
+  picture.options.names.assign(columns.begin() + 1, columns.end());
+  return true;
+}
+
+// Throws Failure if there is no part. The title with the note, if parts are missing.
+std::string title_with(SweepPicture& picture, const SweepCases& cases, const std::string& title) {
+  if (!cases.store()) return title;
+  const std::size_t there = cases.store()->present().size(), all = cases.store()->parts();
+  if (there == 0)
+    throw Failure({}, "no part is in " + cases.store()->folder(), "the command of the sweep computes them");
+  if (there == all) return title;
+  picture.note = std::to_string(there) + " of " + std::to_string(all) + " parts";
+  return title.empty() ? picture.note : title + " (" + picture.note + ")";
+}
+
+}  // namespace
+
+SweepPicture picture_of_sweep(const SweepCases& cases, const SweepPictureRequest& o) {
+  std::vector<std::string> words;
+  SweepPicture picture;
+  const std::string title = title_with(picture, cases, o.title);
+  picture.options.title = title;
+  if (!o.histogram.empty()) {
+    if (!o.columns.empty() || !o.x.empty() || !o.y.empty())
+      throw Failure({}, "a histogram shows one column and has no further axis", o.dashes + "histogram theta alone");
+    NamedColumn of = cases.read({o.histogram}, words)[0];
+    picture.histogram = inner::plot::make_histogram(std::move(of), std::move(words));
+    picture.histogram->title = title;
+    return picture;
+  }
+  if (o.columns.empty() && !cases.has("outcome"))
+    throw Failure({}, "the sweep does not keep how its cases ended, so a figure of it needs a column",
+                  "name one of its columns: " + inner::joined(cases.names(), ", "));
+  const std::vector<std::string> shown = o.columns.empty() ? std::vector<std::string>{"outcome"} : o.columns;
+  if (take_curves(picture, cases, o, shown)) return picture;
+  const std::vector<std::string> axes = axes_of(cases, o, shown);
+  std::vector<NamedColumn> at = cases.read(axes, words);
+  if (!words.empty())
+    throw Failure({}, "an axis shows numbers, and '" + inner::joined(axes, "' or '") + "' holds words",
+                  o.dashes + "x names a column of numbers");
+  const std::vector<NamedColumn> of = cases.read(shown, words);
+  if (at.size() == 1) {
+    if (!words.empty())
+      throw Failure({}, "one variation shows numbers, and '" + inner::joined(shown, "' or '") + "' holds words",
+                    "name a column of numbers" +
+                        (o.dashes.empty() ? "" : ", or " + o.dashes + "histogram " + shown[0]));
+    picture.curves = {{inner::plot::over_variation(at[0], of), ""}};
+    picture.options.x = at[0].name;
+    const std::vector<std::string>& columns = picture.curves[0].run.table.columns;
+    picture.options.names.assign(columns.begin() + 1, columns.end());
+    return picture;
+  }
+  if (of.size() > 1)
+    throw Failure({}, "a map over two variations shows one column, and there are " + std::to_string(of.size()),
+                  "one name, or none for the outcomes");
+  picture.map = make_heat_map(std::move(at[0]), std::move(at[1]), of[0], std::move(words), cases.generations());
+  picture.map->title = title;
+  return picture;
+}
+
+}  // namespace anholon::v1

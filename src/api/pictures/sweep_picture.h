@@ -1,0 +1,32 @@
+// Figures of sweeps: cells over two variations, curves and quantiles over one, curves over the time. (doc/sweeps.md)
+#pragma once
+#include "api/pictures/sweep_cases.h"
+#include "plot/figure.h"
+#include "plot/heat_map.h"
+#include "plot/histogram.h"
+
+namespace anholon::v1 {
+
+// What is asked of a figure: columns, or none for the outcomes; the columns along the axes, or none for those that vary; or
+// a column whose histogram is shown. `dashes` stand before the names of options in hints.
+struct SweepPictureRequest {
+  std::vector<std::string> columns;
+  std::string x, y, histogram, title, dashes;
+};
+
+// A map over two variations, a histogram, or curves.
+struct SweepPicture {
+  std::optional<inner::plot::HeatMap> map;
+  std::optional<inner::plot::Histogram> histogram;
+  std::vector<inner::plot::NamedRun> curves;  // without these: a run of each case, or one without a name
+  inner::plot::FigureOptions options;         // of the curves
+  std::string note;                           // "1 of 20 parts", which the title tells, too; empty: all are there
+};
+
+// What a sweep shows of columns over x, or of one over x and y (default: the first two that vary). If cases have rows at
+// several times, the columns are drawn over x (default: t), a curve for each of up to kMostCurves cases; of more cases over
+// t, the quantiles. Throws Failure without a place.
+inline constexpr std::size_t kMostCurves = 8;
+SweepPicture picture_of_sweep(const SweepCases& cases, const SweepPictureRequest& o);
+
+}  // namespace anholon::v1
