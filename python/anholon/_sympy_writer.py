@@ -109,6 +109,10 @@ class Writer:
             return self._piecewise(e)
         if isinstance(e, sm.Heaviside):
             return self._where(e.args[0] > 0, "1", self._where(e.args[0] < 0, "0", self.formula(e.args[1])))
+        if name in ("re", "conjugate"):
+            return self.formula(e.args[0])
+        if name == "im":
+            return "0"
         arguments = [self.formula(x) for x in e.args]
         if name in ("Max", "Min"):
             made = arguments[0]
