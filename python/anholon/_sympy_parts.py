@@ -83,7 +83,41 @@ def parts_of(method: Any) -> Parts:
             list(method.velocity_constraints or method.nonholonomic_constraints),
             list(method.u_aux),
         )
-    raise TypeError(f"from_sympy reads a KanesMethod, LagrangesMethod or System, not a {type(method).__name__}")
+    if hasattr(mechanics, "JointsMethod") and isinstance(method, mechanics.JointsMethod):
+        if method.method is None:
+            raise ModelError("the JointsMethod has no equations yet\nhint: call form_eoms() before")
+        return parts_of(method.method)
+    raise TypeError(f"from_sympy reads a KanesMethod, LagrangesMethod, System or JointsMethod, not a {type(method).__name__}")
+
+
+def names_in(parts: Parts) -> set[str]:
+    """The names of all symbols and given functions of time in the parts."""
+    sm = sympy_module()
+    found = [*parts.kinematic, *parts.holonomic, *parts.velocity, *([] if parts.lagrangian is None else [parts.lagrangian])]
+    vectors = [x for load in parts.loads for x in load if hasattr(x, "to_matrix")]
+    found += [x for load in parts.loads for x in load if isinstance(x, sm.Basic)]
+    points = [x for load in parts.loads for x in load if isinstance(x, mechanics_module().Point)]
+    for body in parts.bodies:
+        found += [*_inertias_of(body), body.potential_energy]
+        vectors.append(center_of(body).vel(parts.frame))
+        points.append(center_of(body))
+    seen = set(points)
+    while points:
+        near = points.pop()._pos_dict
+        vectors += near.values()
+        points += [p for p in near if p not in seen]
+        seen.update(near)
+    found += [x for vector in vectors for matrix, _ in vector.args for x in matrix]
+    atoms = set().union(*(e.free_symbols | e.atoms(sm.core.function.AppliedUndef) for e in map(sm.sympify, found)))
+    return {str(a.func) if a.args else str(a) for a in atoms - {mechanics_module().dynamicsymbols._t, *parts.q, *parts.u, *parts.auxiliary}}
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """The names that are like one, as the end of a message."""
+    import difflib
+
+    near = difflib.get_close_matches(re.sub(r"\(.*\)$", "", name), list(known), 2)
+    return "; did you mean " + " or ".join(repr(n) for n in near) + "?" if near else ""
 
 
 def _own_speeds(system: Any) -> tuple[list[Any], list[Any]]:

@@ -20,7 +20,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from ._errors import ModelError
-from ._numbers import Number, text_of
+from ._numbers import float_of, Number, text_of
 from ._sympy_bodies import Bodies
 from ._sympy_parts import (
     atoms_of,
@@ -30,6 +30,8 @@ from ._sympy_parts import (
     has_poles,
     integral_of,
     mechanics_module,
+    names_in,
+    nearest,
     numeric,
     parts_of,
     rank_of,
@@ -358,7 +360,7 @@ class _Import:
 
     def _values(self, values: Mapping[Any, Number]) -> Callable[[Any], str | None]:
         """The formula that is given for a symbol or function: by itself, else by its name if no other one has this name."""
-        written = {key: self._value(value) for key, value in values.items()}
+        written = {key: self._value(value, key) for key, value in values.items()}
         names = [name_of(x) for x in [*self.writer.parameters, *self.writer.functions]]
         by_name = {name_of(key): value for key, value in written.items() if names.count(name_of(key)) < 2}
         return lambda of: written.get(of, by_name.get(name_of(of)))
@@ -370,37 +372,55 @@ class _Import:
         given: dict[str, str] = {}
         conditions: list[str] = []
         for key, value in initial.items():
-            written = self._value(value)
+            written = self._value(value, key)
             plain = re.fullmatch(r"(\w+)('*)", key) if isinstance(key, str) else None
             if isinstance(key, self.sm.Derivative):
-                given[w.formula(key)] = written
+                of = w.formula(key)
             elif plain and plain[1] in coordinates:
-                given[w.names[coordinates[plain[1]]] + plain[2]] = written
+                of = w.names[coordinates[plain[1]]] + plain[2]
             elif name_of(key) in coordinates:
-                given[w.names[coordinates[name_of(key)]]] = written
+                of = w.names[coordinates[name_of(key)]]
             elif name_of(key) in speeds:
                 rate = self.speeds[speeds[name_of(key)]]
-                if isinstance(rate, self.sm.Derivative):
-                    given[w.formula(rate)] = written
-                else:
+                if not isinstance(rate, self.sm.Derivative):
                     conditions.append(f"{w.formula(rate)} = {written}")
+                    continue
+                of = w.formula(rate)
             else:
-                known = ", ".join([*coordinates, *(f"{name}'" for name in coordinates), *speeds])
-                raise ModelError(f"'{name_of(key)}' in initial is no coordinate, rate or speed\nhint: {known}")
+                known = [*coordinates, *(f"{name}'" for name in coordinates), *speeds]
+                raise ModelError(f"'{name_of(key)}' in initial is no coordinate, rate or speed{nearest(name_of(key), known)}\nhint: {', '.join(known)}")
+            if of in given and given[of] != written and (float_of(written) is None or float_of(given[of]) != float_of(written)):
+                raise ModelError(
+                    f"initial gives {of} two values, {given[of]} and {written}\nhint: a speed that is the rate of a coordinate has one value with it"
+                )
+            given[of] = written
         return given, conditions
 
-    def _value(self, value: Any) -> str:
+    def _value(self, value: Any, key: Any) -> str:
         """A number, or a formula of SymPy, as text."""
-        return self.writer.formula(value) if isinstance(value, self.sm.Basic) else text_of(value)
+        try:
+            return self.writer.formula(value) if isinstance(value, self.sm.Basic) else text_of(value)
+        except (TypeError, ValueError) as mistake:
+            raise mistake if isinstance(mistake, ModelError) else type(mistake)(f"{name_of(key)}: {mistake}") from None
+
+
+def _must_be_known(keys: list[str], parts: Any) -> None:
+    """Raises ModelError for a name that no symbol and no function of the system has."""
+    if not keys:
+        return
+    known = sorted(names_in(parts))
+    for key in keys:
+        if key not in known:
+            raise ModelError(f"'{key}' in values is no symbol and no function of the system{nearest(key, known)}\nhint: {', '.join(known)}")
 
 
 def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, Number] | None = None, initial: Mapping[Any, Number] | None = None) -> Model:
-    """The model of a KanesMethod, a LagrangesMethod, or a System of ``sympy.physics.mechanics``.
+    """The model of a KanesMethod, a LagrangesMethod, a System or a JointsMethod of ``sympy.physics.mechanics``.
 
     Args:
         method: the object of SymPy.
         title: of the model.
-        values: of all symbols, and of given functions of time. A symbol without a value is an error; a function without one
+        values: of all symbols, and of given functions of time, by symbol or name. A symbol without a value is an error; a function without one
             stands in equations, and nothing is simulated.
         initial: values of coordinates, their rates and generalized speeds, each by its symbol or name (``"q1'"``). Values, like those
             of symbols, are numbers, or formulas as texts or of SymPy.
@@ -409,11 +429,12 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
         A model; ``model.text`` is its file. Coordinates and parameters keep their names where these are names.
 
     Raises:
-        ModelError: something has no counterpart in a model.
-        TypeError: the object is none of these.
+        ModelError: something has no counterpart in a model; a name in `values` or `initial` is none of the system.
+        TypeError: the object is none of these; `values` or `initial` is no mapping.
 
     Warns:
-        UserWarning: an acceleration was set that is not the rate of the velocity of its point.
+        UserWarning: an acceleration was set that is not the rate of the velocity of its point; no body has the moments of inertia of one
+            that turns in space.
 
     Example:
         >>> import anholon as an, sympy as sm
@@ -428,6 +449,10 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
         >>> float(abs(spring.simulate(to="pi", at=["pi"])["x"][-1] - 1).round(12))
         0.0
     """
+    for name, given, example in (("values", values, "{m: 1}"), ("initial", initial, "{q: 1, u: 0}")):
+        if given is not None and not isinstance(given, Mapping):
+            raise TypeError(f"{name} is a mapping by symbol or name, as {name}={example}, not a {type(given).__name__}")
     made = _Import(method)
+    _must_be_known([key for key in values or {} if isinstance(key, str)], made.parts)
     text = made.text(title, values or {}, initial or {})
     return loads(text, name="model from SymPy")
