@@ -166,10 +166,12 @@ class Bodies:
             )
 
     def _warn(self, body: Any, turned: Turned) -> None:
-        diagonal = ", ".join(str(turned.inertia[k, k]) for k in range(3))
+        inertia = turned.inertia
+        products = [inertia[0, 1], inertia[1, 2], inertia[2, 0]]
+        what = f"moments are {', '.join(str(inertia[k, k]) for k in range(3))}" + (f" and products {', '.join(map(str, products))}" if any(products) else "")
         warnings.warn(
-            f"no body has the inertia of {body.name}, whose moments are {diagonal}: each is at most the sum of the two others. The model has these "
-            f"moments, and so SymPy's equations; as {body.name} turns in space, me.inertia({body.frame.name}, Ixx, Iyy, Izz) needs all three",
+            f"no body has the inertia of {body.name}, whose {what}: each principal moment is at most the sum of the two others. The model has this "
+            f"inertia, and so SymPy's equations; as {body.name} turns in space, me.inertia({body.frame.name}, Ixx, Iyy, Izz) needs all three moments",
             stacklevel=8,
         )
 
