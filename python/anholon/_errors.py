@@ -147,6 +147,12 @@ def _calling_lines(error: BaseException) -> list[str]:
 # What the library says in the words of the command line, and how Python says it.
 _IN_PYTHON = [
     (r"\berror: --(?:set|case): ", "error: "),
+    (r"\berror: --set (\w+)=: ", r"error: \1: "),
+    (r"\berror: --set (?=\w+=)", "error: "),
+    (
+        r'(?m)^hint: numbers need one: \[functions\] (\w+) = "…"$',
+        r'hint: numbers need one: [functions] \1 = "…" in a file, function("\1", …) of a Builder, from_sympy(…, values={\1: …})',
+    ),
     (r"(?m)^hint: leave out the dense output$", "hint: simulate(every=0.01), or at=[…], has rows at the times that are wanted"),
     (r"(?m)^hint: the mode (\S+?)=open, or slips, or sticks$", r'hint: model.in_mode("\1=open"), or slips, or sticks'),
     (r"(?m)^hint: the mode (\S+?)=0, or another number$", r'hint: model.in_mode("\1=0"), or another number'),

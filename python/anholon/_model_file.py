@@ -60,6 +60,8 @@ def value_text(value: object) -> str:
         return quoted(value)
     if isinstance(value, bool):
         return "true" if value else "false"
+    if type(value).__module__ == "numpy" and len(getattr(value, "shape", ())) == 2:
+        value = value.tolist()  # type: ignore[attr-defined]
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(value_text(part) for part in value) + "]"
     if isinstance(value, Mapping):

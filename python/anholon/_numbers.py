@@ -19,7 +19,9 @@ Number = Union[int, float, str, Fraction, Decimal, "np.floating[Any]", "np.integ
 
 
 def text_of(number: Number) -> str:
-    """The text of a number. Raises TypeError for what is none, ValueError for infinity and NaN."""
+    """The text of a number, also in an array of no axes. Raises TypeError for what is none, ValueError for infinity and NaN."""
+    if type(number).__module__ == "numpy" and getattr(number, "shape", None) == () and not isinstance(number, numbers.Number):
+        number = number.item()  # type: ignore[union-attr]
     if isinstance(number, str):
         return number
     if isinstance(number, bool):

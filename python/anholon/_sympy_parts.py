@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import importlib
 import random
+import re
+import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -81,7 +83,41 @@ def parts_of(method: Any) -> Parts:
             list(method.velocity_constraints or method.nonholonomic_constraints),
             list(method.u_aux),
         )
-    raise TypeError(f"from_sympy reads a KanesMethod, LagrangesMethod or System, not a {type(method).__name__}")
+    if hasattr(mechanics, "JointsMethod") and isinstance(method, mechanics.JointsMethod):
+        if method.method is None:
+            raise ModelError("the JointsMethod has no equations yet\nhint: call form_eoms() before")
+        return parts_of(method.method)
+    raise TypeError(f"from_sympy reads a KanesMethod, LagrangesMethod, System or JointsMethod, not a {type(method).__name__}")
+
+
+def names_in(parts: Parts) -> set[str]:
+    """The names of all symbols and given functions of time in the parts."""
+    sm = sympy_module()
+    found = [*parts.kinematic, *parts.holonomic, *parts.velocity, *([] if parts.lagrangian is None else [parts.lagrangian])]
+    vectors = [x for load in parts.loads for x in load if hasattr(x, "to_matrix")]
+    found += [x for load in parts.loads for x in load if isinstance(x, sm.Basic)]
+    points = [x for load in parts.loads for x in load if isinstance(x, mechanics_module().Point)]
+    for body in parts.bodies:
+        found += [*_inertias_of(body), body.potential_energy]
+        vectors.append(center_of(body).vel(parts.frame))
+        points.append(center_of(body))
+    seen = set(points)
+    while points:
+        near = points.pop()._pos_dict
+        vectors += near.values()
+        points += [p for p in near if p not in seen]
+        seen.update(near)
+    found += [x for vector in vectors for matrix, _ in vector.args for x in matrix]
+    atoms = set().union(*(e.free_symbols | e.atoms(sm.core.function.AppliedUndef) for e in map(sm.sympify, found)))
+    return {str(a.func) if a.args else str(a) for a in atoms - {mechanics_module().dynamicsymbols._t, *parts.q, *parts.u, *parts.auxiliary}}
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """The names that are like one, as the end of a message."""
+    import difflib
+
+    near = difflib.get_close_matches(re.sub(r"\(.*\)$", "", name), list(known), 2)
+    return "; did you mean " + " or ".join(repr(n) for n in near) + "?" if near else ""
 
 
 def _own_speeds(system: Any) -> tuple[list[Any], list[Any]]:
@@ -136,15 +172,15 @@ def _parts_of_lagrange(method: Any) -> Parts:
     # The velocity constraints of a LagrangesMethod begin with the rates of the holonomic ones.
     every = [] if method.coneqs is None or len(method.coneqs) == 0 else list(method.coneqs)
     parts = Parts(method.inertial, list(method.q), [], [], list(method.bodies or []), list(method.loads or []), holonomic, every[len(holonomic) :])
-    energy = method._L[0] if isinstance(method._L, sm.MatrixBase) else method._L
+    energy = real(method._L[0] if isinstance(method._L, sm.MatrixBase) else method._L)
     if parts.frame is not None and parts.bodies:
-        potential = sum((body.potential_energy for body in parts.bodies), sm.Integer(0))
+        potential = real(sum((body.potential_energy for body in parts.bodies), sm.Integer(0)))
         kinetic = sum((body.kinetic_energy(parts.frame) for body in parts.bodies), sm.Integer(0))
         inertias = [sm.sympify(x) for body in parts.bodies for x in _inertias_of(body)]
         if not any(x.has(q.diff(time)) for x in inertias for q in parts.q) and vanish([energy - kinetic + potential], {}):
             parts.by_energies = True
             # An energy of the velocities, as that of a charge in a magnetic field, has a force by its rate, too.
-            parts.loads += [(q, sm.diff(potential, q.diff(time)).diff(time) - sm.diff(potential, q)) for q in parts.q]
+            parts.loads += [(q, real(real(sm.diff(potential, q.diff(time))).diff(time) - sm.diff(potential, q))) for q in parts.q]
             return parts
     parts.bodies, parts.lagrangian = [], energy
     return parts
@@ -159,6 +195,15 @@ def atoms_of(expressions: Iterable[Any]) -> list[Any]:
     return sorted(atoms, key=str)
 
 
+def real(e: Any) -> Any:
+    """An expression in which all symbols and functions of time are real. SymPy derives Abs(x) by the real part of x."""
+    sm = sympy_module()
+    if not e.has(sm.re, sm.im, sm.conjugate):
+        return e
+    plain = e.replace(lambda z: isinstance(z, (sm.re, sm.conjugate)), lambda z: z.args[0]).replace(sm.im, lambda _: sm.Integer(0))
+    return plain.doit()
+
+
 def numeric(arguments: Iterable[Any], what: Any) -> Any:
     """A function of mpmath for an expression, a matrix or nested lists of them; rates are arguments of their own."""
     sm = sympy_module()
@@ -170,19 +215,72 @@ def numeric(arguments: Iterable[Any], what: Any) -> Any:
     return sm.lambdify(list(dummies.values()), replaced(what), "mpmath", cse=True)
 
 
-def vanish(expressions: Iterable[Any], near: Mapping[Any, Any]) -> bool:
-    """Whether expressions vanish, with 30 digits, at random values of all that is in them, and at those of ``near``."""
+_LONG_DENOMINATOR = 10**12  # of a fraction that was a Float of SymPy's arithmetic
+
+
+def exact(e: Any) -> Any:
+    """The expression with fractions for its Floats, of the decimals that these are written with: 3/10 for 0.3."""
+    sm = sympy_module()
+    return e.xreplace({f: sm.Rational(_decimal(f)) for f in e.atoms(sm.Float) if f.is_finite})
+
+
+def _decimal(f: Any) -> str:
+    """The decimal of a Float; of one with the precision of a double the shortest."""
+    return repr(float(f)) if f._prec <= 53 else str(f)
+
+
+def _rounded(expressions: Iterable[Any]) -> dict[Any, tuple[Any, Any]]:
+    """The numbers in expressions that SymPy may have rounded, each with its value and the error that it may have."""
     import mpmath
 
-    draw, expressions = random.Random(1), list(expressions)
+    sm = sympy_module()
+    found: dict[Any, tuple[Any, Any]] = {}
+    for f in sorted(set().union(*(e.atoms(sm.Float, sm.Rational) for e in expressions)), key=str):
+        if f.is_Float and f.is_finite:
+            text = _decimal(f)
+            value = mpmath.mpf(text)
+            # What is left of a difference of numbers of size 1 is small and has all digits.
+            is_rest = abs(value) < 1e-10 and len(re.sub(r"e.*|\D", "", text)) > 13
+            found[f] = value, mpmath.mpf(2) ** (3 - f._prec) * (1 if is_rest else abs(value))
+        elif f.is_Rational and f.q > _LONG_DENOMINATOR:
+            value = mpmath.mpf(f.p) / f.q
+            found[f] = value, abs(value) * mpmath.mpf(2) ** -50
+    return found
+
+
+def vanish(expressions: Iterable[Any], near: Mapping[Any, Any]) -> bool:
+    """Whether expressions vanish, with 30 digits, at random values of all that is in them, and at those of ``near``. Where they
+    hold Floats, what the rounding of these makes is none."""
+    import mpmath
+
+    sm, draw, expressions = sympy_module(), random.Random(1), list(expressions)
+    expressions = [sm.sympify(e) for e in expressions]
     listed = atoms_of(expressions)
     with mpmath.workdps(40):
-        values = numeric(listed, expressions)
+        rounded = _rounded(expressions)
+        dummies = {f: sm.Dummy() for f in rounded}
+        values = numeric([*listed, *dummies.values()], [e.xreplace(dummies) for e in expressions])
+        numbers = [value for value, _ in rounded.values()]
         for _ in range(1 if near else 3):
             at = [near[a] if a in near else mpmath.mpf(draw.uniform(0.3, 1.3)) for a in listed]
-            if any(abs(x) > 1e-20 for x in values(*at)):
+            found = values(*at, *numbers)
+            if not any(abs(x) > 1e-20 for x in found):
+                continue
+            if not rounded:
+                return False
+            moved = [values(*at, *(v + draw.choice((-1, 1)) * draw.uniform(0.5, 1) * error for v, error in rounded.values())) for _ in range(4)]
+            if any(abs(x) > 1e-20 and abs(x) > 1000 * max(abs(y - x) for y in ys) for x, *ys in zip(found, *moved, strict=True)):
                 return False
     return True
+
+
+def rank_of(rows: list[Any], among: Iterable[Any]) -> int:
+    """The rank of rows of numbers, up to the rounding of the expressions they come from."""
+    sm = sympy_module()
+    least = 1e-11 if _rounded(among) else 1e-20
+    sizes = [max((abs(x) for x in row), default=0) for row in rows]
+    scaled = [[x / size for x in row] for row, size in zip(rows, sizes, strict=True) if size > least]
+    return int(sm.Matrix(scaled).rank(iszerofunc=lambda x: abs(x) < least)) if scaled else 0
 
 
 def never_zero(e: Any, where: list[Any]) -> bool:
@@ -246,19 +344,26 @@ def _blocks(a: Any) -> list[tuple[list[int], list[int]]]:
     return blocks
 
 
-def certainly_positive(e: Any, values: Mapping[Any, Any]) -> bool:
-    """Whether an expression of symbols is positive, by their assumptions or by their values (numbers, or formulas of others)."""
+def with_values(e: Any, values: Mapping[Any, Any]) -> Any | None:
+    """An expression with the values of its symbols, numbers or formulas of others, as far as they are given; None if one has a unit."""
     sm, by_name = sympy_module(), {getattr(key, "name", str(key)): value for key, value in values.items()}
     for _ in range(len(values) + 1):
-        if e.is_positive or not e.free_symbols:
-            break
         names = {s.name: s for s in e.free_symbols}
         try:
             known = {s: values.get(s, by_name.get(name)) for name, s in names.items()}
-            e = e.xreplace({s: v if isinstance(v, sm.Basic) else sm.sympify(text_of(v), locals=names) for s, v in known.items() if v is not None})
+            put = {s: v if isinstance(v, sm.Basic) else sm.sympify(text_of(v), locals=names) for s, v in known.items() if v is not None}
         except (sm.SympifyError, TypeError, ValueError):  # a value with a unit, or none of SymPy
-            return False
-    return bool(e.is_positive)
+            return None
+        if not put:
+            break
+        e = e.xreplace(put)
+    return e
+
+
+def certainly_positive(e: Any, values: Mapping[Any, Any]) -> bool:
+    """Whether an expression of symbols is positive, by their assumptions or by their values."""
+    found = e if e.is_positive else with_values(e, values)
+    return found is not None and bool(found.is_positive)
 
 
 def state_on(holonomic: list[Any], flows: list[Any], q: list[Any], rates: list[Any]) -> dict[Any, Any]:
@@ -319,6 +424,10 @@ def integral_of(rate: Any, q: list[Any], rates: list[Any]) -> Any | None:
         whole += part - part.subs(plain[c], 0)
         done[c] = sm.Integer(0)
     whole = whole.xreplace({d: c for c, d in plain.items()})
+    alone = e.xreplace(dict.fromkeys(dummies, sm.Integer(0)))
+    if not alone.atoms(sm.core.function.AppliedUndef) and sm.count_ops(alone) <= 30:
+        part = sm.integrate(alone, time)
+        whole += sm.Integer(0) if part.has(sm.Integral) else part - part.subs(time, 0)
     return whole if vanish([whole.diff(time) - rate], {}) else None
 
 

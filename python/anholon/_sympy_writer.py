@@ -12,6 +12,7 @@ from ._sympy_parts import mechanics_module, Parts, sympy_module
 
 _SAME = {"sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "sign"}
 _RECIPROCAL = {"cot": "tan", "sec": "cos", "csc": "sin", "coth": "tanh", "sech": "cosh", "csch": "sinh"}
+_OF_RECIPROCAL = {"acot": "atan", "asec": "acos", "acsc": "asin", "acoth": "atanh", "asech": "acosh", "acsch": "asinh"}
 _OTHER_NAMES = {"Abs": "abs", "Max": "max", "Min": "min"}
 
 RESERVED = {"t", "pi", "ex", "ey", "ez", "e", "i", "D", "lambda", "here", "inertial"}
@@ -76,6 +77,10 @@ class Writer:
             return "pi"
         if e is sm.E:
             return "exp(1)"
+        if e is sm.GoldenRatio:
+            return "((1 + sqrt(5))/2)"
+        if e.is_NumberSymbol:
+            return f"({e.evalf(40)})"
         if e.is_Integer:
             return f"({int(e)})" if int(e) < 0 else str(int(e))
         if e.is_Rational:
@@ -109,6 +114,10 @@ class Writer:
             return self._piecewise(e)
         if isinstance(e, sm.Heaviside):
             return self._where(e.args[0] > 0, "1", self._where(e.args[0] < 0, "0", self.formula(e.args[1])))
+        if name in ("re", "conjugate"):
+            return self.formula(e.args[0])
+        if name == "im":
+            return "0"
         arguments = [self.formula(x) for x in e.args]
         if name in ("Max", "Min"):
             made = arguments[0]
@@ -117,6 +126,8 @@ class Writer:
             return made
         if name in _RECIPROCAL:
             return f"(1/{_RECIPROCAL[name]}({arguments[0]}))"
+        if name in _OF_RECIPROCAL:
+            return f"{_OF_RECIPROCAL[name]}(1/{arguments[0]})"
         if name not in _SAME and name not in _OTHER_NAMES and (plain := e.doit()) != e:
             return self.formula(plain)  # as curves of muscles
         if name not in _SAME and name not in _OTHER_NAMES:
@@ -146,6 +157,17 @@ class Writer:
             first, *others = condition.args
             rest = self._where(condition.func(*others), value, otherwise)
             return self._where(first, rest, otherwise) if isinstance(condition, sm.And) else self._where(first, value, rest)
+        if condition in (sm.true, sm.false):
+            return value if condition == sm.true else otherwise
+        if isinstance(condition, sm.Ne):
+            above, below = condition.lhs > condition.rhs, condition.lhs < condition.rhs
+            return self._where(above, value, self._where(below, value, otherwise))
+        if isinstance(condition, sm.Not):
+            return self._where(condition.args[0], otherwise, value)
+        if isinstance(condition, sm.Xor):
+            first, *others = condition.args
+            rest = sm.Xor(*others)
+            return self._where(first, self._where(rest, otherwise, value), self._where(rest, value, otherwise))
         raise ModelError(f"the condition {condition} is none of >, >=, < and <=\nhint: compare two formulas; And and Or join comparisons")
 
     def _parameter(self, symbol: Any) -> str:

@@ -32,6 +32,26 @@ def _time(t: object) -> float:
     return float(t)
 
 
+def _number(name: str, value: object) -> float:
+    """A value as a float. Raises TypeError if it is no number."""
+    if not isinstance(value, SupportsFloat) or getattr(value, "ndim", 0) != 0:
+        raise TypeError(f"{name} is a number in SI units, not {value!r:.60}")
+    return float(value)
+
+
+def _numbers(name: str, values: object) -> Array:
+    """An array of float64. Raises TypeError if there are other things than numbers."""
+    import numpy as np
+
+    if values is None or isinstance(values, (str, Mapping)):
+        raise TypeError(f"{name} is a number or an array of numbers, not {'None' if values is None else f'a {type(values).__name__}'}")
+    if not isinstance(values, np.ndarray) or values.dtype.kind not in "fiub":
+        found = np.asarray(values)
+        if found.dtype.kind not in "fiubO" or any(x is None or isinstance(x, str) for x in (found.flat if found.dtype.kind == "O" else ())):
+            raise TypeError(f"{name} is an array of numbers in SI units, not {values!r:.60}")
+    return np.ascontiguousarray(values, dtype=np.float64)
+
+
 def _takes_numbers(out: Array, x: Array) -> bool:
     """Whether the core can write to `out` itself. Raises TypeError or ValueError if no rates of x can be put there."""
     import numpy as np
@@ -156,9 +176,9 @@ class Dynamics:
                 if name not in names:
                     raise KeyError(f"there is no {name!r} in {what}; there are {', '.join(names) or 'none'}")
             own = usual()
-            rows = [np.asarray(given.get(name, own[i]), dtype=np.float64) for i, name in enumerate(names)]
+            rows = [_numbers(f"{what}[{name!r}]", given[name]).reshape(np.shape(given[name])) if name in given else own[i] for i, name in enumerate(names)]
             given = np.stack(np.broadcast_arrays(*rows)) if rows else np.empty(0)
-        array = np.ascontiguousarray(given, dtype=np.float64)
+        array = _numbers(what, given)
         if array.shape[:1] != (len(names),) or array.shape[1:] not in ((), shape):
             raise ValueError(f"{what} has the shape {array.shape}; it has to be {(len(names),)}" + (f" or {(len(names), *shape)}" if shape else ""))
         return array
@@ -190,7 +210,7 @@ class Dynamics:
         import numpy as np
 
         time = _time(t)
-        given = np.ascontiguousarray(x, dtype=np.float64)
+        given = x if type(x) is np.ndarray and x.dtype == np.float64 and x.flags.c_contiguous else _numbers("x", x)
         if given.shape[:1] != (self._count,):
             raise ValueError(f"x has the shape {given.shape}; its first axis has to be the {self._count} states")
         # The core writes to contiguous numbers that x does not share.
@@ -224,7 +244,7 @@ class Dynamics:
             return np.array(rows).T.reshape((len(self.inputs), *x.shape[1:]))
 
         def numbers(name: str) -> list[float]:
-            given = np.asarray(named[name], dtype=np.float64)
+            given = _numbers(f"u[{name!r}]", named[name]).reshape(np.shape(named[name]))
             if given.shape not in ((), x.shape[1:]):
                 raise ValueError(f"the input {name!r} has the shape {given.shape}; it has to be a number" + (f" or {x.shape[1:]}" if x.shape[1:] else ""))
             made: list[float] = np.broadcast_to(given, x.shape[1:]).reshape(-1).tolist()
@@ -238,7 +258,7 @@ class Dynamics:
         """States with their inputs and parameters, and the axes that count them."""
         import numpy as np
 
-        state = np.ascontiguousarray(x, dtype=np.float64)
+        state = _numbers("x", x)
         if state.shape[:1] != (self._count,):
             raise ValueError(f"x has the shape {state.shape}; its first axis has to be the {self._count} states")
         some, others = self._given(t, state, u, p)
@@ -428,17 +448,21 @@ class Dynamics:
 
         Raises:
             KeyError: a name is none of the coordinates, velocities or states.
+            TypeError: a value is no number, or the values are not given by name.
         """
         import numpy as np
 
         names = self._names()
         given = (q, qdot, z or {})
-        for have, expected in zip(given, names, strict=True):
+        for of, have, expected in zip(("q", "qdot", "z"), given, names, strict=True):
+            if not isinstance(have, Mapping):
+                kind = "None" if have is None else f"a {type(have).__name__}"
+                raise TypeError(f"{of} has values by name, as {of}={{{(expected or ['a'])[0]!r}: 0.5}}, not {kind}")
             for name in have:
                 if name not in expected:
                     raise KeyError(f"there is no {name!r}; there are {', '.join(expected)}")
         at = self.t0 if t is None else t
-        return np.array(self._core.from_motion(at, *([have.get(n, 0.0) for n in expected] for have, expected in zip(given, names, strict=True))))
+        return np.array(self._core.from_motion(at, *([_number(n, have.get(n, 0.0)) for n in expected] for have, expected in zip(given, names, strict=True))))
 
     def motion(self, x: npt.ArrayLike, t: float | None = None) -> dict[str, float]:
         """Coordinates, velocities (and higher derivatives of the state) and states of the model of one state x, by name.
@@ -448,7 +472,7 @@ class Dynamics:
         """
         import numpy as np
 
-        state = np.asarray(x, dtype=np.float64)
+        state = _numbers("x", x)
         if state.shape != (self._count,):
             raise ValueError(f"x has the shape {state.shape}; it has to be one state, ({self._count},)")
         parts = self._core.to_motion(self.t0 if t is None else t, state.tolist())

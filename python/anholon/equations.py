@@ -108,10 +108,13 @@ def verify(proof: Proof | str) -> _core.Verification:
 
     Raises:
         ModelError: the text is no certificate.
+        TypeError: `proof` is neither a proof nor a text.
 
     Example:
         >>> import anholon as an
         >>> an.verify(an.load("chaplygin-sleigh").prove("kane").certificate).all_confirmed
         True
     """
+    if not isinstance(proof, (Proof, str)):
+        raise TypeError(f"verify takes a proof or the text of a certificate, not {'None' if proof is None else f'a {type(proof).__name__}'}")
     return _core.verify(proof.certificate if isinstance(proof, Proof) else proof)

@@ -9,14 +9,21 @@ expression is.
 from __future__ import annotations
 
 import importlib
+import operator
 import sys
 from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, Union
 
-from ._numbers import Number, text_of
+from ._numbers import Number, text_of, whole
 
 _SUM, _PRODUCT, _POWER, _ATOM = range(1, 5)
+
+# What NumPy calls the operators of Python, and functions of this package.
+_OPERATORS = {"add": "add", "subtract": "sub", "multiply": "mul", "divide": "truediv", "true_divide": "truediv", "power": "pow", "float_power": "pow"}
+_OPERATORS |= {"less": "lt", "less_equal": "le", "greater": "gt", "greater_equal": "ge", "equal": "eq", "not_equal": "ne", "matmul": "matmul"}
+_AS_HERE = {f"arc{name}": f"an.a{name}" for name in ("sin", "cos", "tan", "tan2", "sinh", "cosh", "tanh")}
+_AS_HERE |= {"absolute": "abs(…)", "minimum": "an.minimum", "maximum": "an.maximum", "where": "an.piecewise"}
 
 
 def _as_given(base: Any) -> Any:
@@ -40,7 +47,6 @@ class Expr:
         x'^2/2 + 0.1*sin(y) D(x, 3) x = y^2
     """
 
-    __array_ufunc__ = None  # NumPy leaves products with its numbers to this class
     __slots__ = ("_strength", "_tree", "text")
 
     def __init__(self, text: str, strength: int = _ATOM, tree: tuple[Any, ...] = ()) -> None:
@@ -107,6 +113,21 @@ class Expr:
     def _inside(self, strength: int) -> str:
         return self.text if self._strength >= strength else f"({self.text})"
 
+    # ---- what Python or NumPy asks of numbers ----
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **more: Any) -> Any:
+        """Sums, products and comparisons with numbers of NumPy. Raises TypeError for its functions of numbers."""
+        name = str(ufunc.__name__)
+        if name in _OPERATORS and method == "__call__" and not more and len(inputs) == 2:
+            a, b = (x if isinstance(x, Expr) else expr(x) for x in inputs)
+            return getattr(operator, _OPERATORS[name])(a, b)
+        here = _AS_HERE.get(name, f"an.{name}" if name in _NUMBERS else "")
+        hint = f"write {here}" if here else "functions of formulas are an.sin, an.sqrt, …"
+        raise TypeError(f"np.{name} is of numbers, and {self.text} is a formula; {hint}")
+
+    def __float__(self) -> float:
+        raise TypeError(f"{self.text} is a formula, not a number; functions of formulas are an.sin, an.sqrt, …, in the place of math.sin, math.sqrt")
+
     # ---- derivatives, components ----
 
     @property
@@ -115,7 +136,14 @@ class Expr:
         return self.d(1)
 
     def d(self, order: int = 1) -> Expr:
-        """The derivative by time of this order, 0 … 20."""
+        """The derivative by time of this order, 0 … 20.
+
+        Raises:
+            TypeError: the order is no whole number.
+            ValueError: it is another one.
+        """
+        if whole("the order of a derivative", order, 0) > 20:
+            raise ValueError(f"the order of a derivative is 20 or less, not {order}")
         if order == 0:
             return self
         of, before = (self._tree[1], self._tree[2]) if self._tree[:1] == ("d",) else (self, 0)
@@ -186,6 +214,12 @@ class _Formula(Expr):
     """A number or a vector. As no other class derives from it, Python never turns ``a == b`` round."""
 
     __slots__ = ()
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Raises TypeError: a formula is no function."""
+        if self._tree[:1] == ("d",):
+            raise TypeError(f"{self.text} is no function: the derivative is written x.dt, without parentheses, or x.d(2)")
+        raise TypeError(f"{self.text} is no function; functions and tables of a model are called by an.call({self.text!r}, …)")
 
 
 class Rotation(Expr):
@@ -282,6 +316,14 @@ class Condition:
 
     def __repr__(self) -> str:
         return self.text
+
+    def _joined(self, other: object = None) -> Any:
+        raise TypeError(
+            f"conditions are not joined; where {self.text} and another one hold is piecewise(({self.text}, piecewise((other, value), otherwise)), otherwise), "
+            f"where one of them does piecewise(({self.text}, value), (other, value), otherwise)"
+        )
+
+    __and__ = __or__ = __xor__ = __rand__ = __ror__ = __invert__ = _joined
 
 
 Term = Union[Expr, Number, Sequence[Any]]

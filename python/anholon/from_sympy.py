@@ -20,17 +20,22 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from ._errors import ModelError
-from ._numbers import Number, text_of
+from ._numbers import float_of, Number, text_of
+from ._sympy_bodies import Bodies
 from ._sympy_parts import (
     atoms_of,
     center_of,
     certainly_positive,
+    exact,
     has_poles,
     integral_of,
-    is_particle,
     mechanics_module,
+    names_in,
+    nearest,
     numeric,
     parts_of,
+    rank_of,
+    real,
     solution,
     state_on,
     sympy_module,
@@ -59,6 +64,7 @@ class _Import:
         self._given: Mapping[Any, Number] = {}  # values of symbols
         self._places: dict[Any, list[Any]] = {}
         self._kept: tuple[Any, list[Any]] | None = None
+        self.bodies = Bodies(self)
         self._place_centers([u for u in parts.u if u not in known])
 
     def _without_auxiliary(self) -> None:
@@ -66,13 +72,14 @@ class _Import:
         zero = self.sm.Integer(0)
         self._zero = {**{u.diff(self.time): zero for u in self.parts.auxiliary}, **dict.fromkeys(self.parts.auxiliary, zero)}
         for name in ("kinematic", "holonomic", "velocity"):
-            setattr(self.parts, name, [self.sm.sympify(e).xreplace(self._zero) for e in getattr(self.parts, name)])
+            setattr(self.parts, name, [real(self.sm.sympify(e)).xreplace(self._zero) for e in getattr(self.parts, name)])
 
     def _solve(self, equations: list[Any], speeds: list[Any]) -> list[Any]:
         """Solves linear equations for speeds, which enter ``self.speeds``; returns the equations that are left."""
         sm, draw = self.sm, random.Random(5)
         if not speeds:
             return [e for e in equations if e != 0]
+        equations = [exact(sm.sympify(e)) for e in equations]
         dummies = {u: sm.Dummy() for u in speeds}
         matrix = sm.Matrix([e.xreplace(dummies) for e in equations])
         a = matrix.jacobian(list(dummies.values()))
@@ -81,8 +88,8 @@ class _Import:
         numbers = numeric(atoms, a)(*(sm.Float(draw.uniform(0.3, 1.3), 30) for _ in atoms))
         rows: list[int] = []
         for k in sorted(range(len(equations)), key=lambda k: (sm.count_ops(equations[k]), k)):
-            trial = sm.Matrix([[sm.Float(str(numbers[i, j]), 30) for j in range(a.cols)] for i in [*rows, k]])
-            if trial.rank(iszerofunc=lambda x: abs(x) < 1e-20) > len(rows):
+            trial = [[sm.Float(str(numbers[i, j]), 30) for j in range(a.cols)] for i in [*rows, k]]
+            if rank_of(trial, a) > len(rows):
                 rows.append(k)
         if len(rows) < len(speeds):
             raise ModelError("the kinematic differential equations cannot be solved for the generalized speeds")
@@ -91,7 +98,7 @@ class _Import:
         before = self.speeds
         self.speeds = {**{u: e.xreplace(found) for u, e in before.items()}, **found}
         left = [self._without_denominator(self.in_rates(e)) for k, e in enumerate(equations) if k not in rows]
-        left = [e for e in left if sm.simplify(e) != 0]
+        left = [e for e in left if sm.simplify(e) != 0 and not vanish([e], {})]
         if left:
             # Where all equations hold, the speeds follow from all of them, without pivots that vanish somewhere.
             among_all = self._solution(speeds, a.T * a, -(a.T * b))
@@ -111,7 +118,7 @@ class _Import:
         above, below = self.sm.fraction(self.sm.together(e))
         return above if self._coordinates_of(below) else e
 
-    def _add_coordinate(self, wish: str) -> Any:
+    def add_coordinate(self, wish: str) -> Any:
         """A coordinate that SymPy does not have."""
         taken = {str(q.func) for q in self.parts.q} | RESERVED
         while wish in taken:
@@ -138,18 +145,20 @@ class _Import:
                 for axis, rate in zip("xyz", velocity, strict=True):
                     whole = self.sm.Integer(0) if rate == 0 else integral_of(rate, self.writer.q, self.writer.rates)
                     if whole is None:
-                        whole = self._add_coordinate(f"{re.sub(r'[^A-Za-z0-9]+', '_', str(body.name)) or 'body'}_{axis}")
+                        whole = self.add_coordinate(f"{re.sub(r'[^A-Za-z0-9]+', '_', str(body.name)) or 'body'}_{axis}")
                         open_equations.append(whole.diff(self.time) - rate)
                         names.append(str(whole.func))
                     place.append(whole)
             self._places[point] = place
-        spins = [x for b in self.parts.bodies if not is_particle(b) for x in self.components(b.frame.ang_vel_in(self.parts.frame))]
+        spins = [x for b in self.parts.bodies for x in self.bodies.spin(b)]
         joined = [u for u in unknown if any(e.has(u) for e in open_equations) and not any(x.has(u) for x in spins)]
         for u in [u for u in unknown if u not in joined]:
-            self.speeds[u] = self._add_coordinate(f"{u.func}_angle").diff(self.time)
+            self.speeds[u] = self.add_coordinate(f"{u.func}_angle").diff(self.time)
         open_equations = [self.in_rates(e) for e in open_equations]
         left = self._solve(open_equations, joined) if joined else open_equations
         self.centers = [(f"center{k + 1}" if joined else f"center_{names[k]}", e) for k, e in enumerate(left)]
+        for body in self.parts.bodies:
+            self.bodies.turned(body)  # this may add coordinates
 
     def _look_at_acceleration(self, point: Any) -> None:
         """Warns if SymPy was told an acceleration that is not the rate of the velocity."""
@@ -166,9 +175,9 @@ class _Import:
 
     def in_rates(self, e: Any) -> Any:
         """An expression without generalized speeds, and without their rates."""
-        e = self.sm.sympify(e).xreplace(self._zero)
+        e = real(self.sm.sympify(e)).xreplace(self._zero)
         second = {u.diff(self.time): x.diff(self.time) for u, x in self.speeds.items()} if e.has(self.sm.Derivative) else {}
-        return e.xreplace({k: v for k, v in second.items() if e.has(k)}).xreplace(self.speeds)
+        return real(e.xreplace({k: v for k, v in second.items() if e.has(k)}).xreplace(self.speeds))
 
     def components(self, vector: Any) -> list[Any]:
         """Components along the inertial axes."""
@@ -217,79 +226,14 @@ class _Import:
         """The formulas of a mass centre."""
         return [self.writer.formula(x) for x in self._places[point]]
 
-    def _turn(self, body: Any) -> tuple[Any, Any]:
-        """The rotation of a body's axes against the inertial ones, and its inertia along them.
-
-        A frame that only has an angular velocity is that of a wheel, if the inertia is given along the axes of another
-        frame in which it turns about an axis of symmetry.
-        """
-        frame = self.parts.frame
-        try:
-            return frame.dcm(body.frame), body.central_inertia.to_matrix(body.frame)
-        except ValueError:
-            pass
-        carrier = body.central_inertia.args[0][1].args[0][1]
-        inertia = body.central_inertia.to_matrix(carrier)
-        spin = [self.in_rates(x) for x in body.frame.ang_vel_in(carrier).to_matrix(carrier)]
-        axes = [k for k, x in enumerate(spin) if x != 0]
-        rates = self.writer.rates
-        if len(axes) != 1 or spin[axes[0]] not in rates:
-            raise ModelError(f"the frame of {body.name} has no orientation, and does not turn about one axis of the frame of its inertia")
-        k = axes[0]
-        i, j = (k + 1) % 3, (k + 2) % 3
-        if inertia[i, i] != inertia[j, j] or any(inertia[a, b] != 0 for a in range(3) for b in range(3) if a != b):
-            raise ModelError(f"the frame of {body.name} has no orientation, and its inertia is not symmetric about the axis of its spin")
-        angle = self.writer.q[rates.index(spin[k])]
-        sm = self.sm
-        about = sm.eye(3)
-        about[i, i], about[i, j], about[j, i], about[j, j] = sm.cos(angle), -sm.sin(angle), sm.sin(angle), sm.cos(angle)
-        return frame.dcm(carrier) * about, inertia
-
-    def body(self, body: Any) -> str:
-        """The entry of a body or particle."""
-        point = center_of(body)
-        spin = [] if is_particle(body) else self.components(body.frame.ang_vel_in(self.parts.frame))
-        if not any(spin):
-            # What does not turn has no use for an inertia, what rests none for a mass.
-            if not any(self.components(point.vel(self.parts.frame))):
-                return ""
-            name = self.writer.new(str(body.name))
-            center = json.dumps(self.center(point))
-            mass = json.dumps(self.writer.formula(body.mass))
-            return f"[[particle]]\nname = {json.dumps(name)}\nmass = {mass}\nposition = {center}\n{self._expelled(body)}"
-        name = self.writer.new(str(body.name))
-        turn, tensor = self._turn(body)
-        rows = tensor.tolist()
-        inertia: Any = [[self.writer.formula(x) for x in row] for row in rows]
-        if all(x == 0 for i, row in enumerate(rows) for j, x in enumerate(row) if (i, j) != (2, 2)):
-            inertia = inertia[2][2]  # of a body in the plane
-        turned = [[self.writer.formula(x) for x in row] for row in turn.tolist()]
-        rate = turn.diff(self.writer.time) * turn.T
-        if not self._vanishes([self.in_rates(rate[2, 1]) - spin[0], self.in_rates(rate[0, 2]) - spin[1], self.in_rates(rate[1, 0]) - spin[2]]):
-            raise ModelError(f"the angular velocity that was set for the frame of {body.name} is not that of its orientation")
-        matrix = "matrix([" + ", ".join("[" + ", ".join(row) + "]" for row in turned) + "])"
-        return (
-            f"[[body]]\nname = {json.dumps(name)}\nmass = {json.dumps(self.writer.formula(body.mass))}\n"
-            f"inertia = {json.dumps(inertia)}\ncenter = {json.dumps(self.center(center_of(body)))}\norientation = {json.dumps(matrix)}\n"
-            f"{self._expelled(body)}"
-        )
-
-    def _expelled(self, body: Any) -> str:
-        """The velocity of the matter that a body of varying mass loses: that matter rests, since SymPy's force is d/dt (m v)."""
-        velocity = self.components(center_of(body).vel(self.parts.frame))
-        if self.sm.sympify(body.mass).diff(self.time) == 0 or not any(velocity):
-            return ""
-        return f"expelled_velocity = {json.dumps([self.writer.formula(-v) for v in velocity])}\n"
-
     def _add_varying(self, sums: dict[Any, Any]) -> None:
         """Adds the generalized forces of varying inertia: the torque -I' w, since SymPy's torque is d/dt (I w), and under
         Lagrange's equations the slopes of the kinetic energy by masses and inertias that depend on coordinates."""
         sm = self.sm
         for body in self.parts.bodies:
             mass, velocity = sm.sympify(body.mass), sm.Matrix(self.components(center_of(body).vel(self.parts.frame)))
-            spin = [] if is_particle(body) else self.components(body.frame.ang_vel_in(self.parts.frame))
-            turn, inertia = self._turn(body) if any(spin) else (sm.eye(3), sm.zeros(3, 3))
-            own = turn.T * sm.Matrix(spin or [0, 0, 0])
+            turned = self.bodies.turned(body)
+            inertia, own = (turned.inertia, turned.own) if turned else (sm.zeros(3, 3), sm.zeros(3, 1))
             rise = inertia.diff(self.time)
             varies = any(rise) and not vanish(rise, {})
             for q, rate in zip(self.writer.q, self.writer.rates, strict=True):
@@ -326,7 +270,7 @@ class _Import:
         terms = {}
         for q in self.writer.q:
             rate = q.diff(self.time)
-            whole = (sm.diff(energy, rate).diff(self.time) - sm.diff(energy, q)).doit()
+            whole = real(real(sm.diff(energy, rate)).diff(self.time) - sm.diff(energy, q)).doit()
             terms[q] = sm.expand(self._inertia_of(q) * rate.diff(self.time) - whole)
         return terms
 
@@ -346,7 +290,7 @@ class _Import:
             else:
                 sums[at] = sums.get(at, 0) + self.in_rates(what)
         self._add_varying(sums)
-        return {q: s for q, s in sums.items() if s != 0}
+        return {q: real(s) for q, s in sums.items() if s != 0}
 
     def velocity_constraints(self) -> list[Any]:
         """Those that do not follow from the holonomic ones or from others, by the rank at random points."""
@@ -364,10 +308,10 @@ class _Import:
             return [sm.N(x.xreplace(values), 40) for x in row]
 
         numbers = [at_point(row) for row in rows]
-        rank = sm.Matrix(numbers).rank(iszerofunc=lambda x: abs(x) < 1e-20) if numbers else 0
+        rank = rank_of(numbers, [*listed, *wanted])
         for e in wanted:
             numbers.append(at_point(sm.Matrix([e]).jacobian(rates)))
-            if sm.Matrix(numbers).rank(iszerofunc=lambda x: abs(x) < 1e-20) == rank:
+            if rank_of(numbers, [*listed, *wanted]) == rank:
                 numbers.pop()
                 continue
             rank += 1
@@ -380,7 +324,7 @@ class _Import:
     def text(self, title: str, values: Mapping[Any, Number], initial: Mapping[Any, Number]) -> str:
         """The model file."""
         w, self._given = self.writer, values
-        bodies = [self.body(b) for b in self.parts.bodies] if self.parts.lagrangian is None else self.stand_ins()
+        bodies = [self.bodies.entry(b, values) for b in self.parts.bodies] if self.parts.lagrangian is None else self.stand_ins()
         constraints = [(f"holonomic{k + 1}", w.formula(e)) for k, e in enumerate(self.parts.holonomic)]
         constraints += [(f"velocity{k + 1}", w.formula(e)) for k, e in enumerate(self.velocity_constraints())]
         constraints += [(name, w.formula(e)) for name, e in self.centers]
@@ -416,7 +360,7 @@ class _Import:
 
     def _values(self, values: Mapping[Any, Number]) -> Callable[[Any], str | None]:
         """The formula that is given for a symbol or function: by itself, else by its name if no other one has this name."""
-        written = {key: self._value(value) for key, value in values.items()}
+        written = {key: self._value(value, key) for key, value in values.items()}
         names = [name_of(x) for x in [*self.writer.parameters, *self.writer.functions]]
         by_name = {name_of(key): value for key, value in written.items() if names.count(name_of(key)) < 2}
         return lambda of: written.get(of, by_name.get(name_of(of)))
@@ -428,37 +372,55 @@ class _Import:
         given: dict[str, str] = {}
         conditions: list[str] = []
         for key, value in initial.items():
-            written = self._value(value)
+            written = self._value(value, key)
             plain = re.fullmatch(r"(\w+)('*)", key) if isinstance(key, str) else None
             if isinstance(key, self.sm.Derivative):
-                given[w.formula(key)] = written
+                of = w.formula(key)
             elif plain and plain[1] in coordinates:
-                given[w.names[coordinates[plain[1]]] + plain[2]] = written
+                of = w.names[coordinates[plain[1]]] + plain[2]
             elif name_of(key) in coordinates:
-                given[w.names[coordinates[name_of(key)]]] = written
+                of = w.names[coordinates[name_of(key)]]
             elif name_of(key) in speeds:
                 rate = self.speeds[speeds[name_of(key)]]
-                if isinstance(rate, self.sm.Derivative):
-                    given[w.formula(rate)] = written
-                else:
+                if not isinstance(rate, self.sm.Derivative):
                     conditions.append(f"{w.formula(rate)} = {written}")
+                    continue
+                of = w.formula(rate)
             else:
-                known = ", ".join([*coordinates, *(f"{name}'" for name in coordinates), *speeds])
-                raise ModelError(f"'{name_of(key)}' in initial is no coordinate, rate or speed\nhint: {known}")
+                known = [*coordinates, *(f"{name}'" for name in coordinates), *speeds]
+                raise ModelError(f"'{name_of(key)}' in initial is no coordinate, rate or speed{nearest(name_of(key), known)}\nhint: {', '.join(known)}")
+            if of in given and given[of] != written and (float_of(written) is None or float_of(given[of]) != float_of(written)):
+                raise ModelError(
+                    f"initial gives {of} two values, {given[of]} and {written}\nhint: a speed that is the rate of a coordinate has one value with it"
+                )
+            given[of] = written
         return given, conditions
 
-    def _value(self, value: Any) -> str:
+    def _value(self, value: Any, key: Any) -> str:
         """A number, or a formula of SymPy, as text."""
-        return self.writer.formula(value) if isinstance(value, self.sm.Basic) else text_of(value)
+        try:
+            return self.writer.formula(value) if isinstance(value, self.sm.Basic) else text_of(value)
+        except (TypeError, ValueError) as mistake:
+            raise mistake if isinstance(mistake, ModelError) else type(mistake)(f"{name_of(key)}: {mistake}") from None
+
+
+def _must_be_known(keys: list[str], parts: Any) -> None:
+    """Raises ModelError for a name that no symbol and no function of the system has."""
+    if not keys:
+        return
+    known = sorted(names_in(parts))
+    for key in keys:
+        if key not in known:
+            raise ModelError(f"'{key}' in values is no symbol and no function of the system{nearest(key, known)}\nhint: {', '.join(known)}")
 
 
 def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, Number] | None = None, initial: Mapping[Any, Number] | None = None) -> Model:
-    """The model of a KanesMethod, a LagrangesMethod, or a System of ``sympy.physics.mechanics``.
+    """The model of a KanesMethod, a LagrangesMethod, a System or a JointsMethod of ``sympy.physics.mechanics``.
 
     Args:
         method: the object of SymPy.
         title: of the model.
-        values: of all symbols, and of given functions of time. A symbol without a value is an error; a function without one
+        values: of all symbols, and of given functions of time, by symbol or name. A symbol without a value is an error; a function without one
             stands in equations, and nothing is simulated.
         initial: values of coordinates, their rates and generalized speeds, each by its symbol or name (``"q1'"``). Values, like those
             of symbols, are numbers, or formulas as texts or of SymPy.
@@ -467,11 +429,12 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
         A model; ``model.text`` is its file. Coordinates and parameters keep their names where these are names.
 
     Raises:
-        ModelError: something has no counterpart in a model.
-        TypeError: the object is none of these.
+        ModelError: something has no counterpart in a model; a name in `values` or `initial` is none of the system.
+        TypeError: the object is none of these; `values` or `initial` is no mapping.
 
     Warns:
-        UserWarning: an acceleration was set that is not the rate of the velocity of its point.
+        UserWarning: an acceleration was set that is not the rate of the velocity of its point; no body has the moments of inertia of one
+            that turns in space.
 
     Example:
         >>> import anholon as an, sympy as sm
@@ -486,6 +449,10 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
         >>> float(abs(spring.simulate(to="pi", at=["pi"])["x"][-1] - 1).round(12))
         0.0
     """
+    for name, given, example in (("values", values, "{m: 1}"), ("initial", initial, "{q: 1, u: 0}")):
+        if given is not None and not isinstance(given, Mapping):
+            raise TypeError(f"{name} is a mapping by symbol or name, as {name}={example}, not a {type(given).__name__}")
     made = _Import(method)
+    _must_be_known([key for key in values or {} if isinstance(key, str)], made.parts)
     text = made.text(title, values or {}, initial or {})
     return loads(text, name="model from SymPy")

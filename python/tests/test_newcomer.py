@@ -1,11 +1,13 @@
 """Someone new, who has read the README alone: a rolling disc in ten lines, a table, a plot, an animation, and mistakes."""
 
+import math
 import pathlib
 import re
 from collections.abc import Callable
 from typing import Any
 
 import anholon as an
+import numpy as np
 import pytest
 
 TEN_LINES = '''
@@ -152,7 +154,7 @@ def test_a_file_without_units_says_so() -> None:
 
 
 def test_another_value_has_the_unit_of_that_of_the_file() -> None:
-    with pytest.raises(an.ModelError, match=r"--set k=3 m: a stiffness \(N/m\) is expected here, this is a length \(m\)"):
+    with pytest.raises(an.ModelError, match=r"error: k=3 m: a stiffness \(N/m\) is expected here, this is a length \(m\)"):
         an.loads(SPRING).with_(k="3 m")
 
 
@@ -206,3 +208,74 @@ def test_a_velocity_across_the_blade_of_a_sleigh_that_is_turned_clashes(right_an
     assert found["x'"] == pytest.approx(0, abs=1e-15) and abs(found["y'"]) < 1
     run = sleigh.simulate(to=1, initial={"th": right_angle, "x'": 0, "y'": 0.5}).expect()
     assert run["y'"][0] == 0.5
+
+
+def bead() -> tuple[an.Builder, an.Expr, an.Expr]:
+    b = an.Builder("a bead")
+    x = b.coordinate("x")
+    return b, x, b.particle("p", mass=1, position=x * an.ex)
+
+
+def test_numbers_are_not_formulas() -> None:
+    _, x, _ = bead()
+    for made, said in [
+        (lambda: np.sin(x), r"np\.sin is of numbers, and x is a formula; write an\.sin"),
+        (lambda: np.arctan2(x, 1), r"write an\.atan2"),
+        (lambda: np.abs(x), r"write abs\(…\)"),
+        (lambda: np.floor(x), r"functions of formulas are an\.sin, an\.sqrt"),
+        (lambda: math.sin(x), r"x is a formula, not a number; functions of formulas are an\.sin, an\.sqrt, …, in the place of math\.sin"),
+        (lambda: x.dt(), r"x' is no function: the derivative is written x\.dt, without parentheses"),
+        (lambda: x(1), r"x is no function; functions and tables of a model are called by an\.call\('x', …\)"),
+        (lambda: (x > 0) & (x < 1), r"conditions are not joined; where x > 0 and another one hold is piecewise"),
+        (lambda: x.d(1.5), r"the order of a derivative is a whole number, not 1\.5"),
+    ]:
+        with pytest.raises(TypeError, match=said):
+            made()
+    for order in (-1, 21):
+        with pytest.raises(ValueError, match="the order of a derivative is"):
+            x.d(order)
+
+
+def test_operators_with_numbers_of_numpy() -> None:
+    _, x, _ = bead()
+    two: list[Any] = [np.float64(2), np.int64(2), np.array(2)]
+    for number in two:
+        shown = [str(e) for e in (number * x, x * number, number + x, number - x, number / x, x**number, number**x, number > x, x < number)]
+        n = "2.0" if isinstance(number, np.float64) else "2"
+        assert shown == [f"{n}*x", f"x*{n}", f"{n} + x", f"{n} - x", f"{n}/x", f"x^{n}", f"{n}^x", f"{n} > x", f"x < {n}"]
+    assert str(np.array([1, 2, 3]) * x) == "(ex + 2*ey + 3*ez)*x"
+
+
+def test_an_inertia_may_be_an_array() -> None:
+    b, x, _ = bead()
+    b.body("q", mass=1, inertia=np.diag([1.0, 2.0, 2.5]), center="0", orientation=an.rotz(x))
+    b.force(generalized={x: 7})
+    b.initial({x: 0, x.dt: 0})
+    assert b.model().evaluate().accelerations == {"x''": 2}
+
+
+def test_what_is_given_to_a_function_of_a_model() -> None:
+    disc = an.load("disc")
+    f = disc.dynamics()
+    x: Any = f.start
+    nothing: Any = None
+    mistakes: list[tuple[Any, str]] = [
+        (lambda: f.state(q={"x": "1 m"}, qdot={}), "x is a number in SI units, not '1 m'"),
+        (lambda: f.state(q={"x": [1, 2]}, qdot={}), r"x is a number in SI units, not \[1, 2\]"),
+        (lambda: f.state(q=nothing, qdot={}), r"q has values by name, as q=\{'x': 0\.5\}, not None"),
+        (lambda: f.state(q={}, qdot=[1]), r"qdot has values by name, as qdot=\{\"x'\": 0\.5\}, not a list"),
+        (lambda: f(0, x, p={"m": nothing}), r"p\['m'\] is a number or an array of numbers, not None"),
+        (lambda: f(0, x, p={"m": "3 kg"}), r"p\['m'\] is a number or an array of numbers, not a str"),
+        (lambda: f(0, nothing), "x is a number or an array of numbers, not None"),
+        (lambda: f(0, ["1 m"] * 8), "x is an array of numbers in SI units, not"),
+        (lambda: f.jac(0, nothing), "x is a number or an array of numbers, not None"),
+        (lambda: f.motion(nothing), "x is a number or an array of numbers, not None"),
+        (lambda: an.verify(nothing), "verify takes a proof or the text of a certificate, not None"),
+    ]
+    for call, said in mistakes:
+        with pytest.raises(TypeError, match=said):
+            call()
+    assert (f(np.array(0.0), list(x), p={"m": np.array(2)}) == f(0, x, p={"m": 2})).all()
+    with pytest.raises(an.ModelError, match=r"error: m: the formula is empty"):
+        disc.with_(m="")
+    assert disc.with_(m=np.array(2.5)).parameters["m"] == disc.with_(m=2.5).parameters["m"]

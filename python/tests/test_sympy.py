@@ -341,8 +341,10 @@ def accelerations_of_sympy(method: Any, made: _Import, values: dict[Any, Any], s
     flow = kinematic.jacobian(own).LUsolve(-kinematic.subs(dict.fromkeys(own, 0)))
     found = {}
     for c, f in zip(q, flow, strict=True):
-        second = sum(sm.diff(f, z) * dz for z, dz in [*((p, numbers[p.diff(t)]) for p in q), *change.items()])
-        found[c] = float(at(sm.sympify(second)))
+        moving = [*((p, numbers[p.diff(t)]) for p in q), *change.items()]
+        at_rest = {z: sm.Dummy() for z, _ in moving}
+        by_time = f.xreplace(at_rest).diff(t).xreplace({d: z for z, d in at_rest.items()})
+        found[c] = float(at(by_time + sum(sm.diff(f, z) * dz for z, dz in moving)))
     return found
 
 
@@ -372,8 +374,8 @@ def drawn(made: _Import, values: dict[Any, Any], seed: int) -> dict[Any, Any]:
     v = draw.uniform(-1, 1, len(rates))
     if equations:
         rows = sm.Matrix(equations)
-        jacobian = np.array(rows.jacobian(rates).subs(numbers).subs(state).evalf(30).tolist(), dtype=float)
-        rest = np.array(rows.subs(dict.fromkeys(rates, 0)).subs(numbers).subs(state).evalf(30).tolist(), dtype=float)[:, 0]
+        jacobian = np.array(rows.jacobian(rates).subs(state).subs(numbers).evalf(30).tolist(), dtype=float)
+        rest = np.array(rows.subs(dict.fromkeys(rates, 0)).subs(state).subs(numbers).evalf(30).tolist(), dtype=float)[:, 0]
         v -= np.linalg.pinv(jacobian) @ (jacobian @ v + rest)
         v -= np.linalg.pinv(jacobian) @ (jacobian @ v + rest)
     state.update(zip(rates, (float(x) for x in v), strict=True))
