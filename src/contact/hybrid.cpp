@@ -303,8 +303,9 @@ SimulationReport simulate_with_contacts(Workspace& s, const std::vector<Contact>
   const auto held = static_cast<std::size_t>(
       std::count_if(contacts.begin(), contacts.end(), [](const Contact& c) { return c.held.has_value(); }));
   if (held > 0 && held < contacts.size())
-    throw Failure({}, "a motion knows contacts or constraints with 'active', and the model has both",
-                  "a contact that an event switches: let its gap hold the mode");
+    throw Failure(
+        {}, "a motion knows contacts or constraints with 'active', and the model has both",
+        "leave out 'active', or write the contact as a soft one: [[force]] with vector = \"-k*min(P.z, 0)*ez\"");
   refuse_options(options, s, held > 0);
   const auto start = std::chrono::steady_clock::now();
   SimulationReport r =
