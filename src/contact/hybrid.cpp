@@ -202,10 +202,10 @@ class HybridMotion {
   }
 
   // How much a slip velocity changes in the last digits of the times of the motion, with these accelerations: it passes a smaller
-  // one at the time at which it vanishes.
+  // one at the time at which it vanishes. A shorter time than kLeast before that, Taylor coefficients of its direction overflow.
   long double slip_in_last_digits_of_time(std::size_t c, const std::vector<long double>& accelerations) const {
-    constexpr long double kDigits = 16 * std::numeric_limits<double>::epsilon();
-    return kDigits * std::abs(static_cast<long double>(end_.get_d())) *
+    constexpr long double kDigits = 16 * std::numeric_limits<double>::epsilon(), kLeast = 5e-14L;
+    return std::max(kLeast, kDigits * std::abs(static_cast<long double>(end_.get_d()))) *
            bodies_.dynamics.slip_acceleration(c, accelerations);
   }
 

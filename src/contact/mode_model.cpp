@@ -228,6 +228,8 @@ class ModeBuilder {
     if (mode.begins) {
       components_.back() = {force * number(ModeNumber::along), force * number(ModeNumber::across)};
       for (std::size_t a = 0; a < 2; ++a) act(c, 1, components_.back()[a], c.slip[a]);
+      // A force that jumps may turn it back.
+      ends(c, ModeChange::slows, c.slip[0] * number(ModeNumber::along) + c.slip[1] * number(ModeNumber::across), -1);
       return c.friction * normal;
     }
     if (mode.fast) {

@@ -167,6 +167,20 @@ TEST(SlipStart, AndEndsAgainExactly) {
     }
 }
 
+// A slip vanishes where its force jumps, so that it turns back at once, and at the end of the motion.
+TEST(SlipStart, AndVanishesWhereAForceJumpsOrTheMotionEnds) {
+  for (const bool plane : {false, true}) {
+    const auto turns = contact_motion(
+        pushed("piecewise(t < 2.5, -3, t < 4.5, 0.5, t < 5, 3, t < 6.5, -3, 0)*ex", plane), 7, {}, {0, 7});
+    ASSERT_TRUE(turns.report.outcome.ok()) << turns.report.outcome.message;
+    EXPECT_NEAR(turns.last("x"), -17.375, 1e-11);
+    const auto ends = contact_motion(
+        pushed("piecewise(t < 2, 2, t < 3.5, 0, t < 4.5, 3, t < 5.5, 1, t < 6, -2, 0)*ex", plane), 7, {}, {0, 7});
+    ASSERT_TRUE(ends.report.outcome.ok()) << ends.report.outcome.message;
+    EXPECT_NEAR(ends.last("x"), 9.25, 1e-11);
+  }
+}
+
 // An event that ends the motion does so while the contact is held before its slip is followed.
 TEST(SlipStart, EndsAtAnEvent) {
   const auto m = contact_motion(R"toml(coordinates = ["x", "y", "z"]
