@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "contact/law/accumulation.h"
 #include "contact/law/consistent_modes.h"
@@ -56,6 +57,7 @@ class HybridMotion {
         explain(outcome);
         break;
       }
+      take_back_touches();
       if (outcome.ok() && !slips_->hold(outcome)) break;
       if (outcome.ok()) outcome = not_inside(when(), kPassed);
     }
@@ -124,6 +126,18 @@ class HybridMotion {
     return {};
   }
 
+  // Friction that touches its bound and falls again is no slip.
+  void take_back_touches() {
+    for (std::size_t c = 0; c < bodies_.contacts.size() && !shares_friction(bodies_.modes); ++c) {
+      if (!bodies_.excluded[c].stick || bodies_.modes[c].touch != Touch::sticks) continue;
+      if (!only_touches_bound(bodies_, c,
+                              [this](const Rational& to, ContactState& at) { return segments_->last_until(to, at); }))
+        continue;
+      joined_.take_back(event_name(c, ModeChange::slips));
+      bodies_.excluded[c].stick = false;
+    }
+  }
+
   // Impacts where a closed gap shrinks, then the modes by the accelerations.
   Outcome choose() {
     bodies_.look();
@@ -144,23 +158,18 @@ class HybridMotion {
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
       if (bodies_.excluded[c].slips && bodies_.modes[c].touch == Touch::slips)
         joined_.rename(event_name(c, ModeChange::sticks), event_name(c, ModeChange::reverses));
-    if (const auto open = of_modes(p, ContactModes(bodies_.contacts.size()))) {
+    const auto open = of_modes(p, ContactModes(bodies_.contacts.size()));
+    if (open) {
       bodies_.before = 0;
       for (const long double a : open->x) bodies_.before = std::max(bodies_.before, std::abs(a));
     }
     bodies_.come_to_rest();
-    long double force = 0;
-    for (const long double b : p.b) force = std::max(force, std::abs(b));
+    put_round_off(p, list[0], open);
     std::vector<std::size_t> beginning;
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
-      bodies_.modes[c].rest = kRest * bodies_.dynamics.place(c).slip_scale;
-      bodies_.modes[c].depth =
-          RoundOff::kPlace / 2 * bodies_.near.place_size(c) + std::max(0.0L, -bodies_.dynamics.place(c).gap);
-      bodies_.modes[c].slack = kRest * (force > 0 ? force : 1);
-      if (bodies_.contacts[c].under) bodies_.modes[c].slack *= p.contacts[c].friction;
       if (bodies_.contacts[c].slip.size() < 2 || bodies_.modes[c].touch != Touch::slips) continue;
       if (p.contacts[c].moves)
-        bodies_.modes[c].fast = bodies_.fast(c);
+        bodies_.modes[c].fast = slips_->has_just_begun(c) ? std::nullopt : bodies_.fast(c);
       else if (bodies_.contacts[c].rough())
         beginning.push_back(c);
     }
@@ -171,6 +180,33 @@ class HybridMotion {
     bodies_.drop_left_over();
     bodies_.bound_rest();
     return {};
+  }
+
+  // Notes in the modes what is taken for round-off. `now`, `open`: the accelerations of the modes, and without contacts.
+  void put_round_off(const ContactProblem& p, const ContactSolution& now, const std::optional<ContactSolution>& open) {
+    long double force = 0;
+    for (const long double b : p.b) force = std::max(force, std::abs(b));
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+      ContactMode& m = bodies_.modes[c];
+      const ContactDynamics::Place& place = bodies_.dynamics.place(c);
+      m.rest = std::max(kRest * place.slip_scale, slip_in_last_digits_of_time(c, now.x));
+      if (open) m.rest = std::max(m.rest, slip_in_last_digits_of_time(c, open->x));
+      m.depth = RoundOff::kPlace / 2 * bodies_.near.place_size(c) + std::max(0.0L, -place.gap);
+      m.slack = kRest * (force > 0 ? force : 1);
+      if (bodies_.contacts[c].under) m.slack *= p.contacts[c].friction;
+      // Friction that is said to be at its bound is below the slack: the mode ends where friction goes on to grow.
+      const long double beyond =
+          std::hypot(now.friction[c][0], now.friction[c][1]) - p.contacts[c].static_friction * now.normal[c];
+      if (m.touch == Touch::sticks) m.slack = std::max(m.slack, 2 * beyond);
+    }
+  }
+
+  // How much a slip velocity changes in the last digits of the times of the motion, with these accelerations: it passes a smaller
+  // one at the time at which it vanishes. A shorter time than kLeast before that, Taylor coefficients of its direction overflow.
+  long double slip_in_last_digits_of_time(std::size_t c, const std::vector<long double>& accelerations) const {
+    constexpr long double kDigits = 16 * std::numeric_limits<double>::epsilon(), kLeast = 5e-14L;
+    return std::max(kLeast, kDigits * std::abs(static_cast<long double>(end_.get_d()))) *
+           bodies_.dynamics.slip_acceleration(c, accelerations);
   }
 
   Outcome undecided(std::size_t modes) const {
@@ -267,8 +303,9 @@ SimulationReport simulate_with_contacts(Workspace& s, const std::vector<Contact>
   const auto held = static_cast<std::size_t>(
       std::count_if(contacts.begin(), contacts.end(), [](const Contact& c) { return c.held.has_value(); }));
   if (held > 0 && held < contacts.size())
-    throw Failure({}, "a motion knows contacts or constraints with 'active', and the model has both",
-                  "a contact that an event switches: let its gap hold the mode");
+    throw Failure(
+        {}, "a motion knows contacts or constraints with 'active', and the model has both",
+        "leave out 'active', or write the contact as a soft one: [[force]] with vector = \"-k*min(P.z, 0)*ez\"");
   refuse_options(options, s, held > 0);
   const auto start = std::chrono::steady_clock::now();
   SimulationReport r =

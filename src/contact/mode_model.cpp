@@ -79,7 +79,8 @@ class ModeBuilder {
       if (const auto unit = units.find(c.name + what); unit != units.end())
         model_->outputs.push_back({c.name + what, unit->second, {}, {}, false, c.span});
     };
-    record(".mode", g_.number(mode.touch == Touch::open ? 0 : mode.touch == Touch::slips ? 1 : 2));
+    const bool slips = mode.touch == Touch::slips || (mode.touch == Touch::sticks && mode.begins);
+    record(".mode", g_.number(mode.touch == Touch::open ? 0 : slips ? 1 : 2));
     if (c.under) {
       record(".moment", friction);
     } else {
@@ -195,6 +196,11 @@ class ModeBuilder {
     for (std::size_t a = 0; a < c.slip.size(); ++a) act(c, 1, forces[a], c.slip[a]);
     const Expr size =
         forces.size() == 1 ? forces[0] : pow(forces[0] * forces[0] + forces[1] * forces[1], Rational(1, 2));
+    if (mode.held && mode.begins) {
+      // The slip that begins is left out of the motion for a moment, and its friction is that of a slip.
+      for (Expr& f : components_.back()) f = f * c.friction * normal * pow(size, Rational(-1));
+      return c.friction * normal;
+    }
     if (mode.held) return size;
     const Expr most = c.static_friction * normal;
     if (forces.size() == 1) {
@@ -202,8 +208,9 @@ class ModeBuilder {
         ends(c, ModeChange::slips, force - most, 1, number(ModeNumber::slack));
       return size;
     }
-    const Expr square = forces[0] * forces[0] + forces[1] * forces[1];
-    ends(c, ModeChange::slips, square - most * most, 1, number(ModeNumber::slack) * number(ModeNumber::slack));
+    // The slack is one of |T|, of which the square has the slope 2 |T|.
+    const Expr square = forces[0] * forces[0] + forces[1] * forces[1], slack = number(ModeNumber::slack);
+    ends(c, ModeChange::slips, square - most * most, 1, slack * (g_.number(2) * most + slack));
     return size;
   }
 
@@ -217,6 +224,13 @@ class ModeBuilder {
       act(c, 1, force * sign, c.slip[0]);
       ends(c, ModeChange::sticks, sign * c.slip[0], -1);
       return force * sign;
+    }
+    if (mode.begins) {
+      components_.back() = {force * number(ModeNumber::along), force * number(ModeNumber::across)};
+      for (std::size_t a = 0; a < 2; ++a) act(c, 1, components_.back()[a], c.slip[a]);
+      // A force that jumps may turn it back.
+      ends(c, ModeChange::slows, c.slip[0] * number(ModeNumber::along) + c.slip[1] * number(ModeNumber::across), -1);
+      return c.friction * normal;
     }
     if (mode.fast) {
       const Expr square = c.slip[0] * c.slip[0] + c.slip[1] * c.slip[1], inverse = pow(square, Rational(-1, 2));
@@ -232,7 +246,7 @@ class ModeBuilder {
     for (std::size_t a = 0; a < 2; ++a) act(c, 1, components_.back()[a], c.slip[a]);
     // At v = 0 the direction has no derivatives, unless v passes zero on a straight line.
     ends(c, ModeChange::sticks, along - number(ModeNumber::rest), -1);
-    ends(c, ModeChange::turns, across * across - along * along, 1);
+    for (const Expr side : {across, g_.number(-1) * across}) ends(c, ModeChange::turns, side - along, 1);
     return c.friction * normal;
   }
 
@@ -352,7 +366,7 @@ std::vector<int> mode_shape(const std::vector<Contact>& contacts, const ContactM
     const bool sticks = m.touch == Touch::sticks;
     shape.insert(shape.end(),
                  {static_cast<int>(m.touch), m.touch != Touch::open && m.load.shared, sticks && m.shares[0].shared,
-                  sticks && m.shares[1].shared, m.held, m.fast.has_value(), backwards});
+                  sticks && m.shares[1].shared, m.held, m.begins, m.fast.has_value(), backwards});
   }
   return shape;
 }

@@ -48,7 +48,8 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
   if (holds_others) forget_singularity(r);
   const bool every_event_known = joined_.add(r, mode->of.events);
   const bool vanished = (outcome.kind == OutcomeKind::step_collapse || gave_up(r)) && slip_vanishes();
-  rows_.end_segment(!vanished && !direction_vanishes(r.events, mode->of.events));
+  rows_.end_segment(!vanished && !direction_vanishes(r.events, mode->of.events) &&
+                    !(outcome.ok() && goes_on_slipping(to)));
   if (vanished) {
     outcome = {};
     bodies_.excluded.assign(bodies_.contacts.size(), {});
@@ -71,6 +72,13 @@ bool ModeSegments::direction_vanishes(const std::vector<EventReport>& events,
     return at != known.end() && at->second.change == ModeChange::sticks &&
            bodies_.contacts[at->second.contact].slip.size() > 1;
   });
+}
+
+bool ModeSegments::goes_on_slipping(const Rational& to) const {
+  return bodies_.at.t == to && to < end_ &&
+         std::any_of(
+             bodies_.modes.begin(), bodies_.modes.end(),
+             [](const ContactMode& m) { return m.touch == Touch::slips && m.begins; });
 }
 
 bool ModeSegments::note(const std::vector<EventReport>& events, const std::map<std::string, ModeEvent>& known) {
@@ -111,6 +119,28 @@ ReadyMode* ModeSegments::simulate_mode(const Rational& to, SimulationReport& rep
   report = simulate_in(*mode->own, asked(to), rows_, &mode->plans);
   outcome = report.outcome;
   return mode;
+}
+
+bool ModeSegments::last_until(const Rational& to, ContactState& at) {
+  class NoRows final : public RowSink {
+    void columns(const std::vector<RunColumn>&) override {}
+    void row(const Row&) override {}
+  } none;
+  Outcome outcome;
+  ReadyMode* const mode = to > end_ ? nullptr : begin(ModeEnds::events, outcome);
+  if (!mode) return false;
+  SegmentRows last(none, bodies_.contacts);
+  last.begin_segment();
+  SimulationOptions o = asked(to);
+  o.at = {to};
+  o.dense = nullptr;
+  o.followed.clear();
+  const SimulationReport r = simulate_in(*mode->own, o, last, &mode->plans);
+  at = bodies_.at;
+  last.last_state(at);
+  return r.outcome.ok() && at.t == Rational(to.get_d()) &&
+         std::none_of(r.events.begin(), r.events.end(),
+                      [&](const EventReport& e) { return mode->of.events.count(e.name) > 0; });
 }
 
 SimulationOptions ModeSegments::asked(const Rational& to) const {
@@ -203,6 +233,7 @@ bool ModeSegments::slip_vanishes() {
   constexpr long double kVanished = 1e-8L;
   bodies_.dynamics.go(bodies_.at);
   bool any = false;
+  if (std::exchange(vanished_, bodies_.at.t) == bodies_.at.t) return false;
   for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
     const ContactRows& rows = bodies_.dynamics.accelerations().contacts[c];
     if (bodies_.modes[c].touch != Touch::slips || !rows.rough || rows.tangential.size() < 2) continue;

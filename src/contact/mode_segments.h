@@ -20,6 +20,8 @@ class ModeSegments {
   // Follows the motion in the modes of the bodies to their end, but not beyond `to`; returns false if it ends there. The bodies
   // are then at the end of the segment, with what its events exclude.
   bool follow(const Rational& to, Outcome& outcome);
+  // Whether the modes last up to `to`, with the state there: the motion itself does not go on.
+  bool last_until(const Rational& to, ContactState& at);
   std::size_t rows() const { return rows_.rows(); }
 
  private:
@@ -44,6 +46,8 @@ class ModeSegments {
   bool slip_vanishes();
   // Whether one of the events ends a slip with two components, whose direction round-off tells there.
   bool direction_vanishes(const std::vector<EventReport>& events, const std::map<std::string, ModeEvent>& known) const;
+  // Whether the segment ended where a slip that has begun goes on as it was, up to the way its direction is written.
+  bool goes_on_slipping(const Rational& to) const;
   // Notes what the events of a segment exclude; returns whether one has changed the modes.
   bool note(const std::vector<EventReport>& events, const std::map<std::string, ModeEvent>& known);
   void nothing_has_changed();
@@ -57,8 +61,9 @@ class ModeSegments {
   std::vector<Rational> times_;
   Rational end_;
   std::function<void(std::size_t)> slips_;
-  int retries_ = 0;           // how often BDF went on where Taylor's method gave up
-  bool events_near_ = false;  // the last segment by BDF has come near the end of a mode
+  std::optional<Rational> vanished_;  // when a slip vanished last, which it does once at a time
+  int retries_ = 0;                   // how often BDF went on where Taylor's method gave up
+  bool events_near_ = false;          // the last segment by BDF has come near the end of a mode
 };
 
 }  // namespace anholon

@@ -13,6 +13,35 @@ namespace anholon {
 // A slip velocity with two components begins at this part of the velocities: at zero it has no direction.
 static constexpr long double kSeed = 1e-10L;
 
+// By which part of the forces friction of a contact that sticks is above its bound at a state; nullopt if the equations are singular
+// there.
+static std::optional<long double> beyond_bound(TouchingBodies& bodies, std::size_t c, const ContactState& at) {
+  bodies.dynamics.go(at);
+  const ContactProblem& p = bodies.dynamics.accelerations();
+  ContactModes modes = bodies.modes;
+  for (std::size_t o = 0; o < modes.size(); ++o)
+    if (p.contacts[o].moves) modes[o].direction = p.contacts[o].direction;
+  const auto f = of_modes(p, modes);
+  bodies.dynamics.go(bodies.at);
+  if (!f) return std::nullopt;
+  const long double bound = p.contacts[c].static_friction * f->normal[c];
+  return (std::hypot(f->friction[c][0], f->friction[c][1]) - bound) / std::max(bound, size_of_forces(p, *f));
+}
+
+bool only_touches_bound(TouchingBodies& bodies, std::size_t contact, const Ahead& ahead) {
+  constexpr long double kRoundOff = 1e-14L;
+  const long double speed = std::max(bodies.dynamics.speed(), 1.0L);
+  // Friction that hardly changes is looked at for longer.
+  for (const long double time : {1e-6L, 1e-4L, 1e-2L}) {
+    ContactState at;
+    if (!ahead(Rational(bodies.at.t.get_d() + static_cast<double>(time / speed)), at)) return false;
+    const auto by = beyond_bound(bodies, contact, at);
+    if (!by || *by > kRoundOff) return false;
+    if (*by < -kRoundOff) break;
+  }
+  return true;
+}
+
 bool SlipStart::hold(Outcome& outcome) {
   constexpr long double kTrial = 1e-6L;
   std::fill(held_.begin(), held_.end(), Held{});
@@ -21,6 +50,9 @@ bool SlipStart::hold(Outcome& outcome) {
   std::size_t c = 0;
   while (c < bodies_.contacts.size() && !begins_at_rest(c)) ++c;
   if (c == bodies_.contacts.size()) return true;
+  // A force that jumps begins a slip with an acceleration.
+  constexpr long double kAtBound = 1e-9L;
+  if (beyond_bound(bodies_, c, bodies_.at).value_or(0) > kAtBound) return true;
   const long double trial = kTrial / std::max(bodies_.dynamics.speed(), 1.0L);
   if (const Hold how = hold_for(c, trial, outcome); how != Hold::to_its_end) return how != Hold::motion_ends;
   bodies_.dynamics.go(bodies_.at);
@@ -29,7 +61,7 @@ bool SlipStart::hold(Outcome& outcome) {
   const std::vector<ContactSolution> list = consistent_modes(p);
   if (list.size() != 1 || list[0].modes[c].touch != Touch::slips) return true;
   const long double rate = bodies_.dynamics.slip_acceleration(c, list[0].x) / trial;
-  held_[c] = {trial, true, rate};
+  held_[c] = {trial, rate};
   const long double h = time_to_grow(c, rate);
   if (!(h > 2 * trial)) return true;
   if (const Hold how = hold_for(c, h - trial, outcome); how != Hold::to_its_end) return how != Hold::motion_ends;
@@ -39,11 +71,14 @@ bool SlipStart::hold(Outcome& outcome) {
 }
 
 void SlipStart::tell_who_slips_too(const ContactModes& now) {
-  if (!bodies_.modes.empty() && shares_friction(bodies_.modes))
-    for (std::size_t c = 0; c < now.size(); ++c)
-      if (bodies_.modes[c].touch == Touch::sticks && now[c].touch == Touch::slips && !told_[c])
-        joined_.event(bodies_.contacts[c].name + "." + word(bodies_.contacts[c], ModeChange::slips),
-                      bodies_.at.t.get_d() - static_cast<double>(together_));
+  for (std::size_t c = 0; c < now.size() && !bodies_.modes.empty() && shares_friction(bodies_.modes); ++c) {
+    if (bodies_.modes[c].touch != Touch::sticks || now[c].touch != (told_[c] ? Touch::sticks : Touch::slips)) continue;
+    const std::string name = bodies_.contacts[c].name + "." + word(bodies_.contacts[c], ModeChange::slips);
+    if (told_[c])
+      joined_.take_back(name);
+    else
+      joined_.event(name, bodies_.at.t.get_d() - static_cast<double>(together_));
+  }
   told_.assign(bodies_.contacts.size(), false);
 }
 
@@ -51,11 +86,11 @@ bool SlipStart::was_held(std::size_t c) const { return together_ > 0 && bodies_.
 
 long double SlipStart::first_slip(std::size_t c, const std::vector<long double>& accelerations) const {
   const long double seed = kSeed * std::max(bodies_.dynamics.speed(), 1.0L);
-  const auto [time, grows, rate] = held_[c];
+  const auto [time, rate] = held_[c];
   if (!(time > 0)) return seed;
   const long double a = bodies_.dynamics.slip_acceleration(c, accelerations);
   // The integral of a = rate t + c t^2.
-  return std::max(seed, grows ? a * time / 3 + rate * time * time / 6 : a * time);
+  return std::max(seed, a * time / 3 + rate * time * time / 6);
 }
 
 void SlipStart::guess_directions(ContactProblem& p) const {
@@ -65,7 +100,7 @@ void SlipStart::guess_directions(ContactProblem& p) const {
 }
 
 void SlipStart::begin(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations) {
-  waits_.reset();
+  waits_.reset(), begun_.reset();
   if (list.size() > 1) return begin_together(list, accelerations);
   if (!list.empty() && !lets_wait(list[0], accelerations)) begin_alone(list[0], accelerations);
 }
@@ -73,8 +108,8 @@ void SlipStart::begin(const std::vector<std::size_t>& list, const std::vector<lo
 void SlipStart::begin_alone(std::size_t c, const std::vector<long double>& accelerations) {
   const std::vector<double> before = bodies_.at.qd;
   bodies_.set_slip(c, bodies_.modes[c].direction, first_slip(c, accelerations));
-  // The way of a velocity that has grown as the square of the time, or as the time.
-  const long double mean = held_[c].time / (held_[c].grows ? 3 : 2);
+  // The way of a velocity that has grown as the square of the time.
+  const long double mean = held_[c].time / 3;
   for (std::size_t a = 0; a < before.size(); ++a)
     bodies_.at.q[a] = static_cast<double>(bodies_.at.q[a] + mean * (bodies_.at.qd[a] - before[a]));
 }
@@ -90,12 +125,6 @@ bool SlipStart::lets_wait(std::size_t c, const std::vector<long double>& acceler
   const long double a = bodies_.dynamics.slip_acceleration(c, accelerations);
   const long double time = Rational(later(std::min(kFirst * speed / a, kLongest / speed)) - bodies_.at.t).get_d();
   if (!(a * time > kSeed * speed)) return false;
-  ContactModes sticks = bodies_.modes;
-  sticks[c].touch = Touch::sticks;
-  share_forces(bodies_.with_touching(), sticks);
-  if (shares_friction(sticks)) return false;
-  bodies_.modes = std::move(sticks);
-  bodies_.modes[c].held = true;
   waits_ = {c, time};
   return true;
 }
@@ -103,9 +132,12 @@ bool SlipStart::lets_wait(std::size_t c, const std::vector<long double>& acceler
 bool SlipStart::wait(Outcome& outcome) {
   const auto [c, time] = *waits_;
   waits_.reset();
-  const Hold how = hold_for(c, time, outcome);
-  if (how == Hold::to_its_end) held_[c] = {time, false};
-  return how != Hold::motion_ends;
+  const Rational to = std::min(end_, later(time));
+  bodies_.modes[c].begins = true;
+  const bool goes_on = segment_(to, outcome);
+  bodies_.modes[c].begins = false;
+  begun_ = c;
+  return goes_on && outcome.ok();
 }
 
 void SlipStart::begin_together(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations) {
@@ -188,7 +220,7 @@ bool SlipStart::hold_together(long double time, Outcome& outcome) {
   bodies_.stop(bodies_.modes);
   const bool goes_on = segment_(to, outcome);
   held_until_ = bodies_.at.t.get_d();
-  for (ContactMode& m : bodies_.modes) m.held = false;
+  for (ContactMode& m : bodies_.modes) m.held = m.begins = false;
   told_ = told;
   return goes_on && outcome.ok();
 }
@@ -204,11 +236,15 @@ bool SlipStart::hold_to_grow(Outcome& outcome) {
   for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
     if (!was_held(c) || bodies_.contacts[c].slip.size() != 2 || list[0].modes[c].touch != Touch::slips) continue;
     slipping.push_back(c);
+    bodies_.modes[c].begins = true;
     const long double rate = bodies_.dynamics.slip_acceleration(c, list[0].x) / together_;
-    held_[c] = {together_, true, rate};
+    held_[c] = {together_, rate};
     h = std::max(h, time_to_grow(c, rate));
   }
-  if (!(h > 2 * together_)) return true;
+  if (!(h > 2 * together_)) {
+    for (const std::size_t c : slipping) bodies_.modes[c].begins = false;
+    return true;
+  }
   if (!hold_together(h - together_, outcome)) return false;
   together_ = h;
   for (const std::size_t c : slipping) held_[c].time = h;
@@ -216,10 +252,10 @@ bool SlipStart::hold_to_grow(Outcome& outcome) {
 }
 
 long double SlipStart::time_to_grow(std::size_t c, long double rate) const {
-  constexpr long double kHeld = 1e-7L, kMost = 3e-2L, kRoundOff = 1e-9L;
+  constexpr long double kHeld = 1e-7L, kMost = 3e-2L, kBegins = 1e-7L;
   const ContactDynamics::Place& at = bodies_.dynamics.place(c);
-  // A contact that never moved has terms of unknown size.
-  const long double scale = at.slip_scale > kRoundOff * at.slip_reach ? at.slip_scale : 1;
+  // A contact that never moved, or of which no more is known than how its slip began, has terms of unknown size.
+  const long double scale = at.slip_scale > kBegins * at.slip_reach ? at.slip_scale : 1;
   return std::min(std::sqrt(2 * kHeld * scale / rate), kMost / std::max(bodies_.dynamics.speed(), 1.0L));
 }
 
@@ -243,10 +279,10 @@ Rational SlipStart::later(long double time) const { return Rational(bodies_.at.t
 
 SlipStart::Hold SlipStart::hold_for(std::size_t c, long double time, Outcome& outcome) {
   const Rational to = std::min(end_, later(time));
-  bodies_.modes[c].held = true;
+  bodies_.modes[c].held = bodies_.modes[c].begins = true;
   bodies_.stop(bodies_.modes);
   const bool goes_on = segment_(to, outcome);
-  bodies_.modes[c].held = false;
+  bodies_.modes[c].held = bodies_.modes[c].begins = false;
   bodies_.excluded[c].stick = true;
   if (!goes_on || !outcome.ok()) return Hold::motion_ends;
   return bodies_.at.t >= to ? Hold::to_its_end : Hold::something_else_happens;

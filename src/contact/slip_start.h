@@ -7,6 +7,15 @@
 
 namespace anholon {
 
+// Follows the motion in the present modes of the bodies to a time, without rows; returns whether the modes last so long, with the
+// state at their end.
+using Ahead = std::function<bool(const Rational& to, ContactState& at)>;
+
+// Whether friction of a contact that sticks, which has come to its bound by the event at which the last segment ended, does not go
+// beyond it: it only touches the bound where the forces have a kink there, as those of a table at a knot, or jump. The contact
+// has forces of its own. Returns false if something else changes before that is told.
+bool only_touches_bound(TouchingBodies& bodies, std::size_t contact, const Ahead& ahead);
+
 class SlipStart {
  public:
   // Follows the motion in the present modes to a time, or to their end; returns false if the motion ends there.
@@ -22,16 +31,19 @@ class SlipStart {
   // as it is small its direction is stiff. The contact is held for the time h of time_to_grow; the error is of the order of h^3
   // (theory: contact). Returns false if the motion ends meanwhile.
   bool hold(Outcome& outcome);
-  // Of contacts that shared friction, those that slip with the one at which the last segment ended.
+  // Of contacts that shared friction, those that slip with the one at which the last segment ended; one that sticks on, as it only
+  // touched its limit or the others hold it, has not slipped.
   void tell_who_slips_too(const ContactModes& now);
   // Puts in the directions against the friction that held, as first guesses.
   void guess_directions(ContactProblem& problem) const;
   // Gives slips with two components the velocities with which they begin. `list`: the contacts of the present modes. A single
-  // one that begins with an acceleration waits instead: its contact sticks for a moment, which wait() follows.
+  // one that begins with an acceleration waits instead: its direction stays the same for a moment, which wait() follows.
   void begin(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations);
   bool waits() const { return waits_.has_value(); }
-  // Follows the motion for this moment, after which the slip begins with a velocity. Returns false if the motion ends meanwhile.
+  // Follows the motion for this moment, after which the slip has a velocity. Returns false if the motion ends meanwhile.
   bool wait(Outcome& outcome);
+  // Whether the slip of this contact has begun with the last segment, so that its velocity is small.
+  bool has_just_begun(std::size_t c) const { return begun_ == c; }
 
  private:
   // Whether a contact shared friction and may begin to slip.
@@ -39,8 +51,8 @@ class SlipStart {
   // The slip velocity from which a slip with two components is followed. After held_ it has grown with the acceleration.
   long double first_slip(std::size_t c, const std::vector<long double>& accelerations) const;
   void begin_alone(std::size_t c, const std::vector<long double>& accelerations);
-  // Lets the contact stick for the moment after which its slip is large against round-off, unless something else than this
-  // slip changes now.
+  // Lets the direction of the slip stay the same for the moment after which it is large against round-off, unless something else
+  // than this slip changes now.
   bool lets_wait(std::size_t c, const std::vector<long double>& accelerations);
   // Slips that begin at once on bodies that join them have velocities as their accelerations are.
   void begin_together(const std::vector<std::size_t>& list, const std::vector<long double>& accelerations);
@@ -76,8 +88,7 @@ class SlipStart {
   // The time for which a contact that begins to slip was held. The acceleration of the slip then
   struct Held {
     long double time = 0;
-    bool grows = true;     // is zero where the slip begins; else it hardly changes
-    long double rate = 0;  // of one that grows, where the slip begins
+    long double rate = 0;  // is zero where the slip begins, and has this rate there
   };
   std::vector<Held> held_;
   struct Waiting {
@@ -85,6 +96,7 @@ class SlipStart {
     long double time;
   };
   std::optional<Waiting> waits_;
+  std::optional<std::size_t> begun_;  // the contact that has waited just now
 };
 
 }  // namespace anholon

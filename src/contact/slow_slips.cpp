@@ -34,6 +34,7 @@ std::optional<long double> stiff_for(const TouchingBodies& bodies, long double l
   long double stiffest = 0, time = 0;
   for (std::size_t c = 0; c < bodies.modes.size(); ++c) {
     const ContactRows& rows = p.contacts[c];
+    if (bodies.modes[c].begins) return std::nullopt;
     if (bodies.modes[c].touch != Touch::slips || !rows.rough || rows.tangential.size() < 2) continue;
     const auto& slip = bodies.dynamics.place(c).slip;
     const long double v = std::hypot(slip[0], slip[1]);

@@ -49,7 +49,8 @@ void TouchingBodies::stop_ended_slips() {
     const std::size_t of = contacts[c].under.value_or(c);
     if (!near.closed(of) || near.gap_rate(of) != 0) continue;
     const bool ended = contacts[c].slip.size() == 2 && contacts[c].rough() && slip_has_ended(c);
-    to[c].touch = ended ? Touch::sticks : Touch::slips;
+    const bool stuck = c < modes.size() && modes[c].touch == Touch::sticks;
+    to[c].touch = ended || stuck ? Touch::sticks : Touch::slips;
     any = any || ended;
   }
   if (any) stop(to);

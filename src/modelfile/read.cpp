@@ -15,6 +15,7 @@
 #include "modelfile/language/language.h"
 #include "modelfile/mechanical/bodies.h"
 #include "modelfile/mechanical/constraints.h"
+#include "modelfile/mechanical/contact_names.h"
 #include "modelfile/mechanical/control.h"
 #include "modelfile/mechanical/observer.h"
 #include "modelfile/mechanical/potentials.h"
@@ -108,6 +109,7 @@ class Reader {  // its references are used only while it runs
     read_events(root, scope_, model_, diagnostics_);
     read_outputs(root, scope_, model_, diagnostics_);
     contacts_ = read_contacts(root, scope_, model_, diagnostics_);
+    check_names_of_contacts(contacts_, model_, diagnostics_);
     note_contacts();
     contacts_.insert(contacts_.end(), switched.begin(), switched.end());
     settle_contact_forces(scope_, model_, contacts_, diagnostics_);

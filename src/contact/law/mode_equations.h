@@ -34,9 +34,11 @@ struct ContactMode {
   ForceShare load;                     // N of a contact that touches
   std::array<ForceShare, 2> shares{};  // T of a contact that sticks
   bool held = false;                   // sticks, whatever friction this needs
-  long double rest = 0;                // a slip velocity with two components is zero below it
-  long double slack = 0;               // forces below it are round-off
-  long double depth = 0;               // a gap is negative below minus this
+  // Its slip begins in `direction`, which does not change for the moment. Rows of one that is held meanwhile show that it slips.
+  bool begins = false;
+  long double rest = 0;   // a slip velocity with two components is zero below it
+  long double slack = 0;  // forces below it are round-off
+  long double depth = 0;  // a gap is negative below minus this
 };
 using ContactModes = std::vector<ContactMode>;
 

@@ -130,7 +130,8 @@ initial = {z = 1, "phi'" = 9}
 - A contact has one body. The plane has no border, and the corners of a box are points: edges and faces of two boxes do not touch each other. Of two bodies one is
   a point or a ball and the other a ball B, `on = "ball(R)"` with `through = "B.center"`, whose turning is not part of the slip velocity; others have `gap` and `slip` as formulas.
 - The normal of a plane does not turn; `through` may move. On a ball the directions of slip are those across `ey`.
-- The gap is a length, and a slip velocity a velocity: friction is that of the force along the gap, so that `gap = "5*z"` has a fifth of it.
+- The gap is a length, and a slip velocity a velocity: friction is that of the force along the gap, so that `gap = "5*z"` has a fifth of it. A gap may be an angle, too, as that of a door and its stop: the
+  force along it is a moment then, and in a file with units a coefficient has the unit of the gap by that of the slip velocity and of time.
 - A contact pushes and does not pull: it is open, sticks or slips. The normal force N acts along the gradient of the gap, friction against the slip velocity:
   μN while it slips, at most the static coefficient times N while it sticks. Without `slip` there is no friction.
 - Contacts of one body whose gaps or slip velocities depend on each other share their forces, each friction by its load: [two feet](contact.md#two-feet-on-a-floor).

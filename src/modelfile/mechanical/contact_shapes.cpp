@@ -86,12 +86,25 @@ class TouchingReader {
   const Body& body() const { return model_.bodies[body_]; }
   const Rotation& orientation() const { return scope_.orientation(body_, c_.find("body")->span); }
 
+  static constexpr const char* kShapes =
+      "shape = \"point\", \"ball(R)\", \"disc(R)\" or \"box(a, b, c)\", or gap and slip as formulas";
+
+  // Of the shapes of bodies some do not touch.
+  Shape shape_that_touches(const Item& given) const {
+    try {
+      return read_shape(given, scope_, model_);
+    } catch (Failure& f) {
+      if (f.diagnostic.message.starts_with("there is no shape")) f.diagnostic.hint = kShapes;
+      throw;
+    }
+  }
+
   void read_shape_of_contact() {
     const Item* given = c_.find("shape");
     if (given && given->kind == Item::Kind::string && given->text() == "point")
       shape_ = {"point", {}};
     else if (given)
-      shape_ = read_shape(*given, scope_, model_);
+      shape_ = shape_that_touches(*given);
     else
       shape_ = c_.find("at") || !body().shape ? Shape{"point", {}} : *body().shape;
     if (shape_.kind == "shell") shape_.kind = "ball";
@@ -99,7 +112,7 @@ class TouchingReader {
     static const std::vector<std::string> known = {"point", "ball", "disc", "box"};
     if (std::find(known.begin(), known.end(), shape_.kind) == known.end())
       throw Failure((given ? given : c_.find("body"))->span, "the contact of a " + shape_.kind + " is not known",
-                    "shape = \"point\", \"ball(R)\", \"disc(R)\" or \"box(a, b, c)\", or gap and slip as formulas");
+                    kShapes);
   }
 
   void read_ground() {

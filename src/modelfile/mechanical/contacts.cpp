@@ -5,6 +5,7 @@
 #include "expr/normal.h"
 #include "formula/indices.h"
 #include "modelfile/mechanical/contact_shapes.h"
+#include "modelfile/mechanical/tangential.h"
 #include "modelfile/names/along.h"
 #include "modelfile/text/collect.h"
 #include "modelfile/text/keys.h"
@@ -101,7 +102,8 @@ class ContactReader {
     contact.element = contact.name;
     contact.span = named ? named->formula.whole() : c.span;
     if (!is_element_name(contact.name))
-      throw Failure(contact.span, "'" + contact.name.substr(0, 40) + "' is not a name");
+      throw Failure(contact.span, "'" + contact.name.substr(0, 40) + "' is not a name",
+                    "a name has letters, digits and '_', and begins with a letter: name = \"floor\"");
     return contact;
   }
 
@@ -129,6 +131,10 @@ class ContactReader {
       throw Failure(gap->span, "a gap is a formula of coordinates and time, without velocities",
                     "the velocity at the contact is the slip: slip = \"vel(B, P)\"");
     if (const Item* slip = c.find("slip")) contact.slip = velocities(*slip, c.find("along"));
+    for (const Expr v : contact.slip)
+      if (is_along_gap(contact.gap, v))
+        throw Failure(c.find("slip")->span, "a slip velocity is that of the gap: it is along the normal",
+                      "the components that are tangential to the contact, along = [\"ex\", \"ey\"]");
   }
 
   std::vector<Contact> by_shape(const Item& c, const Contact& common) const {
@@ -144,7 +150,7 @@ class ContactReader {
                       "a contact is that of a body which moves");
       std::vector<Direction> across;
       if (const Item* along = c.find("along"))
-        across = orthonormal_directions(*along, scope_);
+        across = tangential_directions(*along, t);
       else
         for (const Vector& d : t.directions) across.push_back({"", d});
       int index = 0;
@@ -158,6 +164,15 @@ class ContactReader {
       add_resistance(c, "rolling_resistance", t, t.directions, contact, place, list);
       add_resistance(c, "drilling_resistance", t, {t.normal}, contact, place, list);
     }
+    return list;
+  }
+
+  std::vector<Direction> tangential_directions(const Item& along, const Touching& t) const {
+    std::vector<Direction> list = orthonormal_directions(along, scope_);
+    std::vector<Vector> axes;
+    for (const Direction& d : list)
+      if (d.axis) axes.push_back(*d.axis);
+    check_tangential(axes, t.normal, model_, along.span);
     return list;
   }
 
@@ -276,7 +291,7 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
       throw Failure(contact.span, "more than " + std::to_string(kMost) + " contacts; a box has one for each corner",
                     kSoftContacts);
     if (std::any_of(list.begin(), list.end(), [&](const Contact& o) { return o.name == contact.name; }))
-      throw Failure(contact.span, "there are two contacts '" + contact.name + "'");
+      throw Failure(contact.span, "there are two contacts '" + contact.name + "'", "give one of them another name");
     list.push_back(std::move(contact));
   };
   const Item *items = root.find("contact"), *constraints = root.find("constraint");

@@ -16,7 +16,7 @@ std::vector<Direction> directions(const Item* along, Scope& scope) {
                     "along = \"T\" or along = [\"T.x\", \"T.y\"]");
     for (const Item& i : along->items) {
       const Vector v = scope.vector(i);
-      if (is_zero(v)) throw Failure(i.span, "a component along the zero vector");
+      if (is_zero(v)) throw Failure(i.span, "a component along the zero vector", "along = [\"ex\", \"ey\"]");
       list.push_back({std::to_string(list.size() + 1), v});
     }
     return list;
@@ -43,7 +43,9 @@ std::vector<Direction> orthonormal_directions(const Item& along, Scope& scope) {
     for (std::size_t k = 0; k < i; ++k)
       if (const Expr part = dot(v, *list[k].axis); !proved_zero(part)) v = v - part * *list[k].axis;
     const Expr square = dot(v, v);
-    if (proved_zero(square)) throw Failure(along.span, "two directions of a contact are parallel");
+    if (proved_zero(square))
+      throw Failure(along.span, "two directions of a contact are parallel",
+                    "leave one out, or two directions at an angle: along = [\"ex\", \"ey\"]");
     if (!proved_zero(square - 1)) v = pow(square, Rational(-1, 2)) * v;
     list[i].axis = v;
   }

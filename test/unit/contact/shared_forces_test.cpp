@@ -205,5 +205,18 @@ TEST(SharedFriction, ContactsThatDoNotAsTheirModesSayAreFound) {
   EXPECT_EQ(says(1, Touch::sticks, 0), "the contact 'l1' sticks, and slips with 1 m/s");
 }
 
+// The force of a table touches the limit of the two feet at the knot t = 1 and falls again.
+TEST(SharedForces, NoFootSlipsWhereAForceTouchesTheLimit) {
+  std::string text = block("\"s.center\"") + "table = [{name = \"P\", x = [0, 1, 2, 3], y = [0, 1, 0, 3]}]\n";
+  text.replace(text.find("\"t*ex\""), 6, "\"" + std::to_string(kLimit) + "*P(t)*ex\"");
+  const auto m = contact_motion(text, 3);
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  for (const std::string foot : {"l1.slips", "l2.slips"}) {
+    ASSERT_EQ(test::times(m, foot).size(), 1U);
+    EXPECT_NEAR(test::times(m, foot)[0], 7.0 / 3, 1e-9);
+  }
+  EXPECT_NEAR(m.last("x'"), kLimit / 2 / 2 * 3 * 4.0 / 9, 1e-9);
+}
+
 }  // namespace shared_forces_test
 }  // namespace anholon

@@ -76,6 +76,111 @@ contact = [{name = "floor", gap = "z", slip = ["x'", "y'"], friction = )toml" +
   EXPECT_GT(std::abs(block("0.31").last("x") - m.last("x")), 1e-3);  // the mutant
 }
 
+// A block of mass 1 with the friction 1 at most, in space, or in a plane.
+std::string pushed(const std::string& force, bool plane = false) {
+  return std::string("coordinates = [\"x\", ") + (plane ? "" : "\"y\", ") +
+         "\"z\"]\ngravity.field = \"-10*ez\"\nparticle = [{name = \"block\", mass = 1, position = \"x*ex + " +
+         (plane ? "" : "y*ey + ") + "z*ez\"}]\nforce = [{on = \"block\", vector = \"" + force +
+         "\"}]\ncontact = [{name = \"k\", gap = \"z\", friction = 0.1, slip = " +
+         (plane ? "\"x'\"" : "[\"x'\", \"y'\"]") +
+         "}]\ntable = [{name = \"P\", x = [0, 1, 2, 3, 4, 9], y = [0, 1, 0, 3, 0, 0]}]\n";
+}
+
+// The first row is that of the slip, in space as in the plane, and no event tells of it.
+TEST(SlipStart, SlipsFromTheFirstRow) {
+  for (const bool plane : {false, true}) {
+    const auto m = contact_motion(pushed("3*ex", plane), 1, {}, {0, Rational(1, 2'000'000'000), 1});
+    ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    EXPECT_TRUE(m.report.events.empty());
+    ASSERT_EQ(m.rows.rows().size(), 3U);
+    for (const std::size_t row : {0U, 1U, 2U}) {
+      EXPECT_EQ(m.number(row, "k.mode"), 1);
+      EXPECT_NEAR(std::abs(m.number(row, "k.friction")), 1, 1e-14);
+      EXPECT_NEAR(m.number(row, "x''"), 2, 1e-14);
+    }
+    EXPECT_NEAR(m.number(1, "x'"), 1e-9, 1e-23);
+    EXPECT_NEAR(m.last("x"), 1, 1e-14);
+  }
+  EXPECT_GT(contact_motion(pushed("3.1*ex"), 1).last("x"), 1.04);  // the mutant
+}
+
+// While a slip that begins without an acceleration is held, its rows show it with the friction of a slip.
+TEST(SlipStart, FrictionIsNeverBeyondItsBound) {
+  const auto m = contact_motion(pushed("t*ex + t^2/8*ey"), 2);
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  ASSERT_EQ(times(m, "k.slips").size(), 1U);
+  for (std::size_t row = 0; row < m.rows.rows().size(); ++row) {
+    EXPECT_LE(m.number(row, "k.friction"), 1 + 1e-11);
+    EXPECT_EQ(m.number(row, "k.mode"), m.number(row, "t") > times(m, "k.slips")[0] ? 1 : m.number(row, "k.mode"));
+  }
+}
+
+// Friction that is at its bound where a mode begins goes beyond it later: from the start, or where a slip has ended.
+TEST(SlipStart, FromTheBoundOfFriction) {
+  for (const bool plane : {false, true}) {
+    const auto grows = contact_motion(pushed("(1 + t)*ex", plane), 2);
+    ASSERT_TRUE(grows.report.outcome.ok()) << grows.report.outcome.message;
+    EXPECT_NEAR(grows.last("x"), 4.0 / 3, 1e-11);
+    const auto turns = contact_motion(pushed("(3 - t)*ex", plane), 8);
+    ASSERT_TRUE(turns.report.outcome.ok()) << turns.report.outcome.message;
+    ASSERT_EQ(times(turns, "k.sticks").size(), 1U);
+    EXPECT_NEAR(times(turns, "k.sticks")[0], 4, 1e-12);
+    EXPECT_NEAR(turns.last("x"), -16.0 / 3, 1e-11);
+    EXPECT_GT(std::abs(contact_motion(pushed("(1 + 1.01*t)*ex", plane), 2).last("x") - 4.0 / 3), 1e-3);  // the mutant
+  }
+}
+
+// The force of a table touches the bound at the knot t = 1 and falls again; it passes the bound at t = 7/3.
+TEST(SlipStart, NotWhereAForceTouchesTheBound) {
+  for (const bool plane : {false, true}) {
+    const auto m = contact_motion(pushed("P(t)*ex", plane), 6, {}, {1, 2, 3, 4, 6});
+    ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    ASSERT_EQ(times(m, "k.slips").size(), 1U);
+    EXPECT_NEAR(times(m, "k.slips")[0], 7.0 / 3, 1e-12);
+    ASSERT_EQ(times(m, "k.sticks").size(), 1U);
+    EXPECT_NEAR(times(m, "k.sticks")[0], 31.0 / 6, 1e-12);
+    EXPECT_EQ(m.number(1, "x"), 0);
+    EXPECT_NEAR(m.number(2, "x'"), 2.0 / 3, 1e-11);
+    EXPECT_NEAR(m.number(3, "x'"), 7.0 / 6, 1e-11);
+    const auto drops = contact_motion(pushed("piecewise(t < 1, t, 0)*ex", plane), 2);
+    ASSERT_TRUE(drops.report.outcome.ok()) << drops.report.outcome.message;
+    EXPECT_TRUE(drops.report.events.empty());
+    const auto jumps = contact_motion(pushed("piecewise(t < 1, t, 3)*ex", plane), 2);  // the mutant
+    ASSERT_TRUE(jumps.report.outcome.ok()) << jumps.report.outcome.message;
+    EXPECT_NEAR(jumps.last("x"), 1, 1e-13);
+    // A force that stays at the bound is held, and goes beyond it later.
+    const auto stays = contact_motion(pushed("piecewise(t < 1, t, t < 2, 1, t - 1)*ex", plane), 3);
+    ASSERT_TRUE(stays.report.outcome.ok()) << stays.report.outcome.message;
+    EXPECT_NEAR(stays.last("x"), 1.0 / 6, 1e-11);
+  }
+}
+
+// A slip in space that is straight along an axis vanishes in all its digits.
+TEST(SlipStart, AndEndsAgainExactly) {
+  for (const std::string axis : {"x", "y"})
+    for (const double F : {2.0, 3.0, 7.0}) {
+      const auto m = contact_motion(pushed("piecewise(t < 1, " + std::to_string(F) + ", 0)*e" + axis), Rational(F + 3));
+      ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+      ASSERT_EQ(times(m, "k.sticks").size(), 1U);
+      EXPECT_NEAR(times(m, "k.sticks")[0], F, 1e-12);
+      EXPECT_NEAR(m.last(axis), (F - 1) / 2 + (F - 1) * (F - 1) / 2, 1e-12);
+    }
+}
+
+// A slip vanishes where its force jumps, so that it turns back at once, and at the end of the motion.
+TEST(SlipStart, AndVanishesWhereAForceJumpsOrTheMotionEnds) {
+  for (const bool plane : {false, true}) {
+    const auto turns = contact_motion(
+        pushed("piecewise(t < 2.5, -3, t < 4.5, 0.5, t < 5, 3, t < 6.5, -3, 0)*ex", plane), 7, {}, {0, 7});
+    ASSERT_TRUE(turns.report.outcome.ok()) << turns.report.outcome.message;
+    EXPECT_NEAR(turns.last("x"), -17.375, 1e-11);
+    const auto ends = contact_motion(
+        pushed("piecewise(t < 2, 2, t < 3.5, 0, t < 4.5, 3, t < 5.5, 1, t < 6, -2, 0)*ex", plane), 7, {}, {0, 7});
+    ASSERT_TRUE(ends.report.outcome.ok()) << ends.report.outcome.message;
+    EXPECT_NEAR(ends.last("x"), 9.25, 1e-11);
+  }
+}
+
 // An event that ends the motion does so while the contact is held before its slip is followed.
 TEST(SlipStart, EndsAtAnEvent) {
   const auto m = contact_motion(R"toml(coordinates = ["x", "y", "z"]
