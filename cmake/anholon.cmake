@@ -196,7 +196,7 @@ function(anholon_install_licences place component)
   endforeach()
 endfunction()
 
-# The source folder is baked in here and in modelfile/shipped.cpp alone, so that ccache can serve the rest to a second
+# The source folder is baked in here and in modelfile/text/shipped.cpp alone, so that ccache can serve the rest to a second
 # checkout.
 function(anholon_cli_definitions target)
   # The types of the public headers stay in their namespace, as the layers have types of these names.

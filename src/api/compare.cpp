@@ -1,7 +1,7 @@
 #include "anholon/compare.h"
 
 #include "api/data.h"
-#include "modelfile/shipped.h"
+#include "modelfile/text/shipped.h"
 #include "published/findings/finding.h"
 #include "published/subject.h"
 
@@ -56,8 +56,7 @@ Result<std::vector<ComparedEquation>> compare(const Model& model, const std::str
 
 Result<std::vector<ComparedEquation>> compare_file(const Model& model, const std::string& path,
                                                    const CompareOptions& options) {
-  return guarded(model.data().source,
-                 [&] { return compared(model, inner::equation_text(path), options); });
+  return guarded(model.data().source, [&] { return compared(model, inner::equation_text(path), options); });
 }
 
 }  // namespace anholon::v1

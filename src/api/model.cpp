@@ -6,7 +6,7 @@
 #include "anholon/version.h"
 #include "api/data.h"
 #include "contact/chosen_mode.h"
-#include "modelfile/shipped.h"
+#include "modelfile/text/shipped.h"
 
 namespace anholon::v1 {
 

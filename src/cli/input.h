@@ -7,7 +7,7 @@
 #include "base/read_file.h"
 #include "cli/commands.h"
 #include "modelfile/names/constant.h"
-#include "modelfile/shipped.h"
+#include "modelfile/text/shipped.h"
 #include "proof/prove.h"
 #include "setup/scenario.h"
 #include "simulation/request.h"

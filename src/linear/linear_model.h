@@ -47,46 +47,4 @@ struct LinearModel {
 };
 const char* name(LinearModel::Motion motion);
 
-// Derivatives and their tape, made once for all parameter values. The precision of the thread must be that of its
-// construction.
-class LinearPoint;
-class Linearizer {
- public:
-  Linearizer(Workspace& scenario, const StateChoice& choice, Signals signals = {});
-  // With other values of the parameters; the initial data are solved anew. Only if `check` it is found out whether the
-  // motion is steady.
-  Outcome at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const;
-
- private:
-  friend class LinearPoint;
-  struct Entry {
-    std::size_t variable;
-    int order;
-  };
-  struct Partial {
-    std::size_t row, column;  // rows: E_i^(k), then outputs; columns: entries, then inputs
-  };
-  std::size_t entry(std::size_t variable, int order) const {
-    return first_[variable] + static_cast<std::size_t>(order);
-  }
-  bool leading(std::size_t e) const { return entries_[e].order == s_.structure.d[entries_[e].variable]; }
-  std::string entry_name(std::size_t e) const;
-  // Looks for rows that have no derivative at the point. Returns an outcome that names an equation among them, and marks
-  // outputs in `rough` by the place where they have none.
-  Outcome look_for_kinks(const LinearPoint& point, const std::vector<Multi>& parameters,
-                         std::vector<std::string>& rough) const;
-
-  const Scenario& s_;
-  const StateChoice& choice_;
-  Signals signals_;
-  std::vector<std::string> notes_;
-  std::vector<Column> mass_;                       // the mass matrix
-  std::vector<Entry> entries_;                     // x_j^(k), k <= d_j
-  std::vector<std::size_t> first_;                 // of each variable
-  std::vector<std::pair<std::size_t, int>> rows_;  // E_i^(k), k <= c_i
-  std::vector<Partial> partials_;
-  Tape tape_;       // values of the rows, outputs, then the partial derivatives
-  OneSided sides_;  // of the rows and outputs
-};
-
 }  // namespace anholon

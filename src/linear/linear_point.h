@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/assert.h"
-#include "linear/linear_model.h"
+#include "linear/varied_equations.h"
 #include "tape/bind.h"
 
 namespace anholon {
@@ -34,8 +34,9 @@ class LinearPoint {
   static constexpr double kPreferred = 0.02;  // pivots of preferred or already taken coordinates: from this size on
 
  public:
-  LinearPoint(const Linearizer& l, const std::vector<Multi>& parameters)
-      : l_(l), machine_(l.tape_, 0, parameters), x(l.entries_.size(), Multi(0)) {}
+  // `eliminate`: the coordinates that follow from others, as far as that can be.
+  LinearPoint(const VariedEquations& l, std::vector<std::size_t> eliminate, const std::vector<Multi>& parameters)
+      : l_(l), eliminate_(std::move(eliminate)), machine_(l.tape, 0, parameters), x(l.entries.size(), Multi(0)) {}
 
   // Loads the computed state, with the leading derivatives if they are known.
   void load(const InitialState<Multi>& state) {
@@ -46,10 +47,11 @@ class LinearPoint {
 
   // Gives a machine of formulas its inputs.
   void set(Machine<Multi>& machine) const {
-    bind(machine, *l_.s_.model->graph, [&](const Node& n, NodeId symbol) {
+    bind(machine, *l_.scenario.model->graph, [&](const Node& n, NodeId symbol) {
       if (n.kind == Kind::time) return t;
-      const auto j = l_.s_.system.variable(symbol);
-      const bool known = j && n.order <= l_.s_.structure.d[*j];  // others are multipliers of redundant constraints
+      const auto j = l_.scenario.system.variable(symbol);
+      const bool known =
+          j && n.order <= l_.scenario.structure.d[*j];  // others are multipliers of redundant constraints
       return known ? x[l_.entry(*j, n.order)] : Multi(0);
     });
   }
@@ -59,11 +61,11 @@ class LinearPoint {
     set(machine_);
     machine_.evaluate();
     residual.clear();
-    const std::size_t all = l_.rows_.size() + l_.signals_.y.size();
-    jacobian = Matrix<Multi>(all, x.size() + l_.signals_.u.size());
-    for (std::size_t r = 0; r < l_.rows_.size(); ++r) residual.push_back(machine_.value(r));
-    for (std::size_t p = 0; p < l_.partials_.size(); ++p)
-      jacobian(l_.partials_[p].row, l_.partials_[p].column) = machine_.value(all + p);
+    const std::size_t all = l_.rows.size() + l_.signals.y.size();
+    jacobian = Matrix<Multi>(all, x.size() + l_.signals.u.size());
+    for (std::size_t r = 0; r < l_.rows.size(); ++r) residual.push_back(machine_.value(r));
+    for (std::size_t p = 0; p < l_.partials.size(); ++p)
+      jacobian(l_.partials[p].row, l_.partials[p].column) = machine_.value(all + p);
     const auto good = [](const Multi& v) { return v.finite(); };
     return std::all_of(residual.begin(), residual.end(), good) &&
            std::all_of(jacobian.data.begin(), jacobian.data.end(), good);
@@ -73,16 +75,14 @@ class LinearPoint {
   // so that a velocity is dependent if its coordinate is. Returns false if the hidden constraints are not independent
   // here.
   bool choose() {
-    const Structure& t_ = l_.s_.structure;
+    const Structure& t_ = l_.scenario.structure;
     follows.assign(x.size(), false);
     std::vector<bool> taken(t_.d.size(), false), wished(t_.d.size(), false);
-    const std::vector<std::size_t>& asked =
-        l_.choice_.eliminate.empty() ? l_.s_.model->dependent : l_.choice_.eliminate;
-    for (std::size_t a : asked) wished[a] = true;
+    for (std::size_t a : eliminate_) wished[a] = true;
     for (int level = t_.largest_c(); level >= 1; --level) {
       std::vector<std::size_t> rows, columns;
-      for (std::size_t r = 0; r < l_.rows_.size(); ++r)
-        if (t_.c[l_.rows_[r].first] - l_.rows_[r].second == level) rows.push_back(r);
+      for (std::size_t r = 0; r < l_.rows.size(); ++r)
+        if (t_.c[l_.rows[r].first] - l_.rows[r].second == level) rows.push_back(r);
       for (std::size_t j = 0; j < t_.d.size(); ++j)
         if (t_.d[j] >= level) columns.push_back(j);
       if (!eliminate(rows, columns, level, taken, wished)) return false;
@@ -115,10 +115,10 @@ class LinearPoint {
     // Sorts positions before velocities, the usual order.
     std::stable_sort(independent.begin(), independent.end(),
                      [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
-    const std::size_t n = independent.size(), inputs = l_.signals_.u.size(), outputs = l_.signals_.y.size();
+    const std::size_t n = independent.size(), inputs = l_.signals.u.size(), outputs = l_.signals.y.size();
     // Dependent entries as functions of independent ones and of inputs.
     Matrix<Multi> follow(dependent_.size(), n + inputs);
-    std::vector<Multi> column(l_.rows_.size(), Multi(0)), solution;
+    std::vector<Multi> column(l_.rows.size(), Multi(0)), solution;
     for (std::size_t c = 0; c < n + inputs; ++c) {
       for (std::size_t r = 0; r < column.size(); ++r)
         column[r] = -jacobian(r, c < n ? independent[c] : x.size() + c - n);
@@ -128,7 +128,7 @@ class LinearPoint {
     out.A = Matrix<Multi>(n, n), out.B = Matrix<Multi>(n, inputs), out.C = Matrix<Multi>(outputs, n),
     out.D = Matrix<Multi>(outputs, inputs);
     out.states.clear(), out.dependent.clear(), out.values.clear(), out.rates.clear();
-    out.inputs = l_.signals_.inputs, out.outputs = l_.signals_.outputs, out.notes = l_.notes_;
+    out.inputs = l_.signals.inputs, out.outputs = l_.signals.outputs, out.notes = l_.notes;
     for (std::size_t r = 0; r < n; ++r) {
       const std::size_t next = independent[r] + 1;  // entries of a variable are adjacent
       const bool free = where[next] == x.size();
@@ -141,7 +141,7 @@ class LinearPoint {
     }
     for (std::size_t o = 0; o < outputs; ++o)
       for (std::size_t c = 0; c < n + inputs; ++c) {
-        const std::size_t row = l_.rows_.size() + o;
+        const std::size_t row = l_.rows.size() + o;
         Multi& entry = c < n ? out.C(o, c) : out.D(o, c - n);
         entry = jacobian(row, c < n ? independent[c] : x.size() + c - n);
         for (std::size_t i = 0; i < dependent_.size(); ++i) addmul(entry, jacobian(row, dependent_[i]), follow(i, c));
@@ -163,12 +163,13 @@ class LinearPoint {
 
   std::size_t independent(std::size_t i) const { return independent_[i]; }
   bool coordinate(std::size_t i) const {
-    const auto& e = l_.entries_[independent_[i]];
-    return e.order == 0 && e.variable < l_.s_.system.coordinates;
+    const auto& e = l_.entries[independent_[i]];
+    return e.order == 0 && e.variable < l_.scenario.system.coordinates;
   }
 
  private:
-  const Linearizer& l_;
+  const VariedEquations& l_;
+  std::vector<std::size_t> eliminate_;
   Machine<Multi> machine_;
 
  public:
@@ -179,18 +180,18 @@ class LinearPoint {
 
  private:
   Node node(std::size_t e) const {
-    const auto& entry = l_.entries_[e];
-    return l_.s_.system.symbol_node(entry.variable, static_cast<unsigned>(entry.order));
+    const auto& entry = l_.entries[e];
+    return l_.scenario.system.symbol_node(entry.variable, static_cast<unsigned>(entry.order));
   }
   std::pair<int, std::size_t> rank(std::size_t e) const {
-    const auto& entry = l_.entries_[e];
-    const bool multiplier = entry.variable >= l_.s_.system.coordinates;
+    const auto& entry = l_.entries[e];
+    const bool multiplier = entry.variable >= l_.scenario.system.coordinates;
     return {multiplier ? 1000 + entry.order : entry.order, entry.variable};
   }
 
   bool eliminate(const std::vector<std::size_t>& rows, const std::vector<std::size_t>& columns, int level,
                  std::vector<bool>& taken, const std::vector<bool>& wished) {
-    const std::vector<int>& d = l_.s_.structure.d;
+    const std::vector<int>& d = l_.scenario.structure.d;
     Matrix<Multi> a(rows.size(), columns.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {
       for (std::size_t j = 0; j < columns.size(); ++j)
@@ -237,8 +238,8 @@ class LinearPoint {
     dependent_.clear();
     for (std::size_t e = 0; e < x.size(); ++e)
       if (follows[e] || l_.leading(e)) dependent_.push_back(e);
-    ANHOLON_ASSERT(dependent_.size() == l_.rows_.size());
-    Matrix<Multi> a(l_.rows_.size(), dependent_.size());
+    ANHOLON_ASSERT(dependent_.size() == l_.rows.size());
+    Matrix<Multi> a(l_.rows.size(), dependent_.size());
     for (std::size_t r = 0; r < a.rows; ++r)
       for (std::size_t c = 0; c < a.cols; ++c) a(r, c) = jacobian(r, dependent_[c]);
     if (!lu_.factor(a)) return false;

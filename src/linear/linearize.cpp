@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "linear/linearizer.h"
+
 namespace anholon {
 
 namespace {

@@ -14,12 +14,12 @@ static constexpr std::size_t kMany = 64;
 static bool may_have_several_solutions(const Program& p, const std::vector<std::uint32_t>& nonlinear) {
   const std::size_t mechanical = p.system->mechanical();
   const auto roots = p.tape.roots.begin();
-  const std::vector<std::uint32_t> needed = precedents(p.tape, {roots, roots + static_cast<std::ptrdiff_t>(mechanical)});
+  const std::vector<std::uint32_t> needed =
+      precedents(p.tape, {roots, roots + static_cast<std::ptrdiff_t>(mechanical)});
   const auto needs = [&](std::uint32_t slot) { return std::binary_search(needed.begin(), needed.end(), slot); };
   return std::any_of(nonlinear.begin(), nonlinear.end(), needs) ||
-         std::any_of(p.inputs.begin(), p.inputs.end(), [&](const ProgramInput& in) {
-           return in.leading && in.variable >= mechanical && needs(in.slot);
-         });
+         std::any_of(p.inputs.begin(), p.inputs.end(),
+                     [&](const ProgramInput& in) { return in.leading && in.variable >= mechanical && needs(in.slot); });
 }
 
 Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures, bool shared) {

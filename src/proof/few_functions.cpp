@@ -105,7 +105,8 @@ class Rewriting {
     const Rational twelfths = turns ? 12 * *turns : Rational(0);
     if (!turns || !twelfths.is_integer() || abs(twelfths) > 3) return g_.apply(f, u);
     const Expr rest = u - *turns * g_.pi(), two = sqrt(g_.number(2)), three = sqrt(g_.number(3));
-    const Expr sines[] = {g_.zero(), Rational(1, 4) * two * (three - g_.one()), g_.number({1, 2}), Rational(1, 2) * two};
+    const Expr sines[] = {g_.zero(), Rational(1, 4) * two * (three - g_.one()), g_.number({1, 2}),
+                          Rational(1, 2) * two};
     const Expr cosines[] = {g_.one(), Rational(1, 4) * two * (three + g_.one()), Rational(1, 2) * three, sines[3]};
     const long k = abs(twelfths).to_long();
     const Expr c = cosines[k], s = twelfths < 0 ? -sines[k] : sines[k];

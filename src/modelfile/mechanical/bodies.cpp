@@ -236,8 +236,9 @@ void BodyReader::read_axes(Body& body, const Item* inertia, const Item* axes) {
       throw Failure(inertia->span, "the moment of inertia is " + number_text(*v, 6) + ": it is not negative");
     if (const Vector& w = body.orientation->own_rate; !proved_zero(w.x) || !proved_zero(w.y))
       diagnostics_.warning(inertia->span,
-                           "the body '" + body.name + "' turns about other axes than its z axis, and a number J as its "
-                           "inertia stands for the moments J/2, J/2, J of a flat disc",
+                           "the body '" + body.name +
+                               "' turns about other axes than its z axis, and a number J as its "
+                               "inertia stands for the moments J/2, J/2, J of a flat disc",
                            "three moments: inertia = [Ixx, Iyy, Izz]");
     add(half * j, unit[0], "x");
     add(half * j, unit[1], "y");

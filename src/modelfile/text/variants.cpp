@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "base/read_file.h"
-#include "modelfile/shipped.h"
 #include "modelfile/text/collect.h"
+#include "modelfile/text/shipped.h"
 
 namespace anholon {
 

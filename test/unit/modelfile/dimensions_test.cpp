@@ -1,7 +1,7 @@
 // Units that fit together and units that do not; and that a file without units is never looked at.
 #include <gtest/gtest.h>
 
-#include "modelfile/shipped.h"
+#include "modelfile/text/shipped.h"
 #include "support/models.h"
 
 namespace anholon::dimensions_test {

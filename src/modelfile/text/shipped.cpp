@@ -1,4 +1,4 @@
-#include "modelfile/shipped.h"
+#include "modelfile/text/shipped.h"
 
 #include <algorithm>
 #include <filesystem>

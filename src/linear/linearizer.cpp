@@ -1,0 +1,95 @@
+#include "linear/linearizer.h"
+
+#include "linear/linear_point.h"
+#include "linear/steadiness.h"
+#include "numeric/more_digits.h"
+
+namespace anholon {
+
+Linearizer::Linearizer(Workspace& scenario, const StateChoice& choice, Signals signals)
+    : choice_(choice), equations_(scenario, std::move(signals)), mass_(mass_matrix(*scenario.mechanics)) {}
+
+static std::string text_of(const Branch& b, const SymbolNames& names) {
+  const std::string condition = print(b.condition, names, Format::text);
+  return b.table.empty() ? "where " + condition + " passes 0"
+                         : "where " + condition + " passes a knot of the table '" + b.table + "'";
+}
+
+Outcome Linearizer::look_for_kinks(const LinearPoint& point, const std::vector<Multi>& parameters,
+                                   std::vector<std::string>& rough) const {
+  const Multi part = round_off(kZeroPart), near = part * (Multi(1) + largest(point.x));
+  const std::size_t rows = equations_.rows.size() + equations_.signals.y.size();
+  for (const auto& side : equations_.sides.sides(parameters, near, [&](Machine<Multi>& m) { point.set(m); })) {
+    const std::string where = text_of(equations_.sides.branches()[side.branch], equations_.scenario.model->names);
+    for (std::size_t k = 0; k < side.below.size(); ++k) {
+      const Multi &a = side.below[k], &b = side.above[k];
+      if (!a.finite() && !b.finite()) continue;
+      if (a.finite() && b.finite() && !(abs(Multi(a - b)) > part * (Multi(1) + abs(a) + abs(b)))) continue;
+      const std::size_t row = k < rows ? k : equations_.sides.partials()[k - rows].row;
+      if (row >= equations_.rows.size()) {
+        rough[row - equations_.rows.size()] = where;
+        continue;
+      }
+      return {OutcomeKind::not_a_number,
+              "the equations have no derivative at this state: the equation of " +
+                  equations_.scenario.system.equation_names[equations_.rows[row].first] + " has a kink or a jump " +
+                  where,
+              "linearize at a state on one side of it, --about state with other initial values, or replace min, max, "
+              "abs, sign, piecewise or the table there by a smooth formula"};
+    }
+  }
+  return {};
+}
+
+// Outputs without a derivative at the point.
+static void leave_out(const std::vector<std::string>& rough, LinearModel& m) {
+  for (std::size_t o = rough.size(); o-- > 0;) {
+    if (rough[o].empty()) continue;
+    m.notes.push_back("the output '" + m.outputs[o] + "' has a kink or a jump at this state, " + rough[o] +
+                      "; it is left out");
+    m.outputs.erase(m.outputs.begin() + static_cast<std::ptrdiff_t>(o));
+    for (Matrix<Multi>* of : {&m.C, &m.D}) {
+      Matrix<Multi> fewer(of->rows - 1, of->cols);
+      for (std::size_t r = 0; r < fewer.rows; ++r)
+        for (std::size_t c = 0; c < fewer.cols; ++c) fewer(r, c) = (*of)(r < o ? r : r + 1, c);
+      *of = std::move(fewer);
+    }
+  }
+}
+
+Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const {
+  const InitialProblem<Multi> problem{
+      equations_.scenario.mechanics.get(), parameters, choice_.overrides, choice_.t, &mass_, nullptr,
+      &equations_.scenario.state};
+  InitialState<Multi> state;
+  if (Outcome o = consistent_state(problem, state); !o.ok()) return o;
+  if (equations_.scenario.routh)
+    if (Outcome o = complete_state(problem, *equations_.scenario.routh, equations_.scenario.routh_structure, state);
+        !o.ok())
+      return o;
+  const Outcome singular{OutcomeKind::singular,
+                         "the equations do not determine the motion at this state: it has no linear model",
+                         "choose another state"};
+  LinearPoint point(equations_, choice_.eliminate.empty() ? equations_.scenario.model->dependent : choice_.eliminate,
+                    parameters);
+  point.load(state);
+  if (!point.evaluate())
+    return {OutcomeKind::not_a_number, "a derivative of the equations has no value at this state",
+            "choose another state"};
+  if (!point.choose() || !point.settle()) return singular;
+  std::vector<std::string> rough(equations_.signals.y.size());
+  if (Outcome o = look_for_kinks(point, parameters, rough); !o.ok()) return o;
+  point.linear(out);
+  leave_out(rough, out);
+
+  look_for_steadiness(point, check, out);
+  Matrix<Multi> core(out.core.size(), out.core.size());
+  for (std::size_t i = 0; i < core.rows; ++i)
+    for (std::size_t k = 0; k < core.cols; ++k) core(i, k) = out.A(out.core[i], out.core[k]);
+  if (!eigenvalues(core, out.spectrum))
+    return {OutcomeKind::no_convergence, "the eigenvalues of A were not found",
+            "ask for more digits: --digits " + std::to_string(more_digits<Multi>())};
+  return {};
+}
+
+}  // namespace anholon
