@@ -117,9 +117,9 @@ void ContactDynamics::go(const ContactState& at) {
                               : std::array<long double, 2>{1, 0};
     // A velocity within round-off of those that the motion had is zero.
     constexpr long double kZero = 1e-13L;
-    for (std::size_t k = 0; k < rows.tangential.size(); ++k) {
-      const std::vector<long double>& t = rows.tangential[k];
-      long double without = place.slip[k];  // the velocity of a belt
+    for (std::size_t along = 0; along < rows.tangential.size(); ++along) {
+      const std::vector<long double>& t = rows.tangential[along];
+      long double without = place.slip[along];  // the velocity of a belt
       for (std::size_t i = 0; i < n_; ++i) {
         place.slip_reach = std::max(place.slip_reach, std::abs(t[i] * most_[i]));
         place.slip_scale = std::max(place.slip_scale, std::abs(t[i] * met_[i]));

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "contact/law/consistent_modes.h"
+#include "contact/law/rows.h"
 
 namespace anholon {
 
