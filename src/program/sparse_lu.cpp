@@ -89,8 +89,11 @@ class Eliminated {
     const auto [at, fresh] = entry(rows_[e.row], e.column, entries_.size());
     if (fresh) {
       entries_.push_back({.value = e.value, .exact = e.exact});
+      for (std::size_t k = 0; k < samples_; ++k) entries_.back().terms[k] = std::abs(e.value[k]);
       insert(columns_[e.column], e.row);
     } else {
+      for (std::size_t k = 0; k < samples_; ++k)
+        entries_[at].terms[k] = std::max(entries_[at].terms[k], std::abs(e.value[k]));
       for (std::size_t k = 0; k < samples_; ++k) entries_[at].value[k] += e.value[k];
       entries_[at].exact = false;
     }
@@ -148,6 +151,13 @@ class Eliminated {
         --k;
         continue;
       }
+      if (!best_.found && !small_) {
+        // Then takes any that is not round-off of its terms: coefficients of very different sizes have no common scale.
+        small_ = true;
+        for (std::uint32_t& version : version_) ++version;
+        --k;
+        continue;
+      }
       if (!best_.found) return false;
       one_sign_ = true;
       eliminate();
@@ -166,6 +176,7 @@ class Eliminated {
  private:
   struct Entry {
     Values value;
+    Values terms{};  // the sizes of what the value is a sum of, and of what these were
     bool exact = false;
     // The result of size_of_pivot, and the version of its row for which it holds.
     double size = 0;
@@ -224,7 +235,9 @@ class Eliminated {
     const Values& largest = largest_in_row(i);
     for (std::size_t k = 0; k < samples_; ++k) {
       const double most = largest[k], here = scaled(i, j, e, k);
-      if (!(here > kVanishes) || here < kThreshold * most) return 0;
+      const Entry& entry = entries_[e];
+      const bool zero = !(here > kVanishes) && !(small_ && std::abs(entry.value[k]) > kVanishes * entry.terms[k]);
+      if (zero || here < kThreshold * most) return 0;
       size = std::min(size, here / most);
     }
     return size;
@@ -295,7 +308,12 @@ class Eliminated {
       largest_[r].reset();
       ++version_[r];
       out_.scaled_entries.push_back(l);
-      for (std::size_t k = 0; k < samples_; ++k) entries_[l].value[k] /= p.value[k];
+      const Values &pivot_terms = entries_[p.entry].terms, column_terms = entries_[l].terms;
+      for (std::size_t k = 0; k < samples_; ++k) {
+        entries_[l].value[k] /= p.value[k];
+        const double of_pivot = std::abs(entries_[l].value[k]) * pivot_terms[k];
+        entries_[l].terms[k] = std::max(column_terms[k], of_pivot) / std::abs(p.value[k]);
+      }
       for (const auto& [other, u] : top) {
         const auto [at, fresh] = entry(rows_[r], other, entries_.size());
         if (fresh) {
@@ -304,7 +322,13 @@ class Eliminated {
           insert(columns_[other], r);
           resize_column(other, column_from);
         }
-        for (std::size_t k = 0; k < samples_; ++k) entries_[at].value[k] -= entries_[l].value[k] * entries_[u].value[k];
+        for (std::size_t k = 0; k < samples_; ++k) {
+          const Entry &left = entries_[l], &up = entries_[u];
+          Entry& here = entries_[at];
+          here.value[k] -= left.value[k] * up.value[k];
+          here.terms[k] =
+              std::max({here.terms[k], left.terms[k] * std::abs(up.value[k]), std::abs(left.value[k]) * up.terms[k]});
+        }
         entries_[at].exact = false;
         out_.update_list.push_back({at, l, u});
       }
@@ -331,6 +355,7 @@ class Eliminated {
   std::set<std::pair<std::size_t, std::uint32_t>> short_rows_, short_columns_;
   Best best_;
   bool one_sign_ = true;  // only pivots of the same sign at all samples
+  bool small_ = false;    // also pivots that are small in relation to the scales
 };
 
 std::size_t operations(const SparseElimination& e) { return e.lu.update_list.size() + e.lu.scaled_entries.size(); }
