@@ -217,7 +217,7 @@ def bead() -> tuple[an.Builder, an.Expr, an.Expr]:
 
 
 def test_numbers_are_not_formulas() -> None:
-    _, x, _ = bead()
+    x: Any = bead()[1]
     for made, said in [
         (lambda: np.sin(x), r"np\.sin is of numbers, and x is a formula; write an\.sin"),
         (lambda: np.arctan2(x, 1), r"write an\.atan2"),
@@ -256,7 +256,7 @@ def test_an_inertia_may_be_an_array() -> None:
 
 def test_what_is_given_to_a_function_of_a_model() -> None:
     disc = an.load("disc")
-    f = disc.dynamics()
+    f: Any = disc.dynamics()
     x: Any = f.start
     nothing: Any = None
     mistakes: list[tuple[Any, str]] = [
@@ -278,4 +278,5 @@ def test_what_is_given_to_a_function_of_a_model() -> None:
     assert (f(np.array(0.0), list(x), p={"m": np.array(2)}) == f(0, x, p={"m": 2})).all()
     with pytest.raises(an.ModelError, match=r"error: m: the formula is empty"):
         disc.with_(m="")
-    assert disc.with_(m=np.array(2.5)).parameters["m"] == disc.with_(m=2.5).parameters["m"]
+    half: Any = np.array(2.5)
+    assert disc.with_(m=half).parameters["m"] == disc.with_(m=2.5).parameters["m"]

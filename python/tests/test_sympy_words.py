@@ -103,7 +103,7 @@ def test_mistakes_are_named(given: dict[str, Any], kind: type[Exception], said: 
 
 def test_values_that_are_no_mistakes() -> None:
     other = sm.Symbol("other")  # of constants that several systems share
-    values = {m: np.array(1.5), "k": 2, "F": 3, other: 1}
+    values: Any = {m: np.array(1.5), "k": 2, "F": 3, other: 1}
     model = an.from_sympy(pushed(F - k * x), values=values, initial={"x'": 1, v: 1.0})
     assert model.evaluate().accelerations == {"x''": 2} and model.evaluate().qdot == {"x'": 1}
     with pytest.raises(an.ModelError, match=r"from_sympy\(…, values=\{F: …\}\)"):

@@ -1,7 +1,10 @@
 #include "emit/rate_formulas.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_map>
+
+#include "tape/point.h"
 
 namespace anholon {
 
@@ -12,6 +15,12 @@ bool varies(Expr e) {
   return std::any_of(list.begin(), list.end(), [&](NodeId id) { return e.graph->node(id).kind != Kind::parameter; });
 }
 
+// A number at which a function that is not defined everywhere has a value: 1/2 or 2.
+Rational defined_at(Function f, Graph& g) {
+  PointValues at([](const Node&) { return 0.0; });
+  return std::isfinite(at(g.apply(f, g.number({1, 2})))) ? Rational(1, 2) : Rational(2);
+}
+
 // What may have no value in a branch, each with a number at which it has one: radicands, divisors and arguments.
 std::unordered_map<NodeId, Rational> risks(Expr branch) {
   std::unordered_map<NodeId, Rational> list;
@@ -20,15 +29,14 @@ std::unordered_map<NodeId, Rational> risks(Expr branch) {
     if (!g.is_number(id) && varies({branch.graph, id})) list.emplace(id, safe);
   };
   for (const NodeId id : reachable({&branch, 1})) {
-    const Node& n = g.node(id);
+    const Node n = g.node(id);
     if (n.kind == Kind::product)
       for (const Term& t : g.terms(id))
-        if (const Rational& e = g.rational(t.weight); !e.is_integer() || e < 0) add(t.node, 2);
+        if (const Rational& e = g.rational(t.weight); !e.is_integer() || e < 0) add(t.node, 1);
     if (n.kind != Kind::function) continue;
     const NodeId argument = g.terms(id)[0].node;
     const Function f = static_cast<Function>(n.index);
-    if (f == Function::log || f == Function::acosh) add(argument, 2);
-    if (f == Function::asin || f == Function::acos || f == Function::atanh) add(argument, Rational(1, 2));
+    if (*info(f).undefined) add(argument, defined_at(f, *branch.graph));
   }
   return list;
 }

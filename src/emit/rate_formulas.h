@@ -48,7 +48,7 @@ struct RateFormulas {
 };
 
 // The same values where branches keep what they do not take from having none: sqrt(x) in the branch of x >= 0 is
-// sqrt(x where x >= 0, else 2) there. Libraries that compute both branches then have derivatives, too.
+// sqrt(x where x >= 0, else 1) there. Libraries that compute both branches then have derivatives, too.
 Column with_guarded_branches(const Column& es);
 
 // The rates as a Python module, whose functions take the library for arrays as an argument: NumPy, JAX, or what stands for

@@ -42,7 +42,7 @@ std::optional<Sides> with_a_zero_side(Expr base) {
 
 }  // namespace
 
-Expr power_by_sides(Expr base, const Rational& e) {
+Expr power_by_sides(Expr base, Rational e) {
   if (e.is_integer() || e < 0) return pow(base, e);
   const std::optional<Sides> s = with_a_zero_side(base);
   if (!s) return pow(base, e);

@@ -30,6 +30,8 @@ class Rewriting {
   using Factors = std::map<NodeId, Rational>;
 
   Expr at(NodeId id) const { return done_.at(id); }
+  // A copy, as those of the graph move when it grows.
+  std::vector<Term> terms_of(NodeId id) const { return {g_.terms(id).begin(), g_.terms(id).end()}; }
   Expr node(NodeId id) { return {&g_, id}; }
 
   Expr rewritten(NodeId id) {
@@ -127,7 +129,7 @@ class Rewriting {
   // The angles that are rational multiples of pi at rational arguments.
   std::optional<Expr> known_angle(Function f, Expr u) {
     if (!is_number(u)) return std::nullopt;
-    const Rational& x = number_value(u);
+    const Rational x = number_value(u);
     std::optional<Rational> part;  // of pi
     if (f == Function::atan && abs(x) == 1) part = x / 4;
     if (f != Function::atan && (x == 0 || abs(x) == 1)) part = x / 2;
@@ -160,7 +162,7 @@ class Rewriting {
     return all;
   }
   // Of a number, by its small primes.
-  Expr logarithm_of(const Rational& x) {
+  Expr logarithm_of(Rational x) {
     constexpr unsigned long kLargest = 100;
     if (x <= 0) return log(g_.number(x));
     Expr all = g_.zero();
@@ -179,10 +181,10 @@ class Rewriting {
     u = reduced(u);
     if (g_.node(u.id).kind != Kind::sum) return exponential_of(u.id, 1);
     Expr all = g_.one();
-    for (const Term& t : g_.terms(u.id)) all = all * exponential_of(t.node, g_.rational(t.weight));
+    for (const Term& t : terms_of(u.id)) all = all * exponential_of(t.node, g_.rational(t.weight));
     return all;
   }
-  Expr exponential_of(NodeId a, const Rational& c) {
+  Expr exponential_of(NodeId a, Rational c) {
     const Node& n = g_.node(a);
     const bool of_log = n.kind == Kind::function && static_cast<Function>(n.index) == Function::log;
     return pow(of_log ? node(g_.terms(a)[0].node) : exp(node(a)), c);
@@ -193,7 +195,7 @@ class Rewriting {
     Factors factors;
     for (const Term& t : g_.terms(id)) factors[t.node] = g_.rational(t.weight);
     Expr all = g_.one();
-    for (const Term& t : g_.terms(id)) {
+    for (const Term& t : terms_of(id)) {
       const Node& n = g_.node(t.node);
       if (n.kind != Kind::function || static_cast<Function>(n.index) != Function::sign) continue;
       all = all * without_sign(factors, t.node, g_.terms(t.node)[0].node);
@@ -242,7 +244,7 @@ class Rewriting {
   }
 
   // sqrt(6) is sqrt(2) sqrt(3).
-  Expr root_of_number(const Rational& x, const Rational& e) {
+  Expr root_of_number(Rational x, const Rational& e) {
     constexpr long kLargest = 1'000'000;
     if (!(x > 0) || x.get_num() > kLargest || x.get_den() > kLargest) return pow(g_.number(x), e);
     Expr all = g_.one();

@@ -90,6 +90,8 @@ TEST(ConsistentState, ConditionsOnVelocitiesMovePositions) {
   // Where velocities fit, positions stay.
   ASSERT_TRUE(solve(text(law, "conditions = [\"y' = x' - 1\"]\n"), s).ok());
   EXPECT_EQ(s.q[1], 0);
+  // No place is one at infinity.
+  EXPECT_FALSE(solve(text(constraint("y' = x'*exp(-y)"), "x = 0\n" + moving), s).ok());
   // A place that is given stays.
   EXPECT_FALSE(solve(text(law, "y = 0.5\n" + moving), s).ok());
   // The same with the values of a command.
