@@ -218,7 +218,7 @@ def bead() -> tuple[an.Builder, an.Expr, an.Expr]:
 
 def test_numbers_are_not_formulas() -> None:
     x: Any = bead()[1]
-    for made, said in [
+    mistakes: list[tuple[Any, str]] = [
         (lambda: np.sin(x), r"np\.sin is of numbers, and x is a formula; write an\.sin"),
         (lambda: np.arctan2(x, 1), r"write an\.atan2"),
         (lambda: np.abs(x), r"write abs\(…\)"),
@@ -228,7 +228,8 @@ def test_numbers_are_not_formulas() -> None:
         (lambda: x(1), r"x is no function; functions and tables of a model are called by an\.call\('x', …\)"),
         (lambda: (x > 0) & (x < 1), r"conditions are not joined; where x > 0 and another one hold is piecewise"),
         (lambda: x.d(1.5), r"the order of a derivative is a whole number, not 1\.5"),
-    ]:
+    ]
+    for made, said in mistakes:
         with pytest.raises(TypeError, match=said):
             made()
     for order in (-1, 21):
