@@ -102,7 +102,8 @@ std::optional<Expr> cosine_of_twelfths(Graph& g, unsigned long k) {
 std::optional<Expr> sine_of_turned(Graph& g, bool cosine, Expr x) {
   const std::optional<Turned> t = turned(g, x.id);
   if (!t) return std::nullopt;
-  const Rational quarters = floor(2 * t->turns + Rational(1, 2));
+  // The nearest whole number, of two the one next to 0: -x has the same one with the other sign, and parity leads nowhere.
+  const Rational nearest = -floor(Rational(1, 2) - 2 * abs(t->turns)), quarters = t->turns < 0 ? -nearest : nearest;
   const Rational left = t->turns - quarters / 2;
   const Rational four = 4, k = quarters + (cosine ? 1 : 0);
   const long quarter = Rational(k - four * floor(k / four)).to_long();  // sin(x + quarter pi/2)
@@ -115,6 +116,9 @@ std::optional<Expr> sine_of_turned(Graph& g, bool cosine, Expr x) {
       if (v) return (quarter % 2 == 0 && left < 0 ? -sign : sign) * *v;
     }
   }
+  // cos(x + pi/4) is -sin(x - pi/4): of two ways to write it one is taken.
+  if (quarter % 2 == 1 && abs(left) == Rational(1, 4))
+    return (left > 0 ? -sign : sign) * g.apply(Function::sin, t->rest - left * g.pi());
   if (quarters == 0) return std::nullopt;
   const Expr rest = left == 0 ? t->rest : t->rest + left * g.pi();
   return sign * g.apply(quarter % 2 == 1 ? Function::cos : Function::sin, rest);

@@ -168,6 +168,13 @@ TEST(Folding, MultiplesOfPiComeOutOfSums) {
   EXPECT_EQ(cos(x - 3 * quarter), -sin(x));
   EXPECT_EQ(sin(x + Rational(1, 3) * s.g.pi()), cos(x - Rational(1, 6) * s.g.pi()));
   EXPECT_NE(sin(x + Rational(1, 8) * s.g.pi()), sin(x));
+  for (const int quarters : {-3, -1, 1, 3, 5}) {
+    const Expr u = x + Rational(quarters, 4) * s.g.pi(), w = Rational(quarters, 4) * s.g.pi() - x;
+    EXPECT_EQ(sin(-u), -sin(u));
+    EXPECT_EQ(cos(-u), cos(u));
+    EXPECT_EQ(sin(u + s.g.pi()), -sin(u));
+    EXPECT_EQ(cos(-w), cos(w));
+  }
   const PrecisionScope precision(40);
   test::Point point;
   point.set(x, Multi(3) / Multi(7));
