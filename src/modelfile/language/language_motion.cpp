@@ -312,6 +312,7 @@ initial = {qddot = {x = 0.2}, qdddot = {x = 0.05}}
 - A value is a number or a formula of parameters. Relations between unknowns stand under `conditions`, which may hold accelerations and
   `lambda.NAME`: they are solved with the equations of motion (`"theta'' = 0"`: a steady motion). `--q` and `--qdot` give
   numbers for positions and velocities; an acceleration has no such option, as it follows from the state, and a condition on it finds a state that has it.
+  A condition on velocities moves positions that are not given only where no velocities fit (`"c' = 0"`: the angle at which a caster does not turn).
 - Values that miss a constraint by no more than 1e-8 of its scale are taken as rounded, and corrected by the least change; by more
   it is an error that names the clash.
 - A guess also names one of several solutions: the nearest is taken. `--q` and `--qdot` take the place of values and of conditions that clash with them.
