@@ -30,9 +30,9 @@ std::unique_ptr<Graph> Graph::clone(std::size_t nodes) const {
   const Node& last = nodes_[nodes - 1];
   const std::size_t terms =
       whole ? terms_.size() : std::max(last.first + last.count, last.view_first + last.view_count);
-  g->nodes_.assign(nodes_.begin(), nodes_.begin() + static_cast<std::ptrdiff_t>(nodes));
-  g->terms_.assign(terms_.begin(), terms_.begin() + static_cast<std::ptrdiff_t>(terms));
-  g->rationals_ = rationals_;
+  g->nodes_.assign(nodes_, nodes);
+  g->terms_.assign(terms_, terms);
+  g->rationals_.assign(rationals_, rationals_.size());
   g->rational_index_ = rational_index_;
   g->step_functions_ = step_functions_;
   if (whole) {
@@ -112,13 +112,11 @@ NodeId Graph::intern(Node node, std::span<const Term> operands, std::span<const 
   });
   if (known != HashIndex::kNone) return known;
   ANHOLON_ASSERT(!frozen_);
-  node.first = node.view_first = static_cast<std::uint32_t>(terms_.size());
+  node.first = node.view_first = static_cast<std::uint32_t>(terms_.append(operands));
   node.count = node.view_count = static_cast<std::uint32_t>(operands.size());
-  terms_.insert(terms_.end(), operands.begin(), operands.end());
   if (!view.empty()) {
-    node.view_first = static_cast<std::uint32_t>(terms_.size());
+    node.view_first = static_cast<std::uint32_t>(terms_.append(view));
     node.view_count = static_cast<std::uint32_t>(view.size());
-    terms_.insert(terms_.end(), view.begin(), view.end());
   }
   const NodeId id = static_cast<NodeId>(nodes_.size());
   ANHOLON_ASSERT(id < 0xffffffffU);

@@ -15,12 +15,15 @@
 //   (3) A sum of many terms remembers the partial sum it was built from ("the chain": position
 //       of link i = position of link i-1 + …). Its flat terms decide equality; `summands` shows the
 //       short way to compute it, so sweeps over a chain of n links cost O(n), not O(n^2).
+//   (4) Nodes, terms, numbers and step functions never move: a reference or a span that the graph gives is valid as long
+//       as the graph, also while it grows.
 //
 // Thread safety: a graph may be read by many threads while none builds. A frozen graph cannot be built in, so any number
 // of threads may use it; whoever has to build beside it does so in a clone.
 #pragma once
 #include <compare>
 #include <cstdint>
+#include <deque>
 #include <initializer_list>
 #include <memory>
 #include <span>
@@ -28,6 +31,7 @@
 #include <vector>
 
 #include "base/hash_index.h"
+#include "base/stable_list.h"
 #include "numeric/rational.h"
 
 namespace anholon {
@@ -169,10 +173,10 @@ class Graph {
   // Reading.
   std::size_t size() const { return nodes_.size(); }
   const Node& node(NodeId id) const { return nodes_[id]; }
-  std::span<const Term> terms(NodeId id) const { return {terms_.data() + nodes_[id].first, nodes_[id].count}; }
+  std::span<const Term> terms(NodeId id) const { return terms_.part(nodes_[id].first, nodes_[id].count); }
   // Terms of a sum by the short way, operands of anything else: use this for every sweep.
   std::span<const Term> summands(NodeId id) const {
-    return {terms_.data() + nodes_[id].view_first, nodes_[id].view_count};
+    return terms_.part(nodes_[id].view_first, nodes_[id].view_count);
   }
   const Rational& rational(std::uint32_t index) const { return rationals_[index]; }
   const Rational& value(NodeId number) const { return rationals_[nodes_[number].index]; }
@@ -196,12 +200,12 @@ class Graph {
   NodeId intern(Node node, std::span<const Term> operands, std::span<const Term> view);
   Expr scaled(const Rational& factor, NodeId id);
 
-  std::vector<Node> nodes_;
-  std::vector<Term> terms_;
-  std::vector<Rational> rationals_;
+  StableList<Node> nodes_;
+  StableList<Term> terms_;
+  StableList<Rational> rationals_;
   HashIndex index_, rational_index_;
   std::vector<NodeId> rates_;
-  std::vector<StepFunction> step_functions_;
+  std::deque<StepFunction> step_functions_;
   std::uint64_t work_ = 0, most_work_ = ~std::uint64_t{0};
   NodeId zero_ = 0, one_ = 0;
   bool frozen_ = false;

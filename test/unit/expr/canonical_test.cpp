@@ -273,5 +273,20 @@ TEST(Rates, OfSharedPartsAreMadeOnce) {
   }
 }
 
+// What refers to a number, a node or the terms of one is read while the graph grows.
+TEST(Canonical, WhatAGraphGivesNeverMoves) {
+  Symbols s;
+  const Expr e = Rational(22, 7) * s.x + s.y * s.a + 3;
+  const Node& node = s.g.node(e.id);
+  const Rational& weight = s.g.rational(s.g.terms(e.id)[0].weight);
+  const std::span<const Term> terms = s.g.terms(e.id);
+  Expr growing = s.x;
+  for (int k = 1; k < 5'000; ++k) growing = sin(growing) + Rational(k, 5'001) * s.t;
+  EXPECT_EQ(&node, &s.g.node(e.id));
+  EXPECT_EQ(&weight, &s.g.rational(s.g.terms(e.id)[0].weight));
+  EXPECT_EQ(terms.data(), s.g.terms(e.id).data());
+  EXPECT_EQ(terms.size(), s.g.terms(e.id).size());
+}
+
 }  // namespace
 }  // namespace anholon::canonical_test
