@@ -330,6 +330,8 @@ Comparison Comparer::compare(const PublishedEquation& equation, Vocabulary& word
     nearest_of(c.changes, P, c);
   } else {
     nearest(P, c);
+    if (c.changes.empty() && c.difference && decide(P - *c.difference).verdict == Verdict::proved)
+      c.wrong_term = wrong_term(equation, *c.difference, words, names_, motion(order_of_motion(P)).anywhere());
   }
   return c;
 }

@@ -42,7 +42,8 @@ struct Comparison {
   std::optional<Expr> difference;  // false: left - right less the nearest true equation
   std::optional<WitnessPoint> witness;  // if false
   std::string detail;
-  std::vector<Change> changes;  // each of them makes it true
+  std::vector<Change> changes;       // each of them makes it true
+  std::optional<Change> wrong_term;  // false, without changes: the one term that is wrong or lost
   std::string with_numbers;     // false, unknown: the numbers of the file with which it holds, "J = 0.5, c = 0.7"
   bool identity = false;        // false: the equation is meant as an identity, not as an equation of motion
   bool trivial = false;         // true of every motion of every system
@@ -101,5 +102,12 @@ unsigned order_of_motion(Expr e);
 // The changes that make a false equation true: of one place, else the fewest of up to four places.
 std::vector<Change> repairs(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet,
                             Comparer& comparer);
+
+// The change by which left - right loses `difference`: a term of a false equation has another number as its factor, or
+// is to go, or a side lacks it. A lost term has an empty text before the change, a term that is to go an empty one after
+// it. Returns nullopt if the difference is a sum or has sums among its factors.
+// REQUIRES: left - right - difference vanishes on the motion.
+std::optional<Change> wrong_term(const PublishedEquation& equation, Expr difference, Vocabulary& words,
+                                 const SymbolNames& names, std::vector<PointValues>& points);
 
 }  // namespace anholon

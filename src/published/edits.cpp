@@ -292,10 +292,12 @@ class Search {
   void undotted(const Syntax& s) {
     if (s.op == Syntax::Op::prime) {
       path_.push_back(0);
+      ++dots_;
       if (s.args[0].op == Syntax::Op::prime || s.args[0].op == Syntax::Op::name || s.args[0].op == Syntax::Op::member)
         undotted(s.args[0]);
       else
         below(s.args[0]);
+      --dots_;
       path_.pop_back();
     } else if (s.op == Syntax::Op::member) {
       if (has(kComponents, s.text))
@@ -303,7 +305,8 @@ class Search {
           if (n != s.text) renamed(s, n, Edit::Kind::name);
       below(s);
     } else {
-      for (const std::string& n : exchanged(s.text)) renamed(s, n, Edit::Kind::name);
+      for (const std::string& n : exchanged(s.text))
+        if (dots_ == 0 || varies(n)) renamed(s, n, Edit::Kind::name);
       if (!has(alphabet_.others, s.text)) return;
       // c for cos(psi): an abbreviation that was taken for a name.
       for (const std::string& n : alphabet_.coordinates)
@@ -312,6 +315,14 @@ class Search {
           other.text = f;
           add(Edit::Kind::name, Effect::replaces, std::move(other));
         }
+    }
+  }
+
+  bool varies(const std::string& name) {
+    try {
+      return !is_zero(words_.number(with(Syntax::Op::prime, {named(name)})));
+    } catch (const Failure&) {  // not a number
+      return true;
     }
   }
 
@@ -358,7 +369,7 @@ class Search {
   unsigned most_dots_;
   std::vector<Syntax> factors_;  // that a term may have lost
   Path path_;
-  int in_function_ = 0;
+  int in_function_ = 0, dots_ = 0;  // around the visited node
   std::vector<Edit> list_;
 };
 

@@ -13,7 +13,8 @@ std::string ordinal(std::size_t k) {
 }
 
 FoundPlace found(const ChangedPlace& c) {
-  return {c.from, c.to, ordinal(c.term) + " term of the " + (c.side == 0 ? "left" : "right") + " side", c.span};
+  const std::string side = c.side == 0 ? "left side" : "right side";
+  return {c.from, c.to, c.from.empty() ? side : ordinal(c.term) + " term of the " + side, c.span};
 }
 
 std::string position(const FoundPlace& c) { return std::to_string(c.span.line) + ":" + std::to_string(c.span.column); }
@@ -32,7 +33,10 @@ std::string point_text(const WitnessPoint& w, const SymbolNames& names) {
 
 std::string FoundChange::text() const {
   const FoundPlace& first = places[0];
-  if (places.size() == 1) return position(first) + ": " + first.place + ": " + first.from + " should be " + first.to;
+  if (first.from.empty()) return position(first) + ": the " + first.place + " lacks the term " + first.to.substr(2);
+  if (places.size() == 1)
+    return position(first) + ": " + first.place + ": " + first.from +
+           (first.to.empty() ? " should not be there" : " should be " + first.to);
   std::string out = position(first) + ": ";
   if (std::all_of(places.begin(), places.end(),
                   [&](const FoundPlace& p) { return p.from == first.from && p.to == first.to; })) {
@@ -53,7 +57,9 @@ EquationFinding finding_of(const PublishedEquation& e, const Comparison& c, cons
   EquationFinding f{e.label, e.text(), c.verdict, c.what, {}, c.identity, c.detail, {}, {}, c.with_numbers};
   if (c.difference) f.difference = print(*c.difference, names, Format::text);
   if (c.witness) f.point = point_text(*c.witness, names);
-  for (const Change& k : c.changes) {
+  std::vector<Change> changes = c.changes;
+  if (c.wrong_term) changes.push_back(*c.wrong_term);
+  for (const Change& k : changes) {
     FoundChange change{found(k), {}, k.equation, k.proved};
     for (const ChangedPlace& p : k.places) change.places.push_back(found(p));
     f.changes.push_back(std::move(change));

@@ -4,6 +4,7 @@
 // other equation. More changes are tried only if fewer do not make the equation true.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "published/at_points.h"
 #include "published/compare.h"
@@ -64,9 +65,23 @@ class Repair {
       keep([](const Change& c) { return c.identity; });
   }
 
+  // A term with another number as its factor is one change (published/misprints/wrong_term.cpp).
+  bool has_two_numbers_in_one_term(const std::vector<const Edit*>& edits) const {
+    std::set<Path> terms;
+    for (const Edit* e : edits)
+      if (e->kind == Edit::Kind::coefficient && !e->in_function &&
+          !terms
+               .emplace(e->path.begin(),
+                        e->path.begin() + static_cast<std::ptrdiff_t>(innermost_term(syntax_, e->path)))
+               .second)
+        return true;
+    return false;
+  }
+
   void consider(const Misprint& m, std::vector<Survivor>& survivors) {
     std::vector<const Edit*> edits;
     for (std::uint32_t i : m.edits) edits.push_back(&trial_.edit(i));
+    if (has_two_numbers_in_one_term(edits)) return;
     Syntax syntax = edited(syntax_, 0, edits);
     Expr whole, left;
     try {

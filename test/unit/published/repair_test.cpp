@@ -307,5 +307,29 @@ TEST(Trial, AgreesWithTheChangedFormula) {
   EXPECT_GT(multiplied, 300U);
 }
 
+// The one term that is wrong, lost or too much; the changed equation is true when it is read again.
+TEST(Repair, WrongTerm) {
+  Repaired r(kRocket);
+  const std::pair<const char*, const char*> cases[] = {
+      {"m*x'' = - k*x - m'*u + m*(2*w*y' + w'*y + w^2*x)", "right: lacks + p'"},
+      {"m*x'' - p' = - m'*u + m*(2*w*y' + w'*y + w^2*x)", "left: lacks + k*x"},
+      {"0 = p' - m*x'' - k*x + m*(2*w*y' + w'*y + w^2*x)", "left: 0 -> u*m'"},
+      {"3*m*x''/7 = p' - k*x - m'*u + m*(2*w*y' + w'*y + w^2*x)", "left: 3*m*x''/7 -> m*x''"},
+      {"m*x'' = p' + 2/7*k*x - m'*u + m*(2*w*y' + w'*y + w^2*x)", "right: + 2/7*k*x -> - k*x"},
+      {"5*m' - m*x'' = 2*u*m' - p' + k*x + m'*u - m*(2*w*y' + w'*y + w^2*x) - 2*u*m'", "left: 5*m' -> "},
+      {"m*x'' = p' - k*x - 7*m' - m'*u + m*(2*w*y' + w'*y + w^2*x)", "right: - 7*m' -> "},
+  };
+  for (const auto& [equation, change] : cases) {
+    const Comparison c = r.compare(equation);
+    ASSERT_EQ(c.verdict, Verdict::refuted) << equation;
+    EXPECT_TRUE(c.changes.empty()) << equation << ": " << c.changes[0].equation;
+    ASSERT_TRUE(c.wrong_term) << equation;
+    const Change& k = *c.wrong_term;
+    EXPECT_EQ((k.side == 0 ? "left: " : "right: ") + (k.from.empty() ? "lacks " : k.from + " -> ") + k.to, change);
+    EXPECT_EQ(r.compare(k.equation).verdict, Verdict::proved) << k.equation;
+  }
+  EXPECT_FALSE(r.compare("m*x'' = m*(2*w*y' + w'*y + w^2*x)").wrong_term);
+}
+
 }  // namespace
 }  // namespace anholon::repair_test
