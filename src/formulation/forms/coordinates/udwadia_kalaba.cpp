@@ -27,6 +27,12 @@ static std::string linear_accelerations(const Mechanics& M) {
     for (Expr e : M.Phi[r])
       if (jet_order(e) > 1) return "the constraint '" + name + "' is not linear in the accelerations";
   }
+  const Column G = forces(M);  // E is linear in the accelerations
+  for (std::size_t a = 0; a < G.size(); ++a)
+    for (Expr e : jet_order(G[a]) > 1 ? gradient(G[a], M.qdd) : Column{})
+      if (jet_order(e) > 1)
+        return "the equation of " + M.model->coordinates[a].name +
+               " is not linear in the accelerations: a force, a mass or an expelled velocity holds them";
   return {};
 }
 
