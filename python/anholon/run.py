@@ -444,7 +444,7 @@ def _label(column: _core.Column) -> str:
     """The symbol of a column with its unit, as Matplotlib writes it."""
     from matplotlib.mathtext import MathTextParser
 
-    unit = f" [{column.unit}]" if column.unit else " [s]" if column.kind == "time" else ""
+    unit = f" [{column.unit}]" if column.unit else ""
     try:
         MathTextParser("path").parse(f"${column.latex}$")
     except ValueError:  # LaTeX of the user's that Matplotlib does not read

@@ -175,9 +175,7 @@ class Graph {
   const Node& node(NodeId id) const { return nodes_[id]; }
   std::span<const Term> terms(NodeId id) const { return terms_.part(nodes_[id].first, nodes_[id].count); }
   // Terms of a sum by the short way, operands of anything else: use this for every sweep.
-  std::span<const Term> summands(NodeId id) const {
-    return terms_.part(nodes_[id].view_first, nodes_[id].view_count);
-  }
+  std::span<const Term> summands(NodeId id) const { return terms_.part(nodes_[id].view_first, nodes_[id].view_count); }
   const Rational& rational(std::uint32_t index) const { return rationals_[index]; }
   const Rational& value(NodeId number) const { return rationals_[nodes_[number].index]; }
   bool is_number(NodeId id) const { return nodes_[id].kind == Kind::number; }

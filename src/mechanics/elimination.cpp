@@ -109,6 +109,7 @@ void Elimination::by_quasi_velocities(const std::vector<QuasiVelocity>& list, bo
     free.value.push_back(total_derivative(list[a].value, lift));
     free.names.push_back(list[a].name);
     free.orders.push_back(lift);
+    free.named.push_back(list[a].value);
   }
   free.rate_value = total_derivative(free.value);
   quasi = QuasiBasis{all_values(), {}};
@@ -250,10 +251,13 @@ Column Elimination::contract(const Column& X) const { return on(X) * top_.by_u; 
 
 Column Elimination::in_coordinates(const Column& X) const {
   if (!quasi) return X;
-  Column from = solved ? free.u : free.rate, to = solved ? free.value : free.rate_value;
-  if (solved) {
-    from.insert(from.end(), free.rate.begin(), free.rate.end());
-    to.insert(to.end(), free.rate_value.begin(), free.rate_value.end());
+  const Graph& g = mechanics_->graph();
+  Column from, to;
+  for (NodeId id : symbols(X)) {
+    const Node& n = g.node(id);
+    if (n.kind != Kind::quasi || n.index >= free.named.size()) continue;
+    from.push_back({&mechanics_->graph(), id});
+    to.push_back(total_derivative(free.named[n.index], n.order));
   }
   return put(X, from, to);
 }
@@ -266,8 +270,8 @@ Elimination Elimination::of(const Mechanics& copy) const {
 }
 
 static void for_each_expression(FreeQuantities& free, const ExprVisitor& f) {
-  auto& [names, orders, u, rate, value, rate_value] = free;
-  for_each_expression_of(f, names, orders, u, rate, value, rate_value);
+  auto& [names, orders, u, rate, value, rate_value, named] = free;
+  for_each_expression_of(f, names, orders, u, rate, value, rate_value, named);
 }
 
 static void for_each_expression(QuasiBasis& basis, const ExprVisitor& f) {

@@ -37,6 +37,7 @@ struct FreeQuantities {
   std::vector<unsigned> orders;    // u_k is the derivative of order orders[k] of names[k]
   Column u, rate;                  // u': symbols; u: symbols if solved, else functions of q, …, q^(m)
   Column value, rate_value;        // u, u' in coordinates
+  Column named;                    // of quasi-velocities: what names[k] itself is in coordinates
   // The index of a name; nullopt if it is not among them.
   std::optional<std::size_t> index_of(const std::string& name) const;
 };
@@ -104,7 +105,7 @@ class Elimination {
   Column I(const Column& X) const { return pick(X, independent); }
   Column D(const Column& X) const { return pick(X, dependent); }
 
-  // Writes quasi-velocities in coordinates again.
+  // Writes quasi-velocities and all their derivatives in coordinates again.
   Column in_coordinates(const Column& X) const;
 
   // The same of `copy`, a copy of the mechanics, with values of its own near the state; the handles are left as they

@@ -48,10 +48,10 @@ void stroke(cairo_t* c, const Stroke& s) {
     colour(c, "#222222"), library().cairo_set_line_width(c, 0.6);
     break;
   case Role::series: {
-    const double dashes[] = {4, 2};
+    const Dash& dash = dash_of(s.series);
     colour(c, kColour[s.series % kColours]);
     library().cairo_set_line_width(c, 1.1);
-    if (s.series >= kColours) library().cairo_set_dash(c, dashes, 2, 0);
+    library().cairo_set_dash(c, dash.on_off.data(), static_cast<int>(dash.lengths()), 0);
     break;
   }
   }

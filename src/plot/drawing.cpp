@@ -2,13 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
+#include "base/diagnostic.h"
 #include "base/escape.h"
 
 namespace anholon::plot {
 
 const char* const kColour[kColours] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                        "#e69f00", "#56b4e9", "#000000", "#8c564b"};
+
+const Dash kDash[kDashes] = {{"", "", {}},
+                             {"dashed", "dashed", {4, 2}},
+                             {"dotted", "dotted", {1.2, 1.8}},
+                             {"mixed", "dash dot", {6, 2, 1.2, 2}}};
+const Dash& dash_of(std::size_t series) { return kDash[series / kColours % kDashes]; }
 
 namespace {
 
@@ -33,6 +41,28 @@ RichText minus_signs(std::string label) {
   return {{label}};
 }
 
+// A text in lines that are not longer than `width`; a word alone may be.
+std::vector<std::string> lines_of(const std::string& text, double size, double width) {
+  std::vector<std::string> lines(1);
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    std::string& line = lines.back();
+    const std::string longer = line.empty() ? word : line + " " + word;
+    if (line.empty() || width_of(longer, size) <= width)
+      line = longer;
+    else
+      lines.push_back(word);
+  }
+  return lines;
+}
+
+// A dot of visible size.
+std::vector<Point> dot(Point at) {
+  constexpr double kRadius = 1;
+  return {{at.x - kRadius, at.y}, {at.x, at.y - kRadius}, {at.x + kRadius, at.y},
+          {at.x, at.y + kRadius}, {at.x - kRadius, at.y}, {at.x + kRadius, at.y}};
+}
+
 class Layout {
  public:
   explicit Layout(const Figure& f) : own_(f.equal ? std::optional<Figure>(f) : std::nullopt), f_(own_ ? *own_ : f) {
@@ -43,8 +73,11 @@ class Layout {
   Drawing make() {
     double top = kGap, bottom = d_.height - kGap;
     if (!f_.title.empty()) {
-      d_.words.push_back({{d_.width / 2, top + kSize}, {{shown(f_.title)}}, kSize + 1, Anchor::middle});
-      top += kSize + 1 + 1.5 * kGap;
+      for (const std::string& line : lines_of(shown(f_.title), kSize + 1, d_.width - 2 * kGap)) {
+        d_.words.push_back({{d_.width / 2, top + kSize}, {{line}}, kSize + 1, Anchor::middle});
+        top += kSize + 1 + 0.5 * kGap;
+      }
+      top += kGap;
     }
     bottom -= 0.35 * kSize;
     d_.words.push_back({{0, bottom}, rich_label(f_.x_name, f_.x_unit, f_.labels), kSize, Anchor::middle});
@@ -128,7 +161,13 @@ class Layout {
           {{kGap + kSize, (top + bottom) / 2}, series_label(p.series[0], f_.labels), kSize, Anchor::middle, true});
       top += kGap;
     }
-    const double height = own_ ? box_ : std::max(10.0, bottom - top), width = right_ - left_;
+    constexpr double kLeast = 20;  // of both sides of a box
+    const double height = own_ ? box_ : bottom - top, width = right_ - left_;
+    if (height < kLeast || width < kLeast)
+      throw Failure(Span{},
+                    "a figure of this size has no room for its " +
+                        std::string(f_.panels.size() > 1 ? "panels" : "curves") + " beside their labels",
+                    "a larger --size, fewer columns, or without --title");
     if (own_)
       top = bottom - height;
     else
@@ -153,7 +192,7 @@ class Layout {
       for (auto& piece : curve(f_, p, s, kFiner * width, kFiner * height)) {
         for (Point& q : piece) q = {left_ + q.x / kFiner, bottom - q.y / kFiner};
         // A single point is drawn as a dot.
-        if (piece.size() == 1) piece.push_back({piece[0].x + 0.01, piece[0].y});
+        if (piece.size() == 1) piece = dot(piece[0]);
         d_.strokes.push_back({std::move(piece), Role::series, s.number});
       }
   }

@@ -1,6 +1,7 @@
 // A figure laid out on paper: lines and words with their positions, in points of 1/72 inch, y downwards. The drawing
 // functions know nothing of axes.
 #pragma once
+#include <array>
 #include <cstdint>
 
 #include "plot/figure.h"
@@ -39,9 +40,18 @@ struct Drawing {
 
 Drawing lay_out(const Figure& figure);
 
-// Colours that colour-blind readers can distinguish (Okabe and Ito); they repeat with dashed lines.
+// Colours that colour-blind readers can distinguish (Okabe and Ito); they repeat with other dashes.
 inline constexpr std::size_t kColours = 8;
 extern const char* const kColour[kColours];
+struct Dash {
+  const char *css, *pgf;         // a class of the SVG, a style of pgfplots; empty for a whole line
+  std::array<double, 4> on_off;  // lengths in points; 0 ends them
+  std::size_t lengths() const { return on_off[0] == 0 ? 0 : on_off[2] == 0 ? 2 : 4; }
+};
+// The dash of the curve of that number.
+const Dash& dash_of(std::size_t series);
+inline constexpr std::size_t kDashes = 4;
+extern const Dash kDash[kDashes];
 
 // A complete SVG whose colours a page can set: classes s0 … s7, axis, grid, words; variables --s0 …, --ink, --grid,
 // --paper.

@@ -48,9 +48,37 @@ std::vector<double> slopes(const std::vector<double>& x, const std::vector<doubl
   return s;
 }
 
-// Rows at the ends of steps are far apart: between them the curve is the cubic with both slopes. If the slopes do not
-// fit the rows, there is a jump in between, and the line stays straight.
-void smooth(Figure& f, const std::vector<std::vector<double>>& derivatives) {
+// Whether a column without a derivative is a mode: whole numbers that mostly stay.
+bool is_mode(const std::vector<double>& y) {
+  std::size_t same = 0;
+  for (std::size_t i = 1; i < y.size(); ++i) same += y[i] == y[i - 1];
+  return 2 * same + 1 >= y.size() &&
+         std::all_of(y.begin(), y.end(), [](double v) { return std::isfinite(v) && v == std::round(v); });
+}
+
+// The cubic with both slopes between two rows, over u in [0, 1] of an interval of length h. If the slopes do not fit the
+// rows, there is a jump in between, and the line stays straight.
+class Between {
+ public:
+  Between(double y0, double y1, double d0, double d1, double h) : y0_(y0), y1_(y1), d0_(h * d0), d1_(h * d1) {
+    constexpr double kFits = 0.25;
+    const double rise = y1 - y0, mean = (d0_ + d1_) / 2;
+    curved_ = std::abs(rise - mean) <= kFits * (std::abs(rise) + (std::abs(d0_) + std::abs(d1_)) / 2);
+  }
+  double operator()(double u) const {
+    const double v = 1 - u;
+    return curved_ ? y0_ * v * v * (1 + 2 * u) + y1_ * u * u * (1 + 2 * v) + u * v * (d0_ * v - d1_ * u)
+                   : y0_ + u * (y1_ - y0_);
+  }
+
+ private:
+  double y0_, y1_, d0_, d1_;
+  bool curved_ = false;
+};
+
+// Rows at the ends of steps are far apart: points of a curve are put between them. On a logarithmic axis the curve of
+// positive numbers is that of their logarithms. A mode keeps its value up to the next row.
+void smooth(Figure& f, const std::vector<std::vector<double>>& derivatives, bool log) {
   constexpr std::size_t kPoints = 1000, kMost = 20;
   const std::size_t n = f.x.size(), parts = n < 2 ? 1 : std::min(kMost, kPoints / n);
   const bool in_order = std::is_sorted(f.x.begin(), f.x.end(), std::less_equal<>()) ||
@@ -66,23 +94,33 @@ void smooth(Figure& f, const std::vector<std::vector<double>>& derivatives) {
   for (Panel& p : f.panels)
     for (Series& s : p.series) {
       const std::vector<double>& given = derivatives[number++];
-      const std::vector<double> y = std::move(s.y), d = given.empty() ? slopes(x, y) : given;
+      const bool mode = given.empty() && is_mode(s.y);
+      const bool of_logarithms = log && std::all_of(s.y.begin(), s.y.end(), [](double v) { return v > 0; });
+      std::vector<double> y = std::move(s.y), d = given;
+      if (of_logarithms) {
+        for (std::size_t i = 0; i < d.size(); ++i) d[i] /= y[i];
+        for (double& v : y) v = std::log(v);
+      }
+      if (d.empty()) d = slopes(x, y);
       s.y.clear();
       for (std::size_t i = 0; i + 1 < n; ++i) {
-        const double h = x[i + 1] - x[i], rise = y[i + 1] - y[i], mean = h * (d[i] + d[i + 1]) / 2;
-        constexpr double kFits = 0.25;
-        const bool curved =
-            std::abs(rise - mean) <= kFits * (std::abs(rise) + std::abs(h) * (std::abs(d[i]) + std::abs(d[i + 1])) / 2);
-        for (std::size_t k = 0; k < parts; ++k) {
-          const double u = static_cast<double>(k) / static_cast<double>(parts), v = 1 - u;
-          s.y.push_back(k == 0   ? y[i]
-                        : curved ? y[i] * v * v * (1 + 2 * u) + y[i + 1] * u * u * (1 + 2 * v) +
-                                       h * u * v * (d[i] * v - d[i + 1] * u)
-                                 : y[i] + u * rise);
-        }
+        const Between between(y[i], y[i + 1], d[i], d[i + 1], x[i + 1] - x[i]);
+        for (std::size_t k = 0; k < parts; ++k)
+          s.y.push_back(mode || k == 0 ? y[i] : between(static_cast<double>(k) / static_cast<double>(parts)));
       }
       s.y.push_back(y.back());
+      if (of_logarithms)
+        for (double& v : s.y) v = std::exp(v);
     }
+}
+
+// An axis over the numbers of a column.
+Axis axis_of(const Range& range, const std::string& column, bool log, bool tight) {
+  constexpr double kLongest = 1e307;  // a double holds the positions of the ticks
+  if (!log && !(range.greatest - range.least < kLongest))
+    throw Failure(Span{}, "the numbers of '" + column + "' are too far apart for an axis",
+                  "--log, or --from and --to for a part of the motion");
+  return axis_for(range.least, range.greatest, log, tight);
 }
 
 // Chooses the vertical axes so that all series fit.
@@ -96,7 +134,7 @@ void fit_panels(Figure& f, bool log) {
       throw Failure(Span{},
                     "the column '" + p.series[0].name + "' has no " + (log ? "positive " : "") + "number to be shown",
                     log ? "without --log" : "another column, or other times");
-    p.y = axis_for(ys.least, ys.greatest, log, false);
+    p.y = axis_of(ys, p.series[0].name, log, false);
   }
 }
 
@@ -184,7 +222,7 @@ Figure make_figure(const RunFile& run, const FigureOptions& o) {
   Range xs;
   see_finite(xs, f.x);
   if (xs.empty()) throw Failure(Span{}, "the column '" + f.x_name + "' has no number to be shown", "another --x");
-  f.x_axis = axis_for(xs.least, xs.greatest, false, f.x_name == "t");
+  f.x_axis = axis_of(xs, f.x_name, false, f.x_name == "t");
 
   const std::vector<std::size_t> columns = select_columns(table, o.names, x);
   if (columns.empty())
@@ -203,7 +241,7 @@ Figure make_figure(const RunFile& run, const FigureOptions& o) {
     const std::size_t derivative = table.find(table.columns[j] + "'");
     derivatives.push_back(derivative < table.columns.size() ? taken(derivative) : std::vector<double>());
   }
-  if (o.smooth && x == time) smooth(f, derivatives);
+  if (o.smooth && x == time) smooth(f, derivatives, o.log);
   fit_panels(f, o.log);
   return f;
 }
@@ -228,7 +266,7 @@ Figure make_figure(const std::vector<NamedRun>& runs, const FigureOptions& o) {
     all.rows += one.rows;
     add_series(all, std::move(one), each.name, o.each);
   }
-  all.x_axis = axis_for(xs.least, xs.greatest, false, all.x_name == "t");
+  all.x_axis = axis_of(xs, all.x_name, false, all.x_name == "t");
   fit_panels(all, o.log);
   return all;
 }

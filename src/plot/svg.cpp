@@ -34,7 +34,8 @@ std::string class_of(const Stroke& s) {
   case Role::series:
     break;
   }
-  return "s s" + std::to_string(s.series % kColours) + (s.series >= kColours ? " dashed" : "");
+  const std::string dash = dash_of(s.series).css;
+  return "s s" + std::to_string(s.series % kColours) + (dash.empty() ? "" : " ") + dash;
 }
 
 }  // namespace
@@ -49,8 +50,17 @@ std::string draw_svg(const Drawing& d, const std::string& title) {
   out += "<style>\n.anholon-plot{background:var(--paper,#fff)}\n.anholon-plot "
          "path{fill:none;stroke-linejoin:round}\n.anholon-plot .grid{stroke:var(--grid,#e4e4e4);stroke-width:.5}\n"
          ".anholon-plot .axis{stroke:var(--ink,#222);stroke-width:.6}\n.anholon-plot "
-         ".s{stroke-width:1.1}\n.anholon-plot .dashed{stroke-dasharray:4 2}\n"
-         ".anholon-plot text{fill:var(--ink,#222);font-family:var(--font,\"STIX Two Text\",\"Liberation "
+         ".s{stroke-width:1.1}\n";
+  // Few figures have so many curves that they need more than the first dash.
+  std::size_t dashes = 2;
+  for (const Stroke& stroke : d.strokes)
+    if (stroke.role == Role::series && stroke.series >= 2 * kColours) dashes = kDashes;
+  for (std::size_t k = 1; k < dashes; ++k) {
+    out += std::string(".anholon-plot .") + kDash[k].css + "{stroke-dasharray:";
+    for (std::size_t i = 0; i < kDash[k].lengths(); ++i) out += (i == 0 ? "" : " ") + number(kDash[k].on_off[i]);
+    out += "}\n";
+  }
+  out += ".anholon-plot text{fill:var(--ink,#222);font-family:var(--font,\"STIX Two Text\",\"Liberation "
          "Serif\",\"Times New Roman\",serif)}\n";
   for (std::size_t k = 0; k < kColours; ++k)
     out += ".anholon-plot .s" + std::to_string(k) + "{stroke:var(--s" + std::to_string(k) + "," + kColour[k] + ")}\n";

@@ -22,8 +22,8 @@ void series(std::string& out, const Figure& f, const Panel& p, const Series& s, 
   };
   bool first = true;
   for (const auto& piece : curve(f, p, s, kDots, kDots)) {
-    out += "\\addplot[color=anholon" + std::to_string(s.number % kColours) + (s.number >= kColours ? ", dashed" : "") +
-           (first ? "" : ", forget plot") + "] coordinates {\n";
+    out += "\\addplot[color=anholon" + std::to_string(s.number % kColours) + (*dash_of(s.number).pgf ? ", " : "") +
+           dash_of(s.number).pgf + (first ? "" : ", forget plot") + "] coordinates {\n";
     std::string line;
     for (const Point& q : piece) {
       const std::string pair = "(" + number(back(f.x_axis, q.x / kDots)) + "," + number(back(p.y, q.y / kDots)) + ")";

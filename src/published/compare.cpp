@@ -277,7 +277,7 @@ Comparison Comparer::decide(Expr P) {
   for (const DerivedEquation& e : motion.rows)
     if (directly(P, e, motion, out)) return out;
   if (!motion.regular) {
-    if (on_manifold(P, false, out) || of_higher_order(P, out)) return out;
+    if (on_manifold(P, false, out) || by_contractions(P, out) || of_higher_order(P, out)) return out;
     if (out.detail.empty())
       out.detail = "the equations do not determine the accelerations and multipliers at this order";
     return out;
@@ -290,7 +290,7 @@ Comparison Comparer::decide(Expr P) {
     if (out.witness) out.verdict = Verdict::refuted;
     return out;
   }
-  if (combined(P, motion, out) || on_manifold(P, true, out)) return out;
+  if (combined(P, motion, out) || on_manifold(P, true, out) || by_contractions(P, out)) return out;
   constexpr std::size_t kShort = 1000;  // nodes of which a difference below the round-off of numbers is looked for, too
   if (number_of_nodes(P) <= kShort || !vanishes(P, motion.elsewhere())) {
     const Difference d{{}, P, {}, {}, {}, {}};
@@ -316,7 +316,18 @@ Comparison Comparer::compare(const PublishedEquation& equation, Vocabulary& word
   const Expr P = words.number(equation.left) - words.number(equation.right);
   Comparison c = decide(P);
   if (c.trivial && holds_by_rates(equation.left, equation.right, words)) c.trivial = false, c.what = kOfRates;
-  if (c.verdict != Verdict::refuted || c.in_places) return c;
+  if (c.verdict != Verdict::refuted) {
+    std::vector<PointValues>& on_motion = motion(order_of_motion(P)).on_motion();
+    std::string zero;
+    if (!on_motion.empty()) zero = vanishing_divisor(equation.left, words, on_motion);
+    if (!on_motion.empty() && zero.empty()) zero = vanishing_divisor(equation.right, words, on_motion);
+    if (zero.empty()) return c;
+    c = {};
+    c.has_value = false;
+    c.detail = "it has no value on a motion: it divides by " + zero + ", which is 0 there";
+    return c;
+  }
+  if (c.in_places) return c;
   c.changes = repairs(equation, words, alphabet, *this);
   const auto quantities = [&] {
     return speaks_of_quantities(equation.left, words) || speaks_of_quantities(equation.right, words);

@@ -48,6 +48,7 @@ struct Comparison {
   bool identity = false;        // false: the equation is meant as an identity, not as an equation of motion
   bool trivial = false;         // true of every motion of every system
   bool of_constraints = false;  // true by the constraints alone
+  bool has_value = true;        // unknown: it has a value on the motion
   bool in_places = false;       // false: it holds up to round-off where all coordinates are positive
 };
 
@@ -79,6 +80,7 @@ class Comparer {
   bool directly(Expr P, const DerivedEquation& e, EquationsOfMotion& motion, Comparison& out);
   bool combined(Expr P, EquationsOfMotion& motion, Comparison& out);
   bool on_manifold(Expr P, bool regular, Comparison& out);
+  bool by_contractions(Expr P, Comparison& out);
   bool of_higher_order(Expr P, Comparison& out);
   const Column& contractions();
   void nearest(Expr P, Comparison& out);

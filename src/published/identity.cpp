@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "expr/normal.h"
+#include "published/at_points.h"
 
 namespace anholon {
 
@@ -31,6 +32,22 @@ bool plain_name(const Syntax& s, Vocabulary& words) {
 }
 
 }  // namespace
+
+std::string vanishing_divisor(const Syntax& s, Vocabulary& words, std::vector<PointValues>& points) {
+  const auto is_divisor = [&](std::size_t i) {
+    if (s.op == Syntax::Op::multiply) return i > 0 && s.operators[i - 1].op == Syntax::Op::divide;
+    return s.op == Syntax::Op::power && i == 0 && s.args[1].op == Syntax::Op::negate;
+  };
+  for (std::size_t i = 0; i < s.args.size(); ++i) {
+    if (std::string below = vanishing_divisor(s.args[i], words, points); !below.empty()) return below;
+    if (!is_divisor(i)) continue;
+    try {
+      if (vanishes(words.number(s.args[i]), points)) return print(s.args[i]);
+    } catch (const Failure&) {  // a part of a formula that has a value as a whole only
+    }
+  }
+  return {};
+}
 
 bool speaks_of_quantities(const Syntax& s, Vocabulary& words) {
   switch (s.op) {

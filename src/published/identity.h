@@ -8,8 +8,12 @@
 // and its sides are neither literally equal, nor names of two forces that are both zero.
 #pragma once
 #include "published/vocabulary.h"
+#include "tape/point.h"
 
 namespace anholon {
+
+// A divisor in s that is 0 at these points of the motion, as written; empty if there is none.
+std::string vanishing_divisor(const Syntax& s, Vocabulary& words, std::vector<PointValues>& points);
 
 bool speaks_of_quantities(const Syntax& s, Vocabulary& words);
 // Whether both sides are equal once rates stand for the derivatives of states, and not before.

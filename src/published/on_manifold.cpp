@@ -2,6 +2,7 @@
 // substituted, and the remainder is compared with the contractions B^T (E - G) = 0. This serves constraints of order 2
 // and more that are nonlinear in their highest derivatives, for which Routh's equations are not linear in the
 // accelerations and multipliers.
+#include <algorithm>
 #include <cmath>
 
 #include "numeric/linear.h"
@@ -25,6 +26,40 @@ const Column& Comparer::contractions() {
     for (Expr& e : *contractions_) e = put_rates(*M_.model, e);
   }
   return *contractions_;
+}
+
+// P as a combination of the contractions where the constraints are not solved: the coefficient of each comes from a
+// symbol that the other contractions do not hold.
+bool Comparer::by_contractions(Expr P, Comparison& out) {
+  const Elimination& E = elimination_;
+  const Graph& g = M_.graph();
+  if (E.solved || E.quasi || E.dependent.empty()) return false;
+  const std::vector<NodeId> held = symbols({&P, 1});
+  if (std::any_of(held.begin(), held.end(), [&](NodeId id) { return g.node(id).kind == Kind::multiplier; }))
+    return false;
+  const Column& a = contractions();
+  PointValues at = generic_values(0);
+  Expr rest = P;
+  std::string what;
+  for (std::size_t nu = 0; nu < a.size(); ++nu)
+    for (const NodeId id : held) {
+      const Expr by{P.graph, id};
+      const auto slope = [&](Expr e) { return at(partial(e, by)); };
+      bool alone = is_not_zero(partial(a[nu], by), at);
+      for (std::size_t k = 0; k < a.size(); ++k) alone = alone && (k == nu || slope(a[k]) == 0);
+      for (Expr phi : E.phi) alone = alone && slope(phi) == 0;
+      if (!alone) continue;
+      const Expr factor = tidy(partial(P, by) / partial(a[nu], by));
+      if (is_zero(factor)) break;
+      rest = rest - factor * a[nu];
+      what += (what.empty() ? "" : " and ") + std::string("the equation of ") +
+              M_.model->coordinates[E.independent[nu]].name + " without multipliers" + times(factor);
+      break;
+    }
+  if (what.empty() || !shown_zero(rest, Effort::full)) return false;
+  out.verdict = Verdict::proved;
+  out.what = what;
+  return true;
 }
 
 // Returns true if it has decided.

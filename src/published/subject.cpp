@@ -174,6 +174,7 @@ Comparison Subject::compare(const PublishedEquation& equation) {
                " where the derived equations hold";
     return c;
   }
+  if (!c.has_value) return c;
   if (c.verdict == Verdict::unknown || (c.verdict == Verdict::refuted && !c.in_places && c.changes.empty()))
     c.with_numbers = values_of(needed_for(difference(equation), [](const Numbered&) { return true; }));
   return c;

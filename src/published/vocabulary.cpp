@@ -297,7 +297,7 @@ std::optional<Expr> Vocabulary::quasi_velocity(const std::string& name) {
   const auto k = E.free.index_of(name);
   if (!k) return std::nullopt;
   used_quasi_ = true;
-  return E.free.u[*k];
+  return E.solved ? graph().quasi(static_cast<std::uint32_t>(*k), 0) : E.free.named[*k];
 }
 
 Expr Vocabulary::of_form(const Formulation& form, const std::vector<std::string>& rest, Span span) {

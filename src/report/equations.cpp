@@ -197,6 +197,13 @@ class Derive {
       std::string heading = "multipliers";
       for (std::size_t b = 0; b < pivots.dependent.size(); ++b)
         heading += (b == 0 ? ", from the equations of " : ", ") + model.coordinates[pivots.dependent[b]].name;
+      std::string redundant;
+      for (std::size_t k = 0; k < m_.phi.size(); ++k)
+        if (r.multipliers[k].graph &&
+            std::find(pivots.constraints.begin(), pivots.constraints.end(), k) == pivots.constraints.end())
+          redundant += (redundant.empty() ? "" : ", ") + multiplier_name(model, k);
+      if (!redundant.empty())
+        heading += "; a choice, as constraints follow from others: " + redundant + " could have any value";
       d_.reactions.push_back({heading, lines});
     }
     std::vector<Line> lines;

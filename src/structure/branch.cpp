@@ -1,6 +1,7 @@
 #include "structure/branch.h"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace anholon {
 
@@ -41,7 +42,10 @@ Column leading_unknowns(const System& s, const Structure& t) {
 
 namespace {
 
-constexpr int kMostNewton = 60, kRandomStarts = 8;
+constexpr int kMostNewton = 60;
+// Starts at random end after so many in a row that find no new solution; the second number as long as none of the
+// solutions is wanted.
+constexpr int kInVain = 24, kInVainWithoutWanted = 160, kMostRandomStarts = 600;
 constexpr std::size_t kFlipsUpTo = 8;  // coordinates whose signs are flipped one by one
 constexpr double kSame = 1e-6;         // solutions at a smaller distance count as one
 constexpr double kSingular = 1e-9;     // smallest scaled singular value
@@ -61,8 +65,8 @@ template <Number N>
 class Search {
  public:
   Search(const Mechanics& m, const System& s, const Structure& t, const std::vector<N>& parameters,
-         InitialState<N> state)
-      : m_(m), s_(s), parameters_(parameters), n_(s.coordinates), equations_(leading_equations(s, t)),
+         InitialState<N> state, const MayBeTaken<N>& wanted)
+      : m_(m), s_(s), parameters_(parameters), wanted_(wanted), n_(s.coordinates), equations_(leading_equations(s, t)),
         unknowns_(leading_unknowns(s, t)), all_(m, equations_, unknowns_, 0, parameters), metric_(orders(s, t)),
         constraints_(m, part(equations_, n_, s.size()), part(unknowns_, 0, n_), metric_, parameters),
         motion_(m, part(equations_, 0, n_), part(unknowns_, n_, s.size()), 0, parameters), state_(std::move(state)) {}
@@ -85,15 +89,22 @@ class Search {
       }
     }
     along_the_reaction(size);
-    for (int k = 0; k < kRandomStarts; ++k) {
+    std::uint64_t random = 1;
+    const auto enough = [&] {
+      return std::any_of(out_.found.begin(), out_.found.end(), wanted_) ? kInVain : kInVainWithoutWanted;
+    };
+    for (int k = 0, in_vain = 0; k < kMostRandomStarts && in_vain < enough(); ++k) {
       std::vector<N> x = guess_;
-      for (std::size_t a = 0; a < n_; ++a)
-        x[a] += size *
-                N(static_cast<int>((static_cast<unsigned>(k + 1) * 2654435761U + static_cast<unsigned>(a) * 40503U) %
-                                   2001U) -
-                  1000) /
-                N(700);
-      try_from(x);
+      for (N& v : x) {
+        random = random * 6364136223846793005U + 1442695040888963407U;
+        v += size * N(1 + k / 2 % 6) * N(static_cast<int>((random >> 33U) % 2001U) - 1000) / N(1000);
+      }
+      const std::size_t before = out_.found.size();
+      if (k % 2 == 0)
+        try_from(x);
+      else
+        try_freely(x, random);
+      in_vain = out_.found.size() > before ? 0 : in_vain + 1;
     }
     sort();
     return out_;
@@ -141,6 +152,19 @@ class Search {
     for (std::size_t a = 0; a < n_; ++a) constraints_.x(state_, a) = start[a], every.push_back(a);
     for (std::size_t j = 0; j < motion_.unknowns(); ++j) motion_.x(state_, j) = N(0);
     if (find_by_least_change(constraints_, state_, every) && multipliers()) newton();
+    state_ = before;
+  }
+
+  // Newton's method from accelerations that miss the constraints, with multipliers at random.
+  void try_freely(const std::vector<N>& start, std::uint64_t random) {
+    const InitialState<N> before = state_;
+    for (std::size_t a = 0; a < n_; ++a) constraints_.x(state_, a) = start[a];
+    const bool possible = motion_.evaluate(state_) && multipliers();
+    for (std::size_t j = 0; possible && j < motion_.unknowns(); ++j) {
+      random = random * 6364136223846793005U + 1442695040888963407U;
+      motion_.x(state_, j) = motion_.x(state_, j) * N(static_cast<int>((random >> 33U) % 2001U) - 1000) / N(250);
+    }
+    if (possible) newton();
     state_ = before;
   }
 
@@ -257,6 +281,7 @@ class Search {
   const Mechanics& m_;
   const System& s_;
   const std::vector<N>& parameters_;
+  const MayBeTaken<N>& wanted_;
   std::size_t n_;
   std::vector<StageEquation> equations_;
   Column unknowns_;
@@ -272,18 +297,23 @@ class Search {
 
 template <Number N>
 LeadingSolutions<N> leading_solutions(const Mechanics& m, const System& s, const Structure& t,
-                                      const std::vector<N>& parameters, InitialState<N> state) {
-  return Search<N>(m, s, t, parameters, std::move(state)).run();
+                                      const std::vector<N>& parameters, InitialState<N> state,
+                                      const MayBeTaken<N>& wanted) {
+  return Search<N>(m, s, t, parameters, std::move(state), wanted).run();
 }
 
 template LeadingSolutions<double> leading_solutions<double>(const Mechanics&, const System&, const Structure&,
-                                                            const std::vector<double>&, InitialState<double>);
+                                                            const std::vector<double>&, InitialState<double>,
+                                                            const MayBeTaken<double>&);
 template LeadingSolutions<long double> leading_solutions<long double>(const Mechanics&, const System&, const Structure&,
                                                                       const std::vector<long double>&,
-                                                                      InitialState<long double>);
+                                                                      InitialState<long double>,
+                                                                      const MayBeTaken<long double>&);
 template LeadingSolutions<Quad> leading_solutions<Quad>(const Mechanics&, const System&, const Structure&,
-                                                        const std::vector<Quad>&, InitialState<Quad>);
+                                                        const std::vector<Quad>&, InitialState<Quad>,
+                                                        const MayBeTaken<Quad>&);
 template LeadingSolutions<Multi> leading_solutions<Multi>(const Mechanics&, const System&, const Structure&,
-                                                          const std::vector<Multi>&, InitialState<Multi>);
+                                                          const std::vector<Multi>&, InitialState<Multi>,
+                                                          const MayBeTaken<Multi>&);
 
 }  // namespace anholon

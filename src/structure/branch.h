@@ -1,5 +1,7 @@
 // The leading derivatives at a state in which they enter nonlinearly: all solutions found from several starts.
 #pragma once
+#include <functional>
+
 #include "structure/stage.h"
 #include "structure/structure.h"
 
@@ -25,10 +27,16 @@ StageEquation law(const System& s, std::size_t i, unsigned k);
 std::vector<StageEquation> leading_equations(const System& s, const Structure& t);
 Column leading_unknowns(const System& s, const Structure& t);
 
+// Whether a solution may be taken.
+template <Number N>
+using MayBeTaken = std::function<bool(const std::vector<N>&)>;
+
 // `state` holds the state and, as leading derivatives, the guess: that of the user, or zeros. Zeros are replaced by the
-// accelerations without the nonlinear constraints, if these are of order 2.
+// accelerations without the nonlinear constraints, if these are of order 2. The search tries more starts as long as it has
+// found no solution that is wanted.
 template <Number N>
 LeadingSolutions<N> leading_solutions(const Mechanics& m, const System& s, const Structure& t,
-                                      const std::vector<N>& parameters, InitialState<N> state);
+                                      const std::vector<N>& parameters, InitialState<N> state,
+                                      const MayBeTaken<N>& wanted);
 
 }  // namespace anholon

@@ -163,7 +163,8 @@ Outcome StateSolver<N>::leading(const System& s, const Structure& t) {
     if (!find_by_least_change(all, state_, every)) return no_value(all);
     return {};
   }
-  const LeadingSolutions<N> solutions = leading_solutions(m_, s, t, p_.parameters, state_);
+  const LeadingSolutions<N> solutions = leading_solutions<N>(
+      m_, s, t, p_.parameters, state_, [&](const std::vector<N>& x) { return branch_holds(x, s); });
   const std::vector<N>* taken = nullptr;
   std::string others;
   for (const std::vector<N>& x : solutions.found) {

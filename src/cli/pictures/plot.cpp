@@ -26,6 +26,13 @@ namespace anholon::cli {
 
 namespace {
 
+// In cm: as tall as panels below one another need to be read.
+double height_of(std::size_t panels) {
+  constexpr double kPlain = 9, kComfortable = 3.5, kPage = 26, kLeast = 1.9;
+  const auto n = static_cast<double>(panels);
+  return std::max({kPlain, std::min(kPage, kComfortable * n), kLeast * n});
+}
+
 using namespace anholon::plot;
 
 enum class Target { terminal, svg, pdf, png, tex, html };
@@ -279,8 +286,7 @@ int plot(const PlotCommand& o) {
                      (e.diagnostic.hint.empty() ? "" : "\nhint: " + e.diagnostic.hint) + "\n"};
   }
   if (t != Target::terminal) {
-    if (o.size.empty() && figure.panels.size() > 1)
-      figure.height = std::min(26.0, std::max(9.0, 3.5 * static_cast<double>(figure.panels.size())));
+    if (o.size.empty() && figure.panels.size() > 1) figure.height = height_of(figure.panels.size());
     if (const std::string why = write_figure(figure, t, o.output); !why.empty())
       throw UsageError{"error: " + why + "\n"};
   } else if (!o.json) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include <unistd.h>
 
@@ -411,6 +412,52 @@ TEST(Cairo, DrawsTheSameBytes) {
   EXPECT_GT(png.size(), 2000u);
   EXPECT_EQ(drawn(CairoFormat::pdf), pdf);
   EXPECT_EQ(drawn(CairoFormat::png), png);
+}
+
+// Few rows of exp(-10 t): on a logarithmic axis the curve between them is the line on which the rows lie.
+TEST(Smooth, FollowsLogarithmsOnALogarithmicAxis) {
+  std::vector<double> t, y, rate;
+  for (int k = 0; k <= 10; ++k) t.push_back(0.5 * k), y.push_back(std::exp(-5.0 * k)), rate.push_back(-10 * y.back());
+  FigureOptions o = of({"y"});
+  o.smooth = o.log = true;
+  for (const RunFile& r : {run({"t", "y", "y'"}, {t, y, rate}), run({"t", "y"}, {t, y})}) {
+    const Figure f = make_figure(r, o);
+    ASSERT_GT(f.x.size(), 100U);
+    double worst = 0;
+    for (std::size_t i = 0; i < f.x.size(); ++i)
+      worst = std::max(worst, std::abs(std::log(f.panels[0].series[0].y[i]) + 10 * f.x[i]));
+    EXPECT_LT(worst, 1e-9);
+  }
+}
+
+TEST(Smooth, KeepsAModeUpToTheNextRow) {
+  FigureOptions o = of({"floor.mode"});
+  o.smooth = true;
+  const Figure f = make_figure(run({"t", "floor.mode"}, {{0, 1, 2, 3, 4}, {1, 1, 2, 2, 2}}), o);
+  for (std::size_t i = 0; i < f.x.size(); ++i) EXPECT_EQ(f.panels[0].series[0].y[i], f.x[i] < 2 ? 1 : 2) << f.x[i];
+}
+
+TEST(Axes, NumbersThatAreTooFarApartAreRefused) {
+  EXPECT_EQ(trouble(run({"t", "x"}, {{0, 1}, {-1.7e308, 1.7e308}}), of({"x"})),
+            "the numbers of 'x' are too far apart for an axis");
+  EXPECT_EQ(trouble(run({"t", "x"}, {{0, 1}, {-1e306, 1e306}}), of({"x"})), "none");
+}
+
+TEST(Layout, LongTitlesTakeLinesAndSmallFiguresAreRefused) {
+  FigureOptions o = of({"theta"});
+  o.title = "The lean of a disc that rolls on a plane, with a title that is longer than its figure is wide, by far";
+  const Figure f = make_figure(disc(), o);
+  std::size_t lines = 0;
+  for (const Word& w : lay_out(f).words) lines += w.anchor == Anchor::middle && w.at.y < 40;
+  EXPECT_GT(lines, 1U);
+  o.width = 3, o.height = 2;
+  EXPECT_THROW(lay_out(make_figure(disc(), o)), Failure);
+}
+
+TEST(Layout, ThirtyTwoCurvesDifferInColourOrDash) {
+  std::set<std::pair<std::size_t, std::string>> styles;
+  for (std::size_t k = 0; k < kColours * kDashes; ++k) styles.insert({k % kColours, dash_of(k).css});
+  EXPECT_EQ(styles.size(), kColours * kDashes);
 }
 
 }  // namespace
