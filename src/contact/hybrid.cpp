@@ -12,6 +12,7 @@
 #include "contact/refused_options.h"
 #include "contact/slip_start.h"
 #include "contact/switched_motion.h"
+#include "integrate/step_control.h"
 #include "numeric/number.h"
 #include "observe/angles.h"
 
@@ -22,14 +23,16 @@ namespace {
 class HybridMotion {
  public:
   HybridMotion(Workspace& s, const std::vector<Contact>& contacts, const SimulationOptions& o, RowSink& sink)
-      : s_(s), bodies_(s, contacts, start_of(s, o)), joined_(*s.model), accumulation_(contacts.size()) {
+      : s_(s), bodies_(s, contacts, start_of(s, o)), joined_(*s.model, contacts), accumulation_(contacts.size()),
+        o_(o) {
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
     if (end_ < bodies_.at.t) throw Failure({}, "a motion with contacts goes forwards only", "an end after the start");
     std::vector<Rational> times = o.at;
     if (o.every)
       for (Rational t = bodies_.at.t; t < end_; t += *o.every) times.push_back(t);
     if (!times.empty() && times.back() != end_) times.push_back(end_);
-    segments_.emplace(s, o, bodies_, joined_, sink, std::move(times), end_,
+    choose_order();
+    segments_.emplace(s, o_, bodies_, joined_, sink, std::move(times), end_,
                       [this](std::size_t contact) { slips_->told(contact); });
     slips_.emplace(bodies_, joined_, end_,
                    [this](const Rational& to, Outcome& outcome) { return segments_->follow(to, outcome); });
@@ -39,9 +42,11 @@ class HybridMotion {
     // A parameter that is varied may give a coefficient any value.
     if (const std::vector<Diagnostic> wrong = wrong_coefficients(bodies_.contacts, *s_.model); !wrong.empty())
       return joined_.report({OutcomeKind::inconsistent, wrong[0].message, wrong[0].hint}, bodies_.at.t.get_d(), 0);
-    Outcome outcome = not_inside(" at the start", "start at a position where the gap is zero or positive, or change "
-                                                  "the sign of the gap: it is positive while the "
-                                                  "contact is open");
+    Outcome outcome = not_inside(" at the start",
+                                 "start at a position where the gap is zero or positive, or change "
+                                 "the sign of the gap: it is positive while the "
+                                 "contact is open",
+                                 true);
     constexpr std::size_t kMostSegments = 100'000;
     for (std::size_t k = 0; outcome.ok() && bodies_.at.t < end_; ++k) {
       if (k == kMostSegments)
@@ -83,10 +88,11 @@ class HybridMotion {
   std::string when() const { return " at t = " + number_text(bodies_.at.t.get_d(), 12); }
 
   // An outcome if a gap is negative.
-  Outcome not_inside(const std::string& where, const std::string& hint) {
+  Outcome not_inside(const std::string& where, const std::string& hint, bool at_start = false) {
     bodies_.dynamics.go(bodies_.at);
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
-      if (bodies_.dynamics.place(c).gap < 0 && !bodies_.near.negligible(c))
+      if (bodies_.dynamics.place(c).gap < 0 &&
+          !(at_start ? bodies_.near.negligible_at_start(c) : bodies_.near.negligible(c)))
         return {OutcomeKind::inconsistent,
                 "the gap of contact '" + bodies_.contacts[c].name + "' is " +
                     number_text(static_cast<double>(bodies_.dynamics.place(c).gap), 6) +
@@ -142,9 +148,12 @@ class HybridMotion {
   Outcome choose() {
     bodies_.look();
     if (Outcome o = as_its_modes(); !o.ok()) return o;
-    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
-      if (bodies_.near.closed(c) && !bodies_.dynamics.has_derivatives(c))
-        return without_derivatives(bodies_.contacts[c].name, when());
+    if (!bodies_.dynamics.has_values()) return what_has_no_value();
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+      if (!bodies_.near.closed(c) && bodies_.dynamics.place(c).gap > 0) continue;
+      if (!bodies_.dynamics.has_derivatives(c)) return without_derivatives(bodies_.contacts[c].name, when());
+      if (!bodies_.dynamics.has_slip(c)) return without_slip(bodies_.contacts[c].name, when());
+    }
     for (std::size_t k = 0; bodies_.shrinks() && k < kMostImpacts; ++k)
       if (Outcome o = impact(); !o.ok()) return o;
     land();
@@ -182,6 +191,15 @@ class HybridMotion {
     return {};
   }
 
+  // The motion with all contacts open tells which formula has no value.
+  Outcome what_has_no_value() {
+    Outcome outcome, without = {OutcomeKind::not_a_number, "masses or forces have no value" + when(),
+                                "start or stop the motion elsewhere"};
+    bodies_.modes.assign(bodies_.contacts.size(), {});
+    segments_->follow(end_, outcome);
+    return outcome.ok() ? without : outcome;
+  }
+
   // Notes in the modes what is taken for round-off. `now`, `open`: the accelerations of the modes, and without contacts.
   void put_round_off(const ContactProblem& p, const ContactSolution& now, const std::optional<ContactSolution>& open) {
     long double force = 0;
@@ -189,8 +207,11 @@ class HybridMotion {
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
       ContactMode& m = bodies_.modes[c];
       const ContactDynamics::Place& place = bodies_.dynamics.place(c);
-      m.rest = std::max(kRest * place.slip_scale, slip_in_last_digits_of_time(c, now.x));
-      if (open) m.rest = std::max(m.rest, slip_in_last_digits_of_time(c, open->x));
+      // An open contact needs no slip velocity.
+      if (bodies_.dynamics.has_slip(c)) {
+        m.rest = std::max(kRest * place.slip_scale, slip_in_last_digits_of_time(c, now.x));
+        if (open) m.rest = std::max(m.rest, slip_in_last_digits_of_time(c, open->x));
+      }
       m.depth = RoundOff::kPlace / 2 * bodies_.near.place_size(c) + std::max(0.0L, -place.gap);
       m.slack = kRest * (force > 0 ? force : 1);
       if (bodies_.contacts[c].under) m.slack *= p.contacts[c].friction;
@@ -202,11 +223,31 @@ class HybridMotion {
   }
 
   // How much a slip velocity changes in the last digits of the times of the motion, with these accelerations: it passes a smaller
-  // one at the time at which it vanishes. A shorter time than kLeast before that, Taylor coefficients of its direction overflow.
+  // one at the time at which it vanishes.
   long double slip_in_last_digits_of_time(std::size_t c, const std::vector<long double>& accelerations) const {
-    constexpr long double kDigits = 16 * std::numeric_limits<double>::epsilon(), kLeast = 5e-14L;
-    return std::max(kLeast, kDigits * std::abs(static_cast<long double>(end_.get_d()))) *
+    constexpr long double kDigits = 16 * std::numeric_limits<double>::epsilon();
+    return std::max(least_time(order_), kDigits * std::abs(static_cast<long double>(end_.get_d()))) *
            bodies_.dynamics.slip_acceleration(c, accelerations);
+  }
+
+  // A shorter time before a slip with two components vanishes, Taylor coefficients of its direction overflow in doubles: those of
+  // the orders up to a few more than that of the polynomials are powers of the inverse of this time, up to the order 19.
+  static long double least_time(int order) {
+    constexpr long double kOfOrder = 5e-14L;
+    constexpr int kOrder = 19, kMore = 4;
+    return std::pow(kOfOrder, static_cast<long double>(kOrder + kMore) / (std::min(order, kOrder) + kMore));
+  }
+
+  // In a motion that is short in the unit of time, polynomials of lower order let slips with two components come nearer to zero.
+  void choose_order() {
+    constexpr long double kPart = 5e-11L;  // of the time of the motion
+    constexpr int kLowest = 8;
+    order_ = o_.order > 0 ? o_.order : taylor_order(std::log(o_.tolerance.get_d()));
+    if (o_.order > 0) return;
+    const long double least = kPart * Rational(end_ - bodies_.at.t).get_d();
+    const bool any = std::any_of(bodies_.contacts.begin(), bodies_.contacts.end(),
+                                 [](const Contact& c) { return c.slip.size() == 2 && c.rough(); });
+    while (any && order_ > kLowest && least_time(order_) > least) o_.order = --order_;
   }
 
   Outcome undecided(std::size_t modes) const {
@@ -292,6 +333,8 @@ class HybridMotion {
   JoinedReport joined_;
   Rational end_;
   Accumulation accumulation_;
+  SimulationOptions o_;
+  int order_ = 0;  // of the Taylor polynomials
   std::optional<ModeSegments> segments_;
   std::optional<SlipStart> slips_;
 };

@@ -1,6 +1,7 @@
 #include "contact/joined_report.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "motion/stiff_method.h"
 
@@ -13,6 +14,34 @@ static bool same_but_time(const Warning& a, const Warning& b) {
     return at == std::string::npos ? text : text.substr(0, at) + (end == std::string::npos ? "" : text.substr(end));
   };
   return without_time(a.message) == without_time(b.message);
+}
+
+static bool is_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; }
+
+// The model of a mode has constraints NAME.gap and NAME.slip1, …, inputs NAME.n and NAME.t1, … that keep them, and two events of a
+// change that differ by a prime. A user knows the forces lambda.NAME and lambda.NAME.t1, and the events.
+static void put_known_names(const std::string& contact, std::string& text) {
+  const std::string lambda = "lambda.", monitor = "monitor '", name = contact + ".";
+  for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+    std::size_t begin = at;
+    const bool force = at >= lambda.size() && text.compare(at - lambda.size(), lambda.size(), lambda) == 0;
+    if (force) begin -= lambda.size();
+    if (begin > 0 && is_of_name(text[begin - 1])) continue;
+    if (begin >= monitor.size() && text.compare(begin - monitor.size(), monitor.size(), monitor) == 0) continue;
+    const bool quoted = begin > 0 && text[begin - 1] == '\'';
+    std::size_t end = at + name.size();
+    while (end < text.size() && is_of_name(text[end])) ++end;
+    const std::string what = text.substr(at + name.size(), end - at - name.size());
+    const bool numbered = !what.empty() && (what.back() == '1' || what.back() == '2');
+    const std::string of = force || quoted ? contact : lambda + contact;
+    if (what == "gap" || what == "n")
+      text.replace(at, end - at, of);
+    else if (numbered && (what.starts_with("slip") || (what.starts_with("t") && what.size() == 2)))
+      text.replace(at, end - at, of + ".t" + what.back());
+    else
+      while (quoted && text.compare(end, 2, "\'\'") == 0) text.erase(end, 1);
+    at = text.find(contact, begin);
+  }
 }
 
 // The change is that from the start of the whole motion.
@@ -33,7 +62,8 @@ static void join(std::vector<WatchedReport>& all, const std::vector<WatchedRepor
   }
 }
 
-JoinedReport::JoinedReport(const Model& model) {
+JoinedReport::JoinedReport(const Model& model, const std::vector<Contact>& contacts) {
+  for (const Contact& c : contacts) contacts_.push_back(c.name);
   all_.model = model.title;
   all_.looks_for_events = true;
 }
@@ -135,6 +165,10 @@ void JoinedReport::rename(const std::string& name, const std::string& other) {
 
 SimulationReport JoinedReport::report(Outcome outcome, double t, std::size_t rows) {
   all_.outcome = std::move(outcome);
+  for (const std::string& contact : contacts_) {
+    put_known_names(contact, all_.outcome.message);
+    for (Warning& w : all_.warnings) put_known_names(contact, w.message);
+  }
   all_.t = t;
   all_.rows = rows;
   all_.power = power_miss_ / (all_.turned_over > 0 ? all_.turned_over : 1);

@@ -7,7 +7,7 @@ namespace anholon {
 
 class JoinedReport {
  public:
-  explicit JoinedReport(const Model& model);
+  JoinedReport(const Model& model, const std::vector<Contact>& contacts);
   // The report of a segment; contacts: its events that change a mode. Returns false if an event of the model ends the motion.
   bool add(const SimulationReport& segment, const std::map<std::string, ModeEvent>& contacts);
   // A segment by BDF that begins at t.
@@ -22,10 +22,12 @@ class JoinedReport {
   void rename(const std::string& name, const std::string& other);
   std::size_t segments() const { return segments_; }
   std::size_t steps() const { return segments_ > 0 ? all_.steps : 0; }
+  // The outcome and the warnings name what the models of modes hold as a user knows it.
   SimulationReport report(Outcome outcome, double t, std::size_t rows);
 
  private:
   SimulationReport all_;
+  std::vector<std::string> contacts_;
   std::size_t segments_ = 0;
   double power_miss_ = 0;  // the largest of a segment, in units of energy
 };

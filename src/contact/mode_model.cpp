@@ -26,6 +26,8 @@ namespace {
 // The numbers of a contact in a mode, in the order of their parameters.
 enum class ModeNumber : std::uint8_t { along, across, fast, rest, slack, depth, given };
 constexpr std::size_t kModeNumbers = 8;
+constexpr const char* kNamesOfNumbers[kModeNumbers] = {".direction1", ".direction2", ".fast",   ".rest",
+                                                       ".slack",      ".depth",      ".given1", ".given2"};
 
 // Then, of the load and of each component that is shared, its part of each force that holds.
 std::vector<long double> numbers_of(const ContactMode& m) {
@@ -55,7 +57,8 @@ class ModeBuilder {
     c.friction = g_.own(c.friction), c.static_friction = g_.own(c.static_friction);
     numbers_.clear();
     for (std::size_t k = 0; k < numbers_of(mode).size(); ++k)
-      numbers_.push_back(parameter(c.name + ".begin." + std::to_string(k)));
+      numbers_.push_back(parameter(
+          c.name + (k < kModeNumbers ? kNamesOfNumbers[k] : ".share" + std::to_string(k - kModeNumbers + 1))));
     Expr normal = g_.zero(), friction = g_.zero();
     components_.push_back(std::vector<Expr>(c.slip.size(), g_.zero()));
     if (c.under) {
@@ -194,13 +197,15 @@ class ModeBuilder {
       forces = shared(c, mode);
     components_.back() = forces;
     for (std::size_t a = 0; a < c.slip.size(); ++a) act(c, 1, forces[a], c.slip[a]);
+    if (mode.held && (mode.begins || mode.at_bound)) {
+      // The slip that begins is left out of the motion for a moment, and its friction is that of a slip.
+      Expr square = g_.zero();
+      for (const Expr f : forces) square = square + f * f;
+      for (Expr& f : components_.back()) f = f * c.friction * normal * pow(square, Rational(-1, 2));
+      return forces.size() == 1 ? components_.back()[0] : c.friction * normal;
+    }
     const Expr size =
         forces.size() == 1 ? forces[0] : pow(forces[0] * forces[0] + forces[1] * forces[1], Rational(1, 2));
-    if (mode.held && mode.begins) {
-      // The slip that begins is left out of the motion for a moment, and its friction is that of a slip.
-      for (Expr& f : components_.back()) f = f * c.friction * normal * pow(size, Rational(-1));
-      return c.friction * normal;
-    }
     if (mode.held) return size;
     const Expr most = c.static_friction * normal;
     if (forces.size() == 1) {
@@ -366,7 +371,7 @@ std::vector<int> mode_shape(const std::vector<Contact>& contacts, const ContactM
     const bool sticks = m.touch == Touch::sticks;
     shape.insert(shape.end(),
                  {static_cast<int>(m.touch), m.touch != Touch::open && m.load.shared, sticks && m.shares[0].shared,
-                  sticks && m.shares[1].shared, m.held, m.begins, m.fast.has_value(), backwards});
+                  sticks && m.shares[1].shared, m.held, m.begins, m.at_bound, m.fast.has_value(), backwards});
   }
   return shape;
 }

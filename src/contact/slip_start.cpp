@@ -198,16 +198,21 @@ bool SlipStart::share_anew(Outcome& outcome) {
     }
     return true;
   }
+  const auto at_limit = [&](std::size_t c) {
+    constexpr long double kAtLimit = 1 - 1e-6L;
+    return bodies_.modes[c].touch == Touch::sticks && std::hypot(list[0].friction[c][0], list[0].friction[c][1]) >=
+                                                          kAtLimit * p.contacts[c].static_friction * list[0].normal[c];
+  };
   const ContactRows& rows = p.contacts[limited[0]];
   if (rows.friction != rows.static_friction) {
     // All at their limit slip with an acceleration.
-    constexpr long double kAtLimit = 1 - 1e-6L;
     for (std::size_t c = 0; sticks && c < bodies_.contacts.size(); ++c)
-      if (bodies_.modes[c].touch == Touch::sticks && std::hypot(list[0].friction[c][0], list[0].friction[c][1]) >=
-                                                         kAtLimit * p.contacts[c].static_friction * list[0].normal[c])
-        bodies_.excluded[c].stick = true;
+      if (at_limit(c)) bodies_.excluded[c].stick = true;
     return true;
   }
+  for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
+    bodies_.modes[c].at_bound = list.size() == 1 && list[0].normal[c] > 0 && p.contacts[c].static_friction > 0 &&
+                                (list[0].modes[c].touch == Touch::slips || at_limit(c));
   together_ = last > 0 ? kLonger * last : kTrial / std::max(bodies_.dynamics.speed(), 1.0L);
   for (const std::size_t c : limited) bodies_.excluded[c].stick = false;
   return hold_together(together_, outcome) && hold_to_grow(outcome);
@@ -220,7 +225,7 @@ bool SlipStart::hold_together(long double time, Outcome& outcome) {
   bodies_.stop(bodies_.modes);
   const bool goes_on = segment_(to, outcome);
   held_until_ = bodies_.at.t.get_d();
-  for (ContactMode& m : bodies_.modes) m.held = m.begins = false;
+  for (ContactMode& m : bodies_.modes) m.held = m.begins = m.at_bound = false;
   told_ = told;
   return goes_on && outcome.ok();
 }

@@ -16,7 +16,7 @@ namespace {
 class SwitchedMotion {
  public:
   SwitchedMotion(Workspace& s, const std::vector<Contact>& contacts, const SimulationOptions& o, RowSink& sink)
-      : s_(s), contacts_(contacts), o_(o), rows_(sink, contacts), joined_(*s.model),
+      : s_(s), contacts_(contacts), o_(o), rows_(sink, contacts), joined_(*s.model, {}),
         parameters_(parameter_values<long double>(*s.model)) {
     at_.t = o.state.t ? *o.state.t : Rational(s.state.t);
     at_.q = s.state.q, at_.qd = s.state.qd, at_.states = s.state.states;

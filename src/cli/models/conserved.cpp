@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cli/say.h"
+#include "modelfile/contacts.h"
 
 namespace anholon::cli {
 
@@ -11,13 +12,22 @@ static constexpr std::size_t kLongest = 160;
 
 static bool cyclic(const Conserved& c) { return c.name.rfind("momentum of ", 0) == 0; }
 
+// In which modes of contacts and of constraints with 'active' the equations hold, if the model has any.
+static std::string modes(const Model& model) {
+  for (const std::string& note : model.notes)
+    if (note.find(kOpenContacts) != std::string::npos)
+      return note.starts_with("contact") ? "no contact touches" : "the modes are those of the start";
+  return "";
+}
+
 // Those of a list that may jump, or the others; `where` says for which part of a motion.
-static void print_conserved(const Mechanics& m, const std::vector<Conserved>& list, bool jumps, const char* where) {
+static void print_conserved(const Mechanics& m, const std::vector<Conserved>& list, bool jumps,
+                            const std::string& where) {
   std::string names;
   if (std::none_of(list.begin(), list.end(), [&](const Conserved& c) { return c.jumps == jumps; })) return;
   for (const Conserved& c : list)
     if (c.jumps == jumps && cyclic(c)) names += (names.empty() ? "" : ", ") + c.name.substr(12);
-  say(stdout, "\nconserved along every motion%s (proved)%s\n", where,
+  say(stdout, "\nconserved along every motion%s (proved)%s\n", where.c_str(),
       names.empty() ? "" : (", cyclic: " + names).c_str());
   for (const Conserved& c : list) {
     if (c.jumps != jumps) continue;
@@ -32,8 +42,10 @@ void print_conserved(const Mechanics& m) {
   const std::vector<Conserved> list = conserved(m);
   const bool resets =
       std::any_of(m.model->events.begin(), m.model->events.end(), [](const Event& e) { return !e.set.empty(); });
-  print_conserved(m, list, false, resets ? " between events" : "");
-  print_conserved(m, list, true, resets ? " between events and jumps of the formula" : " between jumps of the formula");
+  const std::string in = modes(*m.model), in_modes = in.empty() ? "" : " while " + in;
+  print_conserved(m, list, false, (resets ? " between events" : "") + in_modes);
+  print_conserved(m, list, true,
+                  (resets ? " between events and jumps of the formula" : " between jumps of the formula") + in_modes);
 }
 
 void write_conserved(JsonWriter& j, const Mechanics& m) {
@@ -42,6 +54,7 @@ void write_conserved(JsonWriter& j, const Mechanics& m) {
     j.open_object().key("name").string(c.name).key("cyclic").boolean(cyclic(c));
     j.key("formula").string(print(c.value, m.model->names, Format::text)).key("because").string(c.because);
     if (c.jumps) j.key("jumps").boolean(true);
+    if (const std::string in = modes(*m.model); !in.empty()) j.key("while").string(in);
     if (const std::string unit = unit_of(*m.model, c); !unit.empty()) j.key("unit").string(unit);
     j.close();
   }

@@ -201,13 +201,26 @@ bool ContactDynamics::loses_rank(std::size_t c) const {
   return !of_modes(problem_, modes);
 }
 
+static bool all_finite(const std::vector<long double>& row) {
+  return std::all_of(row.begin(), row.end(), [](long double x) { return std::isfinite(x); });
+}
+
+bool ContactDynamics::has_values() const {
+  return all_finite(problem_.b) && all_finite(problem_.beta) &&
+         std::all_of(problem_.A.begin(), problem_.A.end(), all_finite) &&
+         std::all_of(problem_.Phi.begin(), problem_.Phi.end(), all_finite);
+}
+
 bool ContactDynamics::has_derivatives(std::size_t c) const {
   const ContactRows& rows = problem_.contacts[c];
-  const auto finite = [](const std::vector<long double>& row) {
-    return std::all_of(row.begin(), row.end(), [](long double x) { return std::isfinite(x); });
-  };
-  return std::isfinite(places_[c].gap_rate) && finite(rows.normal) &&
-         std::all_of(rows.tangential.begin(), rows.tangential.end(), finite);
+  return std::isfinite(places_[c].gap_rate) && std::isfinite(rows.normal_rate) && all_finite(rows.normal);
+}
+
+bool ContactDynamics::has_slip(std::size_t c) const {
+  const ContactRows& rows = problem_.contacts[c];
+  const Place& at = places_[c];
+  return all_finite({at.slip[0], at.slip[1], rows.tangential_rate[0], rows.tangential_rate[1]}) &&
+         std::all_of(rows.tangential.begin(), rows.tangential.end(), all_finite);
 }
 
 bool walls_move(const std::vector<Contact>& contacts) {

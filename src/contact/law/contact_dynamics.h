@@ -44,9 +44,12 @@ class ContactDynamics {
   // Whether the accelerations are undetermined if this contact alone sticks, though there are degrees of freedom for its
   // gap and its slip: the coordinates are singular.
   bool loses_rank(std::size_t contact) const;
-  // Whether the gap and the slip velocities of the contact have derivatives at the state. The gap of a disc that lies flat has
-  // none.
+  // Whether masses, forces and constraints have values at the state, as log(x) has none at x = 0.
+  bool has_values() const;
+  // Whether the gap of the contact has derivatives at the state, as that of a disc that lies flat has none, and whether its slip
+  // velocities have values and derivatives.
   bool has_derivatives(std::size_t contact) const;
+  bool has_slip(std::size_t contact) const;
   // The jumps of the velocities at an impact by Newton's law in Moreau's form, with the restitutions of the contacts or
   // with this one.
   ContactProblem impact(const std::vector<bool>& touches, std::optional<long double> restitution = std::nullopt) const;

@@ -74,6 +74,11 @@ Outcome without_derivatives(const std::string& contact, const std::string& when)
           "point of it is the one that is pushed"};
 }
 
+Outcome without_slip(const std::string& contact, const std::string& when) {
+  return {OutcomeKind::singular, "the slip velocity of contact '" + contact + "' has no value or no derivatives" + when,
+          "start or stop the motion elsewhere, or change the formula so that it is smooth here"};
+}
+
 std::vector<Jump> impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
                                const std::vector<bool>& touches) {
   const bool poisson =

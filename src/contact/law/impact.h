@@ -14,9 +14,10 @@ Outcome painleve(std::size_t modes, const std::string& contacts, const std::stri
 // The outcome where a contact alone loses rank (ContactDynamics::loses_rank), so that nothing is known of its modes.
 Outcome rank_lost(const std::string& contact, const std::string& when);
 
-// The outcome where the gap or the slip velocities of a closed contact have no derivatives
-// (ContactDynamics::has_derivatives).
+// The outcome where the gap of a closed contact has no derivatives (ContactDynamics::has_derivatives), or its slip velocity has no
+// value or no derivatives (ContactDynamics::has_slip).
 Outcome without_derivatives(const std::string& contact, const std::string& when);
+Outcome without_slip(const std::string& contact, const std::string& when);
 
 // The consistent jumps, of which there is one unless bodies jam (Painlevé's paradox). touches: the contacts that take part;
 // all contacts that strike have one law.

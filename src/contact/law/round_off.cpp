@@ -16,9 +16,24 @@ void RoundOff::segment_has_ended(long double length) {
 
 bool RoundOff::closed(std::size_t c) const { return reached_[c] || dynamics_.place(c).gap <= uncertainty(c); }
 
+// An event is located to this part of a unit, or of the size of the model.
+static constexpr long double kMissed = 1e-8L;
+
 bool RoundOff::negligible(std::size_t c) const {
-  constexpr long double kMissed = 1e-8L, kFactor = 1000;
+  constexpr long double kFactor = 1000;
   return dynamics_.place(c).gap > -std::max(kMissed, kFactor * uncertainty(c));
+}
+
+bool RoundOff::negligible_at_start(std::size_t c) const {
+  const std::vector<long double>& normal = dynamics_.accelerations().contacts[c].normal;
+  long double largest = 0, rest = dynamics_.place(c).gap;
+  for (std::size_t a = 0; a < normal.size(); ++a) {
+    const long double term = normal[a] * at_.q[a];
+    rest -= term;
+    largest = std::max(largest, std::abs(term));
+  }
+  largest = std::max(largest, std::abs(rest));
+  return negligible(c) && dynamics_.place(c).gap >= -std::max(kMissed * largest, uncertainty(c));
 }
 
 long double RoundOff::uncertainty(std::size_t c) const {
@@ -37,8 +52,10 @@ long double RoundOff::late() const {
 
 long double RoundOff::place_size(std::size_t c) const {
   long double size = 1e-300L;
-  for (std::size_t a = 0; a < at_.q.size(); ++a)
-    size = std::max(size, std::abs(dynamics_.accelerations().contacts[c].normal[a]) * (1 + std::abs(at_.q[a])));
+  for (std::size_t a = 0; a < at_.q.size(); ++a) {
+    const long double term = std::abs(dynamics_.accelerations().contacts[c].normal[a]) * (1 + std::abs(at_.q[a]));
+    if (std::isfinite(term)) size = std::max(size, term);
+  }
   return size;
 }
 

@@ -67,6 +67,7 @@ class Elements {
       if (i.key == "at")
         for (const Item& t : i.items) expect(t, "s");
     });
+    list("contact", [&](const Item& c) { distance_and_velocity(c); });
     return formulas_.units_seen;
   }
 
@@ -102,6 +103,7 @@ class Elements {
   }
 
   const std::vector<Diagnostic>& found() const { return found_.list(); }
+  const std::vector<Diagnostic>& noted() const { return noted_.list(); }  // warnings
   FormulaDimensions& formulas() { return formulas_; }
 
  private:
@@ -209,14 +211,92 @@ class Elements {
       DimensionForm friction, distance;
       const Item *gap = c.find("gap"), *slip = c.find("slip");
       if (gap && gap->is_formula()) guard([&] { distance = formulas_.of(*gap).dimension; }, gap->span);
-      if (gap && slip && gap->is_formula() && slip->is_formula())
-        friction = distance / (formulas_.of(*slip).dimension * formulas_.unit("s"));
+      std::optional<DimensionForm> velocity;
+      if (slip) guard([&] { velocity = slip_velocity(slip); }, slip->span);
+      if (gap && gap->is_formula() && velocity) friction = distance / (*velocity * formulas_.unit("s"));
       for (const char* key : {"friction", "static_friction"})
-        if (const Item* i = c.find(key); i && (c.find("body") || (slip && slip->is_formula()))) expect(*i, friction);
+        if (const Item* i = c.find(key); i && (c.find("body") || velocity)) expect(*i, friction);
       if (const Item* e = c.find("restitution")) expect(*e, DimensionForm{});
       for (const char* length : {"rolling_resistance", "drilling_resistance", "at", "through"})
         expect(c.find(length), "m");
     });
+  }
+
+  // The components of a slip velocity have one dimension.
+  std::optional<DimensionForm> slip_velocity(const Item* slip) {
+    const std::vector<const Item*> list = components_of(slip);
+    if (list.empty()) return std::nullopt;
+    const Measured first = formulas_.of(*list[0]);
+    for (std::size_t k = 1; k < list.size(); ++k)
+      formulas_.alike(first, formulas_.of(*list[k]), list[k]->span, " and ", " are components of one slip velocity");
+    return first.dimension;
+  }
+
+  // Of a formula, which may have a clash that has been reported already.
+  std::optional<Dimension> known_dimension(const Item& i) {
+    try {
+      return formulas_.known(formulas_.of(i).dimension);
+    } catch (const Failure&) {
+      return std::nullopt;
+    }
+  }
+
+  bool of_length_or_angle(const Dimension& d, int order) const {
+    for (const char* unit : {"m", "rad"})
+      if (d == *formulas_.known(formulas_.unit(unit) / power(formulas_.unit("s"), order))) return true;
+    return false;
+  }
+
+  // A gap is a length or an angle, and a slip velocity the rate of one. Their dimensions are looked at where all others are
+  // known, as none of the two follows from a formula that has neither.
+  void distance_and_velocity(const Item& c) {
+    const auto check = [&](const Item& i, int order, const char* what, const char* hint) {
+      const std::optional<Dimension> d = known_dimension(i);
+      if (!d || of_length_or_angle(*d, order)) return true;
+      found_.error(i.formula.whole(), std::string(what) + ", this is " + describe(*d), hint);
+      return false;
+    };
+    const Item *gap = c.find("gap"), *slip = c.find("slip");
+    bool right = gap && gap->is_formula();
+    if (right)
+      right = check(*gap, 0, "a gap is a length or an angle",
+                    "the distance itself, and not a function of it: gap = \"R - norm(P)\"");
+    for (const Item* i : components_of(slip))
+      right = check(*i, 1, "a slip velocity is a velocity or an angular velocity",
+                    "slip = \"vel(B, P)\", the velocity of the material point at the contact") &&
+              right;
+    if (right && !components_of(slip).empty()) note_bare_coefficients(c, *gap, *components_of(slip)[0]);
+  }
+
+  // A number without a unit as a coefficient that has one may be meant as a pure number.
+  void note_bare_coefficients(const Item& c, const Item& gap, const Item& slip) {
+    const std::optional<Dimension> distance = known_dimension(gap), velocity = known_dimension(slip);
+    if (!distance || !velocity) return;
+    const bool of_angle = *distance == Dimension{}, turns = *velocity == *formulas_.known(formulas_.unit("s^-1"));
+    if (of_angle == turns) return;
+    const Dimension d = *formulas_.known(formulas_.unit(of_angle ? "m^-1" : "m"));
+    for (const char* key : {"friction", "static_friction"}) {
+      const Item* i = c.find(key);
+      if (!i || !i->is_formula()) continue;
+      const Syntax s = parse_formula(i->formula);
+      if (s.op != Syntax::Op::number || parse_rational(s.text).value_or(0) == 0) continue;
+      noted_.warning(i->formula.whole(),
+                     s.text + " without a unit stands for " + describe(d) + ", as the gap is " +
+                         (of_angle ? "an angle and the slip velocity is none of an angle"
+                                   : "a length and the slip velocity is that of an angle"),
+                     of_angle ? "1*" + s.text + " where that is meant, or a gap that is a length"
+                              : "1*" + s.text + " where that is meant, or the velocity of a point: slip = \"R*phi'\"");
+    }
+  }
+
+  // The formulas of a slip velocity.
+  static std::vector<const Item*> components_of(const Item* slip) {
+    std::vector<const Item*> list;
+    if (slip && slip->is_formula()) list.push_back(slip);
+    if (slip && !slip->is_formula())
+      for (const Item& i : slip->items)
+        if (i.is_formula()) list.push_back(&i);
+    return list;
   }
 
   // The contacts of an element. The power of a force is that of the rate of its gap, and of its slip velocity.
@@ -316,7 +396,7 @@ class Elements {
   const Item& root_;
   const Model& model_;
   FormulaDimensions formulas_;
-  Diagnostics found_;
+  Diagnostics found_, noted_;
 };
 
 }  // namespace
@@ -391,6 +471,7 @@ void check_dimensions(const Item& root, const Scope& scope, Model& model, std::v
   model.coordinate_units = units(model.names.coordinates);
   model.parameter_units = units(model.names.parameters);
   note_bare_numbers(scope, model);
+  for (const Diagnostic& d : elements.noted()) diagnostics.add(d);
   for (const FormulaDimensions::BareTerm& b : elements.formulas().bare_terms())
     diagnostics.warning(b.span, b.text + " without a unit stands beside " + describe(b.dimension),
                         b.text + " " + print(b.dimension) + ", or 1*" + b.text +

@@ -4,6 +4,24 @@
 
 namespace anholon {
 
+void declare_contacts(const Item& root, Scope& scope) {
+  for (const char* section : {"contact", "constraint"}) {
+    const Item* list = root.find(section);
+    if (!list || list->kind != Item::Kind::array) continue;
+    for (std::size_t k = 0; k < list->items.size(); ++k) {
+      const Item& c = list->items[k];
+      if (c.kind != Item::Kind::table) continue;
+      if (section == std::string("constraint") && !is_switched(c)) {
+        const Item* word = c.find("one_sided");
+        if (!word || word->kind != Item::Kind::boolean || !word->truth) continue;
+      }
+      const Item* named = c.find("name");
+      scope.contact_forces.declare(named && named->kind == Item::Kind::string ? normal_name(named->text())
+                                                                              : section + std::to_string(k + 1));
+    }
+  }
+}
+
 void check_names_of_contacts(const std::vector<Contact>& contacts, const Model& model, Diagnostics& diagnostics) {
   std::vector<std::string> told;
   for (const Contact& c : contacts) {

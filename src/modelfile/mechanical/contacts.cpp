@@ -46,7 +46,8 @@ namespace {
 
 class ContactReader {
  public:
-  ContactReader(Scope& scope, Model& model) : scope_(scope), model_(model) {}
+  ContactReader(Scope& scope, Model& model, Diagnostics& diagnostics)
+      : scope_(scope), model_(model), diagnostics_(diagnostics) {}
 
   // One contact with its resistance; of a box those of its corners.
   std::vector<Contact> read(const Item& c, std::size_t number) const {
@@ -130,11 +131,10 @@ class ContactReader {
     if (jet_order(contact.gap) > 0)
       throw Failure(gap->span, "a gap is a formula of coordinates and time, without velocities",
                     "the velocity at the contact is the slip: slip = \"vel(B, P)\"");
-    if (const Item* slip = c.find("slip")) contact.slip = velocities(*slip, c.find("along"));
-    for (const Expr v : contact.slip)
-      if (is_along_gap(contact.gap, v))
-        throw Failure(c.find("slip")->span, "a slip velocity is that of the gap: it is along the normal",
-                      "the components that are tangential to the contact, along = [\"ex\", \"ey\"]");
+    const Item* slip = c.find("slip");
+    if (!slip) return;
+    contact.slip = velocities(*slip, c.find("along"), contact.gap);
+    check_slips(contact.gap, contact.slip, contact.name, slip->span, model_, diagnostics_);
   }
 
   std::vector<Contact> by_shape(const Item& c, const Contact& common) const {
@@ -227,7 +227,7 @@ class ContactReader {
   }
 
   // A velocity by its components: a number, a list of numbers, or a vector along two directions.
-  std::vector<Expr> velocities(const Item& slip, const Item* along) const {
+  std::vector<Expr> velocities(const Item& slip, const Item* along, Expr gap) const {
     std::vector<Expr> list;
     const auto take = [&](Expr e) {
       const Expr v = put_masses(model_, e);
@@ -244,8 +244,7 @@ class ContactReader {
         if (!along)
           throw Failure(slip.span, "the slip velocity is a vector: its tangential components count",
                         "along = [\"ex\", \"ey\"]");
-        int index = 0;
-        for (const Direction& d : orthonormal_directions(*along, scope_)) take(component(*a, d, index++));
+        take_along(*a, *along, gap, take);
       } else {
         throw Failure(slip.span, std::string("a slip velocity is a number or a vector, this is ") + type_name(v));
       }
@@ -259,8 +258,16 @@ class ContactReader {
     return list;
   }
 
+  void take_along(const Vector& v, const Item& along, Expr gap, const std::function<void(Expr)>& take) const {
+    std::vector<Vector> axes;
+    for (const Direction& d : orthonormal_directions(along, scope_)) axes.push_back(*d.axis);
+    for (const Vector& d : axes) take(dot(v, d));
+    check_tangential(axes, gap, v, model_, along.span);
+  }
+
   Scope& scope_;
   Model& model_;
+  Diagnostics& diagnostics_;
 };
 
 }  // namespace
@@ -282,7 +289,7 @@ static constexpr const char* kSoftContacts =
 std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
   constexpr std::size_t kMost = 8;  // the modes of those that touch are enumerated
   std::vector<Contact> list;
-  const ContactReader reader(scope, model);
+  const ContactReader reader(scope, model, diagnostics);
   const auto touching = [&] {
     return static_cast<std::size_t>(std::count_if(list.begin(), list.end(), [](const Contact& o) { return !o.under; }));
   };
@@ -332,24 +339,6 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
     diagnostics.error(beyond, std::to_string(count) + " contacts; at most " + std::to_string(kMost) + " are accepted",
                       kSoftContacts);
   return list;
-}
-
-void declare_contacts(const Item& root, Scope& scope) {
-  for (const char* section : {"contact", "constraint"}) {
-    const Item* list = root.find(section);
-    if (!list || list->kind != Item::Kind::array) continue;
-    for (std::size_t k = 0; k < list->items.size(); ++k) {
-      const Item& c = list->items[k];
-      if (c.kind != Item::Kind::table) continue;
-      if (section == std::string("constraint") && !is_switched(c)) {
-        const Item* word = c.find("one_sided");
-        if (!word || word->kind != Item::Kind::boolean || !word->truth) continue;
-      }
-      const Item* named = c.find("name");
-      scope.contact_forces.declare(named && named->kind == Item::Kind::string ? normal_name(named->text())
-                                                                              : section + std::to_string(k + 1));
-    }
-  }
 }
 
 namespace {

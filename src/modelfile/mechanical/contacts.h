@@ -96,8 +96,6 @@ bool is_switched(const Item& constraint);
 // rub or rebound have one law of impacts. Errors go to the diagnostics.
 std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
 
-// Declares the names of the contacts, whose forces may stand in formulas that are read before the contacts.
-void declare_contacts(const Item& root, Scope& scope);
 // Finds the forces that monitors, outputs and events hold, and puts zeros in their places in the model. Errors, also those
 // of conditions, rates and values that hold a force, go to the diagnostics.
 void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact>& contacts, Diagnostics& diagnostics);

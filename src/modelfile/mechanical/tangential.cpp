@@ -1,5 +1,6 @@
 #include "modelfile/mechanical/tangential.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "expr/normal.h"
@@ -7,7 +8,11 @@
 
 namespace anholon {
 
-bool is_along_gap(Expr gap, Expr slip) {
+// A part of a vector of length 1 that is round-off.
+static constexpr double kRoundOff = 1e-9;
+
+// Whether a slip velocity is a multiple of the velocity of the gap.
+static bool is_along_gap(Expr gap, Expr slip) {
   const Expr rate = total_derivative(gap);
   Column velocities;
   for (const NodeId id : symbols(std::vector<Expr>{rate, slip}))
@@ -20,12 +25,142 @@ bool is_along_gap(Expr gap, Expr slip) {
   return !n.empty();
 }
 
-void check_tangential(const std::vector<Vector>& directions, const Vector& normal, const Model& model, Span along) {
-  constexpr double kRoundOff = 1e-9;
+static void check_tangential(const std::vector<Vector>& directions, const Vector& normal, const Model& model,
+                             Span along, const char* hint) {
   for (const Vector& d : directions)
     if (const auto part = constant_value(model, dot(d, normal)); part && std::abs(*part) > kRoundOff)
-      throw Failure(along, "a direction of the slip has a part along the normal, which is no slip",
-                    "leave out 'along': two tangential directions are chosen");
+      throw Failure(along, "a direction of the slip has a part along the normal, which is no slip", hint);
+}
+
+void check_tangential(const std::vector<Vector>& directions, const Vector& normal, const Model& model, Span along) {
+  check_tangential(directions, normal, model, along, "leave out 'along': two tangential directions are chosen");
+}
+
+static Column velocities(const Model& model) {
+  Column list;
+  for (std::uint32_t a = 0; a < model.coordinates.size(); ++a) list.push_back(model.graph->jet(a, 1));
+  return list;
+}
+
+// The derivatives of a vector by the velocities.
+static std::vector<Vector> columns(const Vector& v, const Column& by) {
+  const Column rows[3] = {gradient(v[0], by), gradient(v[1], by), gradient(v[2], by)};
+  std::vector<Vector> list;
+  for (std::size_t a = 0; a < by.size(); ++a) list.push_back({rows[0][a], rows[1][a], rows[2][a]});
+  return list;
+}
+
+static bool is_constant(const Model& model, const Vector& v, Expr e) {
+  const std::vector<Expr> all = {v[0], v[1], v[2], e};
+  const std::vector<NodeId> found = symbols(all);
+  return std::all_of(found.begin(), found.end(),
+                     [&](NodeId id) { return model.graph->node(id).kind == Kind::parameter; });
+}
+
+static bool proved_zero(const Vector& v) { return proved_zero(v[0]) && proved_zero(v[1]) && proved_zero(v[2]); }
+
+static Vector of_length_one(const Vector& v) { return pow(dot(v, v), Rational(-1, 2)) * v; }
+
+// The vector e, a sum of columns, with e*columns[a] = row[a] for all a: by those that are constant and at right angles.
+static std::optional<Vector> constant_direction(const Column& row, const std::vector<Vector>& columns,
+                                                const Model& model) {
+  Graph& g = *model.graph;
+  Vector e = zero_vector(g);
+  std::vector<Vector> axes;
+  for (std::size_t a = 0; a < row.size() && axes.size() < 3; ++a) {
+    if (!is_constant(model, columns[a], row[a])) continue;
+    Vector u = columns[a];
+    for (const Vector& axis : axes) u = u - (dot(u, axis) / dot(axis, axis)) * axis;
+    if (proved_zero(u)) continue;
+    e = e + ((row[a] - dot(e, columns[a])) / dot(u, u)) * u;
+    axes.push_back(u);
+  }
+  for (std::size_t a = 0; a < row.size(); ++a)
+    if (!proved_zero(dot(e, columns[a]) - row[a])) return std::nullopt;
+  if (proved_zero(e)) return std::nullopt;
+  return of_length_one(e);
+}
+
+static Vector owned(Graph& g, const Vector& v) { return {g.own(v[0]), g.own(v[1]), g.own(v[2])}; }
+
+// Nodes that a check leaves in the graph of a model would change the order of terms in the formulas that follow, and so their
+// round-off: checks build in a copy.
+void check_tangential(std::vector<Vector> directions, Expr gap, const Vector& v, const Model& of, Span along) {
+  const std::shared_ptr<Model> model = clone(of);
+  Graph& g = *model->graph;
+  const Column by = velocities(*model);
+  const auto normal = constant_direction(gradient(total_derivative(g.own(gap)), by), columns(owned(g, v), by), *model);
+  for (Vector& d : directions) d = owned(g, d);
+  if (normal)
+    check_tangential(directions, *normal, *model, along,
+                     "the normal is the gradient of the gap: name one or two directions at right angles to it");
+}
+
+// Gap and slip by the coordinates of which they hold velocities, and the velocity of all bodies that move with these.
+struct MovedTogether {
+  Column gap, slip;
+  std::vector<Vector> velocity;
+};
+
+// Returns nullopt if the bodies move differently or turn, as then it is not known which of their points touches.
+static std::optional<MovedTogether> moved_together(Expr gap, Expr slip, const Model& model) {
+  const Column by = velocities(model), n = gradient(total_derivative(gap), by), t = gradient(slip, by);
+  MovedTogether m;
+  std::vector<std::size_t> moved;
+  for (std::size_t a = 0; a < by.size(); ++a)
+    if (!is_zero(n[a]) || !is_zero(t[a])) moved.push_back(a), m.gap.push_back(n[a]), m.slip.push_back(t[a]);
+  const auto of_moved = [&](const Vector& v) {
+    const std::vector<Vector> all = columns(v, by);
+    std::vector<Vector> list;
+    for (const std::size_t a : moved) list.push_back(all[a]);
+    return list;
+  };
+  for (const Body& b : model.bodies) {
+    if (b.orientation)
+      for (const Vector& rate : of_moved(b.orientation->rate))
+        if (!proved_zero(rate)) return std::nullopt;
+    const std::vector<Vector> own = of_moved(total_derivative(b.center));
+    if (std::all_of(own.begin(), own.end(), [](const Vector& c) { return proved_zero(c); })) continue;
+    for (std::size_t k = 0; k < m.velocity.size(); ++k)
+      if (!proved_zero(own[k] - m.velocity[k])) return std::nullopt;
+    m.velocity = own;
+  }
+  if (m.velocity.empty()) return std::nullopt;
+  return m;
+}
+
+static bool is_partly_normal(Expr gap, Expr slip, const Model& model) {
+  const std::optional<MovedTogether> m = moved_together(gap, slip, model);
+  if (!m) return false;
+  const auto n = constant_direction(m->gap, m->velocity, model), t = constant_direction(m->slip, m->velocity, model);
+  const auto part = n && t ? constant_value(model, dot(*n, *t)) : std::nullopt;
+  return part && std::abs(*part) > kRoundOff;
+}
+
+void check_slips(Expr gap, const std::vector<Expr>& slip, const std::string& contact, Span place, const Model& of,
+                 Diagnostics& diagnostics) {
+  constexpr const char* kTangential =
+      "the components that are tangential to the contact: slip = \"vel(B, P)\", along = [\"ex\", \"ey\"]";
+  for (const Expr v : slip)
+    if (is_along_gap(gap, v))
+      throw Failure(place, "a slip velocity is that of the gap: it is along the normal", kTangential);
+  const std::shared_ptr<Model> model = clone(of);
+  const Column by = velocities(*model);
+  bool partly_normal = false;
+  for (const Expr v : slip) {
+    const Expr own = model->graph->own(v);
+    for (const Expr coefficient : gradient(own, by))
+      for (const Expr further : gradient(coefficient, by))
+        if (!proved_zero(further))
+          throw Failure(place, "a slip velocity is linear in the velocities: its sign is that of the slip",
+                        kTangential);
+    partly_normal = partly_normal || is_partly_normal(model->graph->own(gap), own, *model);
+  }
+  if (partly_normal)
+    diagnostics.warning(place,
+                        "the slip velocity of the contact '" + contact +
+                            "' has a part along the normal, the gradient of the gap: friction has one, too",
+                        kTangential);
 }
 
 }  // namespace anholon

@@ -38,6 +38,24 @@ TEST(FarFromZero, NoImpactIsLostInAnyUnit) {
     }
 }
 
+// What is round-off of a gap at the start depends on the size of the model.
+TEST(FarFromZero, APenetrationAtTheStartIsToldInAnyUnit) {
+  const auto begins = [](const std::string& scale, const std::string& depth) {
+    return contact_motion("coordinates = [\"x\"]\nparameters = {scale = " + scale + ", depth = " + depth + R"toml(}
+particle = [{name = "b", mass = 1, position = "x*ex"}]
+contact = [{name = "wall", gap = "x - scale"}]
+initial = {x = "scale*(1 - depth)"}
+)toml",
+                          1)
+        .report.outcome.ok();
+  };
+  for (const char* scale : {"1e-9", "1e-6", "1e-3", "1", "1e3"}) {
+    for (const char* depth : {"5", "0.5", "0.01", "1e-7"})
+      if (std::stod(scale) * std::stod(depth) > 2e-12) EXPECT_FALSE(begins(scale, depth)) << scale << " " << depth;
+    for (const char* depth : {"0", "1e-13", "5e-10"}) EXPECT_TRUE(begins(scale, depth)) << scale << " " << depth;
+  }
+}
+
 TEST(FarFromZero, NoImpactIsLostLate) {
   for (const char* start : {"1e3", "1e5", "1e6"})
     for (const double c : {0.1, 0.5, 0.9}) {

@@ -42,6 +42,18 @@ TEST(SharedFriction, BlockOnTwoFeetSlidesWhenBothAreAtTheirLimit) {
   }
 }
 
+// The contacts are held for a moment while it is found which of them slip; rows in this time show no more friction than there is.
+TEST(SharedFriction, IsNeverBeyondItsBound) {
+  for (const Rational& late : {Rational(1, 10'000'000), Rational(1, 2'000'000), Rational(9, 10'000'000)}) {
+    const auto m = contact_motion(block("[0, 0, 0]"), 6, {}, {Rational(5886, 1000) + late});
+    ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    for (const std::string foot : {"l1", "l2"}) {
+      const double bound = 0.3 * m.number(0, foot + ".normal");
+      EXPECT_NEAR(std::abs(m.number(0, foot + ".friction")), bound, 1e-12 * bound) << foot << " " << late.get_d();
+    }
+  }
+}
+
 TEST(SharedFriction, FeetShareByTheirLoads) {
   const auto m = contact_motion(block("[0, 0, 0]"), 5);
   EXPECT_NEAR(std::abs(m.last("l1.friction")) + std::abs(m.last("l2.friction")), 5, 1e-12);

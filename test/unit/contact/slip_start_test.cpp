@@ -181,6 +181,28 @@ TEST(SlipStart, AndVanishesWhereAForceJumpsOrTheMotionEnds) {
   }
 }
 
+// The direction of a slip turns up to its end. With the slip v, the friction f and a force F at the angle whose cosine is c the
+// slip ends at v (f + F c)/(f^2 - F^2), in any unit of time.
+TEST(SlipStart, EndsAtItsTimeInAnyUnitOfTime) {
+  const auto end = [](const std::string& unit, const std::string& force) {
+    const auto m = contact_motion("coordinates = [\"x\", \"y\", \"z\"]\nparameters.T = \"" + unit + R"toml("
+gravity.field = "-10/T^2*ez"
+particle = [{name = "puck", mass = 1, position = "x*ex + y*ey + z*ez"}]
+contact = [{name = "ice", gap = "z", slip = ["x'", "y'"], friction = 0.3}]
+force = [{on = "puck", vector = ")toml" +
+                                      force + R"toml(/T^2*ey"}]
+initial = {"x'" = "3/T", "y'" = "4/T"}
+)toml",
+                                  4 * *parse_rational(unit));
+    EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    EXPECT_EQ(times(m, "ice.sticks").size(), 1U) << unit;
+    return times(m, "ice.sticks").at(0) / parse_rational(unit)->get_d();
+  };
+  for (const std::string unit : {"1e-12", "1e-9", "1e-6", "1e-3", "1", "1e3", "1e6"})
+    EXPECT_NEAR(end(unit, "1"), 5 * 3.8 / 8, 1e-9) << unit;
+  EXPECT_GT(std::abs(end("1", "1.1") - 5 * 3.8 / 8), 1e-3);  // the mutant
+}
+
 // An event that ends the motion does so while the contact is held before its slip is followed.
 TEST(SlipStart, EndsAtAnEvent) {
   const auto m = contact_motion(R"toml(coordinates = ["x", "y", "z"]
