@@ -7,6 +7,7 @@
 #include "modelfile/hash.h"
 #include "observe/rows/quantity_units.h"
 #include "proof/checker/verify.h"
+#include "report/page/data.h"
 #include "report/page/page.h"
 #include "setup/eliminate.h"
 
@@ -131,6 +132,9 @@ PageInParts::PageInParts(std::vector<PagedRun> runs, std::shared_ptr<const Model
     if (!r.run.units.empty()) add_units(*r.scenario->model, r.conserved, r.run.units);
     page_.cases.push_back(
         {r.name, r.scenario, constraint_facts(*r.scenario), std::move(r.conserved), std::move(r.run)});
+    PageCase& c = page_.cases.back();
+    c.plots = std::make_shared<PlotData>(plots_of(c, request_.columns));
+    if (request_.note && !c.plots->caution.empty()) request_.note(c.plots->caution);
   }
   page_.version = request_.version;
   page_.model_hash = model_hash(request_.source);

@@ -6,6 +6,8 @@
 #include "report/bibliography.h"
 #include "report/columns.h"
 #include "report/observer_path.h"
+#include "report/rows/frames.h"
+#include "report/rows/page_rows.h"
 #include "support/models.h"
 
 namespace anholon::columns_test {
