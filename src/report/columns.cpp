@@ -8,7 +8,7 @@
 #include "base/base64.h"
 #include "numeric/relative.h"
 #include "print/print_names.h"
-#include "report/contact_bands.h"
+#include "report/rows/contact_bands.h"
 #include "report/rows/frames.h"
 #include "report/rows/page_rows.h"
 #include "simulation/report_json.h"
@@ -271,8 +271,9 @@ class Plots {
     std::map<std::string, std::size_t> seen;
     for (std::size_t k = 0; k < data_.columns.size() && !all; ++k) {
       PlotColumn& c = data_.columns[k];
-      const bool stays = k < given && !chosen_.empty() ? std::find(chosen_.begin(), chosen_.end(), c.name) != chosen_.end()
-                                                       : ++seen[c.group] <= each;
+      const bool stays = k < given && !chosen_.empty()
+                             ? std::find(chosen_.begin(), chosen_.end(), c.name) != chosen_.end()
+                             : ++seen[c.group] <= each;
       if (!stays) c.group.clear(), ++data_.left_out;
     }
   }
@@ -369,7 +370,7 @@ class Plots {
   RunTable table_;  // the rows of the run, with both sides of jumps
   PlotData data_;
   std::map<std::string, std::size_t> size_;  // columns of each group
-  std::size_t most_kept_ = 0;  // rows of the column with the most rows
+  std::size_t most_kept_ = 0;                // rows of the column with the most rows
 };
 
 }  // namespace

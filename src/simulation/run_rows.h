@@ -147,8 +147,7 @@ class RunRows {
       const double wide = std::ceil(std::abs(to_double(W(end - begin))) / picture->widest);
       parts = std::max(picture->in_each_step, static_cast<int>(std::min(wide, kMostParts)));
     }
-    for (int k = 1; k < parts && of_.report.outcome.ok(); ++k)
-      in_step(begin + (end - begin) * W(k) / W(parts), "");
+    for (int k = 1; k < parts && of_.report.outcome.ok(); ++k) in_step(begin + (end - begin) * W(k) / W(parts), "");
     if (of_.report.outcome.ok()) in_step(end, "");
   }
 

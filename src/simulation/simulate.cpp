@@ -308,7 +308,8 @@ class Run {
 
   // A row with the state after events that have set something, for a picture.
   void show_after(const std::vector<Occurrence<W>>& occurrences) {
-    const bool set = std::any_of(occurrences.begin(), occurrences.end(), [](const auto& o) { return !o.changes.empty(); });
+    const bool set =
+        std::any_of(occurrences.begin(), occurrences.end(), [](const auto& o) { return !o.changes.empty(); });
     if (set && o_.picture && schedule().every_step() && report_.outcome.ok()) rows_.after_event(course_.time());
   }
 

@@ -91,8 +91,7 @@ void write_page(const SystemCommand& o, const PageFile& page, std::deque<Told>& 
   request.command = o.command_line;
   request.source = first.in.source;
   if (!page.columns.empty()) request.columns = columns_of_page(page, first.run.table);
-  if (!o.quiet)
-    request.note = [](const std::string& text) { say(stderr, "note: %s\n", text.c_str()); };
+  if (!o.quiet) request.note = [](const std::string& text) { say(stderr, "note: %s\n", text.c_str()); };
   const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
   if (terminal)
     request.progress = [](std::size_t done, std::size_t all, const std::string& name) {

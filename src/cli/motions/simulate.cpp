@@ -105,7 +105,8 @@ void settle_drawing(MotionSettings& settings, const SimulateCommand& o, const Wo
           number_text(settings.to->get_d()).c_str());
   }
   if (o.motion.every || !o.motion.at.empty()) return;
-  if (!settings.to) settings.to = settings.at.front().value < start ? settings.at.front().value : settings.at.back().value;
+  if (!settings.to)
+    settings.to = settings.at.front().value < start ? settings.at.front().value : settings.at.back().value;
   settings.every.reset();
   settings.at.clear();
   constexpr int kInEachStep = 4;

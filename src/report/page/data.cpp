@@ -4,9 +4,9 @@
 
 #include "numeric/number.h"
 #include "report/columns.h"
-#include "report/contact_bands.h"
 #include "report/markup.h"
 #include "report/observer_path.h"
+#include "report/rows/contact_bands.h"
 #include "simulation/report_json.h"
 
 namespace anholon {

@@ -23,9 +23,9 @@ class MotionSection {
         out += "<h3 dir=\"auto\">" + markup_escape(c.name.empty() ? "As the file says" : c.name) + "</h3>\n";
       out += outcome(reports_[k], c.run);
       if (c.plots && !c.plots->caution.empty())
-        out += warning_box({c.plots->caution + ".",
-                            std::string(c.plots->rough ? "Paths are left out. " : "") + "A motion that ends earlier (--to)"
-                                                                                        ", or more rows, shows more."});
+        out += warning_box({c.plots->caution + ".", std::string(c.plots->rough ? "Paths are left out. " : "") +
+                                                        "A motion that ends earlier (--to)"
+                                                        ", or more rows, shows more."});
       if (viewer_script().empty())
         out += "<p class=\"note\">This program was built without the viewer, so the page has no animation; the numbers "
                "are below, and <code>anholon plot</code> draws the run.</p>\n" +

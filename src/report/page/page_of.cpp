@@ -132,14 +132,18 @@ PageInParts::PageInParts(std::vector<PagedRun> runs, std::shared_ptr<const Model
     if (!r.run.units.empty()) add_units(*r.scenario->model, r.conserved, r.run.units);
     page_.cases.push_back(
         {r.name, r.scenario, constraint_facts(*r.scenario), std::move(r.conserved), std::move(r.run)});
-    PageCase& c = page_.cases.back();
-    c.plots = std::make_shared<PlotData>(plots_of(c, request_.columns));
-    if (request_.note && !c.plots->caution.empty()) request_.note(c.plots->caution);
   }
   page_.version = request_.version;
   page_.model_hash = model_hash(request_.source);
   page_.source = request_.source;
   page_.command = request_.command;
+}
+
+void PageInParts::add_plots() {
+  for (PageCase& c : page_.cases) {
+    c.plots = std::make_shared<PlotData>(plots_of(c, request_.columns));
+    if (request_.note && !c.plots->caution.empty()) request_.note(c.plots->caution);
+  }
 }
 
 void PageInParts::add_equations() { size_ = anholon::add_equations(page_, request_, *page_.cases.front().scenario); }
@@ -157,6 +161,7 @@ void PageInParts::add_proof() {
 
 std::string page_of(std::vector<PagedRun> runs, const std::shared_ptr<const Model>& model, const PageRequest& request) {
   PageInParts parts(std::move(runs), model, request);
+  parts.add_plots();
   parts.add_equations();
   parts.add_proof();
   return html(parts.page());

@@ -30,11 +30,13 @@ struct PageRequest {
 // The content of a page whose parts are added as they are asked for: an editor shows the motion first.
 class PageInParts {
  public:
-  // The motions without equations and proof. REQUIRES: a run at least.
+  // The motions without plots, equations and proof. REQUIRES: a run at least.
   PageInParts(std::vector<PagedRun> runs, std::shared_ptr<const Model> model, PageRequest request);
   PageInParts(const PageInParts&) = delete;
   PageInParts& operator=(const PageInParts&) = delete;
   const Page& page() const { return page_; }
+  // What is plotted, and what is not drawn right.
+  void add_plots();
   // Throws Failure if the eliminations that were asked for are impossible.
   void add_equations();
   // The proof, or the reason why there is none. REQUIRES: add_equations() was called.

@@ -30,8 +30,8 @@ double negligible(const MovingColumn& c) {
 }
 
 double change(std::span<const double> x, std::size_t i, std::size_t j) {
-  const auto [least, greatest] = std::minmax_element(x.begin() + static_cast<std::ptrdiff_t>(i),
-                                                     x.begin() + static_cast<std::ptrdiff_t>(j) + 1);
+  const auto [least, greatest] =
+      std::minmax_element(x.begin() + static_cast<std::ptrdiff_t>(i), x.begin() + static_cast<std::ptrdiff_t>(j) + 1);
   return *greatest - *least;
 }
 
@@ -89,7 +89,8 @@ ChosenFrames choose_frames(std::span<const double> t, const std::vector<MovingCo
   const Chooser chooser(t, columns);
   constexpr std::array kTolerances = {1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3};
   for (const double tolerance : kTolerances)
-    if (std::vector<std::size_t> rows = chooser.choose(tolerance, most); rows.size() <= most) return {std::move(rows), true};
+    if (std::vector<std::size_t> rows = chooser.choose(tolerance, most); rows.size() <= most)
+      return {std::move(rows), true};
   ChosenFrames evenly{{}, false};
   for (std::size_t k = 0; k < most; ++k) evenly.rows.push_back(k * (t.size() - 1) / (most - 1));
   return evenly;

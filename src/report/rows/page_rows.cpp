@@ -7,7 +7,7 @@
 
 #include "numeric/number.h"
 #include "print/print_names.h"
-#include "report/contact_bands.h"
+#include "report/rows/contact_bands.h"
 
 namespace anholon {
 

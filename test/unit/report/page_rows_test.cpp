@@ -195,7 +195,8 @@ TEST(RowsOfAFile, AreThoseOfAMotionOfTheModel) {
             "the rows have no column for coordinates of the model: z");
   EXPECT_EQ(obstacle_to_showing(*s.model, table({"t", "z"}, {0, 9, 8}), true),
             "the time turns round in line 4: 8 after 9");
-  EXPECT_EQ(obstacle_to_showing(*s.model, table({"t", "z"}, {0, std::nan("")}), false), "the time in row 2 is no number");
+  EXPECT_EQ(obstacle_to_showing(*s.model, table({"t", "z"}, {0, std::nan("")}), false),
+            "the time in row 2 is no number");
 }
 
 TEST(Plots, SayWhichRowsAreTooFewAndWhichColumnsAreChosen) {
