@@ -69,6 +69,7 @@ struct PageFile {
   std::string path;
   std::vector<std::string> forms;  // whose equations are shown; empty: the usual ones
   bool no_proof = false;
+  std::vector<std::string> columns;  // that are plotted, as names and patterns; empty: as many as there is room for
 };
 
 struct SimulateCommand : SystemCommand {

@@ -27,11 +27,19 @@ struct StepPolynomials {
   std::function<std::pair<double, double>(std::size_t i, double x)> followed_value;
 };
 
+// Rows for a picture, where no times of rows are asked for: so many in each step, no further apart than `widest`, and one
+// with the state after each event that changes something, besides the one before it.
+struct PictureRows {
+  int in_each_step;
+  double widest;
+};
+
 struct SimulationOptions {
   StateChoice state;
   std::optional<Rational> to;
   std::vector<Rational> at;  // exactly these rows, ascending, on one side of the start
   std::optional<Rational> every;
+  std::optional<PictureRows> picture;
   Rational tolerance{1, 1000000000000};
   int order = 0;  // of the Taylor polynomials; 0: from the tolerance
   Method integrator =

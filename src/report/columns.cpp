@@ -4,20 +4,25 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 
 #include "base/base64.h"
 #include "numeric/relative.h"
 #include "print/print_names.h"
+#include "report/rows/contact_bands.h"
+#include "report/rows/frames.h"
+#include "report/rows/page_rows.h"
 #include "simulation/report_json.h"
 
 namespace anholon {
 
 namespace {
 
-// Limits that keep a page small: numbers in plots and in the picture, columns in plots.
-constexpr std::size_t kMostNumbers = 28000, kMostFrameNumbers = 18000, kMostColumns = 96;
-constexpr std::size_t kLeastRows = 200, kMostFrames = 2000;
+// Limits that keep a page small: numbers where all rows are plotted, where some are, and in the picture; columns in
+// plots.
+constexpr std::size_t kMostNumbers = 40000, kMostThinned = 120'000, kMostFrameNumbers = 240'000, kMostColumns = 96;
+constexpr std::size_t kLeastRows = 200, kLeastFrames = 60, kMostFrames = 20'000;
+// Of the intervals between rows: paths are left out where more are doubtful.
+constexpr double kMostDoubtful = 0.05;
 
 constexpr const char* kDerivatives[] = {"coordinates", "velocities", "accelerations", "third derivatives",
                                         "fourth derivatives"};
@@ -57,7 +62,8 @@ std::vector<ModeChange> mode_changes(const Model& model, const std::optional<Sim
   return list;
 }
 
-// Values of expressions at the rows of a table. A row at the time of an event is the one before it.
+// Values of expressions at the rows of a table. A row at the time of an event is the one before it; of two, the second is
+// the one after it.
 class AtRows {
  public:
   AtRows(const Model& model, const RunTable& table, const Column& es, std::vector<double> parameters,
@@ -74,7 +80,9 @@ class AtRows {
     std::size_t next = 0;
     std::optional<Machine<double>> machine;
     for (std::size_t row = 0; row < table_.rows(); ++row) {
-      for (; next < modes_.size() && modes_[next].t < table_.values[0][row]; ++next)
+      const double t = table_.values[0][row];
+      const bool after = row > 0 && table_.values[0][row - 1] == t;
+      for (; next < modes_.size() && (modes_[next].t < t || (after && modes_[next].t == t)); ++next)
         parameters_[modes_[next].parameter] = modes_[next].value, machine.reset();
       if (!machine) machine.emplace(tape_, 0, parameters_);
       for (std::size_t k = 0; k < columns_.size(); ++k)
@@ -95,21 +103,24 @@ class AtRows {
 
 class Plots {
  public:
-  Plots(Workspace& s, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene)
-      : s_(s), model_(*s.model), run_(run), conserved_(conserved), scene_(scene),
-        parameters_(parameter_values<double>(model_)), modes_(mode_changes(model_, read_report(run.report))) {}
+  Plots(Workspace& s, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene,
+        const std::vector<std::string>& chosen)
+      : s_(s), model_(*s.model), run_(run), report_(read_report(run.report)), conserved_(conserved), scene_(scene),
+        chosen_(chosen), parameters_(parameter_values<double>(model_)), modes_(mode_changes(model_, report_)),
+        table_(rows_for_page(model_, run.table, events())) {}
 
   PlotData make() {
-    if (!run_.table.values.empty()) data_.t = numbers(0);
+    if (!table_.values.empty()) data_.t = numbers(0);
     data_.rows = data_.t.size();
     given();
+    modes_as_steps();
     energies();
     residuals();
     steps();
     shorten();
     for (const PlotGroup& g : all_groups())
       if (std::any_of(data_.columns.begin(), data_.columns.end(), [&](const PlotColumn& c) { return c.group == g.id; }))
-        data_.groups.push_back(g);
+        data_.groups.push_back(g), data_.groups.back().columns = size_[g.id];
     return std::move(data_);
   }
 
@@ -119,14 +130,27 @@ class Plots {
     return data_.columns.back();
   }
 
+  std::vector<EventReport> events() const { return report_ ? report_->events : std::vector<EventReport>(); }
+
   std::vector<double> numbers(std::size_t column) const {
-    const std::span<const double> list = run_.table.values[column];
+    const std::span<const double> list = table_.values[column];
     return {list.begin(), list.end()};
+  }
+
+  // The mode of a contact changes at events, and not on the way from row to row.
+  void modes_as_steps() {
+    for (const ContactBand& b : contact_bands(table_, events()))
+      for (PlotColumn& c : data_.columns) {
+        if (c.name != b.name + ".mode") continue;
+        c.values.clear();
+        for (const ContactSpan& s : b.spans)
+          for (const double t : {s.begin, s.end}) c.t.push_back(t), c.values.push_back(s.mode);
+      }
   }
 
   // Adds the columns of the run, in its order (the scene refers to them by index).
   void given() {
-    const RunTable& t = run_.table;
+    const RunTable& t = table_;
     std::map<std::string, std::pair<std::string, std::string>> known;  // name -> group, math
     const auto knows = [&](const std::string& name, const char* group, ColumnKind kind, std::size_t index, unsigned k) {
       known[derivative_name(name, k, Format::text)] = {
@@ -163,7 +187,7 @@ class Plots {
       what.push_back({c.name, "<mtext>" + markup_escape(c.name) + "</mtext>", energy ? "energies" : "integrals"});
     }
     std::vector<std::vector<double>> values(es.size());
-    AtRows rows(model_, run_.table, es, parameters_, modes_);
+    AtRows rows(model_, table_, es, parameters_, modes_);
     if (!rows.possible()) return;
     rows.go([&](std::size_t, const Machine<double>& m) {
       for (std::size_t k = 0; k < es.size(); ++k) values[k].push_back(m.value(k));
@@ -196,7 +220,7 @@ class Plots {
       es.insert(es.end(), conserved_[c].terms.begin(), conserved_[c].terms.end());
     }
     if (es.empty()) return;
-    AtRows rows(model_, run_.table, es, parameters_, modes_);
+    AtRows rows(model_, table_, es, parameters_, modes_);
     if (!rows.possible()) return;
     std::vector<std::vector<double>> values(names.size()), integral(conserved_.size());
     std::vector<double> size(conserved_.size(), 0), made_of(conserved_.size(), 0), made;
@@ -238,28 +262,34 @@ class Plots {
     add("h", "<mi>h</mi>", "steps", std::move(h)).t = std::move(t);
   }
 
-  // Keeps as many columns of every group as there is room for.
+  // Keeps the chosen columns, or as many of every group as there is room for.
   void fewer_columns() {
-    if (data_.columns.size() <= kMostColumns) return;
-    std::map<std::string, std::size_t> size;
-    for (const PlotColumn& c : data_.columns) ++size[c.group];
-    const std::size_t each = std::max<std::size_t>(kMostColumns / size.size(), 4);
+    for (const PlotColumn& c : data_.columns) ++size_[c.group];
+    const bool all = chosen_.empty() && data_.columns.size() <= kMostColumns;
+    const std::size_t each = std::max<std::size_t>(kMostColumns / std::max<std::size_t>(size_.size(), 1), 4);
+    const std::size_t given = table_.columns.size() - 1;
     std::map<std::string, std::size_t> seen;
-    for (PlotColumn& c : data_.columns)
-      if (++seen[c.group] > each) c.group.clear(), ++data_.left_out;
+    for (std::size_t k = 0; k < data_.columns.size() && !all; ++k) {
+      PlotColumn& c = data_.columns[k];
+      const bool stays = k < given && !chosen_.empty()
+                             ? std::find(chosen_.begin(), chosen_.end(), c.name) != chosen_.end()
+                             : ++seen[c.group] <= each;
+      if (!stays) c.group.clear(), ++data_.left_out;
+    }
   }
 
   void shorten() {
-    const ColumnOf column = column_of(model_, run_.table);
+    const ColumnOf column = column_of(model_, table_);
     std::vector<int> needed = columns_of(scene_, *model_.graph, column);
     for (int& k : needed) --k;  // t is not a column of the page
+    look_at_rows();
     fewer_columns();
     const auto plotted = static_cast<std::size_t>(std::count_if(data_.columns.begin(), data_.columns.end(),
                                                                 [](const PlotColumn& c) { return !c.group.empty(); }));
     const bool all_rows = data_.rows * plotted <= kMostNumbers;
     data_.shown = data_.rows;
     if (!all_rows || data_.left_out > 0) take_frames(needed);
-    const std::size_t most = std::max(kLeastRows, kMostNumbers / std::max<std::size_t>(2 * plotted, 1));
+    const std::size_t most = std::max(kLeastRows, kMostThinned / std::max<std::size_t>(2 * plotted, 1));
     for (PlotColumn& c : data_.columns) {
       if (c.group.empty())
         c.values.clear();
@@ -279,26 +309,68 @@ class Plots {
     c.values = std::move(values);
   }
 
+  // The positions that the picture interpolates.
+  std::vector<MovingColumn> moving() const {
+    const ColumnOf column = column_of(model_, table_);
+    std::vector<MovingColumn> list;
+    for (const Input& in : scene_.tape.inputs) {
+      Node n = model_.graph->node(in.symbol);
+      if (n.kind != Kind::jet || n.order != 0) continue;
+      MovingColumn c;
+      for (std::span<const double>* part : {&c.value, &c.first, &c.second}) {
+        if (const auto k = column(n); k && *k > 0) *part = table_.values[static_cast<std::size_t>(*k)];
+        ++n.order;
+      }
+      if (!c.value.empty()) list.push_back(c);
+    }
+    return list;
+  }
+
+  // Whether the motion is known between the rows.
+  void look_at_rows() {
+    if (data_.rows < 3) return;
+    const std::size_t doubtful = doubtful_intervals(table_.values[0], moving());
+    if (doubtful == 0) return;
+    const std::size_t intervals = data_.rows - 1;
+    data_.rough = static_cast<double>(doubtful) > kMostDoubtful * static_cast<double>(intervals);
+    data_.caution = std::to_string(data_.rows) + " rows" + of_steps() + ": in " + std::to_string(doubtful) + " of " +
+                    std::to_string(intervals) +
+                    " intervals between them the motion is too fast for these rows, and is not drawn right";
+  }
+
+  std::string of_steps() const {
+    const std::size_t steps = report_ ? report_->steps : 0;
+    return steps > data_.rows ? " of " + std::to_string(steps) + " steps" : "";
+  }
+
   void take_frames(const std::vector<int>& needed) {
     const std::size_t most =
-        std::clamp<std::size_t>(kMostFrameNumbers / std::max<std::size_t>(needed.size(), 1), 60, kMostFrames);
-    const std::size_t count = std::min(most, data_.rows);
-    std::vector<std::size_t> rows;
-    for (std::size_t k = 0; k < count; ++k) rows.push_back(count < 2 ? 0 : k * (data_.rows - 1) / (count - 1));
-    for (std::size_t r : rows) data_.frame_t.push_back(data_.t[r]);
+        std::clamp<std::size_t>(kMostFrameNumbers / std::max<std::size_t>(needed.size(), 1), kLeastFrames, kMostFrames);
+    if (data_.rows == 0) return;
+    const ChosenFrames frames = choose_frames(data_.t, moving(), most);
+    if (!frames.enough) {
+      data_.rough = true;
+      data_.caution = "The picture has " + std::to_string(frames.rows.size()) + " of " + std::to_string(data_.rows) +
+                      " rows: between them the motion is not drawn right";
+    }
+    for (std::size_t r : frames.rows) data_.frame_t.push_back(data_.t[r]);
     for (int c : needed)
-      for (std::size_t r : rows) data_.frames[c].push_back(data_.columns[static_cast<std::size_t>(c)].values[r]);
+      for (std::size_t r : frames.rows) data_.frames[c].push_back(table_.values[static_cast<std::size_t>(c) + 1][r]);
   }
 
   const Scenario& s_;
   const Model& model_;
   const RunFile& run_;
+  std::optional<SimulationReport> report_;
   const std::vector<Conserved>& conserved_;
   const Scene& scene_;
+  const std::vector<std::string>& chosen_;
   std::vector<double> parameters_;
   std::vector<ModeChange> modes_;
+  RunTable table_;  // the rows of the run, with both sides of jumps
   PlotData data_;
-  std::size_t most_kept_ = 0;  // rows of the column with the most rows
+  std::map<std::string, std::size_t> size_;  // columns of each group
+  std::size_t most_kept_ = 0;                // rows of the column with the most rows
 };
 
 }  // namespace
@@ -361,48 +433,14 @@ bool at_rows(const Model& model, const RunFile& run, Expr e, std::vector<double>
   return true;
 }
 
-PlotData plot_data(Workspace& scenario, const std::vector<Conserved>& conserved, const RunFile& run,
-                   const Scene& scene) {
-  return Plots(scenario, conserved, run, scene).make();
+PlotData plot_data(Workspace& scenario, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene,
+                   const std::vector<std::string>& chosen) {
+  return Plots(scenario, conserved, run, scene, chosen).make();
 }
 
 int rows_to_look_at(std::size_t coordinates, std::size_t constraints) {
   constexpr std::size_t kNumbers = 22000;
   return static_cast<int>(std::clamp<std::size_t>(kNumbers / (4 * coordinates + 3 * constraints + 6), 250, 1000));
-}
-
-std::vector<std::size_t> keep_extremes(const std::vector<double>& values, std::size_t most) {
-  std::vector<std::size_t> rows;
-  const std::size_t n = values.size();
-  if (n <= most) {
-    rows.resize(n);
-    std::iota(rows.begin(), rows.end(), std::size_t{0});
-    return rows;
-  }
-  const std::size_t stretches = std::max<std::size_t>(most / 2, 1);
-  const auto add = [&](std::size_t r) {
-    if (rows.empty() || rows.back() < r) rows.push_back(r);
-  };
-  add(0);
-  for (std::size_t s = 0; s < stretches; ++s) {
-    const std::size_t begin = s * n / stretches, end = (s + 1) * n / stretches;
-    std::size_t least = n, greatest = n, gap = n;
-    for (std::size_t r = begin; r < end; ++r) {
-      if (std::isnan(values[r])) {
-        gap = r;
-        continue;
-      }
-      if (least == n || values[r] < values[least]) least = r;
-      if (greatest == n || values[r] > values[greatest]) greatest = r;
-    }
-    std::vector<std::size_t> here;
-    for (std::size_t r : {least, greatest, gap})
-      if (r < n) here.push_back(r);
-    std::sort(here.begin(), here.end());
-    for (std::size_t r : here) add(r);
-  }
-  add(n - 1);
-  return rows;
 }
 
 namespace {

@@ -22,6 +22,7 @@ struct PlotColumn {
 struct PlotGroup {
   std::string id, title;
   bool log = false;
+  std::size_t columns = 0;  // how many there are, those that are not plotted among them
 };
 
 struct PlotData {
@@ -33,6 +34,9 @@ struct PlotData {
   // Rows for the picture, if the columns above are reduced: times, and values by column.
   std::vector<double> frame_t;
   std::map<int, std::vector<double>> frames;
+  // What the reader must know of the picture: that its rows are too few for the motion; empty if they are not.
+  std::string caution;
+  bool rough = false;  // so few that paths would be wrong
 };
 
 // The formula that stands for a column of a run: its symbol in LaTeX or MathML, in the notation of the model. It may
@@ -46,15 +50,12 @@ ColumnOf column_of(const Model& model, const RunTable& table);
 // hold a required symbol.
 bool at_rows(const Model& model, const RunFile& run, Expr e, std::vector<double>& values);
 
-PlotData plot_data(Workspace& scenario, const std::vector<Conserved>& conserved, const RunFile& run,
-                   const Scene& scene);
+// chosen: the columns of the run that are plotted, by their names; empty: as many as there is room for.
+PlotData plot_data(Workspace& scenario, const std::vector<Conserved>& conserved, const RunFile& run, const Scene& scene,
+                   const std::vector<std::string>& chosen = {});
 
 // The number of rows of a motion that is drawn: as many as a page holds without reduction.
 int rows_to_look_at(std::size_t coordinates, std::size_t constraints);
-
-// At most about `most` of the rows: the least and the greatest of each interval, the first and the last of all, and
-// every gap.
-std::vector<std::size_t> keep_extremes(const std::vector<double>& values, std::size_t most);
 
 // The numbers as little-endian doubles, in base64.
 std::string packed(const std::vector<double>& values);

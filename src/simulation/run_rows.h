@@ -1,6 +1,8 @@
 // The rows of one run: each is made where it is due, by the kernel beside the motion or by the reference, and is then
 // watched, judged and written.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -72,7 +74,7 @@ class RunRows {
       if (schedule_.reaches(due.t, stop)) given = due.t;
     }
     if (schedule_.reaches(*schedule_.given(), stop)) return;
-    if (schedule_.every_step() && of_.report.outcome.ok()) in_step(stop, "");
+    if (schedule_.every_step()) in_parts(*schedule_.given(), stop);
     schedule_.set_given(given);
   }
 
@@ -105,21 +107,25 @@ class RunRows {
   }
 
   void at(const typename RowSchedule<W>::Due& due) { at(due.t, due.label); }
-  // A row by the reference.
-  void at(const W& t, const std::string& label) {
+  // A row by the reference. `judged`: it counts for the estimate of the error.
+  void at(const W& t, const std::string& label, bool judged = true) {
     of_.report.outcome = of_.shown.at(t);
     if (!of_.report.outcome.ok()) return;
     last_ = t;
     ++of_.report.rows_looked_at;
     of_.report.outcome = of_.watch.see(of_.shown.point(), of_.report);
     row_values(of_.s, highest(), of_.shown.point(), of_.watch, numbers_);
-    of_.judge.row(t, label, numbers_, of_.course);
+    if (judged) of_.judge.row(t, label, numbers_, of_.course);
     if (of_.floors)
       of_.floors->see(to_double(t), [&](std::size_t r) { return to_double(of_.watch.multiplier(r)); }, numbers_);
     writer_.row(t, label, numbers_);
     ++of_.report.rows;
     if (of_.options.rows_lost) of_.options.rows_lost();
   }
+
+  // A row by the reference at the time of the row before, with the state after an event; the estimate of the error counts
+  // the row before alone.
+  void after_event(const W& t) { at(t, "", false); }
 
   // Whether rows have been given up to t or beyond it.
   bool has_passed(const W& t) const { return last_ && schedule_.reaches(*last_, t); }
@@ -132,6 +138,18 @@ class RunRows {
 
  private:
   int highest() const { return largest_order(of_.s, of_.course.taylor().program().d); }
+
+  // Rows up to the end of the last step, and there.
+  void in_parts(const W& begin, const W& end) {
+    int parts = 1;
+    if (const auto& picture = of_.options.picture) {
+      constexpr double kMostParts = 5000;
+      const double wide = std::ceil(std::abs(to_double(W(end - begin))) / picture->widest);
+      parts = std::max(picture->in_each_step, static_cast<int>(std::min(wide, kMostParts)));
+    }
+    for (int k = 1; k < parts && of_.report.outcome.ok(); ++k) in_step(begin + (end - begin) * W(k) / W(parts), "");
+    if (of_.report.outcome.ok()) in_step(end, "");
+  }
 
   void in_step(const W& t, const std::string& label) {
     if constexpr (std::same_as<N, double>)

@@ -301,8 +301,16 @@ class Run {
     angles_.set_parameters(doubles(motion().parameters()));
     rows_.set_parameters();
     if (motion().at(motion().stepper().time()).ok()) watch_.enter(motion().point(), motion().parameters());
+    show_after(occurrences);
     if (!goes_on) ended();
     return goes_on && report_.outcome.ok();
+  }
+
+  // A row with the state after events that have set something, for a picture.
+  void show_after(const std::vector<Occurrence<W>>& occurrences) {
+    const bool set =
+        std::any_of(occurrences.begin(), occurrences.end(), [](const auto& o) { return !o.changes.empty(); });
+    if (set && o_.picture && schedule().every_step() && report_.outcome.ok()) rows_.after_event(course_.time());
   }
 
   // Ends the motion by an event: the state there is worth a row of its own.

@@ -39,7 +39,9 @@ PageRequest request_of(const v1::Run& run, const std::string& command) {
 
 MotionOnPage::MotionOnPage(const v1::Run& run, const std::string& command)
     : workspace_(run.data().system.data().scenario),
-      parts_(paged(run, workspace_), run.data().system.data().model->model, request_of(run, command)) {}
+      parts_(paged(run, workspace_), run.data().system.data().model->model, request_of(run, command)) {
+  parts_.add_plots();
+}
 
 void MotionOnPage::write(JsonWriter& json) const {
   const Page& page = parts_.page();

@@ -3,12 +3,14 @@
 import type { RawScene } from './scene.ts';
 
 export interface RawColumn { name: string; html: string; unit: string; group: string; data: string; t?: string }
-export interface Group { id: string; title: string; log: boolean }
+// columns: how many the run has; fewer may be plotted.
+export interface Group { id: string; title: string; log: boolean; columns?: number }
 export interface Event { t: number; name: string }
 // The modes of a contact: spans from a time to a time, each with 0 open, 1 slips or 2 sticks.
 export interface Band { name: string; spans: [number, number, number][] }
 export interface RawCase {
   name: string; rows: number; shown: number; t: string; unit: string;
+  caution?: string; rough?: boolean;        // what is not drawn right, and whether paths would be wrong
   columns: RawColumn[]; groups: Group[];
   frames: null | { t: string; data: Record<string, string> };
   events: Event[]; bands?: Band[]; scene: null | RawScene;
@@ -23,6 +25,7 @@ export interface Samples { t: Float64Array; value: Float64Array }
 
 export interface Case {
   name: string; rows: number; shown: number; unit: string;
+  caution: string; rough: boolean;
   start: number; end: number;
   columns: Column[]; groups: Group[]; events: Event[]; bands: Band[];
   frames: Float64Array;                     // times of the animation's rows
@@ -76,6 +79,7 @@ export function read_case(raw: RawCase): Case {
   const [start, end] = extent([times, frames, ...columns.map((c) => c.t)]);
   return {
     name: raw.name ?? '', rows: raw.rows, shown: raw.shown, unit: raw.unit ?? '', start, end,
+    caution: raw.caution ?? '', rough: raw.rough ?? false,
     columns, groups: raw.groups ?? [], events: raw.events ?? [], bands: raw.bands ?? [], frames, animated, scene: raw.scene ?? null,
   };
 }

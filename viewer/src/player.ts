@@ -25,11 +25,11 @@ export class Player {
   constructor(readonly place: HTMLElement, private readonly data: Case, readonly model: SceneModel, private readonly clock: Clock) {
     const kinds = new Set(model.items.map((i) => i.kind));
     this.shown = {
-      traces: true, frames: model.items.filter((i) => i.kind === 'frame').length <= 2, vectors: new Set(), scale: 1,
+      traces: !data.rough, frames: model.items.filter((i) => i.kind === 'frame').length <= 2, vectors: new Set(), scale: 1,
       labels: model.items.filter((i) => placed(i) && i.label).length <= 8, grid: model.floor !== false,
     };
     const offered = {
-      traces: kinds.has('trace'), frames: kinds.has('frame'), labels: model.items.some((i) => placed(i) && i.label),
+      traces: kinds.has('trace') && !data.rough, frames: kinds.has('frame'), labels: model.items.some((i) => placed(i) && i.label),
       vectors: [...new Set(model.items.filter((i) => i.kind === 'vector').map((i) => i.what ?? 'vectors'))],
     };
     place.replaceChildren();

@@ -86,7 +86,12 @@ export class Plots implements Owner {
     const { rows, shown } = this.data;
     const note = shown < rows
       ? h('span', { class: 'note' }, `${shown.toLocaleString('en')} of ${rows.toLocaleString('en')} rows are drawn; extremes are kept`) : null;
-    return h('div', { class: 'plots-head' }, this.group_chips, this.unzoom, note, bands_key(this.data.bands));
+    const parts = this.groups().flatMap((g) => {
+      const drawn = this.data.columns.filter((c) => c.group === g.id).length;
+      return (g.columns ?? 0) > drawn ? [`${drawn} of ${g.columns} ${g.title.toLowerCase()}`] : [];
+    });
+    const left_out = parts.length > 0 ? h('span', { class: 'note' }, `Drawn are ${parts.join(', ')}; --columns NAME,… draws others`) : null;
+    return h('div', { class: 'plots-head' }, this.group_chips, this.unzoom, note, left_out, bands_key(this.data.bands));
   }
 
   private chips(): void {

@@ -56,6 +56,7 @@ export function render({ model, el }: { model: Model; el: HTMLElement }): () => 
     const [data] = read_report(JSON.parse(model.get('data') as string)).cases;
     clock = new Clock(data.start, data.end);
     let player: Player | null = null;
+    if (data.caution) root.append(h('p', { class: 'sorry' }, `${data.caution}.`));
     const scene = data.scene ? new SceneModel(data, data.scene) : null;
     if (scene) {
       const place = h('div', { class: 'player' });

@@ -170,6 +170,13 @@ test('positions and velocities jump at an event only where they do', () => {
   assert.equal(model.path_times().filter((p) => p.time === 4).length, 2);
 });
 
+test('a case says what is not drawn right, and how many columns it has', () => {
+  const raw = car();
+  assert.deepEqual([read_case(raw).caution, read_case(raw).rough], ['', false]);
+  const rough = read_case({ ...raw, caution: 'too few rows', rough: true, groups: [{ id: 'coordinates', title: 'Coordinates', log: false, columns: 40 }] });
+  assert.deepEqual([rough.caution, rough.rough, rough.groups[0].columns], ['too few rows', true, 40]);
+});
+
 test('the animation reads its own rows where the plots are decimated', () => {
   const raw = decimated(2), data = read_case(raw), model = new SceneModel(data, raw.scene!);
   assert.equal(data.frames.length, 501);

@@ -13,6 +13,8 @@
 #include "cli/say.h"
 #include "observe/rows/quantity_units.h"
 #include "report/page/page_of.h"
+#include "report/rows/page_rows.h"
+#include "result/choose_columns.h"
 #include "result/file.h"
 
 namespace anholon::cli {
@@ -32,6 +34,17 @@ void make_ready(const SystemCommand& o, Told& x) {
   if (!reset && contacts(*x.in.names).empty()) x.conserved = conserved(*x.scenario->mechanics);
 }
 
+// The columns that the page is to plot. Throws UsageError.
+std::vector<std::string> columns_of_page(const PageFile& page, const RunTable& table) {
+  try {
+    std::vector<std::string> names;
+    for (const std::size_t k : chosen_columns(table.columns, split(page.columns), 0)) names.push_back(table.columns[k]);
+    return names;
+  } catch (const Failure& e) {
+    throw UsageError{"error: " + e.diagnostic.message + "\nhint: " + e.diagnostic.hint + "\n"};
+  }
+}
+
 }  // namespace
 
 void take_up(const SystemCommand& o, const std::string& rows, Told& x) {
@@ -39,6 +52,11 @@ void take_up(const SystemCommand& o, const std::string& rows, Told& x) {
   if (x.run.table.rows() == 0) throw UsageError{"error: the run has no rows\n"};
   if (!rows.empty()) {
     x.in = read(o);
+    const ResultFormat* format = format_of(rows);
+    const bool lines = format && format->name == std::string("CSV");
+    if (const std::string why = obstacle_to_showing(*x.in.model, x.run.table, lines); !why.empty())
+      throw UsageError{"error: '" + rows + "' cannot be shown: " + why +
+                       "\nhint: the columns of anholon simulate, with times that ascend or descend\n"};
     if (x.run.units.empty()) x.run.units = quantity_units(*x.in.model, contacts(*x.in.names));
     make_ready(with_form(o, x.in), x);
     return;
@@ -72,6 +90,8 @@ void write_page(const SystemCommand& o, const PageFile& page, std::deque<Told>& 
   request.version = "anholon " ANHOLON_VERSION;
   request.command = o.command_line;
   request.source = first.in.source;
+  if (!page.columns.empty()) request.columns = columns_of_page(page, first.run.table);
+  if (!o.quiet) request.note = [](const std::string& text) { say(stderr, "note: %s\n", text.c_str()); };
   const bool terminal = isatty(STDERR_FILENO) != 0 && !o.quiet;
   if (terminal)
     request.progress = [](std::size_t done, std::size_t all, const std::string& name) {

@@ -22,6 +22,7 @@
 #include "modelfile/hash.h"
 #include "observe/rows/quantity_units.h"
 #include "report/columns.h"
+#include "report/rows/page_rows.h"
 #include "result/file.h"
 #include "result/format.h"
 #include "simulation/report_json.h"
@@ -89,8 +90,10 @@ void go_on(RunWriter& rows, const SimulateCommand& o, const SavedRun& resume, co
   }
 }
 
-// Drawn motions have an end and rows where nobody names them.
-void settle_drawing(MotionSettings& settings, const SimulateCommand& o, const Workspace& s) {
+// Drawn motions have an end and rows of their own where nobody names them on the command line: what the file asks for may
+// be too coarse to be looked at.
+void settle_drawing(MotionSettings& settings, const SimulateCommand& o, const Workspace& s,
+                    SimulationOptions& options) {
   const Rational start(s.state.t);
   if (settings.at.empty() && !settings.to) {
     constexpr int kShown = 10;
@@ -101,9 +104,15 @@ void settle_drawing(MotionSettings& settings, const SimulateCommand& o, const Wo
           "model file, shows more or less\n",
           number_text(settings.to->get_d()).c_str());
   }
-  if (!settings.every && settings.at.empty() && *settings.to != start)
-    settings.every =
-        abs(Rational(*settings.to - start)) / rows_to_look_at(s.mechanics->q.size(), s.mechanics->phi.size());
+  if (o.motion.every || !o.motion.at.empty()) return;
+  if (!settings.to)
+    settings.to = settings.at.front().value < start ? settings.at.front().value : settings.at.back().value;
+  settings.every.reset();
+  settings.at.clear();
+  constexpr int kInEachStep = 4;
+  const int rows = rows_to_look_at(s.mechanics->q.size(), s.mechanics->phi.size());
+  if (*settings.to != start)
+    options.picture = PictureRows{kInEachStep, abs(Rational(*settings.to - start)).get_d() / rows};
 }
 
 // A format that is held in memory has a limit of its own.
@@ -118,7 +127,7 @@ void must_fit(const ResultFormat& format, const SimulationOptions& asked, const 
 // All that is asked of the motion of this system. drawn: the motion is for a page or a film alone.
 void ask(MotionSettings& settings, const SimulateCommand& o, const Workspace& s, bool drawn,
          SimulationOptions& options) {
-  if (drawn) settle_drawing(settings, o, s);
+  if (drawn) settle_drawing(settings, o, s, options);
   const char* saving = !o.save.empty() ? "--save" : !o.resume.empty() ? "--continue" : "";
   const Rational last = anholon::ask(settings, s, asker(saving), options);
   if (options.resume) beyond(*options.resume, o, last);
@@ -153,9 +162,10 @@ class Writer {
   Written keep() {
     Written w;
     if (!has_started(w)) return w;
-    RunSink rows(told_->run);
+    PageSink rows(told_->run);
     if (!o_.save.empty()) options_.save = std::ref(saver_);
     w.report = run(s_, in_, options_, rows, nullptr);
+    rows.finish();
     return w;
   }
 

@@ -42,6 +42,10 @@ void add_report(CommandLine& line) {
                 "forms whose equations are shown: routh,maggi (default: Routh's, those of the motion, Maggi's)")
       ->type_name("NAME,…")
       ->allow_extra_args(false);
+  c->add_option("--columns", o.page.columns,
+                "columns of the run in the charts, by names and patterns: 'x_*,theta' (default: as many as fit)")
+      ->type_name("NAME,…")
+      ->allow_extra_args(false);
   c->add_option("--rows", o.rows, "a run of this model whose rows are shown, in " + known_formats())->type_name("FILE");
   c->add_flag("--no-proof", o.page.no_proof, "leave out the proof that the forms agree");
 }

@@ -1,7 +1,10 @@
 // The content of a page: the model with its motions, equations and proof.
 #pragma once
+#include <memory>
+
 #include "mechanics/conserved.h"
 #include "proof/prove.h"
+#include "report/columns.h"
 #include "report/equations.h"
 #include "result/run_file.h"
 #include "setup/explain.h"
@@ -15,6 +18,7 @@ struct PageCase {
   std::vector<ConstraintFacts> facts;  // of the model's constraints; empty if the page has no section on the system
   std::vector<Conserved> conserved;
   RunFile run;
+  std::shared_ptr<const PlotData> plots = nullptr;  // of the run; null: made where they are written
 };
 
 struct Page {

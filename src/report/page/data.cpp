@@ -4,9 +4,9 @@
 
 #include "numeric/number.h"
 #include "report/columns.h"
-#include "report/contact_bands.h"
 #include "report/markup.h"
 #include "report/observer_path.h"
+#include "report/rows/contact_bands.h"
 #include "simulation/report_json.h"
 
 namespace anholon {
@@ -55,8 +55,17 @@ void columns(JsonWriter& j, const PlotData& d, const Extent& extent) {
   }
   j.close().key("groups").open_array();
   for (const PlotGroup& k : d.groups)
-    j.open_object().key("id").string(k.id).key("title").string(k.title).key("log").boolean(k.log).close();
-  j.close().key("left_out").integer(static_cast<long long>(d.left_out));
+    j.open_object()
+        .key("id")
+        .string(k.id)
+        .key("title")
+        .string(k.title)
+        .key("log")
+        .boolean(k.log)
+        .key("columns")
+        .integer(static_cast<long long>(k.columns))
+        .close();
+  j.close();
 }
 
 void frames(JsonWriter& j, const PlotData& d, const Extent& extent) {
@@ -116,7 +125,7 @@ void one_case(JsonWriter& j, const PageCase& c, const Extent& extent) {
     const auto k = in_table(n);
     return k && *k >= 0 ? std::optional<int>(*k - 1) : k;
   };
-  PlotData d = plot_data(*c.scenario, c.conserved, c.run, picture);
+  PlotData d = c.plots ? *c.plots : plots_of(c, {});
   if (!extent.groups.empty()) reduce(d, extent.groups, columns_of(picture, *model.graph, column));
   j.open_object()
       .key("name")
@@ -124,7 +133,11 @@ void one_case(JsonWriter& j, const PageCase& c, const Extent& extent) {
       .key("rows")
       .integer(static_cast<long long>(d.rows))
       .key("shown")
-      .integer(static_cast<long long>(d.shown));
+      .integer(static_cast<long long>(d.shown))
+      .key("caution")
+      .string(d.caution)
+      .key("rough")
+      .boolean(d.rough);
   numbers(j, "t", d.t);
   j.key("unit").string(model.coordinate_units.empty() ? "" : "s");
   columns(j, d, extent);
@@ -150,6 +163,10 @@ std::string data(const Page& page, const Extent& extent) {
 }
 
 }  // namespace
+
+PlotData plots_of(const PageCase& c, const std::vector<std::string>& chosen) {
+  return plot_data(*c.scenario, c.conserved, c.run, scene(*c.scenario->mechanics, has_contacts(c.run.table)), chosen);
+}
 
 std::string page_data(const Page& page) { return data(page, {}); }
 

@@ -4,6 +4,9 @@
 
 namespace anholon {
 
+// What a page plots of the motion of a case; chosen: columns of its run (plot_data).
+PlotData plots_of(const PageCase& of, const std::vector<std::string>& chosen);
+
 // JSON that is safe within a <script>.
 std::string page_data(const Page& page);
 

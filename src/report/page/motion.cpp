@@ -21,7 +21,11 @@ class MotionSection {
       out += "<article class=\"case\">\n";
       if (p_.cases.size() > 1)
         out += "<h3 dir=\"auto\">" + markup_escape(c.name.empty() ? "As the file says" : c.name) + "</h3>\n";
-      out += outcome(reports_[k]);
+      out += outcome(reports_[k], c.run);
+      if (c.plots && !c.plots->caution.empty())
+        out += warning_box({c.plots->caution + ".", std::string(c.plots->rough ? "Paths are left out. " : "") +
+                                                        "A motion that ends earlier (--to)"
+                                                        ", or more rows, shows more."});
       if (viewer_script().empty())
         out += "<p class=\"note\">This program was built without the viewer, so the page has no animation; the numbers "
                "are below, and <code>anholon plot</code> draws the run.</p>\n" +
@@ -54,7 +58,9 @@ class MotionSection {
     return out + "</tbody></table></div>\n";
   }
 
-  static std::string outcome(const std::optional<SimulationReport>& r) {
+  // A file of rows alone does not know how the motion ended.
+  static std::string outcome(const std::optional<SimulationReport>& r, const RunFile& run) {
+    if (!r && run.model.empty() && run.created_by.empty()) return "";
     if (!r) return warning_box({"The run was not finished; the rows up to here are shown.", ""});
     if (r->outcome.ok()) return "";
     return warning_box({r->outcome.message.empty() ? name(r->outcome.kind) : r->outcome.message, r->outcome.hint});

@@ -7,6 +7,7 @@
 #include "modelfile/hash.h"
 #include "observe/rows/quantity_units.h"
 #include "proof/checker/verify.h"
+#include "report/page/data.h"
 #include "report/page/page.h"
 #include "setup/eliminate.h"
 
@@ -138,6 +139,13 @@ PageInParts::PageInParts(std::vector<PagedRun> runs, std::shared_ptr<const Model
   page_.command = request_.command;
 }
 
+void PageInParts::add_plots() {
+  for (PageCase& c : page_.cases) {
+    c.plots = std::make_shared<PlotData>(plots_of(c, request_.columns));
+    if (request_.note && !c.plots->caution.empty()) request_.note(c.plots->caution);
+  }
+}
+
 void PageInParts::add_equations() { size_ = anholon::add_equations(page_, request_, *page_.cases.front().scenario); }
 
 void PageInParts::add_proof() {
@@ -153,6 +161,7 @@ void PageInParts::add_proof() {
 
 std::string page_of(std::vector<PagedRun> runs, const std::shared_ptr<const Model>& model, const PageRequest& request) {
   PageInParts parts(std::move(runs), model, request);
+  parts.add_plots();
   parts.add_equations();
   parts.add_proof();
   return html(parts.page());

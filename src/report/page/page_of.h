@@ -20,18 +20,23 @@ struct PageRequest {
   std::string no_proof;          // why there is to be no proof; empty: proves all forms, if they are not too long
   std::string version, command;  // of the program, and the command that makes this page again
   SourceText source;
+  std::vector<std::string> columns = {};  // of the run that are plotted; empty: as many as there is room for
   // Told before each proof.
   std::function<void(std::size_t number, std::size_t of, const std::string& form)> progress;
+  // Told what is not drawn right.
+  std::function<void(const std::string&)> note = {};
 };
 
 // The content of a page whose parts are added as they are asked for: an editor shows the motion first.
 class PageInParts {
  public:
-  // The motions without equations and proof. REQUIRES: a run at least.
+  // The motions without plots, equations and proof. REQUIRES: a run at least.
   PageInParts(std::vector<PagedRun> runs, std::shared_ptr<const Model> model, PageRequest request);
   PageInParts(const PageInParts&) = delete;
   PageInParts& operator=(const PageInParts&) = delete;
   const Page& page() const { return page_; }
+  // What is plotted, and what is not drawn right.
+  void add_plots();
   // Throws Failure if the eliminations that were asked for are impossible.
   void add_equations();
   // The proof, or the reason why there is none. REQUIRES: add_equations() was called.

@@ -6,6 +6,8 @@
 #include "report/bibliography.h"
 #include "report/columns.h"
 #include "report/observer_path.h"
+#include "report/rows/frames.h"
+#include "report/rows/page_rows.h"
 #include "support/models.h"
 
 namespace anholon::columns_test {
@@ -61,7 +63,8 @@ TEST(Plots, KnowWhatEventsHaveSet) {
   EXPECT_EQ(kinetic(), (std::vector<double>{2, 2, 2, 2, 2}));
   run.report =
       R"({"outcome": "finished", "events": [{"name": "catch", "t": 0.5, "set": {"n": {"before": 1, "after": 2}}}]})";
-  EXPECT_EQ(kinetic(), (std::vector<double>{2, 2, 2, 4, 4}));
+  // At the event there is a row before it and one after it.
+  EXPECT_EQ(kinetic(), (std::vector<double>{2, 2, 2, 4, 4, 4}));
 }
 
 // The frame of a table that turns at a constant rate, and one whose origin goes in a circle.

@@ -1,7 +1,7 @@
 // The bands of contacts, from the columns of a run.
 #include <gtest/gtest.h>
 
-#include "report/contact_bands.h"
+#include "report/rows/contact_bands.h"
 
 namespace anholon::contact_bands_test {
 namespace {

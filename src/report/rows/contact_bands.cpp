@@ -1,4 +1,4 @@
-#include "report/contact_bands.h"
+#include "report/rows/contact_bands.h"
 
 #include <algorithm>
 #include <cmath>
