@@ -29,7 +29,7 @@ Result<Equations> derive(const Model& model, const DeriveOptions& options) {
     inner::Arranger arranger(options.expand);
     const std::vector<inner::Derivation> list = {inner::derivation(m, form, e, arranger, options.steps, of_reactions)};
     return Equations{form.name, inner::as_text(list), inner::as_latex(list), inner::as_mathml(list),
-                     inner::as_json(list, false)};
+                     inner::as_json(list, false), inner::as_html(list)};
   });
 }
 
