@@ -5,6 +5,8 @@
 #include <cctype>
 #include <vector>
 
+#include "print/long_name.h"
+
 namespace anholon {
 
 static const std::array kGreekNames = {

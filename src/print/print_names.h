@@ -2,7 +2,6 @@
 #pragma once
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 
 #include "base/escape.h"
@@ -14,12 +13,8 @@ namespace anholon {
 std::string latex_name(const std::string& name);
 // "theta" -> <mi>θ</mi>, "x1" -> <msub><mi>x</mi><mn>1</mn></msub>.
 std::string mathml_name(const std::string& name);
-// The name of the k-th derivative: "x''", "D(x,4)"; "\ddot{x}", "x^{(4)}". In MathML the dots of x_1 are over x, and a
-// name of several letters has primes: mass′.
+// The name of the k-th derivative: "x''", "D(x,4)"; "\ddot{x}", "x^{(4)}".
 std::string derivative_name(const std::string& name, unsigned order, Format format);
-
-// Whether an element is a name of several letters: <mi>sin</mi>, <mi mathvariant="normal">mass</mi>.
-bool is_long_name(std::string_view element);
 
 inline std::string row(const std::string& mathml) { return "<mrow>" + mathml + "</mrow>"; }
 // "th[3]" is th with the index 3, "rolling[2].x" is rolling.x with the index 2; nullopt if there is no bracket.

@@ -1,5 +1,7 @@
 #include "print/spelling.h"
 
+#include "print/long_name.h"
+
 namespace anholon {
 
 // "\\sin" -> "sin", "\\operatorname{sgn}" -> "sgn".
