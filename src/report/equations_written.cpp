@@ -96,26 +96,26 @@ std::string label(const Line& l, Format format) {
   return l.name;
 }
 
-using Rows = std::vector<std::pair<std::string, std::string>>;  // left and right sides
+using Table = std::vector<std::pair<std::string, std::string>>;  // left and right sides
 
 // Lines as pairs of sides, with the name as the left side if there is no other.
-Rows rows(const Derivation& d, const std::vector<Line>& of, Format format) {
+Table rows(const Derivation& d, const std::vector<Line>& of, Format format) {
   const std::vector<Line> lines = joined(of);
   const Sides s = printed(d, lines, format);
-  Rows out;
+  Table out;
   for (std::size_t i = 0; i < lines.size(); ++i) out.push_back({label(lines[i], format), s.right[i]});
   return out;
 }
 
 // The tables of a derivation in MathML: steps, equations with what belongs to them, reactions.
-std::vector<Rows> tables(const Derivation& d) {
-  std::vector<Rows> out;
+std::vector<Table> tables(const Derivation& d) {
+  std::vector<Table> out;
   const auto add_sections = [&](const std::vector<Section>& sections) {
     for (const Section& s : sections)
       if (!s.second.empty()) out.push_back(rows(d, s.second, Format::mathml));
   };
   add_sections(d.steps);
-  Rows list;
+  Table list;
   const Sides e = printed(d, d.equations, Format::mathml), c = printed(d, d.constraints, Format::mathml);
   for (std::size_t i = 0; i < d.equations.size(); ++i) list.push_back({e.left[i], e.right[i]});
   for (const std::string& left : c.left) list.push_back({left, "<mn>0</mn>"});
@@ -210,7 +210,7 @@ std::string as_latex(const std::vector<Derivation>& all) {
 std::string as_mathml(const std::vector<Derivation>& all) {
   std::string out;
   for (const Derivation& d : all)
-    for (const Rows& table : tables(d)) {
+    for (const Table& table : tables(d)) {
       // MathML Core has no columnalign; readers of MathML 3 have no style.
       out += "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">\n<mtable displaystyle=\"true\" "
              "columnalign=\"right center left\">\n";
@@ -225,7 +225,7 @@ std::string as_mathml(const std::vector<Derivation>& all) {
 std::string as_html(const std::vector<Derivation>& all) {
   std::string out;
   for (const Derivation& d : all)
-    for (const Rows& table : tables(d)) {
+    for (const Table& table : tables(d)) {
       out += "<div style=\"overflow-x:auto;margin:.5em 0;text-align:left\">\n";
       for (const auto& [left, right] : table)
         out += "<div style=\"line-height:2.3;padding-left:2em;text-indent:-2em\">" + wrapping_math(left) +
