@@ -17,7 +17,7 @@ WITH_EVERYTHING = ["zoo/chaplygin-sleigh", "zoo/second-order-linear", "zoo/varia
 # Children of each element; None: any number.
 CHILDREN = {
     "math": 1, "mtable": None, "mtr": None, "mtd": None, "mrow": None, "msqrt": None, "mfrac": 2, "msup": 2, "msub": 2,
-    "mover": 2, "msubsup": 3, "mi": 0, "mn": 0, "mo": 0, "mtext": 0, "mspace": 0,
+    "mover": 2, "mi": 0, "mn": 0, "mo": 0, "mtext": 0, "mspace": 0,
 }  # fmt: skip
 
 

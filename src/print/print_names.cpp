@@ -124,17 +124,15 @@ static std::size_t first_element(const std::string& mathml) {
 static std::string with_dots(const std::string& name, unsigned order) {
   static const char* const kDots[] = {"˙", "¨", "⃛"};
   static const char* const kPrimes[] = {"′", "″", "‴"};
-  const std::string primes = std::string("<mo>") + kPrimes[order - 1] + "</mo>";
   for (const std::string tag : {"msub", "msup", "msubsup"}) {
     const std::string open = "<" + tag + ">", close = "</" + tag + ">";
     if (name.rfind(open, 0) != 0) continue;
     const std::string inside = name.substr(open.size(), name.size() - open.size() - close.size());
     const std::size_t end = first_element(inside);
-    const std::string base = inside.substr(0, end), scripts = inside.substr(end);
-    if (!is_long_name(base)) return open + with_dots(base, order) + scripts + close;
-    return tag == "msub" ? "<msubsup>" + inside + primes + "</msubsup>" : "<msup>" + name + primes + "</msup>";
+    return open + with_dots(inside.substr(0, end), order) + inside.substr(end) + close;
   }
-  if (is_long_name(name)) return "<msup>" + name + primes + "</msup>";
+  // The primes of fonts are raised already.
+  if (is_long_name(name)) return name.substr(0, name.rfind("</mi>")) + kPrimes[order - 1] + "</mi>";
   return "<mover>" + name + "<mo stretchy=\"false\" scriptlevel=\"+0\">" + kDots[order - 1] + "</mo></mover>";
 }
 
