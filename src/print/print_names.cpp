@@ -85,10 +85,10 @@ std::string mathml_name(const std::string& name) {
   const auto greek = std::find(kGreekNames.begin(), kGreekNames.end(), name);
   if (greek != kGreekNames.end())
     return std::string("<mi>") + kGreekLetters[static_cast<std::size_t>(greek - kGreekNames.begin())] + "</mi>";
-  if (name.size() == 1) return "<mi>" + markup_escape(name) + "</mi>";
   std::size_t digits = name.size();
   while (digits > 0 && std::isdigit(static_cast<unsigned char>(name[digits - 1]))) --digits;
   if (digits == 0) return "<mn>" + name + "</mn>";
+  if (name.size() == 1) return "<mi>" + markup_escape(name) + "</mi>";
   const std::size_t underscore = name.find('_');
   if (digits < name.size() && underscore == std::string::npos)
     return "<msub>" + mathml_name(name.substr(0, digits)) + "<mn>" + name.substr(digits) + "</mn></msub>";
