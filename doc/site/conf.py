@@ -17,7 +17,7 @@ extensions = ["myst_parser", "sphinx_copybutton", "mathml"]
 myst_enable_extensions = ["dollarmath", "attrs_block"]
 myst_heading_anchors = 5
 myst_dmath_double_inline = True
-myst_dmath_allow_digits = False
+myst_dmath_allow_digits = True  # without, a formula at the head of a cell that ends with a digit is none
 myst_all_links_external = False
 suppress_warnings = ["myst.header", "misc.highlighting_failure"]
 

@@ -11,10 +11,10 @@ struct DeriveOptions {
   bool reactions = false;       // with the ideal reactions
 };
 
-// The same equations in four notations.
+// The same equations in five notations. html: MathML in lines that wrap, which a notebook shows.
 struct Equations {
   std::string form;
-  std::string text, latex, mathml, json;
+  std::string text, latex, mathml, json, html;
 };
 
 // Errors: the form is not known or does not apply (a diagnostic that lists those that do).

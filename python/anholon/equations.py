@@ -53,7 +53,7 @@ class Equations:
         return f"<equations, form {self.form!r}; print() shows them>"
 
     def _repr_html_(self) -> str:
-        return self.mathml
+        return self._core.html
 
     def _repr_latex_(self) -> str:
         return self.latex

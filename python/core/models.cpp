@@ -75,8 +75,10 @@ void bind_equations(nb::module_& m) {
       .def_ro("text", &Equations::text)
       .def_ro("latex", &Equations::latex)
       .def_ro("mathml", &Equations::mathml)
-      .def_ro("json", &Equations::json);
-  picklable(equations, &Equations::form, &Equations::text, &Equations::latex, &Equations::mathml, &Equations::json);
+      .def_ro("json", &Equations::json)
+      .def_ro("html", &Equations::html);
+  picklable(equations, &Equations::form, &Equations::text, &Equations::latex, &Equations::mathml, &Equations::json,
+            &Equations::html);
   m.def(
       "derive",
       [](const Model& model, const std::string& form, const std::string& expand, bool steps, bool reactions) {

@@ -62,7 +62,7 @@ def test_names_and_units_go_along() -> None:
     assert run.units["x'"] == "m/s" and run.units["t"] == "s"
     assert run.long_names["x'"] == "rate of x" and run.long_names["t"] == "time"
     symbols = {column.name: (column.latex, column.mathml) for column in run.columns}
-    assert symbols["x'"] == (r"\dot{x}", '<mover accent="true"><mi>x</mi><mo>˙</mo></mover>')
+    assert symbols["x'"] == (r"\dot{x}", '<mover><mi>x</mi><mo stretchy="false" scriptlevel="+0">˙</mo></mover>')
     pandas = pytest.importorskip("pandas")
     frame = run.to_pandas()
     assert isinstance(frame, pandas.DataFrame)

@@ -28,8 +28,12 @@ Result<Equations> derive(const Model& model, const DeriveOptions& options) {
     const inner::Elimination* of_reactions = !options.reactions ? nullptr : pivots ? &*pivots : &e;
     inner::Arranger arranger(options.expand);
     const std::vector<inner::Derivation> list = {inner::derivation(m, form, e, arranger, options.steps, of_reactions)};
-    return Equations{form.name, inner::as_text(list), inner::as_latex(list), inner::as_mathml(list),
-                     inner::as_json(list, false)};
+    return Equations{form.name,
+                     inner::as_text(list),
+                     inner::as_latex(list),
+                     inner::as_mathml(list),
+                     inner::as_json(list, false),
+                     inner::as_html(list)};
   });
 }
 

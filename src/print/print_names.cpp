@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <vector>
+
+#include "print/long_name.h"
 
 namespace anholon {
 
@@ -25,6 +28,20 @@ std::optional<std::pair<std::string, std::string>> indexed_name(const std::strin
   return std::pair{name.substr(0, open) + name.substr(close + 1), name.substr(open + 1, close - open - 1)};
 }
 
+// The parts of a subscript: "left_wheel" is "left" and "wheel" on one level, since deeper levels are too small to read.
+// An underscore at an end, or beside another, divides nothing.
+static std::vector<std::string> parts_of(const std::string& subscript) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t at = 1; at + 1 < subscript.size(); ++at) {
+    if (subscript[at] != '_' || subscript[at - 1] == '_' || subscript[at + 1] == '_') continue;
+    parts.push_back(subscript.substr(begin, at - begin));
+    begin = at + 1;
+  }
+  parts.push_back(subscript.substr(begin));
+  return parts;
+}
+
 std::string latex_name(const std::string& name) {
   if (const auto indexed = indexed_name(name)) {
     const auto& [base, index] = *indexed;
@@ -41,8 +58,12 @@ std::string latex_name(const std::string& name) {
   const std::size_t underscore = name.find('_');
   if (digits < name.size() && digits > 0 && underscore == std::string::npos)
     return latex_name(name.substr(0, digits)) + "_{" + name.substr(digits) + "}";
-  if (underscore != std::string::npos && underscore > 0 && underscore + 1 < name.size())
-    return latex_name(name.substr(0, underscore)) + "_{" + latex_name(name.substr(underscore + 1)) + "}";
+  if (underscore != std::string::npos && underscore > 0 && underscore + 1 < name.size()) {
+    std::string below;
+    for (const std::string& part : parts_of(name.substr(underscore + 1)))
+      below += (below.empty() ? "" : "\\,") + latex_name(part);
+    return latex_name(name.substr(0, underscore)) + "_{" + below + "}";
+  }
   return "\\mathrm{" + latex_escape(name) + "}";
 }
 
@@ -64,16 +85,64 @@ std::string mathml_name(const std::string& name) {
   const auto greek = std::find(kGreekNames.begin(), kGreekNames.end(), name);
   if (greek != kGreekNames.end())
     return std::string("<mi>") + kGreekLetters[static_cast<std::size_t>(greek - kGreekNames.begin())] + "</mi>";
-  if (name.size() == 1) return "<mi>" + markup_escape(name) + "</mi>";
   std::size_t digits = name.size();
   while (digits > 0 && std::isdigit(static_cast<unsigned char>(name[digits - 1]))) --digits;
   if (digits == 0) return "<mn>" + name + "</mn>";
+  if (name.size() == 1) return "<mi>" + markup_escape(name) + "</mi>";
   const std::size_t underscore = name.find('_');
   if (digits < name.size() && underscore == std::string::npos)
     return "<msub>" + mathml_name(name.substr(0, digits)) + "<mn>" + name.substr(digits) + "</mn></msub>";
-  if (underscore != std::string::npos && underscore > 0 && underscore + 1 < name.size())
-    return "<msub>" + mathml_name(name.substr(0, underscore)) + mathml_name(name.substr(underscore + 1)) + "</msub>";
+  if (underscore != std::string::npos && underscore > 0 && underscore + 1 < name.size()) {
+    const std::vector<std::string> parts = parts_of(name.substr(underscore + 1));
+    std::string below;
+    for (const std::string& part : parts)
+      below += (below.empty() ? "" : "<mspace width=\"0.1667em\"/>") + mathml_name(part);
+    return "<msub>" + mathml_name(name.substr(0, underscore)) + (parts.size() > 1 ? row(below) : below) + "</msub>";
+  }
   return "<mi mathvariant=\"normal\">" + markup_escape(name) + "</mi>";
+}
+
+// The end of the first element of `mathml`.
+static std::size_t first_element(const std::string& mathml) {
+  std::size_t at = 0;
+  int depth = 0;
+  do {
+    const std::size_t open = mathml.find('<', at), close = mathml.find('>', open);
+    if (open == std::string::npos || close == std::string::npos) return mathml.size();
+    if (mathml[open + 1] == '/')
+      --depth;
+    else if (mathml[close - 1] != '/')
+      ++depth;
+    at = close + 1;
+  } while (depth > 0);
+  return at;
+}
+
+// A derivative of order 1 to 3 as dots over the letter, not over its index. A name of several letters has primes
+// instead, because dots would stand over one of its letters. With accent="true" browsers set the dots onto the letter,
+// where they are not read; without, the dots have their size by `scriptlevel`.
+static std::string with_dots(const std::string& name, unsigned order) {
+  static const char* const kDots[] = {"˙", "¨", "⃛"};
+  static const char* const kPrimes[] = {"′", "″", "‴"};
+  for (const std::string tag : {"msub", "msup", "msubsup"}) {
+    const std::string open = "<" + tag + ">", close = "</" + tag + ">";
+    if (name.rfind(open, 0) != 0) continue;
+    const std::string inside = name.substr(open.size(), name.size() - open.size() - close.size());
+    const std::size_t end = first_element(inside);
+    return open + with_dots(inside.substr(0, end), order) + inside.substr(end) + close;
+  }
+  // The primes of fonts are raised already.
+  if (is_long_name(name)) return name.substr(0, name.rfind("</mi>")) + kPrimes[order - 1] + "</mi>";
+  return "<mover>" + name + "<mo stretchy=\"false\" scriptlevel=\"+0\">" + kDots[order - 1] + "</mo></mover>";
+}
+
+bool is_long_name(std::string_view element) {
+  constexpr std::string_view close = "</mi>";
+  if (element.substr(0, 3) != "<mi" || first_element(std::string(element)) != element.size()) return false;
+  std::size_t letters = 0;
+  for (std::size_t at = element.find('>') + 1; at + close.size() < element.size(); ++at)
+    letters += (static_cast<unsigned char>(element[at]) & 0xC0) != 0x80;
+  return letters > 1;
 }
 
 std::string derivative_name(const std::string& name, unsigned order, Format format) {
@@ -87,11 +156,9 @@ std::string derivative_name(const std::string& name, unsigned order, Format form
     if (order <= 3) return kDots[order - 1] + name + "}";
     return name + "^{(" + std::to_string(order) + ")}";
   }
-  case Format::mathml: {
-    static const char* const kDots[] = {"˙", "¨", "⃛"};
-    if (order <= 3) return "<mover accent=\"true\">" + name + "<mo>" + kDots[order - 1] + "</mo></mover>";
+  case Format::mathml:
+    if (order <= 3) return with_dots(name, order);
     return "<msup>" + name + row("<mo>(</mo><mn>" + std::to_string(order) + "</mn><mo>)</mo>") + "</msup>";
-  }
   }
   return name;
 }

@@ -1,11 +1,29 @@
 #include "print/spelling.h"
 
+#include "print/long_name.h"
+
 namespace anholon {
 
 // "\\sin" -> "sin", "\\operatorname{sgn}" -> "sgn".
 static std::string function_name(const std::string& latex) {
   const std::size_t brace = latex.find('{');
   return brace == std::string::npos ? latex.substr(1) : latex.substr(brace + 1, latex.size() - brace - 2);
+}
+
+static bool ends_with_long_name(const std::string& mathml) {
+  const std::size_t last = mathml.rfind("<mi");
+  return last != std::string::npos && is_long_name(std::string_view(mathml).substr(last));
+}
+
+// Scripts, accents and rows begin with what they begin with.
+static bool begins_with_long_name(std::string_view mathml) {
+  for (bool goes_on = true; goes_on;) {
+    goes_on = false;
+    for (const std::string_view open : {"<msub>", "<msup>", "<msubsup>", "<mrow>"})
+      if (mathml.substr(0, open.size()) == open) mathml.remove_prefix(open.size()), goes_on = true;
+  }
+  const std::size_t end = mathml.find("</mi>");
+  return end != std::string_view::npos && is_long_name(mathml.substr(0, end + 5));
 }
 
 std::string Spelling::cut(std::string s) const {
@@ -35,7 +53,11 @@ Printed Spelling::number(const Rational& r) const {
 }
 
 std::string Spelling::join(const std::string& a, const std::string& b) const {
-  return a.empty() ? b : b.empty() ? a : a + (mathml() ? "<mo>&#x2062;</mo>" : latex() ? " \\, " : "*") + b;
+  if (a.empty() || b.empty()) return a + b;
+  if (!mathml()) return a + (latex() ? " \\, " : "*") + b;
+  // A name of several letters is spaced from its neighbours, which MathML Core does not do: m sin, mass u.
+  const bool wide = ends_with_long_name(a) || begins_with_long_name(b);
+  return a + (wide ? "<mo rspace=\"0.1667em\">&#x2062;</mo>" : "<mo>&#x2062;</mo>") + b;
 }
 
 Printed Spelling::power(const Printed& base, const Rational& exponent) const {

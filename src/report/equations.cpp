@@ -5,6 +5,7 @@
 #include "expr/normal.h"
 #include "formulation/reactions.h"
 #include "print/arrange.h"
+#include "print/print_names.h"
 
 namespace anholon {
 
@@ -117,7 +118,7 @@ class Derive {
   void forces() {
     const Label Q = letter("Q");
     const Label omega = letter("omega"),
-                omega_rate{"", "\\dot{\\omega}", "<mover accent=\"true\"><mi>ω</mi><mo>˙</mo></mover>"};
+                omega_rate{"", "\\dot{\\omega}", derivative_name("<mi>ω</mi>", 1, Format::mathml)};
     const Label V_O = with_superscript("V_O", letter("V"), {"", "O'", "<mi>O</mi><mo>′</mo>"}),
                 V_omega = with_superscript("V_omega", letter("V"), omega);
     std::vector<Line> lines;

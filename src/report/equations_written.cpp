@@ -4,6 +4,7 @@
 #include "base/escape.h"
 #include "base/json.h"
 #include "report/equations.h"
+#include "report/math_lines.h"
 
 namespace anholon {
 
@@ -95,12 +96,35 @@ std::string label(const Line& l, Format format) {
   return l.name;
 }
 
+using Table = std::vector<std::pair<std::string, std::string>>;  // left and right sides
+
 // Lines as pairs of sides, with the name as the left side if there is no other.
-std::vector<std::pair<std::string, std::string>> rows(const Derivation& d, const std::vector<Line>& of, Format format) {
+Table rows(const Derivation& d, const std::vector<Line>& of, Format format) {
   const std::vector<Line> lines = joined(of);
   const Sides s = printed(d, lines, format);
-  std::vector<std::pair<std::string, std::string>> out;
+  Table out;
   for (std::size_t i = 0; i < lines.size(); ++i) out.push_back({label(lines[i], format), s.right[i]});
+  return out;
+}
+
+// The tables of a derivation in MathML: steps, equations with what belongs to them, reactions.
+std::vector<Table> tables(const Derivation& d) {
+  std::vector<Table> out;
+  const auto add_sections = [&](const std::vector<Section>& sections) {
+    for (const Section& s : sections)
+      if (!s.second.empty()) out.push_back(rows(d, s.second, Format::mathml));
+  };
+  add_sections(d.steps);
+  Table list;
+  const Sides e = printed(d, d.equations, Format::mathml), c = printed(d, d.constraints, Format::mathml);
+  for (std::size_t i = 0; i < d.equations.size(); ++i) list.push_back({e.left[i], e.right[i]});
+  for (const std::string& left : c.left) list.push_back({left, "<mn>0</mn>"});
+  const Sides r = printed(d, d.rates, Format::mathml);
+  for (std::size_t i = 0; i < r.left.size(); ++i) list.push_back({r.left[i], r.right[i]});
+  for (const auto& [name, text] : parts(d, Format::mathml)) list.push_back({name, text});
+  for (const auto& [name, text] : masses(d, Format::mathml)) list.push_back({name, text});
+  out.push_back(std::move(list));
+  add_sections(d.reactions);
   return out;
 }
 
@@ -185,29 +209,29 @@ std::string as_latex(const std::vector<Derivation>& all) {
 
 std::string as_mathml(const std::vector<Derivation>& all) {
   std::string out;
-  const auto table = [&](const std::vector<std::pair<std::string, std::string>>& lines) {
-    out += "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">\n<mtable displaystyle=\"true\" "
-           "columnalign=\"right center left\">\n";
-    for (const auto& [left, right] : lines)
-      out += "<mtr><mtd>" + left + "</mtd><mtd><mo>=</mo></mtd><mtd>" + right + "</mtd></mtr>\n";
-    out += "</mtable>\n</math>\n";
-  };
-  for (const Derivation& d : all) {
-    const auto section = [&](const Section& s) {
-      if (!s.second.empty()) table(rows(d, s.second, Format::mathml));
-    };
-    for (const Section& s : d.steps) section(s);
-    std::vector<std::pair<std::string, std::string>> list;
-    const Sides e = printed(d, d.equations, Format::mathml), c = printed(d, d.constraints, Format::mathml);
-    for (std::size_t i = 0; i < d.equations.size(); ++i) list.push_back({e.left[i], e.right[i]});
-    for (const std::string& left : c.left) list.push_back({left, "<mn>0</mn>"});
-    const Sides r = printed(d, d.rates, Format::mathml);
-    for (std::size_t i = 0; i < r.left.size(); ++i) list.push_back({r.left[i], r.right[i]});
-    for (const auto& [name, text] : parts(d, Format::mathml)) list.push_back({name, text});
-    for (const auto& [name, text] : masses(d, Format::mathml)) list.push_back({name, text});
-    table(list);
-    for (const Section& s : d.reactions) section(s);
-  }
+  for (const Derivation& d : all)
+    for (const Table& table : tables(d)) {
+      // MathML Core has no columnalign; readers of MathML 3 have no style.
+      out += "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">\n<mtable displaystyle=\"true\" "
+             "columnalign=\"right center left\">\n";
+      for (const auto& [left, right] : table)
+        out += "<mtr><mtd style=\"text-align:right\">" + left + "</mtd><mtd><mo>=</mo></mtd>" +
+               "<mtd style=\"text-align:left\">" + right + "</mtd></mtr>\n";
+      out += "</mtable>\n</math>\n";
+    }
+  return out;
+}
+
+std::string as_html(const std::vector<Derivation>& all) {
+  std::string out;
+  for (const Derivation& d : all)
+    for (const Table& table : tables(d)) {
+      out += "<div style=\"overflow-x:auto;margin:.5em 0;text-align:left\">\n";
+      for (const auto& [left, right] : table)
+        out += "<div style=\"line-height:2.3;padding-left:2em;text-indent:-2em\">" + wrapping_math(left) +
+               " <math><mo form=\"infix\" lspace=\"0\" rspace=\"0\">=</mo></math> " + wrapping_math(right) + "</div>\n";
+      out += "</div>\n";
+    }
   return out;
 }
 

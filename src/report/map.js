@@ -26,7 +26,7 @@ function anholon_map(root, data, host) {
   for (const c of data.columns) select.append(new Option(c.label, c.name, false, c.name === data.shown));
   const number = element("input", {type: "number", min: 0, step: 1, inputmode: "numeric"});
   const canvas = element("canvas", {tabindex: 0, role: "application",
-    "aria-label": "The cases of the sweep. Arrow keys go from case to case."});
+    "aria-label": "The cases of the sweep. Arrow keys go to the case beside, page up and page down in the order of the cases."});
   const about = element("div", {class: "about", "aria-live": "polite"}, element("p", {}, host.invitation));
   const motion = element("div", {class: "motion-of-case"});
   root.append(
@@ -60,7 +60,9 @@ function anholon_map(root, data, host) {
         ys = [Math.min(ys[0], cells[k + 2]), Math.max(ys[1], cells[k + 3])];
       }
     } else {
-      xs = range(x.values), ys = shown.words.length ? [-.5, shown.words.length - .5] : range(shown.values);
+      // Points at the ends of the axes are seen as a whole.
+      const wider = ([a, b]) => [a - .03 * (b - a), b + .03 * (b - a)];
+      xs = wider(range(x.values)), ys = shown.words.length ? [-.5, shown.words.length - .5] : wider(range(shown.values));
     }
     const f = {left: 64, right: w - 12, top: 8, bottom: h - 44, xs, ys};
     f.x = v => f.left + (v - xs[0]) / (xs[1] - xs[0]) * (f.right - f.left);
@@ -168,14 +170,25 @@ function anholon_map(root, data, host) {
       element("a", {href: "data:text/plain;charset=utf-8," + encodeURIComponent(data.model), download: "model.toml"}, "model.toml")));
   }
 
-  // The row next to another one that has a motion, by the places in the picture.
+  const middle_of = (f, k) => { const [a, b, c, d] = f.box(k); return [(a + c) / 2, (b + d) / 2]; };
+  // The row beside another one in the direction of a key, by the places in the picture; -1 if there is none within 45°.
+  function beside(row, [right, down]) {
+    const f = frame(), [px, py] = middle_of(f, row);
+    let found = -1, least = Infinity;
+    for (let k = 0; k < count; ++k) {
+      const [qx, qy] = middle_of(f, k), along = (qx - px) * right + (qy - py) * down;
+      const across = Math.abs((qx - px) * down) + Math.abs((qy - py) * right), far = along + 3 * across;
+      if (k !== row && has(k) && along > .01 && across <= along && far < least) least = far, found = k;
+    }
+    return found;
+  }
+  // The row next to another one that has a motion.
   function nearest(row) {
-    const f = frame(), middle = k => { const [a, b, c, d] = f.box(k); return [(a + c) / 2, (b + d) / 2]; };
-    const [px, py] = middle(row);
+    const f = frame(), [px, py] = middle_of(f, row);
     let found = -1, least = Infinity;
     for (let k = 0; k < count; ++k) {
       if (!has(k)) continue;
-      const [qx, qy] = middle(k), far = (px - qx) ** 2 + (py - qy) ** 2;
+      const [qx, qy] = middle_of(f, k), far = (px - qx) ** 2 + (py - qy) ** 2;
       if (far < least) least = far, found = k;
     }
     return found;
@@ -208,9 +221,16 @@ function anholon_map(root, data, host) {
     if (found >= 0) pick(found);
   };
   canvas.onkeydown = event => {
-    const step = {ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1}[event.key];
-    if (!step) return;
+    const step = {PageDown: 1, PageUp: -1}[event.key];
+    const way = {ArrowRight: [1, 0], ArrowDown: [0, 1], ArrowLeft: [-1, 0], ArrowUp: [0, -1]}[event.key];
+    if (!step && !way) return;
     event.preventDefault();
+    if (way && picked >= 0) {
+      const k = beside(picked, way);
+      if (k >= 0) pick(k);
+      return;
+    }
+    if (way) return pick(nearest(0));
     let k = picked < 0 && step < 0 ? 0 : picked;
     for (let n = 0; n < count; ++n) {
       k = (k + step + count) % count;
@@ -221,7 +241,11 @@ function anholon_map(root, data, host) {
     const row = row_of(Number(number.value));
     if (number.value === "") return;
     if (row >= 0) return pick(row);
-    about.replaceChildren(element("p", {}, `The map shows no case ${number.value}.`));
+    picked = -1;
+    draw();
+    motion.replaceChildren();
+    about.replaceChildren(element("p", {class: "warning", role: "alert"}, `The map shows no case ${number.value}. `
+      + `Its cases have the numbers ${cases.reduce((a, b) => Math.min(a, b))} to ${cases.reduce((a, b) => Math.max(a, b))}.`));
     if (host.unknown) host.unknown(Number(number.value));
   };
   select.onchange = () => { shown = column(select.value); draw(); };

@@ -117,25 +117,6 @@ class Breaker {
   std::vector<std::string> pieces_;
 };
 
-// A name of several letters is spaced from its neighbours in a product, which MathML Core does not do: m sin, flow u.
-std::string spaced(std::string s) {
-  constexpr std::string_view times = "<mo>&#x2062;</mo>", open = "<mi>", close = "</mi>",
-                             space = "<mspace width=\"0.1667em\"/>";
-  const auto is_long = [&](std::size_t begin, std::size_t end) {
-    return end - begin > 1 &&
-           std::all_of(s.begin() + static_cast<std::ptrdiff_t>(begin), s.begin() + static_cast<std::ptrdiff_t>(end),
-                       [](unsigned char c) { return c < 0x80; });
-  };
-  for (std::size_t at = 0; (at = s.find(times, at)) != std::string::npos; at += times.size()) {
-    const std::size_t after = at + times.size();
-    bool wide = s.compare(after, open.size(), open) == 0 && is_long(after + open.size(), s.find(close, after));
-    if (at >= close.size() && s.compare(at - close.size(), close.size(), close) == 0)
-      wide = wide || is_long(s.rfind(open, at) + open.size(), at - close.size());
-    if (wide) s.insert(after, space);
-  }
-  return s;
-}
-
 }  // namespace
 
 std::vector<std::string> math_pieces(const std::string& row) {
@@ -148,7 +129,7 @@ std::string wrapping_math(const std::string& row) {
   std::string out;
   for (const std::string& p : math_pieces(row)) {
     if (!out.empty()) out += " ";
-    out += "<math>" + spaced(p) + "</math>";
+    out += "<math>" + p + "</math>";
   }
   return out;
 }

@@ -42,7 +42,11 @@ std::optional<HttpReply> Gate::refuse(const HttpHead& head) const {
   const std::size_t end = target.find('/', 1);
   if (target.empty() || target[0] != '/' || !same_secret(target.substr(1, end == target.npos ? end : end - 1), token_))
     return no(403, "the address needs the token that 'anholon studio' printed");
-  if (end == target.npos) return no(404, "there is no such page");
+  // The address without its last slash leads to the one with it.
+  if (end == target.npos)
+    return HttpReply{200, "text/html; charset=utf-8",
+                     "<!doctype html><title>Anholon studio</title><meta http-equiv=\"refresh\" content=\"0; url=" +
+                         token_ + "/\">\n"};
   if (head.method != "GET" && head.method != "POST") return no(405, "the studio knows GET and POST");
   if (!head.origin.empty() && head.origin != "http://" + head.host)
     return no(403, "the request comes from a foreign page");

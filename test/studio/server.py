@@ -117,6 +117,9 @@ def paths(port, token):
         status, body = request(port, f"/{token}/{path}")
         if status != 404 or "root:" in body:
             found.append(f"{path}: status {status}")
+    status, body = request(port, f"/{token}")
+    if status != 200 or f"url={token}/" not in body:
+        found.append(f"the address without its last slash: status {status}")
     headers = {"Origin": f"http://127.0.0.1:{port}"}
     for path in ["save/../../stolen.toml", "save?file=stolen.toml", "save/%2e%2e%2fstolen.toml", "save-anyway/stolen.toml", "..%2fsave"]:
         status, _ = request(port, f"/{token}/{path}", MODEL, headers)

@@ -65,14 +65,18 @@ const in_studio = {
     await page.keyboard.press('Enter');
     await shows(page, 17);
     await page.locator('.map canvas').focus();
-    await page.keyboard.press('ArrowRight');
-    await shows(page, 18);
+    // Six cases stand above each other: the keys go to the neighbours in the picture, and stay at its edge.
+    for (const [key, next] of [['ArrowUp', 17], ['ArrowRight', 23], ['ArrowDown', 22], ['ArrowLeft', 16], ['PageDown', 17], ['PageDown', 18]]) {
+      await page.keyboard.press(key);
+      await shows(page, next);
+    }
     assert.equal(await heading(page), 'Case 18');
     assert.equal(await page.getByLabel('Case:').inputValue(), '18');
     await page.getByLabel('Case:').fill('480');
     await page.keyboard.press('Enter');
     await page.locator('.stale').waitFor();
     assert.match(await page.locator('.stale').innerText(), /Shown is case 18\. Case 480: there is no case 480/);
+    assert.match(await page.locator('.about').innerText(), /The map shows no case 480\. Its cases have the numbers 0 to 47/);
   },
   async 'many clicks leave the motion of the last one'(page) {
     for (let k = 0; k < 8; ++k) await click(page, (k + .5) / 8, 1 - .5 / 6);

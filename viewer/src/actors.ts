@@ -2,7 +2,7 @@
 
 import { Group, Matrix4, Mesh, MeshBasicMaterial, SphereGeometry, type Object3D } from 'three';
 import type { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
-import { Arrow, Trace, Triad, chain, segments } from './lines.ts';
+import { Arrow, Trace, Triad, chain, middle, segments } from './lines.ts';
 import type { Vector } from './rotation.ts';
 import type { Frame, Item, Pose, SceneModel } from './scene.ts';
 import { body, tones } from './shapes.ts';
@@ -115,9 +115,10 @@ function line_actor(item: Item, color: string, width: number): Actor {
   const group = new Group();
   let lines: LineSegments2 | null = null;
   return { item, object: group, update(pose) {
-    const ends = chain(pose.points ?? []);
+    const origin = middle(pose.points ?? []), ends = chain(pose.points ?? [], origin);
     group.visible = ends.length > 0;
     if (!group.visible) return;
+    group.position.set(...origin);
     if (!lines) { lines = segments(ends, color, width); group.add(lines); }
     else lines.geometry.setPositions(ends);
   } };

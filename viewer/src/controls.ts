@@ -70,10 +70,16 @@ export function play_bar(clock: Clock, unit: string): HTMLElement {
   return h('div', { class: 'play-bar' }, play, slider, h('span', { class: 'time' }, now, of), speed(clock, unit), loop, said);
 }
 
+// Factors of the first speed, and the true ones as texts: 1× is real time for every run.
+export function speed_options(rate: number, unit: string): [string, string][] {
+  const factors = [0.1, 0.2, 0.5, 1, 2, 5, 10];
+  if (!factors.some((f) => Math.abs(f * rate - 1) < 1e-12)) factors.push(1 / rate);
+  const text = (r: number): string => (unit === 's' ? `${short(r)}\u00d7` : `${short(r)} per s`);
+  return factors.sort((a, b) => a - b).map((f) => [String(f), text(f * rate)]);
+}
+
 function speed(clock: Clock, unit: string): HTMLElement {
-  const speeds = [0.1, 0.2, 0.5, 1, 2, 5, 10];
-  const options = speeds.map((s): [string, string] => [String(s), `${s}\u00d7`]);
-  const label = choice('Speed', options, '1', (v) => { clock.speed = Number(v); clock.changed(); });
+  const label = choice('Speed', speed_options(clock.rate, unit), '1', (v) => { clock.speed = Number(v); clock.changed(); });
   const describe = (): void => {
     const rate = clock.rate * clock.speed;
     label.title = rate === 1 && unit === 's' ? 'Real time' : `${with_unit(short(rate), unit)} of the motion in each second`;

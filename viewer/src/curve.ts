@@ -54,8 +54,9 @@ export function trace_curve(path: Pen, column: Column, rows: [number, number], l
 
 function piece(path: Pen, t: Float64Array, y: Float64Array, first: number, last: number, x_of: (t: number) => number, y_of: (y: number) => number): void {
   const x0 = x_of(t[first]);
-  path.moveTo(first === last ? x0 - 1.5 : x0, y_of(y[first]));           // a value alone between gaps is a short dash
-  if (first === last) { path.lineTo(x0 + 1.5, y_of(y[first])); return; }
+  const dash = t.length === 1 ? 6 : 1.5;
+  path.moveTo(first === last ? x0 - dash : x0, y_of(y[first]));           // a value alone, between gaps or in all, is a dash
+  if (first === last) { path.lineTo(x0 + dash, y_of(y[first])); return; }
   if (last - first < 2.5 * (x_of(t[last]) - x0)) {
     for (let i = first + 1; i <= last; ++i) path.lineTo(x_of(t[i]), y_of(y[i]));
     return;

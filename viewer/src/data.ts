@@ -76,7 +76,8 @@ export function read_case(raw: RawCase): Case {
     if (value.length !== frames.length) throw new Error(`column ${k} has ${value.length} values at ${frames.length} frames`);
     return { t: frames, value };
   };
-  const [start, end] = extent([times, frames, ...columns.map((c) => c.t)]);
+  // Columns with times of their own, as the sizes of the steps, do not count where the rows are.
+  const [start, end] = extent(times.length > 0 ? [times, frames] : [frames, ...columns.map((c) => c.t)]);
   return {
     name: raw.name ?? '', rows: raw.rows, shown: raw.shown, unit: raw.unit ?? '', start, end,
     caution: raw.caution ?? '', rough: raw.rough ?? false,

@@ -30,6 +30,7 @@ export function extent(model: SceneModel, frame: Frame): Extent {
       }
     });
   }
+  leave_runaways(points, largest);
   if (points.length === 0) points.push({ at: [0, 0, 0], r: largest });
   const center = [0, 1, 2].map((k) => {
     const low = Math.min(...points.map((p) => p.at[k] - p.r)), high = Math.max(...points.map((p) => p.at[k] + p.r));
@@ -39,6 +40,18 @@ export function extent(model: SceneModel, frame: Frame): Extent {
   const ball = reach > 0 ? reach : 1;
   const unit = largest > 0 ? largest : 0.3 * ball;
   return { points, center, radius: ball, unit, far: largest > 0 && ball > 30 * largest };
+}
+
+// A motion that grows without bound reaches in its last moments places against which all before is a speck: these do not
+// count for the look. A tenth of the balls at most, and only where they are a thousand times as far as the others.
+export function leave_runaways(points: Extent['points'], least: number): void {
+  if (points.length < 10) return;
+  const typical = (values: number[], part: number): number => [...values].sort((a, b) => a - b)[Math.floor(part * (values.length - 1))];
+  const middle = [0, 1, 2].map((k) => typical(points.map((p) => p.at[k]), 0.5));
+  const far = points.map((p) => Math.hypot(...p.at.map((x, k) => x - middle[k])));
+  const usual = Math.max(typical(far, 0.9), least);
+  if (!(usual > 0) || !(Math.max(...far) > 1000 * usual)) return;
+  points.splice(0, points.length, ...points.filter((_, k) => far[k] <= 10 * usual));
 }
 
 // Radius about a followed item within which what moves with it stays, in bounds that keep it in sight.

@@ -18,11 +18,31 @@ export function segments(points: Float32Array, color: string, width: number): Li
   return lines;
 }
 
-// The ends of each segment along a chain of points; where one has no value there is a gap.
-export function chain(points: Vector[]): Float32Array {
+// The graphics card keeps ends in single precision: they are relative to an origin near them, which is subtracted before.
+// A value beyond this, where a motion grows without bound, is not drawn: the squares of lengths must be floats as well.
+const farthest = 1e18;
+
+export function near(origin: Vector, at: Vector): Vector { return at.map((x, k) => x - origin[k]) as Vector; }
+
+// The middle of the box around the points; those without a value, or beyond all pictures, do not count.
+export function middle(points: Vector[]): Vector {
+  const known = points.filter((p) => p.every((x) => Math.abs(x) < farthest));
+  if (known.length === 0) return [0, 0, 0];
+  return [0, 1, 2].map((k) => {
+    let low = Infinity, high = -Infinity;
+    for (const p of known) { low = Math.min(low, p[k]); high = Math.max(high, p[k]); }
+    return low + (high - low) / 2;
+  }) as Vector;
+}
+
+const drawable = (at: Vector): boolean => at.every((x) => Math.abs(x) < farthest);
+
+// The ends of each segment along a chain of points, relative to the origin; where one has no value there is a gap.
+export function chain(points: Vector[], origin: Vector): Float32Array {
   const out: number[] = [];
   for (let i = 1; i < points.length; ++i) {
-    if ([...points[i - 1], ...points[i]].every(Number.isFinite)) out.push(...points[i - 1], ...points[i]);
+    const a = near(origin, points[i - 1]), b = near(origin, points[i]);
+    if (drawable(a) && drawable(b)) out.push(...a, ...b);
   }
   return new Float32Array(out);
 }
@@ -33,18 +53,20 @@ export class Trace {
   private readonly whole: LineSegments2;
   private readonly past: LineSegments2;
   private readonly tip: LineSegments2;
-  private readonly starts: Vector[] = [];
+  private readonly starts: Vector[] = [];       // relative to the origin
+  private readonly origin: Vector;
   private readonly times: number[] = [];        // [start, end] of each segment
 
   // `faint` is a colour and no transparency, which would show the joints of the segments.
   constructor(path: { time: number; at: Vector }[], color: string, faint: string, width: number) {
     const out: number[] = [];
+    this.origin = middle(path.map((p) => p.at));
     for (let i = 1; i < path.length; ++i) {
-      const a = path[i - 1], b = path[i];
-      if (!(b.time > a.time) || ![...a.at, ...b.at].every(Number.isFinite)) continue;      // the two sides of a jump are not joined
-      out.push(...a.at, ...b.at);
-      this.starts.push(a.at);
-      this.times.push(a.time, b.time);
+      const a = near(this.origin, path[i - 1].at), b = near(this.origin, path[i].at);
+      if (!(path[i].time > path[i - 1].time) || !drawable(a) || !drawable(b)) continue;      // the two sides of a jump are not joined
+      out.push(...a, ...b);
+      this.starts.push(a);
+      this.times.push(path[i - 1].time, path[i].time);
     }
     const points = new Float32Array(out);
     this.whole = segments(points, faint, width);
@@ -52,6 +74,7 @@ export class Trace {
     this.tip = segments(new Float32Array(points.length > 0 ? 6 : 0), color, width);
     this.whole.renderOrder = 2;
     this.past.renderOrder = this.tip.renderOrder = 3;
+    this.group.position.set(...this.origin);
     this.group.add(this.whole, this.past, this.tip);
   }
 
@@ -63,9 +86,9 @@ export class Trace {
     }
     this.past.geometry.instanceCount = low;
     this.past.visible = low > 0;
-    const within = low < this.starts.length && this.times[2 * low] < time && at.every(Number.isFinite);
+    const within = low < this.starts.length && this.times[2 * low] < time && drawable(near(this.origin, at));
     this.tip.visible = within;
-    if (within) this.tip.geometry.setPositions(new Float32Array([...this.starts[low], ...at]));
+    if (within) this.tip.geometry.setPositions(new Float32Array([...this.starts[low], ...near(this.origin, at)]));
   }
 }
 
@@ -101,9 +124,9 @@ export class Triad {
   readonly group = new Group();
   private readonly arrows: Arrow[];
 
-  constructor(private readonly length: number, thickness: number, dark: boolean) {
+  constructor(private readonly length: number, thickness: number, dark: boolean, over = true) {
     const colors = dark ? ['#ef7f74', '#7cc08a', '#7fa8ec'] : ['#c0392b', '#2f8f4e', '#2f62b8'];
-    this.arrows = colors.map((c) => new Arrow(c, thickness));
+    this.arrows = colors.map((c) => new Arrow(c, thickness, over));
     this.group.add(...this.arrows.map((a) => a.group));
   }
 

@@ -9,7 +9,7 @@ import { exact, with_unit } from './format.ts';
 import { nearest } from './interpolate.ts';
 import { Legend, type Entry } from './legend.ts';
 import { css_rgb, theme } from './theme.ts';
-import { beside, offset_of, power_label, powers, tick_labels, type Offset } from './ticks.ts';
+import { beside, decades, decades_around, increments, multiples, offset_of, power_label, powers, tick_labels, type Offset } from './ticks.ts';
 
 // Where the reader points: a time, and the row of a list of times where the keyboard chose one side of a jump.
 export interface Cursor { time: number; t?: Float64Array; row?: number }
@@ -70,12 +70,13 @@ export class Plot {
 
   private options(): uPlot.Options {
     const { log } = this.group;
-    const decades = (u: uPlot, splits: number[]): (number | null)[] => powers(splits, Math.max(2, u.bbox.height / (devicePixelRatio || 1) / 30));
+    const labelled = (u: uPlot, splits: number[]): (number | null)[] => powers(splits, Math.max(2, u.bbox.height / (devicePixelRatio || 1) / 30));
+    const splits = (_u: uPlot, _axis: number, low: number, high: number, step: number): number[] => (log && _axis === 1 ? decades(low, high) : multiples(low, high, step));
     const grid = { stroke: () => css_rgb(theme().line), width: 1 };
-    const axis = { stroke: () => css_rgb(theme().quiet), font: '12px system-ui, sans-serif', ticks: { show: false }, border: { show: true, stroke: () => css_rgb(theme().line), width: 1 } };
+    const axis = { stroke: () => css_rgb(theme().quiet), font: '12px system-ui, sans-serif', incrs: increments, splits, ticks: { show: false }, border: { show: true, stroke: () => css_rgb(theme().line), width: 1 } };
     return {
       width: 600, height: 220, legend: { show: false },
-      padding: [8, 14, 0, 0],
+      padding: [8, 28, 0, 0],      // half of the longest label of a time stands right of the axis
       cursor: { x: false, y: false, points: { show: false }, drag: { x: true, y: false, setScale: false, dist: 5 },
         bind: { dblclick: () => () => { this.owner.zoom(null); return null; } } },
       scales: {
@@ -84,7 +85,7 @@ export class Plot {
       },
       axes: [
         { ...axis, grid: { ...grid, show: false }, size: 30, gap: 6, space: 70, values: (_u, v, _a, _s, step) => tick_labels(v, step, 0) },
-        { ...axis, grid: log ? { ...grid, filter: decades } : grid, ...(log ? { filter: decades } : {}), size: 64, gap: 6, space: 34, values: (_u, v, _a, _s, step) => (log ? v.map(power_label) : tick_labels(v, step, this.offset?.value ?? 0)) },
+        { ...axis, grid: log ? { ...grid, filter: labelled } : grid, ...(log ? { filter: labelled } : {}), size: 64, gap: 6, space: 34, values: (_u, v, _a, _s, step) => (log ? v.map(power_label) : tick_labels(v, step, this.offset?.value ?? 0)) },
       ],
       series: [{}, ...this.entries.map((e): uPlot.Series => ({
         show: e.shown, stroke: () => css_rgb(e.color()), width: 1.5, dash: e.dash, points: { show: false },
@@ -106,7 +107,7 @@ export class Plot {
     this.offset = null;
     if (!found) return log ? [1e-16, 1] : [0, 1];
     let [low, high] = found;
-    if (log) return uPlot.rangeLog(low, high, 10, true) as [number, number];
+    if (log) return decades_around(low, high);
     // Ticks finer than the digits of a double would all read alike.
     const least = 4e-14 * Math.max(Math.abs(low), Math.abs(high));
     if (high - low < least) { const middle = (low + high) / 2; low = middle - least / 2; high = middle + least / 2; }

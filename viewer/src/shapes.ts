@@ -4,14 +4,15 @@ import {
   BoxGeometry, BufferAttribute, CircleGeometry, Color, CylinderGeometry, DoubleSide, EdgesGeometry, Group, LineBasicMaterial,
   LineSegments, Mesh, MeshPhongMaterial, RingGeometry, SphereGeometry, TorusGeometry, type BufferGeometry, type Object3D,
 } from 'three';
+import { Triad } from './lines.ts';
 import type { Item } from './scene.ts';
 
-export interface Tones { base: Color; light: Color; mark: Color }
+export interface Tones { base: Color; light: Color; mark: Color; dark: boolean }
 
 export function tones(color: string, dark: boolean): Tones {
   const base = new Color(color);
   const light = base.clone().lerp(new Color('#ffffff'), dark ? 0.5 : 0.62);
-  return { base, light, mark: base.clone().lerp(new Color('#000000'), 0.55) };
+  return { base, light, mark: base.clone().lerp(new Color('#000000'), 0.55), dark };
 }
 
 // Half the largest dimension.
@@ -43,8 +44,20 @@ export function body(item: Item, unit: number, t: Tones): Object3D {
     case 'ellipsoid': return ellipsoid(a, b ?? a, c ?? b ?? a, t);
     case 'rod': return rod(a, unit, t);
     case 'box': return box(a, b ?? a, c ?? b ?? a, t);
-    default: return item.axes ? box(0.24 * unit, 0.16 * unit, 0.1 * unit, t) : ball(0.1 * unit, { ...t, light: t.base }, false);
+    default: return point(item, unit, t);
   }
+}
+
+// A body of which only the place is known, and the axes if it turns.
+function point(item: Item, unit: number, t: Tones): Object3D {
+  const group = new Group();
+  group.add(ball((item.axes ? 0.07 : 0.1) * unit, { ...t, light: t.base }, false));
+  if (item.axes) {
+    const axes = new Triad(0.45 * unit, 0.018 * unit, t.dark, false);
+    axes.set([0, 0, 0], [1, 0, 0, 0, 1, 0, 0, 0, 1]);
+    group.add(axes.group);
+  }
+  return group;
 }
 
 const around = (x: number, y: number, parts: number): number => Math.floor(((Math.atan2(y, x) / (2 * Math.PI) + 1) % 1) * parts);

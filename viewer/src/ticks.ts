@@ -33,6 +33,30 @@ function needed(step: number, digits: number): number {
   return Math.abs(rest - Math.round(rest)) > 1e-6 ? digits + 1 : digits;
 }
 
+// Distances of ticks among which an axis takes the least that leaves room for the labels: all that doubles can have.
+export const increments: number[] = Array.from({ length: 614 }, (_, k) => k - 306).flatMap((k) => [1, 2, 2.5, 5].map((m) => Number(`${m}e${k}`)));
+
+// Multiples of the distance within an axis. Counted, since adding a distance to a far larger value does not change it.
+export function multiples(low: number, high: number, step: number): number[] {
+  const first = Math.ceil(low / step - 1e-9), count = Math.floor(high / step + 1e-9) - first + 1;
+  if (!(count > 0) || count > 1000) return [];
+  return Array.from({ length: count }, (_, k) => Number(((first + k) * step).toPrecision(15)) + 0);
+}
+
+// Ends of a log axis that holds the values: powers of ten.
+export function decades_around(low: number, high: number): [number, number] {
+  const from = Math.max(-307, Math.floor(Math.log10(low) + 1e-9)), to = Math.min(308, Math.ceil(Math.log10(high) - 1e-9));
+  return [power_of_ten(from), power_of_ten(Math.max(to, from + 1))];
+}
+
+// Powers of ten within a log axis.
+export function decades(low: number, high: number): number[] {
+  const first = Math.ceil(Math.log10(low) - 1e-9), count = Math.floor(Math.log10(high) + 1e-9) - first + 1;
+  return Array.from({ length: Math.max(0, count) }, (_, k) => power_of_ten(first + k));
+}
+
+const power_of_ten = (k: number): number => Number(`1e${k}`);
+
 // Of the splits of a log axis those that are labelled and ruled: powers of ten, as many as fit.
 export function powers(values: number[], room: number): (number | null)[] {
   const exponent = (v: number): number | null => {

@@ -6,7 +6,7 @@ import { after, before, test } from 'node:test';
 import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
 import type { RawCase } from '../src/data.ts';
 import { write_page } from './page.ts';
-import { car, decimated, disc, hostile, shapes, steady, wobbling } from './samples.ts';
+import { car, decimated, disc, encode, hostile, range, shapes, steady, wobbling } from './samples.ts';
 
 const executable = process.env.CHROMIUM ?? '/usr/bin/chromium';
 const skip = existsSync(executable) ? false : `no Chromium at ${executable}`;
@@ -292,6 +292,29 @@ test('columns and groups can be hidden; a log axis says what it leaves out; few 
   assert.deepEqual(faults, []);
 });
 
+test('axes of residuals near 1e-35 and of a motion that grows without bound have their numbers', { skip }, async () => {
+  const raw = disc(steady, 2, 41);
+  const column = (name: string, group: string, f: (k: number) => number) => ({ name, html: '', unit: '', group, data: encode(range(41, f)) });
+  raw.columns.push(column('residual', 'tiny', (k) => 1e-36 * 10 ** (k / 8)), column('grown', 'huge', (k) => 10 ** (k - 4)));
+  raw.groups = [...raw.groups, { id: 'tiny', title: 'Tiny', log: true }, { id: 'huge', title: 'Huge', log: false }];
+  const { page, faults } = await open([raw]);
+  const drawn = await page.evaluate(async () => {
+    const canvases: boolean[] = [];
+    for (const title of ['Tiny', 'Huge']) {
+      const figure = [...document.querySelectorAll('figure.plot')].find((f) => f.querySelector('.title')!.textContent === title)!;
+      figure.scrollIntoView();
+      while (!figure.querySelector('canvas')) await new Promise(requestAnimationFrame);
+      await new Promise((done) => setTimeout(done, 200));
+      const canvas = figure.querySelector('canvas')!, ratio = devicePixelRatio || 1;
+      const left = canvas.getContext('2d')!.getImageData(0, 0, 50 * ratio, canvas.height - 35 * ratio).data;      // where labels stand
+      canvases.push(left.some((x) => x !== 0));
+    }
+    return canvases;
+  });
+  assert.deepEqual(drawn, [true, true]);
+  assert.deepEqual(faults, []);
+});
+
 test('LaTeX is copied, with and without a clipboard', { skip }, async () => {
   for (const script of ['', 'Object.defineProperty(navigator, "clipboard", { value: undefined });']) {
     const { page, faults } = await open([disc(steady, 10, 11)], { before: script, permissions: ['clipboard-read', 'clipboard-write'] });
@@ -363,6 +386,17 @@ test('brackets stretch with the embedded font', { skip }, async () => {
     return [bracket.getBoundingClientRect().height, document.querySelector('.equation mtable')!.getBoundingClientRect().height];
   });
   assert.ok(heights[0] > 0.9 * heights[1], `${heights}`);
+});
+
+test('the embedded font has the signs of derivatives and accents that formulas use', { skip }, async () => {
+  const { page } = await open([disc(steady, 10, 11)]);
+  const missing = await page.evaluate(() => {
+    const pen = document.createElement('canvas').getContext('2d')!;
+    const width = (sign: string, other: string): number => { pen.font = `40px "Anholon Math", ${other}`; return pen.measureText(sign).width; };
+    // A sign that is missing has the width of the font that stands in.
+    return [...'\u02d9\u00a8\u2032\u2033\u2034\u00af\u03b8\u2212'].filter((sign) => width(sign, 'monospace') !== width(sign, 'sans-serif'));
+  });
+  assert.deepEqual(missing, []);
 });
 
 test('without WebGL the player says so, and all else works', { skip }, async () => {

@@ -4,14 +4,17 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { strips } from '../src/bands.ts';
 import { comfortable_rate } from '../src/clock.ts';
+import { speed_options } from '../src/controls.ts';
 import { rows_within, trace_curve, value_range } from '../src/curve.ts';
 import { decode, read_case } from '../src/data.ts';
+import { leave_runaways } from '../src/extent.ts';
 import { exact, fixed, time_decimals } from '../src/format.ts';
 import { interpolate, interval, nearest, type Input } from '../src/interpolate.ts';
+import { chain, middle, near } from '../src/lines.ts';
 import { compile, type Entry } from '../src/program.ts';
 import { place, placement } from '../src/rotation.ts';
 import { SceneModel, type Pose } from '../src/scene.ts';
-import { beside, offset_of, power_label, powers, tick_labels } from '../src/ticks.ts';
+import { beside, decades, decades_around, increments, multiples, offset_of, power_label, powers, tick_labels } from '../src/ticks.ts';
 import { car, decimated, disc, encode, range, steady, type DiscMotion } from './samples.ts';
 
 const samples = (t: number[], f: (t: number) => number, d1?: (t: number) => number, d2?: (t: number) => number): Input => ({
@@ -276,4 +279,55 @@ test('a band is cut at the range that is shown', () => {
 
 test('a case without contacts has no bands', () => {
   assert.deepEqual(read_case(disc(steady, 1, 11)).bands, []);
+});
+
+test('ticks of axes whose values are far from one', () => {
+  assert.deepEqual(multiples(-0.11, 0.32, 0.1), [-0.1, 0, 0.1, 0.2, 0.3]);
+  assert.deepEqual(multiples(0, 4.2e36, 1e36), [0, 1e36, 2e36, 3e36, 4e36]);
+  assert.deepEqual(multiples(3e-41, 6e-41, 2e-41), [4e-41, 6e-41]);
+  assert.deepEqual(multiples(1, 1, 0), []);
+  assert.ok(increments.includes(1e36) && increments.includes(2.5e-36) && increments.every((x, k) => k === 0 || x > increments[k - 1]));
+  // On a log axis below 1e-24 uPlot's own list never ends.
+  assert.deepEqual(decades_around(7.6e-37, 1.5e-31), [1e-37, 1e-30]);
+  assert.deepEqual(decades(1e-37, 1e-30).length, 8);
+  assert.deepEqual(decades(1e-2, 1e1), [1e-2, 1e-1, 1, 1e1]);
+  assert.deepEqual(decades_around(1e-16, 1e-16), [1e-16, 1e-15]);
+  assert.ok(decades(...decades_around(5e-324, 1.7e308)).every((x) => x > 0 && Number.isFinite(x)));
+});
+
+test('paths keep their digits in single precision, far from the origin', () => {
+  const points: [number, number, number][] = [0, 0.25, 0.5].map((x) => [1e9 + x, 0, 6371000 + 2 * x]);
+  const origin = middle(points);
+  assert.deepEqual(origin, [1e9 + 0.25, 0, 6371000.5]);
+  assert.deepEqual([...chain(points, origin)], [-0.25, 0, -0.5, 0, 0, 0, 0, 0, 0, 0.25, 0, 0.5]);
+  assert.deepEqual(near(origin, points[2]), [0.25, 0, 0.5]);
+  // What grows without bound is left out.
+  assert.equal(chain([[0, 0, 0], [1e200, 0, 0], [NaN, 0, 0]], [0, 0, 0]).length, 0);
+  assert.deepEqual(middle([[1, 1, 1], [1e200, 0, 0]]), [1, 1, 1]);
+});
+
+test('what runs away does not count for the first look', () => {
+  const of = (f: (k: number) => number): { at: [number, number, number]; r: number }[] =>
+    range(100, f).map((x) => ({ at: [x, 0, 0], r: 0 }));
+  const grown = of((k) => 1 / (1 - k / 99.0000001)), even = of((k) => k);
+  leave_runaways(grown, 0);
+  leave_runaways(even, 0);
+  assert.ok(grown.length < 100 && grown.length >= 90);
+  assert.equal(even.length, 100);
+});
+
+test('speeds are true: 1× is real time for every run', () => {
+  assert.deepEqual(speed_options(1, 's').map(([, text]) => text), ['0.1×', '0.2×', '0.5×', '1×', '2×', '5×', '10×']);
+  const long = speed_options(60, 's');
+  assert.deepEqual(long.map(([, text]) => text), ['1×', '6×', '12×', '30×', '60×', '120×', '300×', '600×']);
+  assert.ok(Math.abs(Number(long[0][0]) * 60 - 1) < 1e-12);
+  assert.equal(speed_options(60, '').find(([factor]) => factor === '1')![1], '60 per s');
+});
+
+test('a page of one row is at its time', () => {
+  const raw = disc(steady, 1, 11);
+  const at = encode([1]);
+  const one = read_case({ ...raw, t: at, rows: 1, shown: 1, frames: null, columns: raw.columns.slice(0, 1).map((c) => ({ ...c, data: at }))
+    .concat([{ ...raw.columns[0], name: 'step', t: encode([0.1, 1]), data: encode([0.1, 0.9]) }]), scene: null });
+  assert.deepEqual([one.start, one.end], [1, 1]);
 });

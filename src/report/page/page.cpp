@@ -119,7 +119,7 @@ class PageWriter {
 
 std::string warning_box(const Warning& w) {
   std::string out = "<p class=\"warning\" role=\"note\" dir=\"auto\">" + markup_escape(w.message);
-  if (!w.hint.empty()) out += " <span class=\"hint\">" + markup_escape(w.hint) + "</span>";
+  if (!w.hint.empty()) out += " <span class=\"hint\">hint: " + markup_escape(w.hint) + "</span>";
   return out + "</p>\n";
 }
 

@@ -118,6 +118,8 @@ TEST(Latex, Samples) {
   EXPECT_EQ(latex_name("x1[3]"), "x_{1,3}");
   EXPECT_EQ(latex_name("x_a[1,2]"), "x_{a,1,2}");
   EXPECT_EQ(latex_name("front_wheel[2]"), "\\mathrm{front}_{\\mathrm{wheel},2}");
+  EXPECT_EQ(latex_name("x_left_wheel"), "x_{\\mathrm{left}\\,\\mathrm{wheel}}");
+  EXPECT_EQ(latex_name("x__a"), "x_{\\mathrm{\\_a}}");
   EXPECT_EQ(derivative_name("x", 2, Format::latex), "\\ddot{x}");
   EXPECT_EQ(derivative_name("x", 4, Format::latex), "x^{(4)}");
   EXPECT_EQ(derivative_name("x", 3, Format::text), "x'''");
@@ -154,7 +156,24 @@ TEST(Mathml, Samples) {
             "<msub><mi>φ</mi><mrow><mi>a</mi><mo>,</mo><mn>1</mn><mo>,</mo><mn>2</mn></mrow></msub>");
   EXPECT_EQ(mathml_name("mass"), "<mi mathvariant=\"normal\">mass</mi>");
   EXPECT_EQ(mathml_name("a<b&c"), "<mi mathvariant=\"normal\">a&lt;b&amp;c</mi>");
-  EXPECT_EQ(derivative_name("<mi>x</mi>", 2, Format::mathml), "<mover accent=\"true\"><mi>x</mi><mo>¨</mo></mover>");
+  const auto dotted = [](const std::string& letter, const std::string& dots) {
+    return "<mover>" + letter + "<mo stretchy=\"false\" scriptlevel=\"+0\">" + dots + "</mo></mover>";
+  };
+  EXPECT_EQ(derivative_name("<mi>x</mi>", 2, Format::mathml), dotted("<mi>x</mi>", "¨"));
+  // Over the letter and not over its index.
+  EXPECT_EQ(derivative_name(mathml_name("theta_1"), 1, Format::mathml),
+            "<msub>" + dotted("<mi>θ</mi>", "˙") + "<mn>1</mn></msub>");
+  EXPECT_EQ(derivative_name(mathml_name("x[1,2]"), 3, Format::mathml),
+            "<msub>" + dotted("<mi>x</mi>", "⃛") + "<mrow><mn>1</mn><mo>,</mo><mn>2</mn></mrow></msub>");
+  EXPECT_EQ(derivative_name("<msup><mi>x</mi><mo>∗</mo></msup>", 1, Format::mathml),
+            "<msup>" + dotted("<mi>x</mi>", "˙") + "<mo>∗</mo></msup>");
+  // Dots over a name of several letters would stand over one of them.
+  EXPECT_EQ(derivative_name(mathml_name("mass"), 1, Format::mathml), "<mi mathvariant=\"normal\">mass′</mi>");
+  EXPECT_EQ(derivative_name(mathml_name("th_1"), 2, Format::mathml),
+            "<msub><mi mathvariant=\"normal\">th″</mi><mn>1</mn></msub>");
+  // One level of subscripts.
+  EXPECT_EQ(mathml_name("x_left_wheel"), "<msub><mi>x</mi><mrow><mi mathvariant=\"normal\">left</mi><mspace "
+                                         "width=\"0.1667em\"/><mi mathvariant=\"normal\">wheel</mi></mrow></msub>");
   PlainNames n;
   SymbolNames names = test::plain_symbol_names();
   names.coordinates = {"theta", "y", "z"};

@@ -33,6 +33,13 @@ const look = EditorView.theme({
   '.cm-completionDetail': { fontStyle: 'normal', color: 'inherit', opacity: '.8', marginLeft: '.8em' },
 });
 
+// The mode ends a number before its exponent.
+const model_text: typeof toml = { ...toml, token: (stream, state) => {
+  const { inString, lhs, inArray } = state as { inString: boolean; lhs: boolean; inArray: number };
+  const value = !inString && !lhs && !(stream.sol() && inArray === 0);
+  return value && stream.match(/^[+-]?\d+(?:\.\d+)?[eE][+-]?\d+/) ? 'number' : toml.token(stream, state);
+} };
+
 export class Editor {
   readonly view: EditorView;
   language: Language = { sections: [], functions: [], reserved: [] };
@@ -53,7 +60,7 @@ export class Editor {
         doc: text,
         extensions: [
           lineNumbers(), lintGutter(), history(), drawSelection(), highlightActiveLine(), bracketMatching(), highlightSelectionMatches(),
-          StreamLanguage.define(toml), syntaxHighlighting(colours), look, EditorView.lineWrapping,
+          StreamLanguage.define(model_text), syntaxHighlighting(colours), look, EditorView.lineWrapping,
           autocompletion({ override: [complete], icons: false }),
           keymap.of([{ key: 'Mod-s', preventDefault: true, run: () => { save(); return true; } }, { key: 'Tab', run: acceptCompletion },
             ...completionKeymap, ...lintKeymap, ...searchKeymap, ...historyKeymap, ...defaultKeymap]),

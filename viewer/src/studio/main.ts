@@ -106,7 +106,7 @@ class Studio {
     this.editor.show(problems);
     this.problems.replaceChildren(...problems.map((p) => h('li', { class: p.severity },
       h('button', { type: 'button', class: 'plain', click: () => this.editor.go_to(p) }, p.line > 0 ? `${p.file || 'line'} ${p.line}` : p.file || 'the text'), ` ${p.severity}: ${p.message}`,
-      p.hint ? h('span', { class: 'hint' }, ` ${p.hint}`) : null)));
+      p.hint ? h('span', { class: 'hint' }, ` hint: ${p.hint}`) : null)));
     if (text !== '' && problems.length === 0) this.problems.replaceChildren(h('li', { class: 'error' }, text));
   }
 

@@ -57,7 +57,7 @@ export class Preview {
   // Says why what is shown is not what was asked for; an empty text takes it away.
   stale(why: string, hint = '', shown = 'Shown is an earlier text.'): void {
     this.note.hidden = why === '';
-    this.note.replaceChildren(...(why === '' ? [] : [h('strong', {}, `${shown} `), why, hint ? h('span', { class: 'hint' }, ` ${hint}`) : '']));
+    this.note.replaceChildren(...(why === '' ? [] : [h('strong', {}, `${shown} `), why, hint ? h('span', { class: 'hint' }, ` hint: ${hint}`) : '']));
     this.main.classList.toggle('old', why !== '');
   }
 }

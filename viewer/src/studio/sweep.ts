@@ -35,7 +35,7 @@ export class SweepStudio {
       const map = await this.store.sweep();
       if (failed(map)) {
         this.say('the sweep cannot be shown');
-        this.place.append(h('p', { class: 'sorry', role: 'alert' }, map.error.text, map.error.hint ? h('span', { class: 'hint' }, ` ${map.error.hint}`) : null));
+        this.place.append(h('p', { class: 'sorry', role: 'alert' }, map.error.text, map.error.hint ? h('span', { class: 'hint' }, ` hint: ${map.error.hint}`) : null));
       } else this.begin(map);
     } catch (e) { this.say(`The sweep cannot be opened: ${(e as Error).message}`); }
     document.documentElement.dataset.done = '1';
