@@ -220,17 +220,23 @@ std::vector<N> around(const std::vector<N>& guess, const std::vector<bool>& move
   return p;
 }
 
-// Puts unknowns of a solution back to their guess one by one where a nearer solution is found from there.
+// Puts unknowns of a solution back to their guess one by one where a nearer solution in the others is found from there.
 template <Number N>
-void go_back(Iteration<N>& newton, const std::vector<bool>& moved, std::vector<N>& best, N& least) {
+void go_back(Stage<N>& s, InitialState<N>& state, std::vector<std::size_t> open, Iteration<N>& newton,
+             const std::vector<bool>& moved, std::vector<N>& best, N& least) {
   constexpr std::size_t kMost = 60;
   if (best.size() > kMost) return;
+  const std::vector<std::size_t> all = open;
   for (std::size_t j = 0; j < best.size(); ++j) {
     if (!moved[j] || !(abs(N(best[j] - newton.guess()[j])) > N(0))) continue;
+    std::vector<std::size_t> others = open;
+    std::erase(others, all[j]);
     std::vector<N> there = best;
     there[j] = newton.guess()[j];
-    if (!newton.go_to(there) || !newton.run(false) || !newton.solved()) continue;
-    if (const N d = newton.distance(); d < least) least = d, best = newton.point();
+    if (!newton.go_to(there)) continue;
+    Iteration<N> rest(s, state, others);
+    if (!rest.run(false) || !rest.solved()) continue;
+    if (const N d = newton.distance(); d < least) least = d, best = newton.point(), open = std::move(others);
   }
 }
 
@@ -273,7 +279,7 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
     if (const N d = newton.distance(); best.empty() || d < least) least = d, best = newton.point(), nearest = settled;
   }
   if (!best.empty()) {
-    if (!nearest) go_back(newton, moved, best, least);
+    if (!nearest) go_back(s, state, free, newton, moved, best, least);
     return newton.go_to(best);
   }
   state = first;
