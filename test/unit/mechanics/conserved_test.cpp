@@ -141,7 +141,8 @@ TEST(Conserved, IsMarkedWhereItsFormulaJumps) {
     EXPECT_FALSE(list.empty()) << potential;
     if (list.empty()) return false;
     EXPECT_EQ(list.front().name, "energy") << potential;
-    for (std::size_t i = 1; i < list.size(); ++i) EXPECT_FALSE(list[i].jumps) << list[i].name;
+    // A momentum is changed by a jump of the potential alone.
+    for (std::size_t i = 1; i < list.size() && !list.front().jumps; ++i) EXPECT_FALSE(list[i].jumps) << list[i].name;
     return list.front().jumps;
   };
   for (const char* potential :
