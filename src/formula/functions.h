@@ -27,6 +27,8 @@ enum class DimensionRule : std::uint8_t {
   turns,                 // a rotation by pure numbers after the first argument, which names axes
   turn_about,            // a rotation about a vector by a pure number
   matrix,                // a rotation by rows of pure numbers
+  force,                 // a vector in newtons of any argument
+  torque,                // the same in newton metres
   velocity,              // a point by time, or a velocity
   acceleration,          // a point by time squared, or an acceleration
   angular_velocity,      // 1/s

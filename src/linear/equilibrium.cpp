@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "structure/consistent.h"
+
 namespace anholon {
 
 std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) {
@@ -27,6 +29,22 @@ std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) 
   return m;
 }
 
+// The initial positions where conditions determine some; empty if they have no solution.
+static std::vector<GivenValue> positions_by_conditions(const Model& model) {
+  if (model.initial.conditions.empty() || !model.unknown_functions.empty()) return {};
+  const std::shared_ptr<Model> own = clone(model);
+  const Mechanics m = mechanics(*own);
+  const InitialProblem<double> problem{&m, parameter_values<double>(*own), {}, std::nullopt};
+  InitialState<double> state;
+  if (!consistent_state(problem, state).ok()) return {};
+  Graph& g = *model.graph;
+  std::vector<GivenValue> list;
+  for (std::size_t a = 0; a < state.q.size(); ++a)
+    if (is_finite(state.q[a]))
+      list.push_back({g.jet(static_cast<std::uint32_t>(a), 0), g.number(Rational(state.q[a])), {}});
+  return list;
+}
+
 std::shared_ptr<const Model> at_rest(const Model& model) {
   auto m = std::make_shared<Model>(model);
   Graph& g = *m->graph;
@@ -35,6 +53,7 @@ std::shared_ptr<const Model> at_rest(const Model& model) {
   for (const std::vector<GivenValue>* list : {&model.initial.guess, &model.initial.given})
     for (const GivenValue& v : *list)
       if (const Node& n = g.node(v.symbol.id); n.kind == Kind::jet && n.order == 0) data.guess.push_back(v);
+  if (std::vector<GivenValue> found = positions_by_conditions(model); !found.empty()) data.guess = std::move(found);
   for (std::size_t a = 0; a < m->coordinates.size(); ++a) {
     const auto index = static_cast<std::uint32_t>(a);
     data.given.push_back({g.jet(index, 1), g.zero(), {}});

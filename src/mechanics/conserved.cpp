@@ -8,9 +8,8 @@
 #include "expr/generic_point.h"
 #include "expr/normal.h"
 #include "formula/units.h"
-#include "mechanics/jumps.h"
+#include "model/jumps.h"
 #include "tape/point.h"
-#include "tape/tape.h"
 
 namespace anholon {
 
@@ -432,6 +431,27 @@ std::string unit_of(const Model& model, const Conserved& c) {
 
 Expr momentum_rate(const Mechanics& m, const Column& field) { return rate_along(m, rates(m), field); }
 
+// Whether a potential may jump where a motion along the field goes: a pulse of its force acts there.
+static bool meets_jump(const Model& model, const Mechanics& m, const Column& field) {
+  return std::any_of(model.potentials.begin(), model.potentials.end(), [&](const Potential& p) {
+    return may_jump(model, put_controls(model, {&p.value, 1})[0], [&](Expr s) {
+      Expr along = m.graph().zero();
+      for (std::size_t a = 0; a < field.size(); ++a) along += partial(s, m.q[a]) * field[a];
+      return !vanishes(along);
+    });
+  });
+}
+
+// Whether a constraint may change by a jump: velocities then jump, and energy is lost.
+static bool constraints_may_jump(const Mechanics& m) {
+  const auto jumps = [&](Expr e) { return may_jump(*m.model, put_controls(*m.model, {&e, 1})[0]); };
+  for (const Expr& phi : m.phi)
+    if (jumps(phi)) return true;
+  for (const Column& row : m.Phi)
+    if (std::any_of(row.begin(), row.end(), jumps)) return true;
+  return false;
+}
+
 static std::vector<Conserved> conserved_between_jumps(const Mechanics& m) {
   std::vector<Conserved> list;
   if (auto e = energy(m)) list.push_back(std::move(*e));
@@ -454,6 +474,7 @@ static std::vector<Conserved> conserved_between_jumps(const Mechanics& m) {
     if (vanishes(p.value)) continue;
     p.name = name_of(model, field);
     find_units(model, field, p);
+    p.jumps = meets_jump(model, m, field);
     p.because = "the kinetic energy, the forces and the constraints do not change along it";
     list.push_back(std::move(p));
   }
@@ -462,10 +483,9 @@ static std::vector<Conserved> conserved_between_jumps(const Mechanics& m) {
 
 std::vector<Conserved> conserved(const Mechanics& m) {
   std::vector<Conserved> list = conserved_between_jumps(m);
-  Column values;
-  for (const Parameter& p : m.model->parameters) values.push_back(p.value);
-  const std::vector<double> parameters = evaluate_parameters<double>(m.graph(), values);
-  for (Conserved& c : list) c.jumps = may_jump(c.value, parameters);
+  const bool of_constraints = constraints_may_jump(m);
+  for (Conserved& c : list)
+    c.jumps = c.jumps || may_jump(*m.model, c.value) || (of_constraints && c.name.rfind("momentum", 0) != 0);
   return list;
 }
 

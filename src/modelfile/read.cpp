@@ -86,8 +86,7 @@ class Reader {  // its references are used only while it runs
     // Bodies are declared before any evaluation; their parts are read together with the masses.
     BodyReader bodies(scope_, model_, diagnostics_);
     bodies.declare(root);
-    if (const Item* o = table(root, "observer"))
-      guard([&] { read_observer(*o, scope_, model_, diagnostics_); }, o->span);
+    observer(root);
     read_gravity(root, scope_, diagnostics_);
     read_controls(root, scope_, model_, diagnostics_);
     // A name that does not denote a value is reported once, at its use.
@@ -107,6 +106,7 @@ class Reader {  // its references are used only while it runs
     start_at_identity(norms, model_);
     if (const Item* m = table(root, "monitor")) read_monitors(*m, scope_, model_, diagnostics_);
     read_events(root, scope_, model_, diagnostics_);
+    check_observer(observer_, model_, diagnostics_);
     read_outputs(root, scope_, model_, diagnostics_);
     contacts_ = read_contacts(root, scope_, model_, diagnostics_);
     check_names_of_contacts(contacts_, model_, diagnostics_);
@@ -148,6 +148,11 @@ class Reader {  // its references are used only while it runs
  private:
   bool guard(const std::function<void()>& f, Span place = {}) { return collect(diagnostics_, f, place); }
   bool guard(const std::function<void()>& f, const Item& element) { return collect(diagnostics_, f, element); }
+
+  void observer(const Item& root) {
+    if (const Item* o = table(root, "observer"))
+      guard([&] { observer_ = read_observer(*o, scope_, model_, diagnostics_); }, o->span);
+  }
 
   // The model that is read is the one in which all contacts are open.
   void note_contacts() {
@@ -410,6 +415,7 @@ class Reader {  // its references are used only while it runs
   Item root_;  // referenced by the scope
   Model model_;
   Scope scope_;
+  std::vector<ObserverFormula> observer_;
   std::vector<Contact> contacts_;
 };
 

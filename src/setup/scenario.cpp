@@ -148,7 +148,7 @@ static void choose_constraints(const Model& model, const std::vector<double>& pa
   for (std::size_t r : s.redundant) {
     s.classes[r].redundant = true;
     s.notes.push_back("constraint '" + model.constraints[r].name +
-                      "' follows from the others at the initial state: it is left out, and watched");
+                      "' depends on the others at the initial state: it is left out, and watched");
   }
 }
 
@@ -306,10 +306,11 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
   if (!large_angles.empty()) s.notes.push_back(large_angles);
   if (!initial.ok()) return initial;
   if (!structured.ok()) return structured;
-  // Masses and forces that depend on accelerations may ask for more, too.
+  // Masses and forces that depend on accelerations, and coordinates without inertia, may ask for more, too.
   const bool beyond =
       std::any_of(s.structure.d.begin(), s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates),
-                  [](int d) { return d > 2; });
+                  [](int d) { return d > 2; }) ||
+      conditions_on_leading(*model, s.system, s.structure.d);
   if (beyond && numbers && !s.routh) initial = complete(problem, s);
   if (initial.ok()) note_unused_values(form, s);
   s.notes.insert(s.notes.end(), s.state.notes.begin(), s.state.notes.end());

@@ -5,35 +5,56 @@ namespace anholon {
 
 template <Number N>
 Outcome StateSolver<N>::complete(const System& s, const Structure& t) {
-  make_room(s, t);
+  int beyond = 0;
+  std::vector<StageEquation> late;  // hold leading derivatives, or derivatives of these up to the order `beyond`
+  for (const StageEquation& e : conditions())
+    if (const int order = order_beyond(e.residual, s, t); order >= 0)
+      late.push_back(e), beyond = std::max(beyond, order);
+  state_.higher.clear(), state_.multipliers.clear();
+  make_room(s, t, beyond);
   start_values(is_higher);
-  std::vector<StageEquation> late;  // hold leading derivatives
   start_with_free_accelerations(s);
   const int deepest = *std::max_element(t.d.begin(), t.d.end());
   for (int level = deepest; level >= 1; --level)
     if (Outcome o = stage(s, t, level); !o.ok()) return o;
-  for (const StageEquation& e : conditions())
-    if (holds_higher(e.residual) && level_of(e.residual, s, t) <= 0) late.push_back(e);
   if (Outcome o = given_beyond_the_state(s, t, late); !o.ok()) return o;
   if (Outcome o = leading(s, t); !o.ok()) return o;
+  for (int k = 1; k <= beyond; ++k)
+    if (Outcome o = derivatives_of_leading(s, t, k); !o.ok()) return o;
   if (!late.empty())
-    if (Outcome o = together(s, t, late); !o.ok()) return o;
+    if (Outcome o = together(s, t, late, beyond); !o.ok()) return o;
+  make_room(s, t, 0);
   for (std::size_t j = 0; j < s.size(); ++j)
     *state_.origin(node(s.symbol(j, static_cast<unsigned>(t.d[j])))) = Origin::derived;
   say_choices(s, t);
   return {};
 }
 
+// Makes room for the state and its derivatives up to this order of the leading ones, and keeps what is there.
 template <Number N>
-void StateSolver<N>::make_room(const System& s, const Structure& t) {
+void StateSolver<N>::make_room(const System& s, const Structure& t, int beyond) {
   int coordinates = 2, multipliers = 0;
   for (std::size_t j = 0; j < s.mechanical(); ++j)
     (j < s.coordinates ? coordinates : multipliers) = std::max(j < s.coordinates ? coordinates : multipliers, t.d[j]);
   const auto level = [](std::size_t n) {
     return Level<N>{std::vector<N>(n, N(0)), std::vector<Origin>(n, Origin::chosen)};
   };
-  state_.higher.assign(static_cast<std::size_t>(coordinates) - 1, level(m_.q.size()));
-  state_.multipliers.assign(static_cast<std::size_t>(multipliers) + 1, level(m_.phi.size()));
+  state_.higher.resize(static_cast<std::size_t>(coordinates + beyond) - 1, level(m_.q.size()));
+  state_.multipliers.resize(static_cast<std::size_t>(multipliers + beyond) + 1, level(m_.phi.size()));
+}
+
+static int order_beyond(Expr e, const System& s, const std::vector<int>& d) {
+  int most = -1;
+  for (NodeId id : symbols({&e, 1}))
+    if (const auto j = s.variable(id); j && *j < s.mechanical())
+      most = std::max(most, static_cast<int>(e.graph->node(id).order) - d[*j]);
+  return most;
+}
+
+// The highest derivative of a leading derivative that e holds; -1 if e holds entries of the state only.
+template <Number N>
+int StateSolver<N>::order_beyond(Expr e, const System& s, const Structure& t) const {
+  return anholon::order_beyond(e, s, t.d);
 }
 
 // The number of orders between the highest entry of e and the leading derivatives; 0: e contains leading ones.
@@ -77,7 +98,8 @@ Outcome StateSolver<N>::stage(const System& s, const Structure& t, int level) {
   }
   StageEquations equations = laws;
   for (const StageEquation& e : conditions())
-    if (holds_higher(e.residual) && level_of(e.residual, s, t) == level) equations.push_back(e);
+    if (order_beyond(e.residual, s, t) < 0 && holds_higher(e.residual) && level_of(e.residual, s, t) == level)
+      equations.push_back(e);
   if (!laws.empty()) start_unconstrained(laws, unknowns, metric);
   const InitialState<N> before = state_;
   if (Outcome o = solve(equations, unknowns, metric); !o.ok()) {
@@ -182,17 +204,36 @@ Outcome StateSolver<N>::leading(const System& s, const Structure& t) {
   return {};
 }
 
-// Conditions on leading derivatives, with all laws: velocities move first, positions only if they must.
+// The derivatives of this order of the leading ones.
 template <Number N>
-Outcome StateSolver<N>::together(const System& s, const Structure& t, const StageEquations& late) {
+Outcome StateSolver<N>::derivatives_of_leading(const System& s, const Structure& t, int order) {
+  StageEquations equations;
+  Column unknowns;
+  std::vector<std::size_t> every;
+  for (std::size_t i = 0; i < s.mechanical(); ++i) {
+    equations.push_back(law(s, i, static_cast<unsigned>(t.c[i] + order)));
+    unknowns.push_back(s.symbol(i, static_cast<unsigned>(t.d[i] + order)));
+    every.push_back(i);
+  }
+  Stage<N> all(m_, equations, unknowns, 0, p_.parameters, p_.mass);
+  return find_by_least_change(all, state_, every) ? Outcome{} : no_value(all);
+}
+
+// Conditions on leading derivatives and their derivatives up to the order `beyond`, with all laws: velocities move first,
+// positions only if they must.
+template <Number N>
+Outcome StateSolver<N>::together(const System& s, const Structure& t, const StageEquations& late, int beyond) {
+  // A state of the model has no derivative beyond its rate.
+  const auto more = [&](std::size_t i) { return i < s.mechanical() ? beyond : 0; };
   StageEquations equations;
   for (std::size_t i = 0; i < s.size(); ++i)
-    for (int k = 0; k <= t.c[i]; ++k) equations.push_back(law(s, i, static_cast<unsigned>(k)));
+    for (int k = 0; k <= t.c[i] + more(i); ++k) equations.push_back(law(s, i, static_cast<unsigned>(k)));
   for (const StageEquation& e : conditions())
-    if (!holds_higher(e.residual) || level_of(e.residual, s, t) > 0) equations.push_back(e);
+    if (order_beyond(e.residual, s, t) < 0) equations.push_back(e);
   equations.insert(equations.end(), late.begin(), late.end());
+  const Column leading = leading_unknowns(s, t);
   {  // The conditions may hold already: a value that follows from the others may be given as well.
-    Stage<N> said(m_, late, leading_unknowns(s, t), 0, p_.parameters, p_.mass);
+    Stage<N> said(m_, late, leading, 0, p_.parameters, p_.mass);
     if (!said.evaluate(state_)) return no_value(said);
     if (said.is_rounded() && all_given(s, t)) return {};
     if (!(said.worst() > stage_rounding<N>())) return {};
@@ -204,7 +245,7 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
     Column unknowns;
     unsigned metric = 0;
     for (std::size_t j = 0; j < s.size(); ++j)
-      for (int k = j < s.coordinates ? lowest : 0; k <= t.d[j]; ++k) {
+      for (int k = j < s.coordinates ? std::min(lowest, t.d[j]) : 0; k <= t.d[j] + more(j); ++k) {
         unknowns.push_back(s.symbol(j, static_cast<unsigned>(k)));
         if (j < s.coordinates && k < t.d[j]) metric |= 1U << k;
       }
@@ -215,17 +256,20 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
     });
     if (!may_move && p_.overrides.empty()) continue;
     for (Expr u : unknowns)  // derived values may be derived anew
-      if (const auto j = s.variable(u.id); static_cast<int>(node(u).order) == t.d[*j])
+      if (const auto j = s.variable(u.id); static_cast<int>(node(u).order) >= t.d[*j])
         *state_.origin(node(u)) = Origin::derived;
     clash_is_told_ = false;
     by_flow_ = lowest == 0;
     refused = solve(equations, unknowns, metric);
     by_flow_ = false;
-    if (refused.ok()) return {};
+    if (refused.ok()) {
+      say_least_change();
+      return {};
+    }
   }
   state_ = before;
   if (clash_is_told_) return refused;
-  Stage<N> said(m_, late, leading_unknowns(s, t), 0, p_.parameters, p_.mass);
+  Stage<N> said(m_, late, leading, 0, p_.parameters, p_.mass);
   std::size_t worst = 0;
   if (!said.evaluate(state_)) return no_value(said);
   said.worst(&worst);
@@ -248,11 +292,17 @@ bool StateSolver<N>::all_given(const System& s, const Structure& t) const {
   return true;
 }
 
+bool conditions_on_leading(const Model& model, const System& s, const std::vector<int>& d) {
+  const std::vector<Condition>& list = model.initial.conditions;
+  return std::any_of(list.begin(), list.end(), [&](const Condition& c) { return order_beyond(c.residual, s, d) >= 0; });
+}
+
 bool needs_completion(const Mechanics& m, const System& s, const Structure& t) {
   for (std::size_t j = 0; j < s.mechanical(); ++j)
     if (t.d[j] > (j < s.coordinates ? 2 : 0)) return true;
   const auto high = [](const Condition& c) { return holds_higher(c.residual); };
-  return may_branch(m, s) || std::any_of(m.model->initial.conditions.begin(), m.model->initial.conditions.end(), high);
+  return may_branch(m, s) || conditions_on_leading(*m.model, s, t.d) ||
+         std::any_of(m.model->initial.conditions.begin(), m.model->initial.conditions.end(), high);
 }
 
 template <Number N>

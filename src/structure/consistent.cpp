@@ -141,8 +141,11 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
   mark_undetermined(stage, before, free);
   if (!(stage.worst(&worst) > stage_rounding<N>())) return {};
   if (stage.is_rounded()) {
-    // The given values are rounded numbers: all may change a little.
-    if (find_by_least_change(stage, state_, all) && !(stage.worst(&worst) > stage_rounding<N>())) {
+    // The given values are rounded numbers: all may change a little, and the others are measured from their guess again.
+    std::vector<N> found;
+    for (std::size_t j : all) found.push_back(stage.x(state_, j));
+    for (std::size_t j : free) stage.x(state_, j) = stage.x_of(before, j);
+    if (find_by_least_change(stage, state_, all, found) && !(stage.worst(&worst) > stage_rounding<N>())) {
       for (std::size_t j : all)
         if (Origin& origin = *state_.origin(stage.unknown(j)); origin == Origin::given)
           if (N change = abs(N(stage.x(state_, j) - stage.x_of(before, j))); change > N(0)) {

@@ -15,6 +15,10 @@ namespace anholon {
 template <Number N>
 Outcome consistent_state(const InitialProblem<N>& problem, InitialState<N>& state);
 
+// True if a condition of the initial data holds derivatives that follow from the state, of coordinates without inertia or
+// beyond accelerations. `d`: the orders of the leading derivatives.
+bool conditions_on_leading(const Model& model, const System& s, const std::vector<int>& d);
+
 // True if the state holds more than positions and velocities, if there are conditions that contain accelerations or
 // multipliers, or if the equations may have several solutions: complete_state is then needed.
 bool needs_completion(const Mechanics& m, const System& s, const Structure& t);

@@ -59,10 +59,8 @@ class Iteration {
       typename Stage<N>::Elimination& elimination = s_.elimination(free_);
       const RowChoice<N>& rows = elimination.rows;
       if (rows.dependent.size() && !nudged && s_.worst() > rounding && k == 0) {
-        // The guess may be a stationary point of a constraint (the centre of a circle): move away from it.
         nudged = true;
-        if (flat(rows)) {
-          for (std::size_t j = 0; j < free_.size(); ++j) *x_[j] += N(0.1) + N(0.037) * N(static_cast<int>(j % 7));
+        if (leave_stationary_point(rows)) {
           if (!s_.evaluate(state_)) return false;
           continue;
         }
@@ -102,9 +100,20 @@ class Iteration {
   }
 
  private:
-  bool flat(const RowChoice<N>& rows) const {
-    return std::any_of(rows.dependent.begin(), rows.dependent.end(),
-                       [&](std::size_t i) { return abs(s_.residual[i]) > stage_rounding<N>() * s_.scale[i]; });
+  // The guess may be a stationary point of a constraint (the centre of a circle): moves the unknowns of such constraints
+  // away from it. Returns false if there are none.
+  bool leave_stationary_point(const RowChoice<N>& rows) {
+    if (s_.linear()) return false;
+    bool moved = false;
+    for (std::size_t j = 0; j < free_.size(); ++j) {
+      if (std::none_of(rows.dependent.begin(), rows.dependent.end(), [&](std::size_t i) {
+            return s_.holds(i, free_[j]) && abs(s_.residual[i]) > stage_rounding<N>() * s_.scale[i];
+          }))
+        continue;
+      *x_[j] += N(0.1) + N(0.037) * N(static_cast<int>(j % 7));
+      moved = true;
+    }
+    return moved;
   }
 
   // Computes the step that least changes the point, or the guess if `nearest`.
@@ -189,16 +198,46 @@ class Iteration {
   int in_vain_ = 0;              // searches in a row that found no improvement along their step
 };
 
-// The k-th point around the guess, at increasing distance.
+// Tells for each of these unknowns whether an equation contains it.
 template <Number N>
-std::vector<N> around(const std::vector<N>& guess, int k) {
+std::vector<bool> held(const Stage<N>& s, const std::vector<std::size_t>& free) {
+  std::vector<bool> is(free.size(), false);
+  for (std::size_t j = 0; j < free.size(); ++j)
+    for (std::size_t i = 0; i < s.size() && !is[j]; ++i) is[j] = s.holds(i, free[j]);
+  return is;
+}
+
+// The k-th point around the guess in these unknowns, at increasing distance.
+template <Number N>
+std::vector<N> around(const std::vector<N>& guess, const std::vector<bool>& moved, int k) {
   std::vector<N> p = guess;
   for (std::size_t j = 0; j < p.size(); ++j) {
+    if (!moved[j]) continue;
     const unsigned draw = (static_cast<unsigned>(k) * 2654435761U + static_cast<unsigned>(j + 1) * 2246822519U) >> 16;
     const N size = abs(p[j]) > N(1) ? N(abs(p[j])) : N(1);
     p[j] += size * N(k) * N(static_cast<int>(draw % 2001U) - 1000) / N(4000);
   }
   return p;
+}
+
+// Puts unknowns of a solution back to their guess one by one where a nearer solution in the others is found from there.
+template <Number N>
+void go_back(Stage<N>& s, InitialState<N>& state, std::vector<std::size_t> open, Iteration<N>& newton,
+             const std::vector<bool>& moved, std::vector<N>& best, N& least) {
+  constexpr std::size_t kMost = 60;
+  if (best.size() > kMost) return;
+  const std::vector<std::size_t> all = open;
+  for (std::size_t j = 0; j < best.size(); ++j) {
+    if (!moved[j] || !(abs(N(best[j] - newton.guess()[j])) > N(0))) continue;
+    std::vector<std::size_t> others = open;
+    std::erase(others, all[j]);
+    std::vector<N> there = best;
+    there[j] = newton.guess()[j];
+    if (!newton.go_to(there)) continue;
+    Iteration<N> rest(s, state, others);
+    if (!rest.run(false) || !rest.solved()) continue;
+    if (const N d = newton.distance(); d < least) least = d, best = newton.point(), open = std::move(others);
+  }
 }
 
 }  // namespace
@@ -228,26 +267,43 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
   const bool value = newton.run(true);
   if ((value && newton.solved()) || free.empty() || s.linear()) return value;
   const InitialState<N> first = state;
+  const std::vector<bool> moved = held(s, free);
   std::vector<N> best;
   N least(0);
+  bool nearest = false;  // of its neighbours
   for (int k = 0; k <= kStarts && (best.empty() || k < 3); ++k) {
-    if (!newton.go_to(around(newton.guess(), k)) || !newton.run(false) || !newton.solved()) continue;
+    if (!newton.go_to(around(newton.guess(), moved, k)) || !newton.run(false) || !newton.solved()) continue;
     const std::vector<N> there = newton.point();
-    if (!newton.run(true) || !newton.solved()) newton.go_to(there);
-    if (const N d = newton.distance(); best.empty() || d < least) least = d, best = newton.point();
+    const bool settled = newton.run(true) && newton.solved();
+    if (!settled) newton.go_to(there);
+    if (const N d = newton.distance(); best.empty() || d < least) least = d, best = newton.point(), nearest = settled;
   }
-  if (!best.empty()) return newton.go_to(best);
+  if (!best.empty()) {
+    if (!nearest) go_back(s, state, free, newton, moved, best, least);
+    return newton.go_to(best);
+  }
   state = first;
   return value && s.evaluate(state);
 }
 
-template bool find_by_least_change<double>(Stage<double>&, InitialState<double>&, const std::vector<std::size_t>&,
-                                           const InitialState<double>*, bool);
-template bool find_by_least_change<long double>(Stage<long double>&, InitialState<long double>&,
-                                                const std::vector<std::size_t>&, const InitialState<double>*, bool);
-template bool find_by_least_change<Quad>(Stage<Quad>&, InitialState<Quad>&, const std::vector<std::size_t>&,
-                                         const InitialState<double>*, bool);
-template bool find_by_least_change<Multi>(Stage<Multi>&, InitialState<Multi>&, const std::vector<std::size_t>&,
-                                          const InitialState<double>*, bool);
+template <Number N>
+bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& free,
+                          const std::vector<N>& from) {
+  Iteration<N> newton(s, state, free);
+  if (newton.go_to(from) && newton.run(true) && newton.solved()) return true;
+  newton.go_to(newton.guess());
+  return find_by_least_change(s, state, free);
+}
+
+#define INSTANTIATE(N)                                                                                                 \
+  template bool find_by_least_change<N>(Stage<N>&, InitialState<N>&, const std::vector<std::size_t>&,                  \
+                                        const InitialState<double>*, bool);                                            \
+  template bool find_by_least_change<N>(Stage<N>&, InitialState<N>&, const std::vector<std::size_t>&,                  \
+                                        const std::vector<N>&);
+INSTANTIATE(double)
+INSTANTIATE(long double)
+INSTANTIATE(Quad)
+INSTANTIATE(Multi)
+#undef INSTANTIATE
 
 }  // namespace anholon

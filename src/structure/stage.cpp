@@ -29,6 +29,11 @@ StagePlan::StagePlan(const Mechanics& m, std::vector<StageEquation> of, Column i
     is_unknown.push_back(std::any_of(unknowns.begin(), unknowns.end(), [&](Expr u) { return u.id == input.symbol; }));
     if (is_unknown.back()) slots.push_back(input.slot);
   }
+  for (const StageEquation& e : equations) {
+    const std::vector<NodeId> met = symbols({&e.residual, 1});
+    std::vector<bool>& row = holds.emplace_back();
+    for (Expr u : unknowns) row.push_back(std::find(met.begin(), met.end(), u.id) != met.end());
+  }
   moving = dependents(tape, slots);
   mass_moves = std::any_of(tape.roots.begin() + static_cast<std::ptrdiff_t>(equations.size() * (unknowns.size() + 1)),
                            tape.roots.end(), [&](std::uint32_t root) {
@@ -308,9 +313,10 @@ static void for_each_expression(StageEquation& e, const ExprVisitor& f) {
 }
 
 void for_each_expression(StagePlan& p, const ExprVisitor& f) {
-  auto& [equations, unknowns, metric, linear, tape, moving, mass_moves, is_unknown] = p;
+  auto& [equations, unknowns, metric, linear, tape, moving, mass_moves, is_unknown, holds] = p;
   for_each_expression_of(f, equations, unknowns, metric, linear, tape);
-  static_cast<void>(moving), static_cast<void>(mass_moves), static_cast<void>(is_unknown);  // without handles
+  static_cast<void>(moving), static_cast<void>(mass_moves), static_cast<void>(is_unknown),
+      static_cast<void>(holds);  // without handles
 }
 
 }  // namespace anholon

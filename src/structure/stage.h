@@ -37,7 +37,8 @@ struct StagePlan {
   // The slots that depend on the unknowns, and whether the mass matrix is among them.
   std::vector<std::uint32_t> moving;
   bool mass_moves = false;
-  std::vector<bool> is_unknown;  // of the tape's inputs
+  std::vector<bool> is_unknown;          // of the tape's inputs
+  std::vector<std::vector<bool>> holds;  // whether equation i contains unknown j
 };
 
 // The handles of a plan (expr/handles.h).
@@ -61,6 +62,8 @@ class Stage {
   N& x(InitialState<N>& s, std::size_t j) const { return *s.value(unknown(j)); }
   const N& x_of(const InitialState<N>& s, std::size_t j) const { return *s.value(unknown(j)); }
   bool linear() const { return plan_->linear; }
+  // True if the formula of equation i contains unknown j, also where its partial derivative vanishes.
+  bool holds(std::size_t i, std::size_t j) const { return plan_->holds[i][j]; }
   const Mechanics& mechanics() const { return m_; }
 
   // Restricts the stage to these equations; the other function takes all again.
@@ -145,8 +148,13 @@ N stage_rounding() {
 // the nearest is taken; if none is found, the state ends at the least residual reached, which the caller examines.
 // Returns false if the equations have no value there. `near`: the start of the first search, if not x0. `by_flow`: searches
 // first along Newton's flow from x0, d/ds F(x(s)) = -F(x(s)), which leads to the solution that belongs to x0 among several.
+// Searches begin at other values than x0 only in unknowns that an equation contains.
 template <Number N>
 bool find_by_least_change(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free,
                           const InitialState<double>* near = nullptr, bool by_flow = false);
+// The same with a first search that begins at the values `from` of the free unknowns.
+template <Number N>
+bool find_by_least_change(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free,
+                          const std::vector<N>& from);
 
 }  // namespace anholon

@@ -43,7 +43,8 @@ class StateSolver {
   void mark_derived(const Stage<N>& stage, const InitialState<N>& before, const std::vector<std::size_t>& free);
 
   // Completes the state beyond velocities (completion.cpp).
-  void make_room(const System& s, const Structure& t);
+  void make_room(const System& s, const Structure& t, int beyond);
+  int order_beyond(Expr e, const System& s, const Structure& t) const;
   int level_of(Expr e, const System& s, const Structure& t) const;
   Outcome stage(const System& s, const Structure& t, int level);
   bool add_velocities(const System& s, const Structure& t, int level, StageEquations& equations, Column& unknowns,
@@ -52,7 +53,8 @@ class StateSolver {
   bool branch_holds(const std::vector<N>& x, const System& s) const;
   bool branch_was_named(const System& s, const Structure& t) const;
   Outcome leading(const System& s, const Structure& t);
-  Outcome together(const System& s, const Structure& t, const StageEquations& late);
+  Outcome derivatives_of_leading(const System& s, const Structure& t, int order);
+  Outcome together(const System& s, const Structure& t, const StageEquations& late, int beyond);
   bool all_given(const System& s, const Structure& t) const;
 
   // Chooses values that no equation determines (choices.cpp).

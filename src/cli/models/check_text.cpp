@@ -233,7 +233,8 @@ void check_text(Workspace& s, const Explanation& x, const Outcome& outcome) {
     if (s.classes[r].redundant)
       redundant = x.constraints[r].follows_from.empty()
                       ? "; redundant here"
-                      : "; redundant here: it follows from " + listed(model, x.constraints[r].follows_from);
+                      : (outcome.ok() ? "; redundant here: it follows from " : "; its row depends here on that of ") +
+                            listed(model, x.constraints[r].follows_from);
     // A vector equation has one component too many.
     if (!redundant.empty() && c.name.find('.') != std::string::npos && c.name.back() >= 'x')
       redundant += "; 'along' names the directions that count";

@@ -86,7 +86,7 @@ void events(const SimulationReport& r, const Units& units) {
     say(stderr, "… and %zu more events (all of them with --json)\n", r.events.size() - kMostLines);
 }
 
-// "constraint c5 follows from the others …", as `check` says.
+// "constraint c5 depends on the others …", as `check` says.
 void redundant(const Scenario& s) {
   constexpr std::size_t kNamed = 8;
   std::string list;
@@ -95,8 +95,8 @@ void redundant(const Scenario& s) {
   const bool one = s.redundant.size() == 1;
   if (s.redundant.size() > kNamed) list += ", …";
   if (!list.empty())
-    say(stderr, "note: constraint%s %s from the others at the initial state: %s left out, and watched\n",
-        one ? "" : "s", (list + (one ? " follows" : " follow")).c_str(), one ? "it is" : "they are");
+    say(stderr, "note: constraint%s %s on the others at the initial state: %s left out, and watched\n",
+        one ? "" : "s", (list + (one ? " depends" : " depend")).c_str(), one ? "it is" : "they are");
 }
 
 }  // namespace

@@ -33,7 +33,9 @@ class Elements {
   using Overrides = FormulaDimensions::Overrides;
 
   Elements(const Item& root, const Scope& scope, const Model& model, Overrides overrides = Overrides::read)
-      : root_(root), model_(model), formulas_(scope, model, overrides) {}
+      : root_(root), model_(model), formulas_(scope, model, overrides) {
+    formulas_.of_multiplier = [this](const std::string& path) { return multiplier(path); };
+  }
 
   bool run() {
     // A value given from outside may have replaced the only one with a unit.
@@ -129,6 +131,29 @@ class Elements {
   void expect(const Item& i, const char* unit) { expect(i, formulas_.unit(unit)); }
   void expect(const Item* i, const char* unit) {
     if (i) expect(*i, unit);
+  }
+
+  // lambda dphi/dq^(m) is the force that has the power lambda dphi/dq^(m) q' of a constraint of order m.
+  std::optional<DimensionForm> multiplier(const std::string& path) {
+    const auto c = std::find_if(model_.constraints.begin(), model_.constraints.end(),
+                                [&](const Constraint& known) { return known.name == path && !known.by; });
+    const Item* items = root_.find("constraint");
+    if (c == model_.constraints.end() || !items || items->kind != Item::Kind::array) return std::nullopt;
+    for (std::size_t k = 0; k < items->items.size(); ++k) {
+      const Item *named = items->items[k].find("name"), *equation = items->items[k].find("equation");
+      const std::string name = named ? normal_name(named->text()) : "constraint" + std::to_string(k + 1);
+      if (!equation || equation->kind != Item::Kind::string || path.substr(0, name.size()) != name ||
+          (path.size() > name.size() && path[name.size()] != '.'))
+        continue;
+      try {
+        for (const Syntax& side : parse_equation(equation->formula))
+          if (const DimensionForm phi = formulas_.term(side).dimension; formulas_.known(phi))
+            return formulas_.unit("J") / (phi * power(formulas_.unit("s"), c->order));
+      } catch (const Failure&) {
+        // It is reported where the constraint is.
+      }
+    }
+    return std::nullopt;
   }
 
   void equation(const Item& i) {

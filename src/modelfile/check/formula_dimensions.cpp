@@ -288,6 +288,10 @@ Measured FormulaDimensions::measured(const Syntax& s) {
     return vector(first.dimension);
   }
   case Syntax::Op::member: {
+    if (const std::string path = multiplier_path(s); !path.empty()) {
+      const std::optional<DimensionForm> force = of_multiplier ? of_multiplier(path) : std::nullopt;
+      return force ? number(*force) : anything();
+    }
     const Measured object = of(s.args[0]);
     const bool axis = s.text == "x" || s.text == "y" || s.text == "z";
     if (object.type == Type::vector && axis) return number(object.dimension);
@@ -413,6 +417,10 @@ Measured FormulaDimensions::by_rule(const Syntax& s, DimensionRule rule) {
       for (const Syntax& row : rows.args)
         for (const Syntax& entry : row.args) pure(entry);
     return {Type::rotation, {}};
+  case DimensionRule::force:
+    return vector(unit("N"));
+  case DimensionRule::torque:
+    return vector(unit("N*m"));
   case DimensionRule::velocity:
     return rate_of_point(s, 1);
   case DimensionRule::acceleration:

@@ -1,5 +1,6 @@
 // The dimension of a formula, by its syntax tree.
 #pragma once
+#include <functional>
 #include <tuple>
 
 #include "formula/functions.h"
@@ -54,6 +55,8 @@ class FormulaDimensions {
   // Those of all formulas that were looked at, in the order of the file.
   std::vector<BareTerm> bare_terms() const;
 
+  // The dimension of lambda.NAME; nullopt if it is not known.
+  std::function<std::optional<DimensionForm>(const std::string&)> of_multiplier;
   bool units_seen = false;  // in the file, not in --set
   bool in_field = false;    // in [gravity], where 'here' is a place
 

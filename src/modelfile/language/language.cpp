@@ -65,9 +65,9 @@ const std::vector<FunctionRow>& kinematic_functions() {
       {"reaction", "reaction(B)",
        "force of all constraints on the body B, m·a less the given forces, in monitors, events and what these use; "
        "`reaction_torque(B)` is its torque about the mass centre",
-       "", DimensionRule::open},
+       "", DimensionRule::force},
       {"reaction_torque", "reaction_torque(B)", "torque of all constraints on the body B about its mass centre", "",
-       DimensionRule::open},
+       DimensionRule::torque},
       {"gravity", "gravity(P)", "the field of `[gravity]` at the point P", "", DimensionRule::gravity},
   };
   return list;

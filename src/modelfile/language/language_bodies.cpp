@@ -311,7 +311,10 @@ origin_position_inertial = ["sin(t)", "0", "0"]
 observer.origin_velocity = "0.3*ex"
 ```
 
-- Without the section the observer is inertial. One of `spin` and `rotation`, one of the four for the origin, functions of t only.
+- Without the section the observer is inertial. One of `spin` and `rotation`, one of the four for the origin, functions of t only,
+  also by inputs and states: no formula behind them holds a coordinate.
+- Inertial forces hold two derivatives of a position of the origin and of `rotation`, and one of its velocity and of `spin`. Where one of lower order jumps they would hold
+  pulses, so it is an error: a table there needs `fit = "monotone"` for two derivatives, and modes stand in `origin_acceleration` alone.
 - A derivative of a vector, `v'`, is relative to the observer: component by component.
 - Inertial components need a rotation: with a `spin` about one axis that can be integrated it is found, else give `rotation`.
 - `vel(P, inertial)` needs the velocity of the origin, which `origin_acceleration` does not tell.

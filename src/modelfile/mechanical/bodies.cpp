@@ -4,7 +4,9 @@
 #include <cmath>
 #include <tuple>
 
+#include "expr/diff.h"
 #include "expr/normal.h"
+#include "model/jumps.h"
 #include "modelfile/mechanical/shapes.h"
 #include "modelfile/names/constant.h"
 #include "modelfile/text/collect.h"
@@ -93,10 +95,12 @@ void BodyReader::check_position(const Vector& place, const Item& item, const std
               "', whose fit has no continuous derivative: velocities would jump, and accelerations hold pulses",
           "fit = \"monotone\" has one continuous derivative, fit = \"spline\" two");
     std::vector<NodeId> open = {place[i].id}, symbols;
+    bool switches = false;
     while (!open.empty()) {
       const NodeId id = open.back();
       open.pop_back();
       if (!position_nodes_.insert(id).second) continue;
+      switches = switches || may_switch(g.node(id));
       if (g.summands(id).empty()) symbols.push_back(id);
       for (const Term& t : g.summands(id)) open.push_back(t.node);
     }
@@ -117,8 +121,22 @@ void BodyReader::check_position(const Vector& place, const Item& item, const std
         refuse(" depends on a velocity (" + derivative_name(model_.names.coordinates[n.index], n.order, Format::text) +
                    ")",
                "positions are formulas of coordinates and t; write velocities as constraints");
+      switches = switches || n.kind == Kind::control;
     }
+    if (switches) check_jumps(place[i], item, what);
   }
+}
+
+// A kink in a coordinate acts only where the motion goes there; one in time makes every acceleration a pulse.
+void BodyReader::check_jumps(Expr position, const Item& item, const std::string& what) {
+  const Expr e = put_controls(model_, {&position, 1})[0];
+  const bool itself = jumps_at_a_point(model_, e, holds_time);
+  if (!itself && !jumps_at_a_point(model_, partial(e, model_.graph->time()), holds_time)) return;
+  position_nodes_.clear();  // the next position that contains it is refused as well
+  throw Failure(item.span,
+                what + (itself ? " jumps" : " moves with a velocity that jumps") +
+                    ": velocities would jump, and accelerations hold pulses",
+                "write a smooth function of t");
 }
 
 void BodyReader::read() {

@@ -27,6 +27,7 @@ class BodyReader {
   void read_force(const Item& item, std::size_t number);
   Expr frozen(Expr value, const std::string& name, Span span);
   Force::Place place(const Item& item);
+  void check_jumps(Expr position, const Item& item, const std::string& what);
   void check_position(const Vector& place, const Item& item, const std::string& what);
   void check_inertia(const Body& body, const Expr (&moment)[3][3], Span span, const std::string& of_plane);
 

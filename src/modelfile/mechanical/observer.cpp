@@ -1,14 +1,23 @@
 #include "modelfile/mechanical/observer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "expr/normal.h"
+#include "expr/table.h"
+#include "model/jumps.h"
 #include "modelfile/names/constant.h"
+#include "modelfile/text/collect.h"
 #include "modelfile/text/keys.h"
 
 namespace anholon {
 
-static bool constant_in_time(Expr e) { return is_zero(total_derivative(e)); }
+// A step has the derivative 0, but is no constant.
+static bool constant_in_time(Expr e) {
+  for (NodeId id : symbols({&e, 1}))
+    if (e.graph->node(id).kind != Kind::parameter && e.graph->node(id).kind != Kind::pi) return false;
+  return true;
+}
 
 // One term: constant * t^n or constant * f(a t + b).
 static std::optional<Expr> antiderivative_of_term(Expr e) {
@@ -105,29 +114,115 @@ static void check_orthonormal(const Rotation& a, const Model& model, Span span) 
     }
 }
 
-void read_observer(const Item& section, Scope& scope, Model& model, Diagnostics& diagnostics) {
+static const char* const kGiven = "the observer's motion is given: ";
+
+// The inertial forces would hold pulses where a derivative of lower order jumps.
+static void check_smooth(const ObserverFormula& f, const Model& model) {
+  if (const auto name = too_rough(f.value, f.derivative))
+    throw Failure(f.span,
+                  "the observer's motion holds the table '" + *name +
+                      "', whose fit is not smooth enough: " + "inertial forces need its derivative of order " +
+                      std::to_string(f.derivative) + ", and would hold pulses",
+                  "fit = \"monotone\" has one continuous derivative, fit = \"spline\" two");
+  Expr e = f.value;
+  for (int k = 0; k < f.derivative; ++k) {
+    if (k > 0) e = put_state_rates(model, total_derivative(e), 1);
+    if (jumps_at_a_point(model, e))
+      throw Failure(f.span,
+                    std::string(k == 0 ? "the observer's motion" : "the derivative of the observer's motion") +
+                        " jumps: inertial forces would hold pulses",
+                    "write a smooth function of t; origin_acceleration may jump");
+  }
+}
+
+// States by whose rates a formula of states changes, with their own.
+static std::vector<std::uint32_t> states_behind(Expr e, const Model& model) {
+  std::vector<std::uint32_t> list;
+  const auto add = [&](Expr part) {
+    for (NodeId id : symbols({&part, 1}))
+      if (const Node n = part.graph->node(id);
+          n.kind == Kind::state && std::find(list.begin(), list.end(), n.index) == list.end())
+        list.push_back(n.index);
+  };
+  add(e);
+  for (std::size_t k = 0; k < list.size(); ++k) add(put_controls(model, {&model.states[list[k]].rate, 1})[0]);
+  return list;
+}
+
+static bool an_event_sets(const Model& model, Expr symbol) {
+  for (const Event& e : model.events)
+    for (const Assignment& a : e.set)
+      if (a.symbol == symbol) return true;
+  return false;
+}
+
+static void check_function_of_time(const ObserverFormula& f, const Model& model) {
   Graph& g = *model.graph;
+  for (NodeId id : symbols({&f.value, 1})) {
+    const Node n = g.node(id);
+    if (n.kind == Kind::control)
+      if (const Control& u = model.controls[n.index];
+          !u.value || holds_coordinates(put_controls(model, {&*u.value, 1})[0]))
+        throw Failure(f.span,
+                      kGiven + ("it cannot depend on the input '" + u.name + "', which is not a function of time"));
+    if (n.kind == Kind::parameter && model.parameters[n.index].mode && f.derivative > 0)
+      throw Failure(f.span,
+                    kGiven + ("it cannot depend on the mode '" + model.parameters[n.index].name +
+                              "', which jumps: inertial forces would hold pulses"),
+                    "write a smooth function of t; origin_acceleration may depend on a mode");
+  }
+  for (std::uint32_t k : states_behind(put_controls(model, {&f.value, 1})[0], model)) {
+    const StateVariable& z = model.states[k];
+    const std::string which = "the state '" + z.name + "'";
+    if (holds_coordinates(put_controls(model, {&z.rate, 1})[0]))
+      throw Failure(f.span, kGiven + ("it cannot depend on " + which + ", whose rate depends on a coordinate"));
+    if (f.derivative > 0 && an_event_sets(model, g.state(k, 0)))
+      throw Failure(f.span, kGiven + ("it cannot depend on " + which + ", which an event sets: inertial forces would " +
+                                      "hold pulses"));
+  }
+}
+
+void check_observer(const std::vector<ObserverFormula>& formulas, const Model& model, Diagnostics& diagnostics) {
+  for (const ObserverFormula& f : formulas) {
+    const bool alone = collect(
+        diagnostics,
+        [&] {
+          check_function_of_time(f, model);
+          const Expr value = put_controls(model, {&f.value, 1})[0];
+          if (value != f.value) check_smooth({value, f.derivative, f.span}, model);
+        },
+        f.span);
+    if (!alone) return;
+  }
+}
+
+std::vector<ObserverFormula> read_observer(const Item& section, Scope& scope, Model& model, Diagnostics& diagnostics) {
+  Graph& g = *model.graph;
+  std::vector<ObserverFormula> formulas;
   Observer& o = model.observer;
   check_keys(section, "[observer]", "observer", diagnostics);
   const Item* spin = section.find("spin");
   const Item* rotation = section.find("rotation");
   std::optional<Rotation> a;  // observer -> inertial axes
-  const auto check = [&](const Vector& v, const Item& item) {
-    for (int i = 0; i < 3; ++i)
+  const auto check = [&](const Vector& v, const Item& item, int derivative) {
+    for (int i = 0; i < 3; ++i) {
       for (NodeId id : symbols({&v[i], 1})) {
         const Kind k = g.node(id).kind;
         if (k == Kind::jet || k == Kind::multiplier)
-          throw Failure(item.span, "the observer's motion is given: it cannot depend on a coordinate");
+          throw Failure(item.span, kGiven + std::string("it cannot depend on a coordinate"));
       }
+      formulas.push_back({v[i], derivative, item.span});
+      check_smooth(formulas.back(), model);
+    }
   };
   if (spin && rotation)
     throw Failure(rotation->key_span, "the observer's rotation is given twice: by 'spin' and by 'rotation'");
   if (spin) {
     o.spin = scope.vector(*spin);
-    check(o.spin, *spin);
+    check(o.spin, *spin, 1);
   } else if (rotation) {
     a = scope.rotation(*rotation);
-    for (int k = 0; k < 3; ++k) check((*a)[k], *rotation);
+    for (int k = 0; k < 3; ++k) check((*a)[k], *rotation, 2);
     if (!a->by_turns) check_orthonormal(*a, model, rotation->span);
     o.spin = a->own_rate;
   }
@@ -145,11 +240,11 @@ void read_observer(const Item& section, Scope& scope, Model& model, Diagnostics&
   o.inertial = is_zero(o.spin) && !origin;
   if (!origin) {
     o.origin_velocity = zero_vector(g);
-    return;
+    return formulas;
   }
   const Vector v = scope.vector(*origin);
-  check(v, *origin);
   const std::string& key = origin->key;
+  check(v, *origin, key == "origin_acceleration" ? 0 : key == "origin_position_inertial" ? 2 : 1);
   if (key == "origin_acceleration") {
     o.origin_velocity.reset();  // known only up to a constant
     o.origin_acceleration = v;
@@ -168,6 +263,7 @@ void read_observer(const Item& section, Scope& scope, Model& model, Diagnostics&
     o.origin_velocity = transpose_times(*a, velocity);
     o.origin_acceleration = transpose_times(*a, total_derivative(velocity));
   }
+  return formulas;
 }
 
 }  // namespace anholon

@@ -1,6 +1,7 @@
 #include "modelfile/mechanical/potentials.h"
 
 #include "expr/table.h"
+#include "model/jumps.h"
 #include "modelfile/mechanical/control.h"
 #include "modelfile/text/collect.h"
 #include "modelfile/text/keys.h"
@@ -39,6 +40,9 @@ void read_potentials(const Item& root, Scope& scope, Model& model, Diagnostics& 
                           "the potential '" + i.key + "' holds the table '" + *name +
                               "', which jumps: so would the energy, without a force",
                           "fit = \"linear\", \"monotone\" or \"spline\"");
+          if (jumps_at_a_point(model, put_controls(model, {&value, 1})[0], holds_coordinates))
+            diagnostics.warning(i.span, "the potential '" + i.key + "' jumps: so does the energy, without a force",
+                                "write a potential that is continuous in the coordinates; a wall is a [[contact]]");
           model.potentials.push_back({i.key, value, i.span});
         },
         i);

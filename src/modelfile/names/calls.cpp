@@ -130,7 +130,8 @@ class Scope::Call {
                       "give [observer] origin_velocity instead of origin_acceleration");
       return *of_origin + scope_.inertial_rate(p);
     }
-    if (is_body_at(0)) {
+    // A particle is a point: beside a body it is the point that the body sees.
+    if (is_body_at(0) && !(scope_.is_particle(body(0)) && is_body_at(1))) {
       const std::size_t of = body(0);
       return scope_.material_velocity(of, point(1), s_.span);
     }

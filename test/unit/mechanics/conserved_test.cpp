@@ -1,4 +1,6 @@
 // Integrals of the motion: what is found, that it is proved, and mutants for which nothing may be found.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "expr/normal.h"
@@ -139,7 +141,8 @@ TEST(Conserved, IsMarkedWhereItsFormulaJumps) {
     EXPECT_FALSE(list.empty()) << potential;
     if (list.empty()) return false;
     EXPECT_EQ(list.front().name, "energy") << potential;
-    for (std::size_t i = 1; i < list.size(); ++i) EXPECT_FALSE(list[i].jumps) << list[i].name;
+    // A momentum is changed by a jump of the potential alone.
+    for (std::size_t i = 1; i < list.size() && !list.front().jumps; ++i) EXPECT_FALSE(list[i].jumps) << list[i].name;
     return list.front().jumps;
   };
   for (const char* potential :
@@ -194,6 +197,33 @@ TEST_P(OfShipped, HasAnEnergyOnlyWhereThePowerIdentitySaysSo) {
 
 INSTANTIATE_TEST_SUITE_P(Models, OfShipped, testing::ValuesIn(test::shipped_models()),
                          [](const auto& p) { return test::test_name(p.param); });
+
+// A step of a potential has a force where the motion meets it, and a step of a constraint makes velocities jump.
+TEST(Conserved, JumpsOfPotentialsAndConstraintsAreMarked) {
+  const auto marked = [](const std::string& text) {
+    const auto model = test::model_of(text);
+    const Mechanics m = mechanics(*model);
+    Names list;
+    for (const Conserved& c : conserved(m)) list.push_back(c.name + (c.jumps ? " jumps" : ""));
+    return list;
+  };
+  const auto potential = [](const std::string& v) { return test::replaced(kPlane, "k/2*(x^2 + y^2)", v); };
+  const auto constraint = [&](const std::string& equation) {
+    return potential("3") + "[[constraint]]\nname = \"c\"\nequation = \"" + equation + "\"\n";
+  };
+  const auto has = [](const Names& list, const std::string& name) {
+    return std::find(list.begin(), list.end(), name) != list.end();
+  };
+  const Names step = marked(potential("piecewise(x > 1, 3, 0) + piecewise(t < 1, 0, 5)"));
+  EXPECT_TRUE(has(step, "momentum of x jumps") && has(step, "momentum of y"));
+  const Names in_time = marked(potential("piecewise(t < 1, 0, 5)"));
+  EXPECT_TRUE(has(in_time, "momentum of x") && has(in_time, "momentum of y"));
+  const Names kink = marked(potential("abs(x)"));
+  EXPECT_TRUE(has(kink, "energy") && has(kink, "momentum of y"));
+  EXPECT_TRUE(has(marked(constraint("y' = sign(x - 1/2)*x'")), "energy jumps"));
+  EXPECT_TRUE(has(marked(constraint("y = abs(x)")), "energy jumps"));
+  EXPECT_TRUE(has(marked(constraint("y' = 2*x'")), "energy"));
+}
 
 }  // namespace
 }  // namespace anholon::conserved_test

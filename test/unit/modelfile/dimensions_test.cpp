@@ -187,5 +187,21 @@ TEST(DimensionsOfAModel, AreNotLookedAtWithoutUnits) {
       << "the length of the pendulum is missing";
 }
 
+// A multiplier times a derivative of its constraint is a force.
+TEST(DimensionsOfAModel, OfReactionsAndMultipliers) {
+  const auto with = [](const std::string& monitor) {
+    return messages(
+        found("coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = \"2 kg\", position = [\"x\", \"y\", "
+              "\"0\"]}]\nconstraint = [{name = \"c\", equation = \"y' = x/(1 s)\"}, {name = \"d\", equation = "
+              "\"x*y' = 2\"}]\ninitial = {x = \"1 m\"}\nmonitor.q = \"" +
+              monitor + "\"\n"));
+  };
+  EXPECT_EQ(with("norm(reaction(p)) + lambda.c - 3 N"), "");
+  EXPECT_EQ(with("lambda.d*x + lambda.c"), "");
+  for (const char* wrong : {"norm(reaction(p)) + x", "lambda.c + x", "lambda.d + lambda.c", "lambda.c - 3 m",
+                            "norm(reaction_torque(p)) + norm(reaction(p))", "sin(norm(reaction(p)))"})
+    EXPECT_NE(with(wrong), "") << wrong;
+}
+
 }  // namespace
 }  // namespace anholon::dimensions_test

@@ -29,6 +29,10 @@ mass = "m"
 inertia = ["1", "1", "2"]
 center = "P + R*ez"
 orientation = "e1*roty(q)"
+[[particle]]
+name = "grain"
+mass = 1
+position = "P"
 [[constraint]]
 name = "c"
 equation = "(x''' + )toml" + left + ") - (" +
@@ -59,6 +63,7 @@ TEST(Meaning, KinematicFunctionsAreWhatTheirNamesSay) {
       {"vel(disc, P).y", "y' - R*q'*sin(th)"},
       {"vel(disc, disc.center).x", "x'"},
       {"vel(P, disc).x", "R*q'*cos(th)"},  // P as seen from the disc
+      {"vel(grain, disc).x", "R*q'*cos(th)"},
       {"angvel(disc).z", "th'"},
       {"angvel(disc).x", "-q'*sin(th)"},
       {"angvel(e1).z", "th'"},

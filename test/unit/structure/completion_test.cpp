@@ -193,5 +193,53 @@ TEST(Conditions, ThatCannotHoldAreNamed) {
   EXPECT_EQ(o.kind, OutcomeKind::inconsistent);
 }
 
+// The accelerations, velocities or positions of coordinates without inertia follow from the state: conditions on them are
+// conditions on the state.
+std::string massless(const std::string& elements, const std::string& initial) {
+  return "coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex\"}]\n" + elements +
+         "\ninitial = {" + initial + "}\n";
+}
+
+TEST(Completion, ConditionsOnTheAccelerationOfAWheelWithoutInertia) {
+  const char* const wheel = "force = [{on = \"p\", vector = \"(2 - x')*ex\"}]\n"
+                            "constraint = [{name = \"gear\", equation = \"y' = 3*x'\"}]\n";
+  InitialState<double> rest, moves;
+  ASSERT_TRUE(complete(massless(wheel, "conditions = [\"y'' = 0\"]"), rest).ok());
+  EXPECT_NEAR(rest.qd[0], 2, kRoundoff);
+  EXPECT_NEAR(rest.qd[1], 6, 4 * kRoundoff);
+  ASSERT_TRUE(complete(massless(wheel, "conditions = [\"y'' = 1\"]"), moves).ok());
+  EXPECT_NEAR(moves.qd[0], 5.0 / 3, kRoundoff);
+}
+
+TEST(Completion, ConditionsOnThePositionOfANodeWithoutInertia) {
+  const char* const spring = "potential.k = \"(x - y)^2/2 + y^2/2\"\n";
+  InitialState<double> position, velocity, damped, slower;
+  ASSERT_TRUE(complete(massless(spring, "conditions = [\"y = 1\"]"), position).ok());
+  EXPECT_NEAR(position.q[0], 2, kRoundoff);
+  EXPECT_NEAR(position.q[1], 1, kRoundoff);
+  ASSERT_TRUE(complete(massless(spring, "conditions = [\"y' = 1\"]"), velocity).ok());
+  EXPECT_NEAR(velocity.qd[0], 2, kRoundoff);
+  EXPECT_NEAR(velocity.qd[1], 1, kRoundoff);
+  // With a damper y' = x - 2 y.
+  const std::string damper = std::string(spring) + "dissipation.d = \"y'^2/2\"\n";
+  ASSERT_TRUE(complete(massless(damper, "x = 1, conditions = [\"y' = 0\"]"), damped).ok());
+  EXPECT_NEAR(damped.q[1], 0.5, kRoundoff);
+  // y'' = x' - 2 y' = 0
+  ASSERT_TRUE(complete(massless(damper, "x = 1, \"x'\" = 0.6, conditions = [\"y'' = 0\"]"), slower).ok());
+  EXPECT_NEAR(slower.qd[1], 0.3, kRoundoff);
+  EXPECT_NEAR(slower.q[1], 0.35, kRoundoff);
+}
+
+TEST(Completion, ConditionsBeyondAccelerations) {
+  InitialState<double> s;  // x''' = -x' - 2 x' x'' = 1 with x'' = 1/2
+  ASSERT_TRUE(complete("coordinates = [\"x\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex\"}]\n"
+                       "force = [{on = \"p\", vector = \"(2 - x - x'^2)*ex\"}]\n"
+                       "initial = {conditions = [\"x''' = 1\", \"x'' = 0.5\"]}\n",
+                       s)
+                  .ok());
+  EXPECT_NEAR(s.qd[0], -0.5, kRoundoff);
+  EXPECT_NEAR(s.q[0], 1.25, 2 * kRoundoff);
+}
+
 }  // namespace
 }  // namespace anholon::completion_test

@@ -272,5 +272,44 @@ TEST(ConsistentState, AMemoryLeavesTheBits) {
                     {{x(3, 1)}, {x(4, 1)}, {x(6, 1)}, {x(3, 1)}, {x(-3, 1)}, {x(3, 1)}}});
 }
 
+// Given values that are rounded numbers are corrected, and what is in no constraint stays at its guess.
+TEST(ConsistentState, CorrectedValuesLeaveTheOthersAtTheirGuess) {
+  const auto particle = [](const std::string& equation, const std::string& initial) {
+    return "coordinates = [\"x\", \"y\", \"z\"]\n[[particle]]\nname = \"p\"\nmass = 2\nposition = [\"x\", \"y\", "
+           "\"z\"]\n" +
+           constraint(equation) + "[initial]\n" + initial;
+  };
+  InitialState<double> s;
+  ASSERT_TRUE(solve(particle("x = y", "x = 0.7\ny = 0.700000001\n"), s).ok());
+  EXPECT_EQ(s.q[2], 0);
+  EXPECT_EQ(s.q_origin[2], Origin::chosen);
+  EXPECT_EQ(s.q_origin[0], Origin::corrected);
+  EXPECT_EQ(s.q[0], s.q[1]);
+
+  // The free unknown stands at a stationary point of the constraint, where its value is the right one.
+  InitialState<double> circle;
+  ASSERT_TRUE(solve(particle("x^2 + y^2 = 1", "x = 1.000000001\nguess = {z = 3}\n"), circle).ok());
+  EXPECT_NEAR(circle.q[0], 1, kRoundoff);
+  EXPECT_NEAR(circle.q[1], 0, 1e-8);  // a double root
+  EXPECT_EQ(circle.q[2], 3);
+
+  // 16 digits are rounded numbers in a wider type.
+  InitialState<long double> velocities;
+  ASSERT_TRUE(
+      solve(particle("x'*cos(z) = y'*sin(z)", "z = 0.3\n\"x'\" = 0.2955202066613395\n\"y'\" = 0.955336489125606\n"),
+            velocities)
+          .ok());
+  EXPECT_EQ(velocities.qd[2], 0);
+  InitialState<long double> unit;
+  ASSERT_TRUE(solve(particle("x^2 + y^2 = 1", "x = 0.2955202066613395\ny = 0.955336489125606\n"), unit).ok());
+  EXPECT_EQ(unit.q[2], 0);
+
+  // A search that begins at the centre of a circle leaves it in the unknowns of the circle alone.
+  InitialState<double> centre;
+  ASSERT_TRUE(solve(particle("x^2 + y^2 = 1", ""), centre).ok());
+  EXPECT_NEAR(centre.q[0] * centre.q[0] + centre.q[1] * centre.q[1], 1, 4 * kRoundoff);
+  EXPECT_EQ(centre.q[2], 0);
+}
+
 }  // namespace
 }  // namespace anholon::consistent_test

@@ -1,11 +1,13 @@
-#include "mechanics/jumps.h"
+#include "model/jumps.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "expr/diff.h"
+#include "expr/generic_point.h"
 #include "expr/normal.h"
 #include "tape/point.h"
+#include "tape/tape.h"
 
 namespace anholon {
 
@@ -118,22 +120,105 @@ bool vanishes_with(Expr difference, Expr s, const std::vector<double>& parameter
   return more && !varies(*more);
 }
 
+std::vector<double> parameters_of(const Model& model) {
+  Column values;
+  for (const Parameter& p : model.parameters) values.push_back(p.value);
+  return evaluate_parameters<double>(*model.graph, values);
+}
+
+double generic(const Node& n, std::uint64_t seed) { return 4 * generic_value(n, seed) - 2; }
+
+// A generic point; the symbol `moved`, if there is one, has the value x.
+PointValues point(std::uint64_t seed, const std::vector<double>& parameters, const Node* moved = nullptr,
+                  double x = 0) {
+  const std::optional<Node> other = moved ? std::optional(*moved) : std::nullopt;
+  return PointValues([&parameters, seed, other, x](const Node& n) {
+    return n.kind == Kind::pi          ? 3.14159265358979323846
+           : n.kind == Kind::parameter ? parameters[n.index]
+           : other && other->kind == n.kind && other->index == n.index && other->order == n.order ? x
+                                                                                                  : generic(n, seed);
+  });
+}
+
+// A point at which s vanishes, found by Newton's method along one of its symbols from a generic point; nullopt if there
+// is none.
+std::optional<PointValues> zero_of(Expr s, Expr along, std::uint64_t seed, const std::vector<double>& parameters) {
+  constexpr int kMostSteps = 40;
+  constexpr double kOnIt = 1e-12;
+  const Expr slope = partial(s, along);
+  const Node moved = s.graph->node(along.id);
+  double x = generic(moved, seed);
+  for (int k = 0; k < kMostSteps; ++k) {
+    PointValues at = point(seed, parameters, &moved, x);
+    const double value = at(s), rate = at(slope);
+    if (!std::isfinite(value) || !std::isfinite(rate)) return std::nullopt;
+    if (std::abs(value) <= kOnIt * (1 + std::abs(rate * x))) return at;
+    if (rate == 0) return std::nullopt;
+    x -= value / rate;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-bool may_jump(Expr e, const std::vector<double>& parameters) {
+bool may_jump(const Model& model, Expr e, const Decides& counts) {
   Graph& g = *e.graph;
+  const std::vector<double> parameters = parameters_of(model);
+  const auto is_met = [&](Expr s) { return varies(s) && (!counts || counts(s)); };
   for (NodeId id : reachable({&e, 1})) {
     const Expr part{&g, id};
     const Node n = g.node(id);
-    if (n.kind == Kind::lookup && g.step_function(n.index).smooth < 0 && varies(operand(g, part, 0))) return true;
-    if (n.kind == Kind::atan2 && varies(part)) {
+    if (n.kind == Kind::lookup && g.step_function(n.index).smooth < 0 && is_met(operand(g, part, 0))) return true;
+    if (n.kind == Kind::atan2 && is_met(part)) {
       const Expr turned = replace_nodes({&e, 1}, {{id, part + 2 * g.pi()}}).front();
       if (!proved_zero(turned - e)) return true;
     }
     const Expr s = decides(part);
-    if (s.graph && varies(s) && !vanishes_with(on_side(e, s, 1) - on_side(e, s, -1), s, parameters)) return true;
+    if (s.graph && is_met(s) && !vanishes_with(on_side(e, s, 1) - on_side(e, s, -1), s, parameters)) return true;
   }
   return false;
 }
+
+bool jumps_at_a_point(const Model& model, Expr e, const Decides& counts) {
+  constexpr std::uint64_t kPoints = 4;
+  constexpr double kRounded = 1e-8;  // numbers of a formula are rounded to a few digits
+  Graph& g = *e.graph;
+  const std::vector<double> parameters = parameters_of(model);
+  for (NodeId id : reachable({&e, 1})) {
+    const Expr s = decides(Expr{&g, id});
+    if (!s.graph || !varies(s) || (counts && !counts(s))) continue;
+    const Expr above = on_side(e, s, 1), below = on_side(e, s, -1);
+    if (above == below) continue;
+    for (NodeId symbol : symbols({&s, 1})) {
+      if (g.node(symbol).kind == Kind::parameter || g.node(symbol).kind == Kind::pi) continue;
+      for (std::uint64_t k = 0; k < kPoints; ++k) {
+        std::optional<PointValues> at = zero_of(s, Expr{&g, symbol}, k, parameters);
+        if (!at) continue;
+        PointValues elsewhere = point(k, parameters);
+        double scale = 0;
+        for (const double v : {elsewhere(above), elsewhere(below)})
+          if (std::isfinite(v)) scale += std::abs(v);
+        const double a = (*at)(above), b = (*at)(below);
+        if (std::isfinite(a) && std::isfinite(b) && std::abs(a - b) > kRounded * (scale + std::abs(a) + std::abs(b)))
+          return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool may_switch(const Node& n) {
+  return n.kind == Kind::select || n.kind == Kind::lookup || is_function(n, Function::sign) ||
+         is_function(n, Function::abs);
+}
+
+static bool holds(Expr e, Kind kind) {
+  for (NodeId id : symbols({&e, 1}))
+    if (e.graph->node(id).kind == kind) return true;
+  return false;
+}
+
+bool holds_coordinates(Expr e) { return holds(e, Kind::jet); }
+bool holds_time(Expr e) { return holds(e, Kind::time); }
 
 }  // namespace anholon
