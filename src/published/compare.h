@@ -44,12 +44,12 @@ struct Comparison {
   std::string detail;
   std::vector<Change> changes;       // each of them makes it true
   std::optional<Change> wrong_term;  // false, without changes: the one term that is wrong or lost
-  std::string with_numbers;     // false, unknown: the numbers of the file with which it holds, "J = 0.5, c = 0.7"
-  bool identity = false;        // false: the equation is meant as an identity, not as an equation of motion
-  bool trivial = false;         // true of every motion of every system
-  bool of_constraints = false;  // true by the constraints alone
-  bool has_value = true;        // unknown: it has a value on the motion
-  bool in_places = false;       // false: it holds up to round-off where all coordinates are positive
+  std::string with_numbers;          // false, unknown: the numbers of the file with which it holds, "J = 0.5, c = 0.7"
+  bool identity = false;             // false: the equation is meant as an identity, not as an equation of motion
+  bool trivial = false;              // true of every motion of every system
+  bool of_constraints = false;       // true by the constraints alone
+  bool has_value = true;             // unknown: it has a value on the motion
+  bool in_places = false;            // false: it holds up to round-off where all coordinates are positive
 };
 
 // The kind of an equation that is true by the rates of the states alone.
