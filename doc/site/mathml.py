@@ -42,7 +42,8 @@ def arranged(made):
         columns = parent.get("columnalign", "").split() if tag_of(parent) == "mtable" else []
         for line in parent if columns else []:
             for k, cell in enumerate(line):
-                cell.set("style", f"text-align:{columns[min(k, len(columns) - 1)]}")
+                side = columns[min(k, len(columns) - 1)]
+                cell.set("style", f"text-align:{side};text-align:-webkit-{side}")  # Chromium's word for blocks
         if tag_of(parent) not in ROWS:
             continue
         children = list(parent)

@@ -211,11 +211,12 @@ std::string as_mathml(const std::vector<Derivation>& all) {
   std::string out;
   for (const Derivation& d : all)
     for (const Table& table : tables(d)) {
-      // MathML Core has no columnalign; readers of MathML 3 have no style.
+      // MathML Core has no columnalign; readers of MathML 3 have no style. Chromium aligns formulas, which are blocks, by
+      // -webkit-right.
       out += "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">\n<mtable displaystyle=\"true\" "
              "columnalign=\"right center left\">\n";
       for (const auto& [left, right] : table)
-        out += "<mtr><mtd style=\"text-align:right\">" + left + "</mtd><mtd><mo>=</mo></mtd>" +
+        out += "<mtr><mtd style=\"text-align:right;text-align:-webkit-right\">" + left + "</mtd><mtd><mo>=</mo></mtd>" +
                "<mtd style=\"text-align:left\">" + right + "</mtd></mtr>\n";
       out += "</mtable>\n</math>\n";
     }
