@@ -9,8 +9,9 @@ namespace anholon {
 
 namespace {
 
-// Below this part of its range or magnitude a column counts as at rest.
-constexpr double kRest = 1e-3, kRoundOff = 1e-12;
+// Below this part of its range a column counts as at rest. Round-off is a part of its own magnitude and of the greatest
+// one of all columns, beside which it moves.
+constexpr double kRest = 1e-3, kOwnRoundOff = 1e-14, kRoundOff = 1e-15;
 
 // The degree of continuity of the interpolation: derivatives that are there and finite at both ends.
 int derivatives(const MovingColumn& c, std::size_t i, std::size_t j) {
@@ -20,13 +21,25 @@ int derivatives(const MovingColumn& c, std::size_t i, std::size_t j) {
   return !there(c.first) ? 0 : there(c.second) ? 2 : 1;
 }
 
-// What is no error of a column, whatever it changes nearby.
-double negligible(const MovingColumn& c) {
-  double least = INFINITY, greatest = -INFINITY;
-  for (const double x : c.value)
-    if (std::isfinite(x)) least = std::min(least, x), greatest = std::max(greatest, x);
-  if (!(least <= greatest)) return 0;
-  return kRest * (greatest - least) + kRoundOff * std::max(std::abs(least), std::abs(greatest));
+// What of a column is no motion: a change in which it counts as at rest, and round-off.
+struct Negligible {
+  double change = 0, round_off = 0;
+};
+
+std::vector<Negligible> negligible(const std::vector<MovingColumn>& columns) {
+  std::vector<Negligible> list;
+  double greatest_of_all = 0;
+  for (const MovingColumn& c : columns) {
+    double least = INFINITY, greatest = -INFINITY;
+    for (const double x : c.value)
+      if (std::isfinite(x)) least = std::min(least, x), greatest = std::max(greatest, x);
+    const bool any = least <= greatest;
+    const double magnitude = any ? std::max(std::abs(least), std::abs(greatest)) : 0;
+    list.push_back({any ? kRest * (greatest - least) : 0, kOwnRoundOff * magnitude});
+    greatest_of_all = std::max(greatest_of_all, magnitude);
+  }
+  for (Negligible& n : list) n.round_off += kRoundOff * greatest_of_all;
+  return list;
 }
 
 double change(std::span<const double> x, std::size_t i, std::size_t j) {
@@ -37,9 +50,8 @@ double change(std::span<const double> x, std::size_t i, std::size_t j) {
 
 class Chooser {
  public:
-  Chooser(std::span<const double> t, const std::vector<MovingColumn>& columns) : t_(t), columns_(columns) {
-    for (const MovingColumn& c : columns) negligible_.push_back(negligible(c));
-  }
+  Chooser(std::span<const double> t, const std::vector<MovingColumn>& columns)
+      : t_(t), columns_(columns), negligible_(negligible(columns)) {}
 
   // The rows by which the others come out within `tolerance` of what columns change; stops at more than `most`.
   std::vector<std::size_t> choose(double tolerance, std::size_t most) const {
@@ -59,7 +71,8 @@ class Chooser {
   bool come_out(std::size_t i, std::size_t j, double tolerance) const {
     for (std::size_t n = 0; n < columns_.size(); ++n) {
       const MovingColumn& c = columns_[n];
-      const double allowed = tolerance * std::max(change(c.value, i, j), negligible_[n]);
+      const double allowed =
+          std::max(tolerance * std::max(change(c.value, i, j), negligible_[n].change), negligible_[n].round_off);
       for (std::size_t k = i + 1; k < j; ++k)
         if (!(std::abs(between_rows(c, t_, i, k, j) - c.value[k]) <= allowed)) return false;
     }
@@ -68,7 +81,7 @@ class Chooser {
 
   std::span<const double> t_;
   const std::vector<MovingColumn>& columns_;
-  std::vector<double> negligible_;
+  std::vector<Negligible> negligible_;  // of each column
 };
 
 }  // namespace
@@ -97,10 +110,11 @@ ChosenFrames choose_frames(std::span<const double> t, const std::vector<MovingCo
 }
 
 std::size_t doubtful_intervals(std::span<const double> t, const std::vector<MovingColumn>& columns) {
-  constexpr double kWrong = 1e-2, kMostUneven = 8;
+  constexpr double kWrong = 1e-2, kMostUneven = 8, kMuchRoundOff = 100;
+  const std::vector<Negligible> nothing = negligible(columns);
   std::vector<bool> doubtful(t.size());
-  for (const MovingColumn& c : columns) {
-    const double rest = negligible(c);
+  for (std::size_t n = 0; n < columns.size(); ++n) {
+    const MovingColumn& c = columns[n];
     for (std::size_t k = 1; k + 1 < t.size(); ++k) {
       const double a = t[k] - t[k - 1], b = t[k + 1] - t[k], wide = std::max(a, b);
       const int known = derivatives(c, k - 1, k + 1);
@@ -109,7 +123,8 @@ std::size_t doubtful_intervals(std::span<const double> t, const std::vector<Movi
       // The error at row k is a multiple of (a b)^(known + 1), that in the middle of an interval of (wide/2)^(2 known + 2).
       const double there = std::abs(between_rows(c, t, k - 1, k, k + 1) - c.value[k]);
       const double here = there * std::pow(wide * wide / (4 * a * b), known + 1);
-      if (here > kWrong * std::max(change(c.value, k - 1, k + 1), rest)) doubtful[a > b ? k - 1 : k] = true;
+      const double moves = std::max(change(c.value, k - 1, k + 1), nothing[n].change);
+      if (here > std::max(kWrong * moves, kMuchRoundOff * nothing[n].round_off)) doubtful[a > b ? k - 1 : k] = true;
     }
   }
   return static_cast<std::size_t>(std::count(doubtful.begin(), doubtful.end(), true));

@@ -162,6 +162,17 @@ TEST(Frames, TellWhereRowsAreTooFarApart) {
   EXPECT_GT(doubtful_intervals(table.values[0], moving(table)), 150U);
 }
 
+// Beside a column that moves, the round-off of one that rests is no motion.
+TEST(Frames, TakeRoundOffForNoMotion) {
+  RunTable table = table_of(sine, 300, 0.1);
+  const RunTable noise =
+      table_of([](double t) { return std::array<double, 3>{1e-33 * std::sin(1e9 * t), 0, 0}; }, 300, 0.1);
+  std::vector<MovingColumn> both = moving(table);
+  both.push_back(moving(noise)[0]);
+  EXPECT_EQ(doubtful_intervals(table.values[0], both), 0U);
+  EXPECT_EQ(choose_frames(table.values[0], both, 300).rows, choose_frames(table.values[0], moving(table), 300).rows);
+}
+
 TEST(Frames, LeaveOutNoSideOfAJump) {
   RunTable table;
   table.set_columns({"t", "x", "x'", "x''"});
@@ -214,9 +225,13 @@ TEST(Plots, SayWhichRowsAreTooFewAndWhichColumnsAreChosen) {
   EXPECT_FALSE(fine.rough);
   EXPECT_EQ(fine.caution, "");
   for (const PlotColumn& c : fine.columns)
-    if (c.name.starts_with("z")) EXPECT_EQ(c.group, c.name == "z''" ? "accelerations" : "") << c.name;
+    if (c.name.starts_with("z")) {
+      EXPECT_EQ(c.group, c.name == "z''" ? "accelerations" : "") << c.name;
+    }
   for (const PlotGroup& g : fine.groups)
-    if (g.id == "accelerations") EXPECT_EQ(g.columns, 1U);
+    if (g.id == "accelerations") {
+      EXPECT_EQ(g.columns, 1U);
+    }
   EXPECT_FALSE(fine.frames.empty());
 }
 
