@@ -103,8 +103,11 @@ std::optional<Expr> where_zero(Expr e, Expr s) {
     const Expr symbol{e.graph, id}, slope = partial(s, symbol);
     if (varies(slope) || is_zero(slope)) continue;
     const Expr root = expanded(symbol - s / slope, kMostOfProof).value_or(symbol - s / slope);
-    const Expr there = substitute({&e, 1}, [&](NodeId other) { return other == id ? root : Expr{}; }).front();
-    return there;
+    try {
+      return substitute({&e, 1}, [&](NodeId other) { return other == id ? root : Expr{}; }).front();
+    } catch (const Failure&) {
+      return std::nullopt;  // e has no value there
+    }
   }
   return std::nullopt;
 }
