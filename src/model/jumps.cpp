@@ -103,8 +103,11 @@ std::optional<Expr> where_zero(Expr e, Expr s) {
     const Expr symbol{e.graph, id}, slope = partial(s, symbol);
     if (varies(slope) || is_zero(slope)) continue;
     const Expr root = expanded(symbol - s / slope, kMostOfProof).value_or(symbol - s / slope);
-    const Expr there = substitute({&e, 1}, [&](NodeId other) { return other == id ? root : Expr{}; }).front();
-    return there;
+    try {
+      return substitute({&e, 1}, [&](NodeId other) { return other == id ? root : Expr{}; }).front();
+    } catch (const Failure&) {
+      return std::nullopt;  // e has no value there
+    }
   }
   return std::nullopt;
 }
@@ -118,6 +121,23 @@ bool vanishes_with(Expr difference, Expr s, const std::vector<double>& parameter
   if (!own || !divided) return false;
   const std::optional<Expr> more = expanded(*divided / *own, kMostOfProof);
   return more && !varies(*more);
+}
+
+// e on both sides of a zero of s; nullopt if it has no value on one of them.
+struct Sides {
+  Expr above, below;
+};
+std::optional<Sides> sides_of(Expr e, Expr s) {
+  try {
+    return Sides{on_side(e, s, 1), on_side(e, s, -1)};
+  } catch (const Failure&) {
+    return std::nullopt;
+  }
+}
+
+bool continuous_at(Expr e, Expr s, const std::vector<double>& parameters) {
+  const std::optional<Sides> sides = sides_of(e, s);
+  return sides && vanishes_with(sides->above - sides->below, s, parameters);
 }
 
 std::vector<double> parameters_of(const Model& model) {
@@ -174,7 +194,7 @@ bool may_jump(const Model& model, Expr e, const Decides& counts) {
       if (!proved_zero(turned - e)) return true;
     }
     const Expr s = decides(part);
-    if (s.graph && is_met(s) && !vanishes_with(on_side(e, s, 1) - on_side(e, s, -1), s, parameters)) return true;
+    if (s.graph && is_met(s) && !continuous_at(e, s, parameters)) return true;
   }
   return false;
 }
@@ -187,8 +207,9 @@ bool jumps_at_a_point(const Model& model, Expr e, const Decides& counts) {
   for (NodeId id : reachable({&e, 1})) {
     const Expr s = decides(Expr{&g, id});
     if (!s.graph || !varies(s) || (counts && !counts(s))) continue;
-    const Expr above = on_side(e, s, 1), below = on_side(e, s, -1);
-    if (above == below) continue;
+    const std::optional<Sides> sides = sides_of(e, s);
+    if (!sides || sides->above == sides->below) continue;
+    const auto& [above, below] = *sides;
     for (NodeId symbol : symbols({&s, 1})) {
       if (g.node(symbol).kind == Kind::parameter || g.node(symbol).kind == Kind::pi) continue;
       for (std::uint64_t k = 0; k < kPoints; ++k) {

@@ -95,8 +95,8 @@ void redundant(const Scenario& s) {
   const bool one = s.redundant.size() == 1;
   if (s.redundant.size() > kNamed) list += ", …";
   if (!list.empty())
-    say(stderr, "note: constraint%s %s on the others at the initial state: %s left out, and watched\n",
-        one ? "" : "s", (list + (one ? " depends" : " depend")).c_str(), one ? "it is" : "they are");
+    say(stderr, "note: constraint%s %s on the others at the initial state: %s left out, and watched\n", one ? "" : "s",
+        (list + (one ? " depends" : " depend")).c_str(), one ? "it is" : "they are");
 }
 
 }  // namespace

@@ -223,6 +223,7 @@ TEST(Conserved, JumpsOfPotentialsAndConstraintsAreMarked) {
   EXPECT_TRUE(has(marked(constraint("y' = sign(x - 1/2)*x'")), "energy jumps"));
   EXPECT_TRUE(has(marked(constraint("y = abs(x)")), "energy jumps"));
   EXPECT_TRUE(has(marked(constraint("y' = 2*x'")), "energy"));
+  EXPECT_NO_THROW(marked(constraint("y' = abs(x')^(1/2)"))) << "its derivative has no value where x' = 0";
 }
 
 }  // namespace

@@ -311,5 +311,23 @@ TEST(ConsistentState, CorrectedValuesLeaveTheOthersAtTheirGuess) {
   EXPECT_EQ(centre.q[2], 0);
 }
 
+// A trailer without mass that does not turn is in line with its sleigh: x, y and the direction stay at 0.
+TEST(ConsistentState, NothingMovesThatNeedNot) {
+  InitialState<double> s;
+  ASSERT_TRUE(
+      solve("coordinates = [\"x\", \"y\", \"th\", \"c\"]\n"
+            "body = [{name = \"s\", mass = 1, inertia = 0.5, center = \"x*ex + y*ey\", angle = \"th\"}]\n"
+            "frame.tr = \"rotz(th + c)\"\n"
+            "constraint = [{name = \"e\", equation = \"y'*cos(th) - x'*sin(th) = 0\"}, {name = \"f\", equation = "
+            "\"dot(vel(s.center - tr.x), tr.y) = 0\"}]\n"
+            "initial = {conditions = [\"c' = 0\", \"dot(vel(s.center), s.x) = 1\", \"th' = 0\"], guess = {c = "
+            "0.3}}\n",
+            s)
+          .ok());
+  for (std::size_t a = 0; a < 3; ++a) EXPECT_EQ(s.q[a], 0) << a;
+  EXPECT_NEAR(s.q[3], 0, kRoundoff);
+  EXPECT_NEAR(s.qd[0], 1, kRoundoff);
+}
+
 }  // namespace
 }  // namespace anholon::consistent_test
