@@ -2,7 +2,18 @@
 
 #include <algorithm>
 
+#include "formula/units.h"
+#include "setup/inputs.h"
+
 namespace anholon {
+
+// The output in the unit of its column.
+static Expr in_its_unit(const OutputQuantity& output, Expr value) {
+  const std::optional<Unit> unit = output.unit.empty() ? std::nullopt : read_unit(output.unit);
+  if (!unit) return value;
+  Graph& g = *value.graph;
+  return value * g.number(Rational(1 / unit->factor)) * pow(g.pi(), Rational(-unit->pi));
+}
 
 std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) {
   auto m = std::make_shared<Model>(model);
@@ -11,20 +22,30 @@ std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) 
     if (!control.value || control.constraint) continue;
     const Expr u = g.parameter(static_cast<std::uint32_t>(m->parameters.size()));
     m->parameters.push_back({control.name, g.zero(), "", control.span});
-    control.value = *control.value + u;
+    // The formulas of other inputs hold the sum, too.
+    Expr& formula = control.open.graph ? control.open : *control.value;
+    formula = formula + u;
     signals.inputs.push_back(control.name);
     signals.u.push_back(u);
     if (!control.put_into.empty())
       signals.notes.push_back("the formula of the input '" + control.name + "' is put into " + control.put_into +
                               ": B and D do not hold what it does there");
   }
+  put_inputs_into_inputs(*m, {});
   put_inputs(*m);
   for (const OutputQuantity& output : m->outputs)
     for (std::size_t i = 0; i < output.values.size(); ++i) {
       signals.outputs.push_back(output.name + (output.values.size() == 1 ? "" : std::string(".") + "xyz"[i]));
-      signals.y.push_back(output.values[i]);
+      signals.y.push_back(in_its_unit(output, output.values[i]));
     }
   return m;
+}
+
+void note_rates(const Scenario& scenario, Signals& signals) {
+  for (const std::string& input : inputs_with_rates(scenario))
+    signals.notes.push_back("the rate of the input '" + input +
+                            "' acts as well, as of one that stands in a position: it would be an input, too, and B and "
+                            "D do not hold what it does");
 }
 
 std::shared_ptr<const Model> at_rest(const Model& model) {
