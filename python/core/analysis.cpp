@@ -169,9 +169,10 @@ void bind_linear(nb::module_& m) {
       .def_ro("destabilizes", &Crossing::destabilizes, "For growing values the eigenvalue moves to the right.")
       .def_ro("value_text", &Crossing::value_text, "`value` with as many digits as asked for.")
       .def_ro("frequency_text", &Crossing::frequency_text, "`frequency` with as many digits as asked for.")
-      .def_ro("meaning", &Crossing::meaning,
-              "'stable above' or 'unstable above'; 'to the left above', 'to the right above' of eigenvalues that do not "
-              "decide, as others are unstable or the states are not steady.")
+      .def_ro(
+          "meaning", &Crossing::meaning,
+          "'stable above' or 'unstable above'; 'to the left above', 'to the right above' of eigenvalues that do not "
+          "decide, as others are unstable or the states are not steady.")
       .def("__repr__", [](const Crossing& c) {
         return c.value_text + (c.frequency > 0 ? ", a pair of frequency " + c.frequency_text : ", a real eigenvalue") +
                ": " + c.meaning;

@@ -15,6 +15,24 @@ static Expr in_its_unit(const OutputQuantity& output, Expr value) {
   return value * g.number(Rational(1 / unit->factor)) * pow(g.pi(), Rational(-unit->pi));
 }
 
+// ", nor what 'ref' does by it": the inputs that the formula of an input holds.
+static std::string others_in(const Model& model, const Control& control) {
+  std::string list;
+  std::vector<const Control*> seen{&control};
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    if (!seen[k]->open.graph) continue;
+    for (const NodeId id : symbols({&seen[k]->open, 1})) {
+      const Node& n = model.graph->node(id);
+      if (n.kind != Kind::control) continue;
+      const Control* other = &model.controls[n.index];
+      if (!other->value || std::find(seen.begin(), seen.end(), other) != seen.end()) continue;
+      seen.push_back(other);
+      list += (list.empty() ? ", nor what '" : ", '") + other->name + "'";
+    }
+  }
+  return list.empty() ? "" : list + " does by it";
+}
+
 std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) {
   auto m = std::make_shared<Model>(model);
   Graph& g = *m->graph;
@@ -29,7 +47,7 @@ std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) 
     signals.u.push_back(u);
     if (!control.put_into.empty())
       signals.notes.push_back("the formula of the input '" + control.name + "' is put into " + control.put_into +
-                              ": B and D do not hold what it does there");
+                              ": B and D do not hold what it does there" + others_in(model, control));
   }
   put_inputs_into_inputs(*m, {});
   put_inputs(*m);

@@ -11,10 +11,10 @@ namespace anholon {
 namespace {
 
 constexpr int kMostSteps = 300;
-constexpr int kExactDigits = 40;  // digits of a parameter value between the given ones
+constexpr int kExactDigits = 40;   // digits of a parameter value between the given ones
 constexpr int kMostHalvings = 12;  // of an interval whose crossings do not add up
-constexpr int kMostSlow = 3;  // steps that do not halve the interval
-constexpr int kMostSides = 4;  // distances at which an eigenvalue may be off the axis
+constexpr int kMostSlow = 3;       // steps that do not halve the interval
+constexpr int kMostSides = 4;      // distances at which an eigenvalue may be off the axis
 constexpr double kNarrow = 1e-20;  // relative width of the interval in which a crossing is found
 // A real part that is continuous, be it as the fourth root of the parameter, is smaller than this over such an interval,
 // in relation to its values at the ends.
@@ -38,8 +38,8 @@ std::vector<Complex> eigenvalues_of(const LinearModel& m) {
 
 int zeros(const LinearModel& m) {
   const std::vector<Complex> list = eigenvalues_of(m);
-  return static_cast<int>(std::count_if(list.begin(), list.end(),
-                                        [](const Complex& e) { return e.re == Multi(0) && e.im == Multi(0); }));
+  return static_cast<int>(
+      std::count_if(list.begin(), list.end(), [](const Complex& e) { return e.re == Multi(0) && e.im == Multi(0); }));
 }
 
 // The m-th largest real part (m = 1, 2, …), without the `always` eigenvalues nearest to 0, which are 0 over the whole
@@ -136,7 +136,8 @@ class Search {
   void crossings(const End& a, const End& b, Linearization& out) {
     std::vector<Crossing> found;
     between(a, b, kMostHalvings, found, out.notes);
-    std::stable_sort(found.begin(), found.end(), [](const Crossing& x, const Crossing& y) { return x.value < y.value; });
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Crossing& x, const Crossing& y) { return x.value < y.value; });
     for (Crossing& c : found)
       c.steady = a.model.motion != LinearModel::Motion::unsteady && b.model.motion != LinearModel::Motion::unsteady;
     out.crossings.insert(out.crossings.end(), found.begin(), found.end());

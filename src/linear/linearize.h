@@ -31,7 +31,7 @@ struct Crossing {
   int eigenvalues = 1;        // number that crosses: 2 for a pair
   bool destabilizes = false;  // for growing values of the parameter the eigenvalue moves to the right
   int unstable_above = 0;     // eigenvalues with a positive real part at a slightly larger value
-  bool steady = true;  // false: the eigenvalues belong to states that are not steady, and decide nothing
+  bool steady = true;         // false: the eigenvalues belong to states that are not steady, and decide nothing
 };
 // "stable above", or what else the crossing means for larger values of the parameter.
 std::string meaning(const Crossing& crossing);

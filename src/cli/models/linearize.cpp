@@ -285,8 +285,7 @@ void print_range(const Scenario& s, const Linearization& l, const ParameterRange
   say(stdout, "\ncrossings of the imaginary axis%s\n", l.crossings.empty() ? ": none between these values" : "");
   for (const Crossing& c : l.crossings)
     say(stdout, "  %s = %s   %s, %s\n", parameter.c_str(), text(c.value, digits).c_str(),
-        c.frequency > Multi(0) ? ("± " + text(c.frequency, digits) + "i").c_str() : "0",
-        meaning(c).c_str());
+        c.frequency > Multi(0) ? ("± " + text(c.frequency, digits) + "i").c_str() : "0", meaning(c).c_str());
   for (const std::string& n : l.notes) say(stdout, "note: %s\n", n.c_str());
 }
 

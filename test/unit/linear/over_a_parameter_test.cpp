@@ -65,11 +65,10 @@ TEST(OverAParameter, AValueOfTheFileThatIsZero) {
 // (1 - p) x'' = -3 x - x': the order of the equations is another one at p = 1.
 TEST(OverAParameter, ACoefficientThatVanishes) {
   for (const char* in_file : {"1", "0"}) {
-    const Linearization l =
-        over(std::string("coordinates = [\"x\"]\nparameters.p = ") + in_file +
-                 "\nparticle = [{name = \"a\", mass = 1, position = \"x*ex\"}]\n"
-                 "force = [{on = \"a\", vector = \"(p*x'' - 3*x - x')*ex\"}]\n",
-             "p=0,1,2");
+    const Linearization l = over(std::string("coordinates = [\"x\"]\nparameters.p = ") + in_file +
+                                     "\nparticle = [{name = \"a\", mass = 1, position = \"x*ex\"}]\n"
+                                     "force = [{on = \"a\", vector = \"(p*x'' - 3*x - x')*ex\"}]\n",
+                                 "p=0,1,2");
     std::vector<std::vector<double>> real;
     for (const LinearResult& r : l.results) {
       ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
@@ -151,7 +150,8 @@ TEST(Crossings, WhatIsStableAbove) {
 
 // The crossings at 0.7 and 1.5 cancel each other between 0 and 3; above 1.2 all is stable nevertheless.
 TEST(Crossings, StableAboveWhereOthersAreNotFound) {
-  const Linearization l = over(plane("(-3*x - (p - 1.2)*x')*ex - ((1.5 - p)*y + y')*ey - ((p - 0.7)*z + z')*ez"), "p=0,3");
+  const Linearization l =
+      over(plane("(-3*x - (p - 1.2)*x')*ex - ((1.5 - p)*y + y')*ey - ((p - 0.7)*z + z')*ez"), "p=0,3");
   expect_near(places(l), {1.2}, kRoot);
   EXPECT_EQ(meaning(l.crossings[0]), "stable above");
 }
@@ -164,8 +164,8 @@ TEST(Crossings, OfStatesThatAreNotSteady) {
 
 // At p = 2 the branch of x < 0 ends, and the search finds the one of x > 0.
 TEST(Crossings, NoneWhereTheMotionJumps) {
-  const Linearization l = over(
-      plane("(p + 3*x - x^3 - (0.1 - 0.2*max(x, 0))*x')*ex - (y + y')*ey - (z + z')*ez", "x = -2"), "p=1,3", true);
+  const Linearization l =
+      over(plane("(p + 3*x - x^3 - (0.1 - 0.2*max(x, 0))*x')*ex - (y + y')*ey - (z + z')*ez", "x = -2"), "p=1,3", true);
   EXPECT_TRUE(l.results[0].outcome.ok() && l.results[1].outcome.ok());
   EXPECT_TRUE(l.crossings.empty());
   ASSERT_EQ(l.notes.size(), 1U);

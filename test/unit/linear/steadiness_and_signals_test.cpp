@@ -75,6 +75,20 @@ output.effort = "u"
   }
 }
 
+// The formula of u stands in the potential as it was read.
+TEST(Signals, AnInputThatIsPutInBringsOthers) {
+  const LinearModel m = linear(R"(coordinates = ["x"]
+particle = [{name = "p", mass = 2, position = "x*ex"}]
+input.ref = "0"
+input.far = "ref"
+input.u = "far - x"
+potential.V = "u*x/2"
+)");
+  ASSERT_EQ(m.notes.size(), 1U);
+  EXPECT_NE(m.notes[0].find("the input 'u' is put into the potential 'V'"), std::string::npos) << m.notes[0];
+  EXPECT_NE(m.notes[0].find("nor what 'far', 'ref' does by it"), std::string::npos) << m.notes[0];
+}
+
 TEST(Signals, AnOutputIsInTheUnitOfItsColumn) {
   const LinearModel m = linear(R"T(coordinates = ["x"]
 particle = [{name = "p", mass = 2, position = "x*ex"}]

@@ -1,9 +1,11 @@
-#include "setup/parameters_of_order.h"
+#include "structure/parameters_of_order.h"
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>
+
+#include "tape/bind.h"
 
 namespace anholon {
 
@@ -11,12 +13,11 @@ namespace {
 
 // Whether terms may be absent: most equations of motion have accelerations of all coordinates, and c derivatives of a
 // constraint of order m reach m + c.
-bool may_lack_terms(const Scenario& s) {
-  const std::vector<int>& d = s.structure.d;
-  const auto coordinates = d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates);
-  if (std::any_of(d.begin(), coordinates, [](int order) { return order != 2; })) return true;
-  for (std::size_t k = 0; k < s.system.constraints.size(); ++k)
-    if (s.model->constraints[s.system.constraints[k]].order + s.structure.c[s.system.coordinates + k] > 2) return true;
+bool may_lack_terms(const System& s, const Structure& t) {
+  const auto coordinates = t.d.begin() + static_cast<std::ptrdiff_t>(s.coordinates);
+  if (std::any_of(t.d.begin(), coordinates, [](int order) { return order != 2; })) return true;
+  for (std::size_t k = 0; k < s.constraints.size(); ++k)
+    if (s.model->constraints[s.constraints[k]].order + t.c[s.coordinates + k] > 2) return true;
   return false;
 }
 
@@ -36,7 +37,9 @@ Expr in_free_parameters(const Model& model, Expr e) {
 // Whether the coefficient, which is 0, has another value if these parameters have. Other symbols have random values.
 bool changes(const Model& model, Expr coefficient, const std::vector<std::size_t>& parameters) {
   constexpr double kRoundOff = 1e-12;  // of terms that cancel each other, the parameters being changed by 1 or more
-  std::vector<double> values = parameter_values<double>(model);
+  Column formulas;
+  for (const Parameter& p : model.parameters) formulas.push_back(p.value);
+  std::vector<double> values = evaluate_parameters<double>(*model.graph, formulas);
   std::mt19937_64 random(20261129);
   const auto some = [&] { return std::uniform_real_distribution<double>(0.3, 1.3)(random); };
   for (const std::size_t i : parameters) values[i] += std::max(1.0, std::abs(values[i])) * some();
@@ -60,17 +63,18 @@ void add_those_that_matter(const Model& model, Expr coefficient, std::set<std::s
 
 }  // namespace
 
-std::vector<std::size_t> parameters_of_order(Workspace& s) {
-  if (!may_lack_terms(s)) return {};
-  const System whole = implicit_system(s.model, *s.mechanics, *s.system.form, s.independent, s.elimination);
-  const Structure& t = s.structure;
+std::vector<std::size_t> parameters_of_order(const Mechanics& mechanics, const Elimination& elimination,
+                                             const System& system, const Structure& t) {
+  if (!may_lack_terms(system, t)) return {};
+  const Model& model = *system.model;
+  const System whole = implicit_system(system.model, mechanics, *system.form, system.constraints, elimination);
   std::set<std::size_t> found;
   for (std::size_t i = 0; i < whole.size(); ++i)
     for (NodeId id : symbols({&whole.equations[i], 1})) {
       const auto j = whole.variable(id);
-      if (!j || static_cast<int>(s.graph().node(id).order) + t.c[i] <= t.d[*j]) continue;
-      const Expr coefficient = partial(whole.equations[i], Expr{&s.graph(), id});
-      if (!is_zero(coefficient)) add_those_that_matter(*s.model, in_free_parameters(*s.model, coefficient), found);
+      if (!j || static_cast<int>(model.graph->node(id).order) + t.c[i] <= t.d[*j]) continue;
+      const Expr coefficient = partial(whole.equations[i], Expr{model.graph.get(), id});
+      if (!is_zero(coefficient)) add_those_that_matter(model, in_free_parameters(model, coefficient), found);
     }
   return {found.begin(), found.end()};
 }
