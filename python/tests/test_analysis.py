@@ -329,7 +329,7 @@ def test_a_parameter_that_is_zero_in_the_file() -> None:
     model = an.loads(FLYWHEEL)
     found = model.stability("J", [0, 1])
     assert [len(m.states) for m in found.models if m] == [2, 4]
-    assert np.allclose(sorted(abs(np.array(found.models[1].eigenvalues))), np.sqrt((3 + np.sqrt(5) * np.array([-1, -1, 1, 1])) / 2), rtol=1e-14)
+    assert np.allclose(sorted(abs(found.eigenvalues[1])), np.sqrt((3 + np.sqrt(5) * np.array([-1, -1, 1, 1])) / 2), rtol=1e-14)
     f = model.dynamics(minimal=False)
     assert f.parameters == ["k"]
     with pytest.raises(KeyError, match="order of the equations"):
@@ -375,8 +375,9 @@ force = [{on = "a", vector = "(1 - 3*x - (p - 1.2)*x')*ex"}]
 def test_linear_models_can_be_pickled_and_copied() -> None:
     linear = an.load("trailers").linearize(digits=20)
     speeds = an.load("whipple").stability("v", [3, 5, 7])
-    for copied in (copy.copy, copy.deepcopy, lambda of: pickle.loads(pickle.dumps(of))):
-        again, over = copied(linear), copied(speeds)
+    ways: list[Callable[[Any], Any]] = [copy.copy, copy.deepcopy, lambda of: pickle.loads(pickle.dumps(of))]
+    for way in ways:
+        again, over = way(linear), way(speeds)
         assert repr(again) == repr(linear) and (again.A == linear.A).all() and again.exact("A") == linear.exact("A")
         assert repr(over) == repr(speeds) and (over.eigenvalues == speeds.eigenvalues).all() and (over.stable == speeds.stable).all()
         assert [c.value for c in over.crossings] == [c.value for c in speeds.crossings]
