@@ -243,21 +243,22 @@ class Search {
     c.frequency = abs(e.im);
     const Multi before = std::max(first, Multi(p - Multi(2) * narrow)),
                 after = std::min(second, Multi(p + Multi(2) * narrow));
-    if (c.frequency > Multi(0) && real_on_the_right(a_positive ? first : second, p, narrow, m, always))
+    if (c.frequency > Multi(0) &&
+        (real_beside(first, p, narrow, m, always) || real_beside(second, p, narrow, m, always)))
       c.frequency = Multi(0);
     return continuous(before, after, m, always, size, c.unstable_above);
   }
 
-  // Whether the eigenvalue is real where it has left the axis, on the side of `end`: where two of them meet at 0, they are
-  // a pair on the left.
-  bool real_on_the_right(const Multi& end, const Multi& p, const Multi& narrow, int m, int always) {
+  // Whether the eigenvalue is real where it has left the axis, on the side of `end`: where two of them meet at 0, they may
+  // be a pair on one side alone.
+  bool real_beside(const Multi& end, const Multi& p, const Multi& narrow, int m, int always) {
     Multi away = narrow;
     for (int k = 0; k < kMostSides; ++k, away *= Multi(1000)) {
       const Multi at = end < p ? std::max(end, Multi(p - away)) : std::min(end, Multi(p + away));
       const Rational exact = rational_of(at);
       const LinearResult r = values_.at(exact, false);
       const auto found = r.outcome.ok() ? ranked(r.model, m, always) : std::nullopt;
-      if (found && found->re > Multi(0)) return found->im == Multi(0);
+      if (found && !(found->re == Multi(0))) return found->im == Multi(0);
     }
     return false;
   }

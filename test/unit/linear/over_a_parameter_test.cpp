@@ -181,6 +181,15 @@ TEST(Crossings, WhereTwoMeetAtZero) {
   EXPECT_TRUE(l.notes.empty());
 }
 
+// The same with a pair on the right, of which one eigenvalue stays there as a real one.
+TEST(Crossings, WhereAPairPartsAtZero) {
+  const Linearization l = over(plane("(p - 1/3)*(x - x')*ex - (y + y')*ey - (z + z')*ez"), "p=0,3");
+  expect_near(places(l), {1.0 / 3}, kRoot);
+  EXPECT_TRUE(l.crossings[0].frequency == Multi(0));
+  EXPECT_EQ(meaning(l.crossings[0]), "to the left above, where 1 eigenvalue is still unstable");
+  EXPECT_TRUE(l.notes.empty());
+}
+
 TEST(Crossings, OfATinyParameter) {
   const Linearization l = over(plane("(-x - (p/1.25e-24 - 1)*x')*ex - (y + y')*ey - (z + z')*ez"), "p=0,3.7e-24");
   ASSERT_EQ(l.crossings.size(), 1U);
