@@ -18,7 +18,7 @@ struct Matrix {
 
 enum class Steadiness : std::uint8_t {
   equilibrium,
-  steady,     // coordinates without influence move, everything else rests
+  steady,     // coordinates and states of [state] without influence move, everything else rests
   unsteady,   // A holds for an instant, and its eigenvalues say nothing of stability
   unchecked,  // perhaps steady: the check found no other point of the motion
 };
@@ -35,6 +35,7 @@ struct LinearModel {
   std::vector<double> values;            // of z at the point
   std::vector<std::string> value_texts;  // with more than 16 digits: the same
   std::vector<std::string> notes;        // inputs and outputs that do not occur in the model
+  // z' = A z + B u, y = C z + D u, in SI units; an output that has a unit in the file is in that unit, as in a run.
   Matrix A, B, C, D;
   // Of A over the core. A k-fold eigenvalue stands k times, each time with its multiplicity.
   std::vector<std::complex<double>> eigenvalues;
@@ -64,6 +65,9 @@ struct Crossing {
   int eigenvalues = 1;                     // how many cross: 2 for a pair
   bool destabilizes = false;               // for growing values the eigenvalue moves to the right
   std::string value_text, frequency_text;  // with as many digits as asked for
+  // For larger values of the parameter: "stable above", "unstable above"; "to the left above" or "to the right above" of
+  // eigenvalues that do not decide, as other ones are unstable, or the states are not steady.
+  std::string meaning;
 };
 
 struct Stability {
@@ -74,12 +78,12 @@ struct Stability {
   // curves[i][k] is the eigenvalue at the value k that continues the curve i; NaN where there is none.
   std::vector<std::vector<std::complex<double>>> curves;
   std::vector<Crossing> crossings;  // between neighbouring values, located to round-off
-  std::vector<std::string> notes;   // crossings that were not found
+  std::vector<std::string> notes;   // crossings that were not found, and jumps from one motion to another
 };
 
 // The linear models over values of a parameter, for each of which the initial data are solved anew. Two opposite
-// crossings between neighbouring values are not detected. Errors: an unknown parameter (a diagnostic); a start that is
-// singular or inconsistent (an outcome).
+// crossings between neighbouring values are not detected. A value at which there is no motion has an outcome of its own.
+// Errors: an unknown parameter (a diagnostic).
 ANHOLON_API Result<Stability> stability(const Model& model, const std::string& parameter,
                                         const std::vector<Number>& values, const LinearOptions& options = {});
 

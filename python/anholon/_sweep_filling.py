@@ -86,9 +86,9 @@ class SweepRequest:
 
     def open(self, folder: str, chunk: int, rule: str | None = None) -> _core.SweepFolder:
         """Opens the folder or makes it, if the sweep can be refined by the rule."""
-        if self._scenarios:
+        system = None if self._scenarios else self._model._system_of_sweep(self._form, self._initial)
+        if system is None:
             return _core.sweep_scenarios_into(self._model._core, self._form, self._initial, self._words, folder, chunk, self._recipe(), rule)
-        system = self._model._system(self._form, self._initial, ())
         return _core.sweep_into(system, self._words, folder, chunk, self._recipe(), rule)
 
     def _recipe(self) -> str:

@@ -208,7 +208,7 @@ class LinearModel:
 
     @property
     def motion(self) -> str:
-        """'equilibrium', 'steady' (coordinates without influence move, all else rests), 'unsteady' (A holds for an instant,
+        """'equilibrium', 'steady' (coordinates and states without influence move, all else rests), 'unsteady' (A holds for an instant,
         and its eigenvalues say nothing of stability) or 'unchecked'."""
         return self._core.motion
 
@@ -274,12 +274,12 @@ class LinearModel:
 
     @property
     def C(self) -> Array:
-        """Shape (outputs, states)."""
+        """Shape (outputs, states). An output that has a unit in the file is in that unit, as in a run; all else is SI."""
         return self._core.C
 
     @property
     def D(self) -> Array:
-        """Shape (outputs, inputs)."""
+        """Shape (outputs, inputs), in the units of C."""
         return self._core.D
 
     @property
@@ -333,7 +333,13 @@ class LinearModel:
 
     def __repr__(self) -> str:
         listed = ", ".join(f"{e:.6g}" for e in self.eigenvalues)
-        return f"<linear model of a motion that is {self.motion}: {len(self.states)} states, {len(self.inputs)} inputs; eigenvalues {listed}>"
+        motion = {
+            "equilibrium": "an equilibrium",
+            "steady": "a steady motion",
+            "unsteady": "a state that is not steady",
+            "unchecked": "a motion not checked to be steady",
+        }[self.motion]
+        return f"<linear model of {motion}: {len(self.states)} states, {len(self.inputs)} inputs; eigenvalues {listed}>"
 
     def _repr_html_(self) -> str:
         return _display.linear_model(self)
@@ -374,7 +380,7 @@ class Stability:
         """The eigenvalues as curves, shape (values, curves), 1/s: each column goes on smoothly. NaN where there is none."""
         import numpy as np
 
-        return np.array(self._core.curves, dtype=np.complex128).reshape(len(self._core.curves), -1).T
+        return np.array(self._core.curves, dtype=np.complex128).reshape(len(self._core.curves), len(self._core.values)).T
 
     @property
     def models(self) -> list[LinearModel | None]:
@@ -393,16 +399,17 @@ class Stability:
 
     @property
     def stable(self) -> npt.NDArray[np.bool_]:
-        """Whether no eigenvalue has a positive real part, shape (values,). False where there is no linear model."""
+        """Whether no eigenvalue has a positive real part, shape (values,). False where there is no linear model, and where the
+        state is not steady: its eigenvalues say nothing of stability."""
         import numpy as np
 
         eigenvalues = self.eigenvalues
-        known = ~np.isnan(eigenvalues.real).all(axis=1)
+        known = np.array([o.ok and m.motion != "unsteady" for m, o in zip(self._core.models, self._core.outcomes, strict=True)], dtype=bool)
         return np.asarray(known & ~(np.nan_to_num(eigenvalues.real) > 0).any(axis=1))
 
     @property
     def notes(self) -> list[str]:
-        """Crossings that were not found."""
+        """Crossings that were not found, and values at which one motion ends and another one is found."""
         return self._core.notes
 
     def plot(self, axes: Any = None) -> Any:

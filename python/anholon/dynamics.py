@@ -98,7 +98,8 @@ class Dynamics:
 
     @property
     def parameters(self) -> list[str]:
-        """What p holds: the parameters that do not follow from others."""
+        """What p holds: the parameters that do not follow from others, without those whose values decide the order of the
+        equations, such as a mass that is 0."""
         return self._core.parameters
 
     @property
@@ -173,6 +174,11 @@ class Dynamics:
             return None
         if isinstance(given, Mapping):
             for name in given:
+                if what == "p" and name not in names and name in self.model.parameters:
+                    raise KeyError(
+                        f"{name!r} is not in p: it follows from other parameters, or its value decides the order of the equations; "
+                        f"the model has a function for another value, model.with_({name}=...).dynamics()"
+                    )
                 if name not in names:
                     raise KeyError(f"there is no {name!r} in {what}; there are {', '.join(names) or 'none'}")
             own = usual()

@@ -329,7 +329,7 @@ class Model(Analysed):
             raise ModelError('on, chunk, share and refine belong to a sweep in a folder\nhint: out="falls/"')
         scenarios = runs_through_scenarios(self, vary)
         count = number_of_cases(values, laws, cases, together, "case" if scenarios else None)
-        system = None if scenarios else self._system(form, texts_of(initial), ())
+        system = None if scenarios else self._system_of_sweep(form, texts_of(initial))
         with Shown(progress, self.title, count, unit="cases") as tell:
             if system is None:
                 core, raised = _core.sweep_scenarios(self._core, form, texts_of(initial), words, threads, stop, tell)
@@ -341,6 +341,13 @@ class Model(Analysed):
         if isinstance(raised, BaseException):
             raise raised
         return sweep
+
+    def _system_of_sweep(self, form: str, initial: dict[str, str]) -> _core.System | None:
+        """None if the values of the file have no start: those of the cases may have one."""
+        try:
+            return self._system(form, initial, ())
+        except MotionError:
+            return None
 
     def dynamics(
         self,

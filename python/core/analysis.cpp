@@ -124,7 +124,10 @@ LinearOptions linear_options(const std::string& form, const Numbers& initial, co
 }
 
 void bind_linear(nb::module_& m) {
-  nb::class_<LinearModel>(m, "LinearModel")
+  nb::class_<Matrix> rows(m, "LinearMatrix", "Numbers of a linear model, row after row.");
+  picklable(rows, &Matrix::rows, &Matrix::columns, &Matrix::values, &Matrix::texts);
+  nb::class_<LinearModel> linear(m, "LinearModel");
+  linear
       .def_prop_ro("motion",
                    [](const LinearModel& l) {
                      const char* names[] = {"equilibrium", "steady", "unsteady", "unchecked"};
@@ -153,25 +156,39 @@ void bind_linear(nb::module_& m) {
       .def_ro("eigenvalue_texts", &LinearModel::eigenvalue_texts)
       .def_ro("multiplicities", &LinearModel::multiplicities)
       .def_ro("modes", &LinearModel::modes);
-  nb::class_<Crossing>(m, "Crossing", "A value of a parameter at which an eigenvalue crosses the imaginary axis.")
-      .def_ro("value", &Crossing::value, "Of the parameter, SI.")
+  picklable(linear, &LinearModel::motion, &LinearModel::why, &LinearModel::t, &LinearModel::states,
+            &LinearModel::dependent, &LinearModel::cyclic, &LinearModel::core, &LinearModel::inputs,
+            &LinearModel::outputs, &LinearModel::values, &LinearModel::value_texts, &LinearModel::notes,
+            &LinearModel::A, &LinearModel::B, &LinearModel::C, &LinearModel::D, &LinearModel::eigenvalues,
+            &LinearModel::eigenvalue_texts, &LinearModel::multiplicities, &LinearModel::modes);
+  nb::class_<Crossing> crossing(m, "Crossing",
+                                "A value of a parameter at which an eigenvalue crosses the imaginary axis.");
+  crossing.def_ro("value", &Crossing::value, "Of the parameter, SI.")
       .def_ro("frequency", &Crossing::frequency, "Of the eigenvalue there, rad/s; 0: it is real.")
       .def_ro("eigenvalues", &Crossing::eigenvalues, "How many cross: 2 for a pair.")
       .def_ro("destabilizes", &Crossing::destabilizes, "For growing values the eigenvalue moves to the right.")
       .def_ro("value_text", &Crossing::value_text, "`value` with as many digits as asked for.")
       .def_ro("frequency_text", &Crossing::frequency_text, "`frequency` with as many digits as asked for.")
+      .def_ro(
+          "meaning", &Crossing::meaning,
+          "'stable above' or 'unstable above'; 'to the left above', 'to the right above' of eigenvalues that do not "
+          "decide, as others are unstable or the states are not steady.")
       .def("__repr__", [](const Crossing& c) {
         return c.value_text + (c.frequency > 0 ? ", a pair of frequency " + c.frequency_text : ", a real eigenvalue") +
-               (c.destabilizes ? ": unstable above" : ": stable above");
+               ": " + c.meaning;
       });
-  nb::class_<Stability>(m, "Stability")
-      .def_ro("parameter", &Stability::parameter)
+  picklable(crossing, &Crossing::value, &Crossing::frequency, &Crossing::eigenvalues, &Crossing::destabilizes,
+            &Crossing::value_text, &Crossing::frequency_text, &Crossing::meaning);
+  nb::class_<Stability> stability_class(m, "Stability");
+  stability_class.def_ro("parameter", &Stability::parameter)
       .def_ro("values", &Stability::values)
       .def_ro("models", &Stability::models)
       .def_ro("outcomes", &Stability::outcomes)
       .def_ro("curves", &Stability::curves)
       .def_ro("crossings", &Stability::crossings)
       .def_ro("notes", &Stability::notes);
+  picklable(stability_class, &Stability::parameter, &Stability::values, &Stability::models, &Stability::outcomes,
+            &Stability::curves, &Stability::crossings, &Stability::notes);
   m.def(
       "linearize",
       [](const Model& model, const std::string& form, const Numbers& initial, const std::vector<std::string>& eliminate,

@@ -1,8 +1,10 @@
 """compare, evaluate, linearize and stability: the numbers and verdicts of the command line."""
 
+import copy
 import json
 import os
 import pathlib
+import pickle
 import re
 import signal
 import subprocess
@@ -306,3 +308,76 @@ def test_the_number_of_digits_is_bounded(disc: an.Model) -> None:
                 call(digits=digits)
     with pytest.raises(an.ModelError, match="about cannot be 'rest'"):
         disc.linearize(about="rest")
+
+
+FLYWHEEL = """
+coordinates = ["x", "y"]
+parameters = {J = 0, k = 1}
+particle = [{name = "a", mass = 1, position = "x*ex"}]
+potential.k = "k*(x - y)^2/2 + y^2/2"
+body = [{name = "w", inertia = "J", center = "0", angle = "y"}]
+"""
+
+
+def test_linearize_in_every_form() -> None:
+    with pytest.raises(an.ModelError, match="another mechanics"):
+        an.load("double-pendulum-cartesian").linearize(form="vakonomic")
+    assert an.load("second-order-linear").linearize(form="udwadia-kalaba").A.shape == an.load("second-order-linear").linearize().A.shape
+
+
+def test_a_parameter_that_is_zero_in_the_file() -> None:
+    model = an.loads(FLYWHEEL)
+    found = model.stability("J", [0, 1])
+    assert [len(m.states) for m in found.models if m] == [2, 4]
+    assert np.allclose(sorted(abs(found.eigenvalues[1])), np.sqrt((3 + np.sqrt(5) * np.array([-1, -1, 1, 1])) / 2), rtol=1e-14)
+    f = model.dynamics(minimal=False)
+    assert f.parameters == ["k"]
+    with pytest.raises(KeyError, match="order of the equations"):
+        f(0, f.start, p={"J": 1})
+    assert model.with_(J=1).dynamics(minimal=False).parameters == ["J", "k"]
+
+
+def test_sweeps_and_stability_need_no_start_of_the_file() -> None:
+    model = an.loads("""
+coordinates = ["a", "b"]
+parameters = {m = 1, M = 0, g = 9.81}
+particle = [{name = "p", mass = "m", position = "sin(a)*ex - cos(a)*ez"}, {name = "q", mass = "M", position = "p + sin(b)*ex - cos(b)*ez"}]
+gravity.field = "-g*ez"
+initial = {a = 0.1}
+""")
+    assert [o.ok for o in model.stability("M", [0.5, 1], about="equilibrium").outcomes] == [True, True]
+    assert model.sweep({"M": [0.5, 1]}, to=0.1).finished == 2
+
+
+def test_stability_without_any_linear_model() -> None:
+    found = an.loads("""
+coordinates = ["x", "y"]
+parameters.L = 1
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
+constraint = [{name = "c", equation = "x^2 + y^2 = L^2"}]
+initial = {x = 5}
+""").stability("L", [1, 2, 3])
+    assert found.eigenvalues.shape == (3, 0)
+    assert found.models == [None] * 3 and not found.stable.any()
+
+
+def test_a_state_that_is_not_steady_is_not_called_stable() -> None:
+    found = an.loads("""
+coordinates = ["x"]
+parameters.p = 1
+particle = [{name = "a", mass = 1, position = "x*ex"}]
+force = [{on = "a", vector = "(1 - 3*x - (p - 1.2)*x')*ex"}]
+""").stability("p", [0, 2])
+    assert not found.stable.any()
+    assert [c.meaning for c in found.crossings] == ["to the left above"]
+
+
+def test_linear_models_can_be_pickled_and_copied() -> None:
+    linear = an.load("trailers").linearize(digits=20)
+    speeds = an.load("whipple").stability("v", [3, 5, 7])
+    ways: list[Callable[[Any], Any]] = [copy.copy, copy.deepcopy, lambda of: pickle.loads(pickle.dumps(of))]
+    for way in ways:
+        again, over = way(linear), way(speeds)
+        assert repr(again) == repr(linear) and (again.A == linear.A).all() and again.exact("A") == linear.exact("A")
+        assert repr(over) == repr(speeds) and (over.eigenvalues == speeds.eigenvalues).all() and (over.stable == speeds.stable).all()
+        assert [c.value for c in over.crossings] == [c.value for c in speeds.crossings]

@@ -66,7 +66,8 @@ inner::LinearRequest request_of(const Model& model, const LinearOptions& options
   state.initial = options.initial, state.eliminate = options.eliminate;
   inner::LinearRequest request;
   request.form = &inner::named_form(options.form);
-  const inner::Mechanics m = inner::mechanics(*model.data().own_copy());
+  const std::shared_ptr<const inner::Model> own = model.data().own_copy();  // in whose graph the mechanics are
+  const inner::Mechanics m = inner::mechanics(*own);
   inner::must_apply(*request.form, m);
   inner::must_have_motions(*request.form, m);
   request.equilibrium = options.equilibrium;
@@ -118,7 +119,6 @@ Result<Stability> stability(const Model& model, const std::string& parameter, co
     if (values.empty()) return mistake("no value of '" + parameter + "' is given");
     request.range = std::move(range);
     const inner::LinearStudy study(model.data().own_copy(), request);
-    if (!study.start().ok()) return error_of(study.start());
     const inner::PrecisionScope precision(study.working_digits());
     const inner::Linearization l = study.compute();
     Stability out;
@@ -132,7 +132,8 @@ Result<Stability> stability(const Model& model, const std::string& parameter, co
     out.curves = inner::curves(l);
     for (const inner::Crossing& c : l.crossings)
       out.crossings.push_back({inner::to_double(c.value), inner::to_double(c.frequency), c.eigenvalues, c.destabilizes,
-                               text_of(c.value, request.digits), text_of(c.frequency, request.digits)});
+                               text_of(c.value, request.digits), text_of(c.frequency, request.digits),
+                               inner::meaning(c)});
     out.notes = l.notes;
     return out;
   });

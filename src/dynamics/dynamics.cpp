@@ -10,6 +10,7 @@
 #include "kernel/plan/planner.h"
 #include "motion/representation.h"
 #include "program/expansion.h"
+#include "structure/parameters_of_order.h"
 
 namespace anholon {
 
@@ -77,6 +78,9 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
   if (const Outcome o = initial_state(s, choice, here); !o.ok()) return no(o.message);
   made->parameters_ = parameter_values<long double>(*s.model);
   made->find_free_parameters(*s.model, wanted.inputs);
+  // These have no other value in the same equations.
+  for (const std::size_t i : parameters_of_order(*s.mechanics, s.elimination, s.system, s.structure))
+    std::erase(made->free_, i);
   const std::vector<double>& state = made->motion_start_ = {here.state.begin(), here.state.end()};
   const double t = made->start_time_ = static_cast<double>(here.t);
   made->coordinates_ = n;

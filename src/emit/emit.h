@@ -41,6 +41,7 @@ struct EmitOptions {
   std::vector<InputFormula> inputs;
   std::vector<std::pair<std::string, Expr>> outputs;  // names and values
   const RateFormulas* rates = nullptr;                // of independent velocities, for Python
+  std::vector<std::string> of_order;                  // parameters that decide the order of the equations
 };
 
 // Both throw Failure for an expression that cannot be written: an unknown function of time, a number beyond double.

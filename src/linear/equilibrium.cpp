@@ -2,9 +2,40 @@
 
 #include <algorithm>
 
+<<<<<<< HEAD
 #include "structure/consistent.h"
+=======
+#include "formula/units.h"
+#include "setup/inputs.h"
+>>>>>>> a230e5f36b7e1c2427d1ccfbe7a09802cc3546b4
 
 namespace anholon {
+
+// The output in the unit of its column.
+static Expr in_its_unit(const OutputQuantity& output, Expr value) {
+  const std::optional<Unit> unit = output.unit.empty() ? std::nullopt : read_unit(output.unit);
+  if (!unit) return value;
+  Graph& g = *value.graph;
+  return value * g.number(Rational(1 / unit->factor)) * pow(g.pi(), Rational(-unit->pi));
+}
+
+// ", nor what 'ref' does by it": the inputs that the formula of an input holds.
+static std::string others_in(const Model& model, const Control& control) {
+  std::string list;
+  std::vector<const Control*> seen{&control};
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    if (!seen[k]->open.graph) continue;
+    for (const NodeId id : symbols({&seen[k]->open, 1})) {
+      const Node& n = model.graph->node(id);
+      if (n.kind != Kind::control) continue;
+      const Control* other = &model.controls[n.index];
+      if (!other->value || std::find(seen.begin(), seen.end(), other) != seen.end()) continue;
+      seen.push_back(other);
+      list += (list.empty() ? ", nor what '" : ", '") + other->name + "'";
+    }
+  }
+  return list.empty() ? "" : list + " does by it";
+}
 
 std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) {
   auto m = std::make_shared<Model>(model);
@@ -13,22 +44,26 @@ std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) 
     if (!control.value || control.constraint) continue;
     const Expr u = g.parameter(static_cast<std::uint32_t>(m->parameters.size()));
     m->parameters.push_back({control.name, g.zero(), "", control.span});
-    control.value = *control.value + u;
+    // The formulas of other inputs hold the sum, too.
+    Expr& formula = control.open.graph ? control.open : *control.value;
+    formula = formula + u;
     signals.inputs.push_back(control.name);
     signals.u.push_back(u);
     if (!control.put_into.empty())
       signals.notes.push_back("the formula of the input '" + control.name + "' is put into " + control.put_into +
-                              ": B and D do not hold what it does there");
+                              ": B and D do not hold what it does there" + others_in(model, control));
   }
+  put_inputs_into_inputs(*m, {});
   put_inputs(*m);
   for (const OutputQuantity& output : m->outputs)
     for (std::size_t i = 0; i < output.values.size(); ++i) {
       signals.outputs.push_back(output.name + (output.values.size() == 1 ? "" : std::string(".") + "xyz"[i]));
-      signals.y.push_back(output.values[i]);
+      signals.y.push_back(in_its_unit(output, output.values[i]));
     }
   return m;
 }
 
+<<<<<<< HEAD
 // The initial positions where conditions determine some; empty if they have no solution.
 static std::vector<GivenValue> positions_by_conditions(const Model& model) {
   if (model.initial.conditions.empty() || !model.unknown_functions.empty()) return {};
@@ -43,6 +78,13 @@ static std::vector<GivenValue> positions_by_conditions(const Model& model) {
     if (is_finite(state.q[a]))
       list.push_back({g.jet(static_cast<std::uint32_t>(a), 0), g.number(Rational(state.q[a])), {}});
   return list;
+=======
+void note_rates(const Scenario& scenario, Signals& signals) {
+  for (const std::string& input : inputs_with_rates(scenario))
+    signals.notes.push_back("the rate of the input '" + input +
+                            "' acts as well, as of one that stands in a position: it would be an input, too, and B and "
+                            "D do not hold what it does");
+>>>>>>> a230e5f36b7e1c2427d1ccfbe7a09802cc3546b4
 }
 
 std::shared_ptr<const Model> at_rest(const Model& model) {

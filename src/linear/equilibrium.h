@@ -5,9 +5,13 @@
 namespace anholon {
 
 // The inputs of the file with a constant added to each, 0 here: the symbol u by which B and D are derivatives. A
-// formula of an input remains valid, so A is that of the motion that `simulate` computes. The input of a servo
-// constraint is an unknown, not a signal.
+// formula of an input remains valid, so A is that of the motion that `simulate` computes; u acts in the formulas of
+// other inputs, too. The input of a servo constraint is an unknown, not a signal. An output is in the unit of its
+// column.
 std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals);
+
+// Adds a note on each input by whose rates the model is moved, too.
+void note_rates(const Scenario& scenario, Signals& signals);
 
 // The model whose initial conditions are rest without accelerations, near the positions of the file.
 std::shared_ptr<const Model> at_rest(const Model& model);

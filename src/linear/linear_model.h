@@ -8,7 +8,8 @@
 // contribution of the multipliers to the stiffness (lambda d^2 phi/dq dq) (theory: linear-models).
 //
 // A steady motion is one in which the coordinates that move have no influence on the others: x, y, heading and spin of
-// a disc that rolls in a circle. These coordinates are found, and the eigenvalues are those of the others.
+// a disc that rolls in a circle. So may states of the file, such as an odometer. They are found, and the eigenvalues are
+// those of the others.
 #pragma once
 #include "numeric/eigen.h"
 #include "setup/scenario.h"
@@ -28,7 +29,7 @@ struct Signals {
 struct LinearModel {
   enum class Motion : std::uint8_t {
     equilibrium,
-    steady,     // coordinates without influence move, all others rest, and A is constant
+    steady,     // coordinates and states of [state] without influence move, all else rests, and A is constant
     unsteady,   // A holds for an instant only; its eigenvalues do not decide stability
     unchecked,  // perhaps steady; the check found no other point of the motion
   };
@@ -41,7 +42,7 @@ struct LinearModel {
   Matrix<Multi> A, B, C, D;
   std::vector<std::string> inputs, outputs;
   std::vector<std::string> notes;    // signals that do not occur in the model
-  std::vector<std::size_t> cyclic;   // indices of states: coordinates that influence neither the others nor themselves
+  std::vector<std::size_t> cyclic;   // indices of z: coordinates, states of [state] that influence nothing
   std::vector<std::size_t> core;     // the others
   std::vector<Eigenvalue> spectrum;  // of A over the core; vectors over the core
 };

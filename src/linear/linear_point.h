@@ -162,9 +162,11 @@ class LinearPoint {
   }
 
   std::size_t independent(std::size_t i) const { return independent_[i]; }
-  bool coordinate(std::size_t i) const {
+  // Whether it is a coordinate or a state of the model: no velocity and no multiplier.
+  bool position(std::size_t i) const {
     const auto& e = l_.entries[independent_[i]];
-    return e.order == 0 && e.variable < l_.scenario.system.coordinates;
+    const System& s = l_.scenario.system;
+    return e.order == 0 && (e.variable < s.coordinates || e.variable >= s.mechanical());
   }
 
  private:

@@ -3,9 +3,13 @@
 //
 // Between neighbouring values p_k, p_(k+1) at which the number u of eigenvalues with a positive real part differs, the
 // m-th largest real part changes its sign for each m between the two u. As ordered real parts are continuous in p, its
-// zero is bracketed. Two opposite crossings between neighbours are not detected: the values must be close enough
-// together.
+// zero is bracketed. If the crossings that are found there do not add up to the change of u, the interval is halved.
+// Two opposite crossings between neighbours are not detected: the values must be close enough together.
+//
+// Where the motion itself jumps, the real parts jump with it, and no crossing is told.
 #pragma once
+#include <functional>
+
 #include "linear/linear_model.h"
 
 namespace anholon {
@@ -26,17 +30,30 @@ struct Crossing {
   Multi frequency{0};         // of the eigenvalue there; 0: the eigenvalue is real
   int eigenvalues = 1;        // number that crosses: 2 for a pair
   bool destabilizes = false;  // for growing values of the parameter the eigenvalue moves to the right
+  int unstable_above = 0;     // eigenvalues with a positive real part at a slightly larger value
+  bool steady = true;         // false: the eigenvalues belong to states that are not steady, and decide nothing
 };
+// "stable above", or what else the crossing means for larger values of the parameter.
+std::string meaning(const Crossing& crossing);
 
 struct Linearization {
   std::vector<LinearResult> results;
   std::vector<Crossing> crossings;
-  std::vector<std::string> notes;  // crossings that were not found
+  std::vector<std::string> notes;  // crossings that were not found, and jumps
 };
 
+// Makes the scenario of a value of the parameter.
+using ScenarioAt = std::function<Outcome(const Rational& value, Scenario& scenario)>;
+
 // In a working precision that the caller has set (PrecisionScope). The signals are expressions of the model that the
-// scenario was made of, or of the scenario.
-Linearization linearize(const Scenario& scenario, const StateChoice& choice, const std::optional<ParameterRange>& range,
+// scenarios are made of.
+Linearization linearize(const Scenario& scenario, const StateChoice& choice, const Signals& signals = {});
+// Each value of the range has a scenario of its own: a mass that is 0 there changes the order of the equations.
+// `in_exponents`: the value stands in exponents, where it may be put in as a whole number.
+Linearization linearize(const ScenarioAt& scenario_at, const StateChoice& choice, const ParameterRange& range,
+                        bool in_exponents, const Signals& signals = {});
+// The scenarios are made of the model that this one was made of.
+Linearization linearize(const Scenario& scenario, const StateChoice& choice, const ParameterRange& range,
                         const Signals& signals = {});
 
 }  // namespace anholon

@@ -12,13 +12,13 @@ bool no_influence(const LinearModel& m, std::size_t column, const std::vector<bo
   return true;
 }
 
-// Drops coordinates without influence on the remaining ones, until none is left.
+// Drops coordinates and states of the model without influence on the remaining ones, until none is left.
 std::vector<bool> without_cyclic(const LinearModel& m, const LinearPoint& p, std::vector<bool> may, const Multi& zero) {
   std::vector<bool> kept(m.states.size(), true);
   for (bool again = true; again;) {
     again = false;
     for (std::size_t i = 0; i < kept.size(); ++i)
-      if (kept[i] && may[i] && p.coordinate(i) && no_influence(m, i, kept, zero)) kept[i] = false, again = true;
+      if (kept[i] && may[i] && p.position(i) && no_influence(m, i, kept, zero)) kept[i] = false, again = true;
   }
   return kept;
 }
@@ -42,6 +42,8 @@ void tell(LinearModel& m, LinearModel::Motion motion, std::string why) {
 void look_for_steadiness(const LinearPoint& point, const Look& look, LinearModel& out) {
   const auto& [check, moving, nothing] = look;
   const std::size_t n = out.states.size();
+  // Irrational: the periods of excitations and roads are often simple fractions, and half of one of them looks like rest.
+  const Multi later = sqrt(Multi(2)) / Multi(4), away = sqrt(Multi(3)) / Multi(25);
   const Multi zero = nothing * (Multi(1) + largest(out.A.data)), still = nothing * (Multi(1) + largest(point.x));
   std::vector<bool> kept(n, true), may(n, true);
   LinearModel other;
@@ -51,11 +53,10 @@ void look_for_steadiness(const LinearPoint& point, const Look& look, LinearModel
     kept = without_cyclic(out, point, may, zero);
     if (!check) break;
     LinearPoint there = point;
-    there.t += Multi(0.375);
+    there.t += later;
     for (std::size_t i = 0, k = 0; i < n; ++i)
       if (!kept[i] && (!moving || abs(out.rates[i]) > still))
-        there.x[point.independent(i)] +=
-            Multi(0.3125) + Multi(static_cast<int>(++k)) / Multi(16) + Multi(0.375) * out.rates[i];
+        there.x[point.independent(i)] += away * Multi(static_cast<int>(++k) + 4) + later * out.rates[i];
     moved = there.evaluate() && there.settle();
     if (!moved) break;
     there.linear(other);

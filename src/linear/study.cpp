@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "linear/equilibrium.h"
+#include "model/exponents.h"
 #include "setup/choice.h"
 
 namespace anholon {
@@ -91,28 +92,49 @@ ParameterRange read_range(const std::string& text, const Model& model, const std
   return {parameter, values_of(text.substr(equals + 1), name, called, GivenQuantity::of_parameter(model, parameter))};
 }
 
+// The scenario of the model; of an equilibrium with the coordinates held that have no influence.
+Outcome LinearStudy::make(const Model& model, Scenario& scenario) const {
+  const std::shared_ptr<const Model> own = clone(model);
+  const Outcome start = make_scenario(own, *request_.form, request_.choice, scenario);
+  if (!request_.equilibrium || !start.ok()) return start;
+  const std::vector<std::size_t> held = without_influence(scenario);
+  if (held.empty()) return start;
+  return make_scenario(held_at_start(*own, held), *request_.form, request_.choice, scenario);
+}
+
 LinearStudy::LinearStudy(std::shared_ptr<const Model> model, LinearRequest request) : request_(std::move(request)) {
-  // Parameters and signals may get other values, or are varied.
-  request_.choice.open_parameters.reset();
+  const std::size_t parameters = model->parameters.size();
   for (const StateVariable& z : model->states) states_.push_back(z.name);
   if (request_.equilibrium) model = at_rest(*model);
   model = with_signals(*model, signals_);
   if (request_.equilibrium) model = searched_from(*model, request_.choice);
   if (const auto d = not_integrated(*model)) throw Failure(*d);
-  start_ = make_scenario(model, *request_.form, request_.choice, scenario_);
-  if (!request_.equilibrium || !start_.ok()) return;
-  if (const std::vector<std::size_t> held = without_influence(scenario_); !held.empty())
-    start_ = make_scenario(held_at_start(*model, held), *request_.form, request_.choice, scenario_);
+  // Signals are varied.
+  request_.choice.open_parameters.emplace();
+  for (std::size_t i = parameters; i < model->parameters.size(); ++i) request_.choice.open_parameters->push_back(i);
+  model_ = model;
+  start_ = make(*model_, scenario_);
+  if (start_.ok() && !signals_.inputs.empty()) note_rates(scenario_, signals_);
 }
 
 int LinearStudy::working_digits() const { return std::max(kWorkingDigits, request_.digits + kGuardDigits); }
 
 Linearization LinearStudy::compute() const {
   Linearization l;
-  if (start_.ok())
-    l = linearize(scenario_, request_.choice, request_.range, signals_);
-  else
+  if (request_.range) {
+    const ParameterRange& range = *request_.range;
+    const ScenarioAt scenario_at = [&](const Rational& value, Scenario& scenario) {
+      const std::shared_ptr<Model> model = clone(*model_);
+      model->parameters[range.parameter].value = model->graph->number(value);
+      return make(*model, scenario);
+    };
+    const bool in_exponents = !exponents_of(*clone(*model_), {range.parameter}).empty();
+    l = linearize(scenario_at, request_.choice, range, in_exponents, signals_);
+  } else if (start_.ok()) {
+    l = linearize(scenario_, request_.choice, signals_);
+  } else {
     l.results.push_back({"", start_, {}});
+  }
   if (request_.equilibrium)
     for (LinearResult& r : l.results) say_no_rest(states_, r.outcome);
   return l;

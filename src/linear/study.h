@@ -24,16 +24,19 @@ class LinearStudy {
  public:
   // Throws Failure for what this model lacks for numbers. REQUIRES: the form applies.
   LinearStudy(std::shared_ptr<const Model> model, LinearRequest request);
-  // How the preparation of the initial state ended.
+  // How the preparation of the initial state ended, with the values of the file. Those of a range may begin elsewhere.
   const Outcome& start() const { return start_; }
   const Scenario& scenario() const { return scenario_; }
   int working_digits() const;
-  // One result if the start failed; its outcome tells why. In the working precision that the caller has set, of
-  // working_digits().
+  // Without a range one result; its outcome tells why if the start failed. In the working precision that the caller has
+  // set, of working_digits().
   Linearization compute() const;
 
  private:
+  Outcome make(const Model& model, Scenario& scenario) const;
+
   LinearRequest request_;
+  std::shared_ptr<const Model> model_;  // with the signals, at rest if an equilibrium is asked for
   Signals signals_;
   std::vector<std::string> states_;  // of the model
   Scenario scenario_;

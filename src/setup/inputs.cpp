@@ -88,6 +88,22 @@ std::set<std::size_t> all_inputs(const Model& model) {
 
 OpenSystem open_inputs(Workspace& s) { return opened(s, all_inputs(*s.model), false); }
 
+std::vector<std::string> inputs_with_rates(const Scenario& s) {
+  Workspace own(s);
+  std::set<std::size_t> inputs;
+  for (const std::size_t k : all_inputs(*own.model))
+    if (const Control& u = own.model->controls[k]; u.value && !u.constraint) inputs.insert(k);
+  Column es = with_symbols(own, inputs).equations;
+  for (const OutputQuantity& o : own.model->outputs) es.insert(es.end(), o.values.begin(), o.values.end());
+  std::set<std::size_t> found;
+  for (const NodeId id : symbols(es))
+    if (const Node& n = own.graph().node(id); n.kind == Kind::control && n.order > 0 && inputs.count(n.index))
+      found.insert(n.index);
+  std::vector<std::string> names;
+  for (const std::size_t k : found) names.push_back(own.model->controls[k].name);
+  return names;
+}
+
 // The value of a formula at the consistent start.
 static Rational value_at_start(const Scenario& s, const Model& model, Expr formula) {
   const Tape tape = compile({&formula, 1});

@@ -17,6 +17,9 @@ struct OpenSystem {
 // The system is of the workspace.
 OpenSystem open_inputs(Workspace& scenario);
 
+// The names of the inputs whose rates stand in the equations or in an output: those in a position, or that turn a frame.
+std::vector<std::string> inputs_with_rates(const Scenario& scenario);
+
 // A model whose inputs are parameters, the last ones, so that whoever gives a parameter sets an input. It starts as the
 // given one does: each holds the value of its formula there.
 struct InputsAsParameters {

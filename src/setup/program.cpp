@@ -1,6 +1,7 @@
 #include "setup/program.h"
 
 #include "setup/inputs.h"
+#include "structure/parameters_of_order.h"
 
 namespace anholon {
 
@@ -39,6 +40,8 @@ std::string program_text(const Scenario& scenario, const StateChoice& choice, Pr
   OpenSystem open = open_inputs(own);
   for (const Monitor& m : open.system.model->monitors) options.outputs.emplace_back(m.name, m.value);
   options.inputs = std::move(open.inputs);
+  for (const std::size_t i : parameters_of_order(*own.mechanics, own.elimination, own.system, own.structure))
+    options.of_order.push_back(own.model->parameters[i].name);
   return (language == ProgramLanguage::c ? emit_c : emit_python)(open.system, own.structure, options);
 }
 

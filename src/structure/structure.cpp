@@ -181,6 +181,50 @@ std::string without_inertia(const System& s, const std::vector<std::vector<int>>
   return list;
 }
 
+// The equations that are too many for the unknowns in them: those that alternating paths reach from one that no
+// matching gives an unknown of its own.
+std::vector<std::size_t> too_many(const std::vector<std::vector<int>>& sigma) {
+  const std::size_t n = sigma.size();
+  std::vector<std::size_t> row_of(n, n);  // of each column
+  for (std::size_t free = 0; free < n; ++free) {
+    std::vector<std::size_t> reached{free}, from(n, n);  // from[j]: the row by which column j is reached
+    std::size_t end = n;
+    for (std::size_t k = 0; k < reached.size() && end == n; ++k)
+      for (std::size_t j = 0; j < n && end == n; ++j) {
+        if (sigma[reached[k]][j] == kAbsent || from[j] != n) continue;
+        from[j] = reached[k];
+        if (row_of[j] == n)
+          end = j;
+        else
+          reached.push_back(row_of[j]);
+      }
+    if (end == n) return reached;
+    std::vector<std::size_t> column_of(n, n);
+    for (std::size_t j = 0; j < n; ++j)
+      if (row_of[j] != n) column_of[row_of[j]] = j;
+    for (std::size_t j = end; j != n;) {
+      const std::size_t row = from[j], next = column_of[row];
+      row_of[j] = row;
+      j = next;
+    }
+  }
+  return {};
+}
+
+// A servo constraint whose input does not act on what it should keep.
+std::optional<Outcome> idle_input(const System& s, const std::vector<std::vector<int>>& sigma) {
+  for (const std::size_t row : too_many(sigma)) {
+    if (row < s.coordinates || row >= s.mechanical()) continue;
+    const Constraint& c = s.model->constraints[s.constraints[row - s.coordinates]];
+    if (!c.by) continue;
+    const std::string& input = s.model->controls[*c.by].name;
+    return Outcome{OutcomeKind::singular,
+                   "the input '" + input + "' does not act on what the constraint '" + c.name + "' asks for",
+                   "let '" + input + "' stand in a force or torque that moves what stands in the constraint"};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 // By the Hungarian method with potentials. Of columns that are equally near, one without a row is taken: where all entries
@@ -269,6 +313,7 @@ Outcome analyse(const System& s, const std::vector<double>& parameters, const Pr
       return {OutcomeKind::singular, "no inertia acts on " + list,
               "a mass or a moment of inertia is zero, or no body moves with that coordinate"};
     const std::string name = undetermined(s, out.sigma);
+    if (const auto idle = idle_input(s, out.sigma); name.empty() && idle) return *idle;
     return {OutcomeKind::singular,
             name.empty()
                 ? "the equations do not determine the motion: there are more constraints than they leave room for"

@@ -19,7 +19,7 @@ std::unique_ptr<Scenario> scenario(std::shared_ptr<const Model> model, const Sta
 }
 
 LinearModel linear(const Scenario& s, const StateChoice& choice = {}) {
-  const Linearization l = linearize(s, choice, std::nullopt);
+  const Linearization l = linearize(s, choice);
   EXPECT_TRUE(l.results[0].outcome.ok()) << l.results[0].outcome.message;
   return l.results[0].model;
 }
@@ -219,7 +219,7 @@ guess = {b = -2}
                         {x2, b, g.multiplier(0, 0), g.jet(0, 3)},
                         {}};
   const auto s = scenario(model, choice);
-  const Linearization l = linearize(*s, choice, std::nullopt, signals);
+  const Linearization l = linearize(*s, choice, signals);
   ASSERT_TRUE(l.results[0].outcome.ok());
   const LinearModel& m = l.results[0].model;
   ASSERT_EQ(m.states, (std::vector<std::string>{"x", "a", "x'", "a'"}));
@@ -248,7 +248,7 @@ TEST(LinearModels, InputsInConstraintsAreLeftOut) {
       "constraint = [{name = \"c\", equation = \"y' = u*x\"}]\nparameters.u = 2\n");
   const StateChoice choice;
   const auto s = scenario(model, choice);
-  const Linearization l = linearize(*s, choice, std::nullopt, {{"u"}, {}, {model->graph->parameter(0)}, {}, {}});
+  const Linearization l = linearize(*s, choice, Signals{{"u"}, {}, {model->graph->parameter(0)}, {}, {}});
   EXPECT_TRUE(l.results[0].model.inputs.empty());
   EXPECT_EQ(l.results[0].model.notes.size(), 1U);
 }

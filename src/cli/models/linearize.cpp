@@ -12,9 +12,11 @@ namespace anholon::cli {
 
 namespace {
 
+constexpr int kDigits = 16;  // of printed numbers, unless others are asked for
+
 // The shortest text of the double nearest to x, or more digits if they were asked for.
 std::string text(const Multi& x, int digits) {
-  return digits > 16 ? number_text(x, digits) : number_text(to_double(x));
+  return digits > kDigits ? number_text(x, digits) : number_text(to_double(x));
 }
 
 // ---- output -----------------------------------------------------------------------------------------
@@ -81,6 +83,8 @@ void write_model(JsonWriter& j, const LinearModel& m, int digits) {
     j.key(key);
     write_matrix(j, *matrix, digits);
   }
+  j.key("notes");
+  write_strings(j, m.notes);
   j.key("cyclic");
   write_names(j, m, m.cyclic);
   j.key("core");
@@ -137,8 +141,12 @@ std::string json(const Scenario& s, const Linearization& l, const std::optional<
         .integer(c.eigenvalues)
         .key("destabilizes")
         .boolean(c.destabilizes)
+        .key("meaning")
+        .string(meaning(c))
         .close();
   j.close();
+  j.key("notes");
+  write_strings(j, l.notes);
   return j.close().text() + "\n";
 }
 
@@ -173,20 +181,45 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
 
 std::string short_text(const Multi& x) { return number_text(to_double(x), 6); }
 
+// Numbers of tables: few digits, unless some were asked for.
+std::string table_text(const Multi& x, std::optional<int> digits, int few) {
+  if (x == Multi(0)) return "0";
+  return digits ? text(x, *digits) : number_text(to_double(x), few);
+}
+
 void print_matrix(const char* name, const std::vector<std::string>& rows, const std::vector<std::string>& columns,
-                  const Matrix<Multi>& a) {
+                  const Matrix<Multi>& a, std::optional<int> digits) {
   std::vector<std::vector<std::string>> table{{""}};
   table[0].insert(table[0].end(), columns.begin(), columns.end());
   for (std::size_t r = 0; r < rows.size(); ++r) {
     table.push_back({rows[r]});
-    for (std::size_t c = 0; c < columns.size(); ++c) table.back().push_back(short_text(a(r, c)));
+    for (std::size_t c = 0; c < columns.size(); ++c) table.back().push_back(table_text(a(r, c), digits, 6));
   }
   say(stdout, "\n%s\n", name);
   print_table(table);
 }
 
-void print_model(const LinearModel& m, int digits) {
-  say(stdout, "about %s\n\n%zu states at t = %s", motion_text(m).c_str(), m.states.size(), text(m.t, digits).c_str());
+void print_modes(const LinearModel& m, std::optional<int> digits) {
+  if (m.spectrum.empty()) return;
+  say(stdout, "\nmodes (largest entry 1)\n");
+  std::vector<std::vector<std::string>> rows{{""}};
+  for (std::size_t i : m.core) rows[0].push_back(m.states[i]);
+  for (const Eigenvalue& e : m.spectrum) {
+    if (e.value.im < Multi(0)) continue;  // the conjugate of a printed one
+    rows.push_back({short_text(e.value.re) + (e.value.im > Multi(0) ? " + " + short_text(e.value.im) + "i" : "")});
+    for (const Complex& z : e.vector) {
+      const double im = to_double(z.im);
+      rows.back().push_back(table_text(z.re, digits, 4) +
+                            (im == 0 ? "" : (im < 0 ? " - " : " + ") + table_text(abs(z.im), digits, 4) + "i"));
+    }
+  }
+  print_table(rows);
+}
+
+void print_model(const LinearModel& m, std::optional<int> asked) {
+  const int digits = asked.value_or(kDigits);
+  say(stdout, "about %s\n\n%zu %s at t = %s", motion_text(m).c_str(), m.states.size(),
+      m.states.size() == 1 ? "state" : "states", text(m.t, digits).c_str());
   if (!m.dependent.empty()) {
     std::string list;
     for (const std::string& d : m.dependent) list += (list.empty() ? "" : ", ") + d;
@@ -195,10 +228,10 @@ void print_model(const LinearModel& m, int digits) {
   say(stdout, "\n");
   for (std::size_t i = 0; i < m.states.size(); ++i)
     say(stdout, "  %-14s %24s\n", m.states[i].c_str(), text(m.values[i], digits).c_str());
-  print_matrix("A", m.states, m.states, m.A);
-  if (!m.inputs.empty()) print_matrix("B", m.states, m.inputs, m.B);
-  if (!m.outputs.empty()) print_matrix("C", m.outputs, m.states, m.C);
-  if (!m.inputs.empty() && !m.outputs.empty()) print_matrix("D", m.outputs, m.inputs, m.D);
+  print_matrix("A", m.states, m.states, m.A, asked);
+  if (!m.inputs.empty()) print_matrix("B", m.states, m.inputs, m.B, asked);
+  if (!m.outputs.empty()) print_matrix("C", m.outputs, m.states, m.C, asked);
+  if (!m.inputs.empty() && !m.outputs.empty()) print_matrix("D", m.outputs, m.inputs, m.D, asked);
   for (const std::string& n : m.notes) say(stdout, "note: %s\n", n.c_str());
   say(stdout, "\neigenvalues");
   if (!m.cyclic.empty()) say(stdout, " of the states with influence; the %zu without add as many 0", m.cyclic.size());
@@ -223,19 +256,7 @@ void print_model(const LinearModel& m, int digits) {
     if (!note.empty()) note.insert(0, widest - width(e), ' ');
     say(stdout, "  %s%s\n", pair_text(e, digits).c_str(), note.c_str());
   }
-  say(stdout, "\nmodes (largest entry 1)\n");
-  std::vector<std::vector<std::string>> rows{{""}};
-  for (std::size_t i : m.core) rows[0].push_back(m.states[i]);
-  for (const Eigenvalue& e : m.spectrum) {
-    if (e.value.im < Multi(0)) continue;  // the conjugate of a printed one
-    rows.push_back({short_text(e.value.re) + (e.value.im > Multi(0) ? " + " + short_text(e.value.im) + "i" : "")});
-    for (const Complex& z : e.vector) {
-      const double im = to_double(z.im);
-      rows.back().push_back(number_text(to_double(z.re), 4) +
-                            (im == 0 ? "" : (im < 0 ? " - " : " + ") + number_text(std::abs(im), 4) + "i"));
-    }
-  }
-  print_table(rows);
+  print_modes(m, asked);
 }
 
 void print_range(const Scenario& s, const Linearization& l, const ParameterRange& range, int digits) {
@@ -264,8 +285,7 @@ void print_range(const Scenario& s, const Linearization& l, const ParameterRange
   say(stdout, "\ncrossings of the imaginary axis%s\n", l.crossings.empty() ? ": none between these values" : "");
   for (const Crossing& c : l.crossings)
     say(stdout, "  %s = %s   %s, %s\n", parameter.c_str(), text(c.value, digits).c_str(),
-        c.frequency > Multi(0) ? ("± " + text(c.frequency, digits) + "i").c_str() : "0",
-        c.destabilizes ? "unstable above" : "stable above");
+        c.frequency > Multi(0) ? ("± " + text(c.frequency, digits) + "i").c_str() : "0", meaning(c).c_str());
   for (const std::string& n : l.notes) say(stdout, "note: %s\n", n.c_str());
 }
 
@@ -275,6 +295,12 @@ void print_csv(const Scenario& s, const Linearization& l, const std::optional<Pa
   std::string line = range ? s.model->parameters[range->parameter].name : "t";
   for (std::size_t i = 1; i <= most; ++i) line += ",re." + std::to_string(i) + ",im." + std::to_string(i);
   say(stdout, "%s\n", line.c_str());
+  const bool unsteady = std::any_of(l.results.begin(), l.results.end(), [](const LinearResult& r) {
+    return r.outcome.ok() && r.model.motion == LinearModel::Motion::unsteady;
+  });
+  if (unsteady)
+    say(stderr, "note: %sthe state is not steady, and its eigenvalues say nothing about stability\n",
+        range ? "at some values " : "");
   for (std::size_t k = 0; k < l.results.size(); ++k) {
     const LinearModel& m = l.results[k].model;
     line = text(range ? Multi(range->values[k]) : m.t, digits);
@@ -312,21 +338,20 @@ int linearize(const LinearizeCommand& o) {
   const std::optional<ParameterRange>& values = request.range;
   const PrecisionScope scope(study.working_digits());
   const Linearization l = study.compute();
-  const Outcome& start = study.start();
   Outcome failed;  // the first outcome that failed
   for (const LinearResult& r : l.results)
     if (failed.ok()) failed = r.outcome;
   if (o.json)
-    hand_out(json(s, l, start.ok() ? values : std::nullopt, o.digits()));
+    hand_out(json(s, l, values, o.digits()));
   else if (o.csv)
-    print_csv(s, l, start.ok() ? values : std::nullopt, o.digits());
+    print_csv(s, l, values, o.digits());
   else if (failed.ok() || l.results.size() > 1) {
     if (!s.model->title.empty()) say(stdout, "%s\n", s.model->title.c_str());
     say(stdout, "%s, %s\n\n", s.system.form->title, s.system.form->equation);
     if (values)
       print_range(s, l, *values, o.digits());
     else
-      print_model(l.results[0].model, o.digits());
+      print_model(l.results[0].model, o.motion.digits);
   }
   if (failed.ok()) return kOk;
   print_outcome(failed);

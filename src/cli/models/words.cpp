@@ -38,7 +38,8 @@ void add_linearize(CommandLine& line) {
   c->add_option("--vary", o.vary,
                 "a parameter over a range, v=0..10:1 or v=0,1,2; where eigenvalues cross the imaginary axis is found")
       ->type_name("NAME=VALUES");
-  motion_option(c, o, "digits", "of the numbers printed (default 16); the computation has at least 36");
+  motion_option(c, o, "digits",
+                "of the numbers printed (default 16, in matrices and modes fewer); the computation has at least 36");
   c->add_flag("--csv", o.csv, "one line of eigenvalues per parameter value");
 }
 

@@ -1,0 +1,13 @@
+// Parameters whose values decide the order of the equations: a mass that is 0, the coefficient of a highest derivative.
+#pragma once
+#include "structure/structure.h"
+
+namespace anholon {
+
+// Those that do not follow from others, and at whose values terms with derivatives are absent from the system that the
+// structure would otherwise count. With another value of one of them the equations have another state. The mechanics
+// and the elimination are those that the system was made of, in the same graph.
+std::vector<std::size_t> parameters_of_order(const Mechanics& mechanics, const Elimination& elimination,
+                                             const System& system, const Structure& structure);
+
+}  // namespace anholon

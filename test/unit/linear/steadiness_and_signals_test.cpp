@@ -1,0 +1,122 @@
+// Which motions are steady, and what inputs and outputs stand for.
+#include <gtest/gtest.h>
+
+#include "linear/study.h"
+#include "support/models.h"
+
+namespace anholon::steadiness_and_signals_test {
+namespace {
+
+constexpr double kExact = 1e-15;
+
+LinearModel linear(const std::string& text) {
+  LinearRequest request;
+  request.form = find_formulation("routh");
+  const LinearStudy study(test::model_of(text), request);
+  const PrecisionScope precision(study.working_digits());
+  const Linearization l = study.compute();
+  EXPECT_TRUE(l.results[0].outcome.ok()) << l.results[0].outcome.message;
+  return l.results[0].model;
+}
+
+// Excitations of many frequencies, and roads of many wavelengths.
+TEST(Steadiness, AnExcitationIsNoEquilibrium) {
+  for (const char* f : {"4/3", "4", "24", "50", "60", "61", "100", "1/7", "1000", "1e6"}) {
+    const LinearModel m = linear(std::string("coordinates = [\"x\"]\nparameters.f = \"") + f +
+                                 "\"\nparticle = [{name = \"a\", mass = 1, position = \"x*ex\"}]\n"
+                                 "force = [{on = \"a\", vector = \"(sin(2*pi*f*t) - 20*x)*ex\"}]\n");
+    EXPECT_EQ(m.motion, LinearModel::Motion::unsteady) << f;
+  }
+  for (const char* k : {"1", "2/5", "8/3", "16/5"}) {
+    const LinearModel m = linear(std::string("coordinates = [\"x\", \"y\"]\nparameters.k = \"") + k +
+                                 "\"\nparticle = [{name = \"a\", mass = 1, position = \"x*ex + y*ey\"}]\n"
+                                 "force = [{on = \"a\", vector = \"(sin(2*pi*k*x)^3 - 20*y)*ey\"}]\n"
+                                 "initial = {\"x'\" = 1}\n");
+    EXPECT_EQ(m.motion, LinearModel::Motion::unsteady) << k;
+  }
+}
+
+// What only counts does not make a steady motion another one.
+TEST(Steadiness, AnOdometerHasNoInfluence) {
+  const auto text = [](const std::string& force) {
+    return "coordinates = [\"x\", \"y\"]\nparticle = [{name = \"a\", mass = 1, position = \"x*ex + y*ey\"}]\n"
+           "force = [{on = \"a\", vector = \"" +
+           force +
+           "\"}]\nstate.odometer = {rate = \"x'\", initial = 0}\nstate.clock = {rate = 1, initial = 0}\n"
+           "initial = {\"x'\" = 1}\n";
+  };
+  const LinearModel m = linear(text("(1 - x')*ex - 4*y*ey"));
+  EXPECT_EQ(m.motion, LinearModel::Motion::steady);
+  EXPECT_EQ(m.cyclic.size(), 3U);
+  EXPECT_EQ(linear(text("(1 - x')*ex - (4 + odometer)*y*ey")).motion, LinearModel::Motion::unsteady);
+}
+
+// u = 8 (ref - x) - 4 x' and m x'' = u: what ref does, it does through u.
+TEST(Signals, AnInputActsInOtherInputs) {
+  const LinearModel m = linear(R"(coordinates = ["x"]
+particle = [{name = "p", mass = 2, position = "x*ex"}]
+input.ref = "0"
+input.u = "8*(ref - x) - 4*x' + twice"
+input.twice = "2*ref"
+force = [{on = "p", vector = "u*ex"}]
+output.place = "x"
+output.effort = "u"
+)");
+  ASSERT_EQ(m.inputs, (std::vector<std::string>{"ref", "u", "twice"}));
+  const double A[2] = {-4, -2}, B[3] = {5, 0.5, 0.5}, C[2] = {-8, -4}, D[3] = {10, 1, 1};
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_NEAR(to_double(m.A(1, k)), A[k], kExact);
+    EXPECT_NEAR(to_double(m.C(1, k)), C[k], kExact);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(to_double(m.B(1, k)), B[k], kExact);
+    EXPECT_NEAR(to_double(m.D(0, k)), 0, kExact);
+    EXPECT_NEAR(to_double(m.D(1, k)), D[k], kExact);
+  }
+}
+
+// The formula of u stands in the potential as it was read.
+TEST(Signals, AnInputThatIsPutInBringsOthers) {
+  const LinearModel m = linear(R"(coordinates = ["x"]
+particle = [{name = "p", mass = 2, position = "x*ex"}]
+input.ref = "0"
+input.far = "ref"
+input.u = "far - x"
+potential.V = "u*x/2"
+)");
+  ASSERT_EQ(m.notes.size(), 1U);
+  EXPECT_NE(m.notes[0].find("the input 'u' is put into the potential 'V'"), std::string::npos) << m.notes[0];
+  EXPECT_NE(m.notes[0].find("nor what 'far', 'ref' does by it"), std::string::npos) << m.notes[0];
+}
+
+TEST(Signals, AnOutputIsInTheUnitOfItsColumn) {
+  const LinearModel m = linear(R"T(coordinates = ["x"]
+particle = [{name = "p", mass = 2, position = "x*ex"}]
+input.u = "0"
+force = [{on = "p", vector = "u*ex"}]
+output.place = {value = "x", unit = "mm"}
+output.angle = {value = "x/(1 m)", unit = "deg"}
+output.force = {value = "(u + u/2)*ex", unit = "kN"}
+)T");
+  EXPECT_NEAR(to_double(m.C(0, 0)), 1000, 1000 * kExact);
+  EXPECT_NEAR(to_double(m.C(1, 0)), 180 / M_PI, 100 * kExact);
+  EXPECT_NEAR(to_double(m.D(2, 0)), 0.0015, kExact);
+}
+
+// th'' = -9 th - u'', where B is by u alone; an input in a force acts by itself.
+TEST(Signals, TheRateOfAnInputIsNamed) {
+  const auto text = [](const std::string& position, const std::string& force, const std::string& output) {
+    return "coordinates = [\"th\"]\ninput.u = \"0\"\nparticle = [{name = \"p\", mass = 2, position = \"" + position +
+           "\"}]\ngravity.field = \"-9*ez\"\nforce = [{on = \"p\", vector = \"" + force + "\"}]\noutput.y = \"" +
+           output + "\"\n";
+  };
+  const std::string arm = "sin(th)*ex - cos(th)*ez";
+  const LinearModel m = linear(text("u*ex + " + arm, "0*ex", "th"));
+  ASSERT_EQ(m.notes.size(), 1U);
+  EXPECT_NE(m.notes[0].find("the rate of the input 'u'"), std::string::npos);
+  EXPECT_EQ(linear(text(arm, "u*ex", "u'")).notes.size(), 1U);
+  EXPECT_TRUE(linear(text(arm, "u*ex", "u")).notes.empty());
+}
+
+}  // namespace
+}  // namespace anholon::steadiness_and_signals_test
