@@ -2,12 +2,9 @@
 
 #include <algorithm>
 
-<<<<<<< HEAD
-#include "structure/consistent.h"
-=======
 #include "formula/units.h"
 #include "setup/inputs.h"
->>>>>>> a230e5f36b7e1c2427d1ccfbe7a09802cc3546b4
+#include "structure/consistent.h"
 
 namespace anholon {
 
@@ -63,7 +60,13 @@ std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) 
   return m;
 }
 
-<<<<<<< HEAD
+void note_rates(const Scenario& scenario, Signals& signals) {
+  for (const std::string& input : inputs_with_rates(scenario))
+    signals.notes.push_back("the rate of the input '" + input +
+                            "' acts as well, as of one that stands in a position: it would be an input, too, and B and "
+                            "D do not hold what it does");
+}
+
 // The initial positions where conditions determine some; empty if they have no solution.
 static std::vector<GivenValue> positions_by_conditions(const Model& model) {
   if (model.initial.conditions.empty() || !model.unknown_functions.empty()) return {};
@@ -78,13 +81,6 @@ static std::vector<GivenValue> positions_by_conditions(const Model& model) {
     if (is_finite(state.q[a]))
       list.push_back({g.jet(static_cast<std::uint32_t>(a), 0), g.number(Rational(state.q[a])), {}});
   return list;
-=======
-void note_rates(const Scenario& scenario, Signals& signals) {
-  for (const std::string& input : inputs_with_rates(scenario))
-    signals.notes.push_back("the rate of the input '" + input +
-                            "' acts as well, as of one that stands in a position: it would be an input, too, and B and "
-                            "D do not hold what it does");
->>>>>>> a230e5f36b7e1c2427d1ccfbe7a09802cc3546b4
 }
 
 std::shared_ptr<const Model> at_rest(const Model& model) {
