@@ -276,7 +276,7 @@ TEST(Rates, OfSharedPartsAreMadeOnce) {
 // What refers to a number, a node or the terms of one is read while the graph grows.
 TEST(Canonical, WhatAGraphGivesNeverMoves) {
   Symbols s;
-  const Expr e = Rational(22, 7) * s.x + s.y * s.a + 3;
+  const Expr e = 3 + Rational(22, 7) * s.x + s.y * s.a;
   const Node& node = s.g.node(e.id);
   const Rational& weight = s.g.rational(s.g.terms(e.id)[0].weight);
   const std::span<const Term> terms = s.g.terms(e.id);
