@@ -152,7 +152,7 @@ def test_plots(disc: an.Model, monkeypatch: pytest.MonkeyPatch) -> None:
     matplotlib.use("agg")
     axes = run.plot("theta", "phi'", x="t")
     assert [line.get_label() for line in axes.lines] == [r"$\theta$", r"$\dot{\phi}$"]
-    assert axes.lines[1].get_ydata().tolist() == run["phi'"].tolist() and axes.get_xlabel() == "$t$ [s]"
+    assert axes.lines[1].get_ydata().tolist() == run["phi'"].tolist() and axes.get_xlabel() == "$t$"
     axes.figure.canvas.draw()
     with pytest.raises(KeyError, match="thet"):
         run.plot("thet")

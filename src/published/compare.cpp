@@ -277,7 +277,7 @@ Comparison Comparer::decide(Expr P) {
   for (const DerivedEquation& e : motion.rows)
     if (directly(P, e, motion, out)) return out;
   if (!motion.regular) {
-    if (on_manifold(P, false, out) || by_contractions(P, out) || of_higher_order(P, out)) return out;
+    if (on_manifold(P, false, out) || of_higher_order(P, out) || by_contractions(P, out)) return out;
     if (out.detail.empty())
       out.detail = "the equations do not determine the accelerations and multipliers at this order";
     return out;

@@ -117,6 +117,39 @@ StartPlan::Stages StateSolver<N>::kept_of(const StartPlan::Stages& s) const {
   return planned(m_, left_of(s->equations, s->unknowns, p_.overrides, m_.graph()), s->unknowns, s->metric, p_.mass);
 }
 
+// The given values are rounded numbers: all values may change a little, the others from those found with them or from
+// their guess, whichever changes the given ones less. Returns false if the equations are not satisfied then.
+template <Number N>
+bool StateSolver<N>::correct_rounded(Stage<N>& stage, const InitialState<N>& before,
+                                     const std::vector<std::size_t>& free, const std::vector<std::size_t>& all) {
+  const auto correction = [&]() -> std::optional<N> {
+    if (!find_by_least_change(stage, state_, all) || stage.worst() > stage_rounding<N>()) return std::nullopt;
+    N largest(0);
+    for (std::size_t j : all)
+      if (*state_.origin(stage.unknown(j)) == Origin::given)
+        if (N change = abs(N(stage.x(state_, j) - stage.x_of(before, j))); change > largest) largest = change;
+    return largest;
+  };
+  const InitialState<N> found = state_;
+  std::optional<N> least = correction();
+  const InitialState<N> by_found = state_;
+  state_ = found;
+  for (std::size_t j : free) stage.x(state_, j) = stage.x_of(before, j);
+  if (const std::optional<N> by_guess = correction(); by_guess && (!least || !(*by_guess > *least)))
+    least = by_guess;
+  else
+    state_ = by_found;
+  if (!least) {
+    stage.evaluate(state_);
+    return false;
+  }
+  for (std::size_t j : all)
+    if (Origin& origin = *state_.origin(stage.unknown(j)); origin == Origin::given)
+      if (stage.x(state_, j) != stage.x_of(before, j)) origin = Origin::corrected;
+  if (*least > state_.largest_correction) state_.largest_correction = *least;
+  return true;
+}
+
 // `tell`: whether the message of a failure is asked for.
 template <Number N>
 Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
@@ -141,19 +174,8 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
   mark_undetermined(stage, before, free);
   if (!(stage.worst(&worst) > stage_rounding<N>())) return {};
   if (stage.is_rounded()) {
-    // The given values are rounded numbers: all may change a little, and the others are measured from their guess again.
-    std::vector<N> found;
-    for (std::size_t j : all) found.push_back(stage.x(state_, j));
-    for (std::size_t j : free) stage.x(state_, j) = stage.x_of(before, j);
-    if (find_by_least_change(stage, state_, all, found) && !(stage.worst(&worst) > stage_rounding<N>())) {
-      for (std::size_t j : all)
-        if (Origin& origin = *state_.origin(stage.unknown(j)); origin == Origin::given)
-          if (N change = abs(N(stage.x(state_, j) - stage.x_of(before, j))); change > N(0)) {
-            origin = Origin::corrected;
-            if (change > state_.largest_correction) state_.largest_correction = change;
-          }
-      return {};
-    }
+    if (correct_rounded(stage, before, free, all)) return {};
+    stage.worst(&worst);
     // Data that overlap agree to their own digits only.
     if (!(stage.worst(&worst) > N(stage_rounding<double>()))) return {};
   }

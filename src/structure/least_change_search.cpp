@@ -286,20 +286,9 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
   return value && s.evaluate(state);
 }
 
-template <Number N>
-bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& free,
-                          const std::vector<N>& from) {
-  Iteration<N> newton(s, state, free);
-  if (newton.go_to(from) && newton.run(true) && newton.solved()) return true;
-  newton.go_to(newton.guess());
-  return find_by_least_change(s, state, free);
-}
-
 #define INSTANTIATE(N)                                                                                                 \
   template bool find_by_least_change<N>(Stage<N>&, InitialState<N>&, const std::vector<std::size_t>&,                  \
-                                        const InitialState<double>*, bool);                                            \
-  template bool find_by_least_change<N>(Stage<N>&, InitialState<N>&, const std::vector<std::size_t>&,                  \
-                                        const std::vector<N>&);
+                                        const InitialState<double>*, bool);
 INSTANTIATE(double)
 INSTANTIATE(long double)
 INSTANTIATE(Quad)

@@ -152,9 +152,4 @@ N stage_rounding() {
 template <Number N>
 bool find_by_least_change(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free,
                           const InitialState<double>* near = nullptr, bool by_flow = false);
-// The same with a first search that begins at the values `from` of the free unknowns.
-template <Number N>
-bool find_by_least_change(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free,
-                          const std::vector<N>& from);
-
 }  // namespace anholon

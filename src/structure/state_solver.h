@@ -39,6 +39,8 @@ class StateSolver {
   Outcome solve(const StageEquations& equations, const Column& unknowns, unsigned metric);
   StartPlan::Stages kept_of(const StartPlan::Stages& s) const;
   Outcome attempt(const StartPlan::Stages& stages, bool tell);
+  bool correct_rounded(Stage<N>& stage, const InitialState<N>& before, const std::vector<std::size_t>& free,
+                       const std::vector<std::size_t>& all);
   bool move_positions(const StartPlan& plan, const InitialState<N>& before);
   void mark_derived(const Stage<N>& stage, const InitialState<N>& before, const std::vector<std::size_t>& free);
 

@@ -304,6 +304,15 @@ TEST(ConsistentState, CorrectedValuesLeaveTheOthersAtTheirGuess) {
   ASSERT_TRUE(solve(particle("x^2 + y^2 = 1", "x = 0.2955202066613395\ny = 0.955336489125606\n"), unit).ok());
   EXPECT_EQ(unit.q[2], 0);
 
+  // A value that follows from rounded ones does not pull them towards its guess.
+  InitialState<double> wheel;
+  ASSERT_TRUE(solve(particle("y = 2*x", "x = 0.35\ny = 0.700000001\n") +
+                        "[[constraint]]\nname = \"wheel\"\nequation = \"z = 3*x + y\"\n",
+                    wheel)
+                  .ok());
+  EXPECT_NEAR(wheel.q[0], 0.35, 2e-9);
+  EXPECT_NEAR(wheel.q[2], 1.75, 1e-8);
+
   // A search that begins at the centre of a circle leaves it in the unknowns of the circle alone.
   InitialState<double> centre;
   ASSERT_TRUE(solve(particle("x^2 + y^2 = 1", ""), centre).ok());
