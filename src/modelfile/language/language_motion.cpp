@@ -240,7 +240,7 @@ by = "w"
 
 - A control. Motions use its formula; `linearize` gives the derivatives by it. Where a potential, a dissipation, a mass or a constraint holds an input
   whose formula holds coordinates or velocities (a mass: any input), the formula is put in: B and D do not hold that part, which a note says.
-- Where an input stands in a position or orientation its formula may hold t and states only.
+- Where an input stands in a position or orientation its formula may hold t and states only. Its rates act there, too; `linearize` notes that B and D do not hold them.
 - Programs (`derive --format c` or `python`) take inputs as an argument, and their formulas where it is not given. An input that holds accelerations or
   stands in a constraint of which derivatives are needed remains a formula there, and so does one whose formula is put in. An input that is given acts in forces,
   rates of states, outputs, events and other inputs alike.
@@ -386,7 +386,8 @@ mast   = {shape = "rod(2)", at = "P + ez", axes = "roty(pi/2)"}  # and this stan
 pull   = {vector = "vel(P)", at = "P"}
 ```
 
-- The picture of reports. Bodies with a `shape` are drawn as such, others as points with their axes, points as dots; forces with a `tension` as lines.
+- The picture of reports. Bodies with a `shape` are drawn as such; a body with constant moments of inertia and none as the homogeneous box that
+  has them, another as a point with its axes; points as dots; forces with a `tension` as lines.
 - Every other name is an element: `shape` (with `at` and `axes`; of a body it takes its own place), `line` (through a list of places), `trace` (the path of a
   place), `vector` (with `at`); each may have a `color`. Without a trace particles and points leave one.
 - Nothing here has a part in the motion. `anholon report MODEL -o page.html` shows it.
