@@ -53,7 +53,9 @@ TEST(StableList, PutsPartsSideBySide) {
       EXPECT_EQ(kept[i], next);
       EXPECT_EQ(list[first + i], next);
       EXPECT_EQ(whole.part(first, count)[i], next);
-      if (k <= 4) EXPECT_EQ(start.part(first, count)[i], next);
+      if (k <= 4) {
+        EXPECT_EQ(start.part(first, count)[i], next);
+      }
     }
   }
 }
