@@ -51,7 +51,9 @@ initial = {x = "scale*(1 - depth)"}
   };
   for (const char* scale : {"1e-9", "1e-6", "1e-3", "1", "1e3"}) {
     for (const char* depth : {"5", "0.5", "0.01", "1e-7"})
-      if (std::stod(scale) * std::stod(depth) > 2e-12) EXPECT_FALSE(begins(scale, depth)) << scale << " " << depth;
+      if (std::stod(scale) * std::stod(depth) > 2e-12) {
+        EXPECT_FALSE(begins(scale, depth)) << scale << " " << depth;
+      }
     for (const char* depth : {"0", "1e-13", "5e-10"}) EXPECT_TRUE(begins(scale, depth)) << scale << " " << depth;
   }
 }
