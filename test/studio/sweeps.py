@@ -6,6 +6,7 @@ usage: sweeps.py --program PROGRAM | --self-test
 
 import argparse
 import base64
+import collections
 import csv
 import json
 import math
@@ -60,11 +61,17 @@ def simulated(program, folder, command, rows):
 
 
 def differs(reply, expected):
-    """The first number of the page that the run does not have; None if it has all."""
+    """The first number of the page that the run does not have; None if it has all.
+
+    At an event the page has two rows of one time, its sides, which lie between the rows of the run.
+    """
     columns, _ = shown(reply)
     compared = 0
     for name, points in columns.items():
+        times = collections.Counter(t for t, _ in points)
         for t, value in points if name in expected else []:
+            if times[t] == 2 and t not in expected[name]:
+                continue
             compared += 1
             if expected[name].get(t) != value:
                 return f"{name} at t = {t!r} is {value!r}, and {expected[name].get(t)!r} by the command"
