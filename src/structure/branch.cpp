@@ -42,13 +42,16 @@ Column leading_unknowns(const System& s, const Structure& t) {
 
 namespace {
 
-constexpr int kMostNewton = 60;
+constexpr int kMostNewton = 60, kNearStarts = 8;
 // Starts at random end after so many in a row that find no new solution; the second number as long as none of the
 // solutions is wanted.
 constexpr int kInVain = 24, kInVainWithoutWanted = 160, kMostRandomStarts = 600;
 constexpr std::size_t kFlipsUpTo = 8;  // coordinates whose signs are flipped one by one
 constexpr double kSame = 1e-6;         // solutions at a smaller distance count as one
 constexpr double kSingular = 1e-9;     // smallest scaled singular value
+// As above where Newton's method begins at random: it comes close to a point at which the equations do not determine the
+// motion.
+constexpr double kClearlyRegular = 1e-4;
 
 unsigned orders(const System& s, const Structure& t) {
   unsigned bits = 0;
@@ -89,6 +92,26 @@ class Search {
       }
     }
     along_the_reaction(size);
+    for (int k = 0; k < kNearStarts; ++k) {
+      std::vector<N> x = guess_;
+      for (std::size_t a = 0; a < n_; ++a)
+        x[a] += size *
+                N(static_cast<int>((static_cast<unsigned>(k + 1) * 2654435761U + static_cast<unsigned>(a) * 40503U) %
+                                   2001U) -
+                  1000) /
+                N(700);
+      try_from(x);
+    }
+    // Where all starts have led to points at which the equations do not determine the motion, so would others.
+    if (!out_.singular || !out_.found.empty()) start_at_random(size);
+    sort();
+    return out_;
+  }
+
+ private:
+  // Farther away, until starts find nothing new.
+  void start_at_random(const N& size) {
+    least_singular_value_ = kClearlyRegular;
     std::uint64_t random = 1;
     const auto enough = [&] {
       return std::any_of(out_.found.begin(), out_.found.end(), wanted_) ? kInVain : kInVainWithoutWanted;
@@ -106,11 +129,8 @@ class Search {
         try_freely(x, random);
       in_vain = out_.found.size() > before ? 0 : in_vain + 1;
     }
-    sort();
-    return out_;
   }
 
- private:
   std::vector<N> jets() {
     std::vector<N> x;
     for (std::size_t a = 0; a < n_; ++a) x.push_back(constraints_.x(state_, a));
@@ -195,7 +215,7 @@ class Search {
       const auto merit = [&] { return all_.worst(scale); };
       const N now = merit();
       const bool solved = !(now > stage_rounding<N>());
-      if (!lu.factor(all_.jacobian) || lu.smallest_singular_value(direction) < N(kSingular)) {
+      if (!lu.factor(all_.jacobian) || lu.smallest_singular_value(direction) < N(least_singular_value_)) {
         if (to_double(now) < kSame) out_.singular = true;
         return;
       }
@@ -290,6 +310,7 @@ class Search {
   Stage<N> constraints_, motion_;
   InitialState<N> state_;
   std::vector<N> guess_;
+  double least_singular_value_ = kSingular;
   LeadingSolutions<N> out_;
 };
 

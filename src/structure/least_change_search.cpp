@@ -220,12 +220,25 @@ std::vector<N> around(const std::vector<N>& guess, const std::vector<bool>& move
   return p;
 }
 
-// Puts unknowns of a solution back to their guess one by one where a nearer solution in the others is found from there.
+// The largest partial derivative of the equations at the point.
+template <Number N>
+N steepness(const Stage<N>& s) {
+  N largest(0);
+  for (std::size_t i = 0; i < s.size(); ++i)
+    for (std::size_t j = 0; j < s.unknowns(); ++j)
+      if (N slope = abs(s.jacobian(i, j)); slope > largest) largest = slope;
+  return largest;
+}
+
+// Puts unknowns of a solution back to their guess one by one where a nearer solution in the others is found from there,
+// unless an equation is very steep there: close to the end of a root.
 template <Number N>
 void go_back(Stage<N>& s, InitialState<N>& state, std::vector<std::size_t> open, Iteration<N>& newton,
              const std::vector<bool>& moved, std::vector<N>& best, N& least) {
   constexpr std::size_t kMost = 60;
-  if (best.size() > kMost) return;
+  constexpr double kSteep = 1e6;
+  if (best.size() > kMost || !newton.go_to(best)) return;
+  const N steepest = N(kSteep) * (N(1) + steepness(s));
   const std::vector<std::size_t> all = open;
   for (std::size_t j = 0; j < best.size(); ++j) {
     if (!moved[j] || !(abs(N(best[j] - newton.guess()[j])) > N(0))) continue;
@@ -235,7 +248,7 @@ void go_back(Stage<N>& s, InitialState<N>& state, std::vector<std::size_t> open,
     there[j] = newton.guess()[j];
     if (!newton.go_to(there)) continue;
     Iteration<N> rest(s, state, others);
-    if (!rest.run(false) || !rest.solved()) continue;
+    if (!rest.run(false) || !rest.solved() || steepness(s) > steepest) continue;
     if (const N d = newton.distance(); d < least) least = d, best = newton.point(), open = std::move(others);
   }
 }
