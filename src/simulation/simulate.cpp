@@ -211,7 +211,7 @@ class Run {
   // Limits the stretch to the steps after which nothing is due.
   void limit_stretch() {
     const bool each = schedule().every_step() || o_.dense || defect_ || watch_.any_redundant() ||
-                      masses_vary<N>(*s_.model, motion().stepper());
+                      masses_vary<N>(*s_.model, motion().stepper()) || looks_between();
     stretch_.begin(each, schedule().next());
     angles_.keep_in(stretch_);
   }
@@ -249,10 +249,15 @@ class Run {
   }
 
   // What is declared conserved is looked at between rows, too: a motion may be one step, and have rows at its ends alone.
+  // The first steps are taken one by one for it, so that what is seen does not hang on the time that they take.
+  bool looks_between() const {
+    constexpr std::size_t kMostLooks = 32;
+    return watch_.any_declared() && looks_ < kMostLooks;
+  }
   void look_between() {
     constexpr int kParts = 4;
-    constexpr std::size_t kMostLooks = 32;
-    if (!watch_.any_declared() || ++looks_ > kMostLooks) return;
+    if (!looks_between()) return;
+    ++looks_;
     const W begin = course_.before(), length = course_.time() - begin;
     for (int k = 1; k < kParts; ++k)
       if (course_.at(begin + length * W(k) / W(kParts)).ok()) watch_.look(course_.point());
