@@ -319,8 +319,8 @@ Comparison Comparer::compare(const PublishedEquation& equation, Vocabulary& word
   if (c.verdict != Verdict::refuted) {
     std::vector<PointValues>& on_motion = motion(order_of_motion(P)).on_motion();
     std::string zero;
-    if (!on_motion.empty()) zero = vanishing_divisor(equation.left, words, on_motion);
-    if (!on_motion.empty() && zero.empty()) zero = vanishing_divisor(equation.right, words, on_motion);
+    for (const Syntax* side : {&equation.left, &equation.right})
+      if (!on_motion.empty() && zero.empty()) zero = vanishing_divisor(*side, words, on_motion);
     if (zero.empty()) return c;
     c = {};
     c.has_value = false;

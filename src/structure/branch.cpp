@@ -53,6 +53,12 @@ constexpr double kSingular = 1e-9;     // smallest scaled singular value
 // motion.
 constexpr double kClearlyRegular = 1e-4;
 
+// The next number at random, from -1000 to 1000, the same on every machine.
+int thousandths(std::uint64_t& random) {
+  random = random * 6364136223846793005U + 1442695040888963407U;
+  return static_cast<int>((random >> 33U) % 2001U) - 1000;
+}
+
 unsigned orders(const System& s, const Structure& t) {
   unsigned bits = 0;
   for (std::size_t j = 0; j < s.coordinates; ++j) bits |= 1U << t.d[j];
@@ -119,8 +125,7 @@ class Search {
     for (int k = 0, in_vain = 0; k < kMostRandomStarts && in_vain < enough(); ++k) {
       std::vector<N> x = guess_;
       for (N& v : x) {
-        random = random * 6364136223846793005U + 1442695040888963407U;
-        v += size * N(1 + k / 2 % 6) * N(static_cast<int>((random >> 33U) % 2001U) - 1000) / N(1000);
+        v += size * N(1 + k / 2 % 6) * N(thousandths(random)) / N(1000);
       }
       const std::size_t before = out_.found.size();
       if (k % 2 == 0)
@@ -181,8 +186,7 @@ class Search {
     for (std::size_t a = 0; a < n_; ++a) constraints_.x(state_, a) = start[a];
     const bool possible = motion_.evaluate(state_) && multipliers();
     for (std::size_t j = 0; possible && j < motion_.unknowns(); ++j) {
-      random = random * 6364136223846793005U + 1442695040888963407U;
-      motion_.x(state_, j) = motion_.x(state_, j) * N(static_cast<int>((random >> 33U) % 2001U) - 1000) / N(250);
+      motion_.x(state_, j) = motion_.x(state_, j) * N(thousandths(random)) / N(250);
     }
     if (possible) newton();
     state_ = before;
