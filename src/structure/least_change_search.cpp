@@ -13,6 +13,9 @@ constexpr int kMostIterations = 60;
 constexpr int kMostFlowSteps = 100;
 // After this number of line searches in a row without improvement the iteration is given up.
 constexpr int kMostInVain = 3;
+// The descent to the nearest solution in steps of Barzilai and Borwein takes some ten steps, and more where the constraints
+// are bent sharply.
+constexpr int kMostDescentSteps = 300;
 // The smallest part of a step of Newton's method along its flow, a power of 4.
 constexpr double kLeastFlowPart = 0x1p-40;
 
@@ -39,18 +42,13 @@ class Iteration {
   bool solved() const { return !(s_.worst() > stage_rounding<N>()); }
 
   // The square of the distance from the guess, in the metric at the point.
-  N distance() const {
-    N sum(0);
-    for (std::size_t i = 0; i < x_.size(); ++i)
-      for (std::size_t j = 0; j < x_.size(); ++j)
-        sum += (*x_[i] - guess_[i]) * s_.metric(free_[i], free_[j]) * (*x_[j] - guess_[j]);
-    return sum;
-  }
+  N distance() const { return distance(s_.metric); }
 
   // Goes towards the solution nearest to the guess or, if `nearest` is false, to any solution: every step is then the
   // least one.
   bool run(bool nearest) {
     in_vain_ = 0;
+    settled_ = free_.empty();
     const N rounding = stage_rounding<N>();
     if (!s_.evaluate(state_)) return false;
     N last_step(-1);
@@ -65,7 +63,8 @@ class Iteration {
           continue;
         }
       }
-      if (rows.independent.empty()) break;
+      settled_ = rows.independent.empty();
+      if (settled_) break;
       if (!elimination.possible) return true;
       least_step(elimination, nearest);
       if (!search()) return false;
@@ -76,10 +75,18 @@ class Iteration {
         if (N v = abs(*x_[j]); v > size) size = v;
       }
       const N floor = unit_roundoff<N>() * N(8) * (size > N(1) ? size : N(1));
-      const bool settled = !(moved > floor) || (last_step >= N(0) && !(moved < last_step) && moved < floor * N(100));
+      settled_ = !(moved > floor) || (last_step >= N(0) && !(moved < last_step) && moved < floor * N(100));
       last_step = moved;
-      if (settled) break;
+      if (settled_) break;
     }
+    return true;
+  }
+
+  // Goes to the solution nearest to the guess, from a solution that is not the nearest by a descent. Returns false if the
+  // equations have no value there.
+  bool run_to_nearest() {
+    if (!run(true)) return false;
+    if (solved() && !settled_) descend();
     return true;
   }
 
@@ -99,6 +106,37 @@ class Iteration {
     return solved();
   }
 
+  // Descends along the solutions from the one at hand to one whose neighbours are not nearer to the guess: the direction is
+  // the change towards the guess that keeps the equations to first order and is the greatest such in the metric at the
+  // point, its length follows from the two last steps (Barzilai and Borwein), and Newton's method brings each step back
+  // onto the solutions. Returns true if the step vanishes; else the descent ends at the nearest solution it has reached.
+  bool descend() {
+    std::vector<N> at, direction, last_at, last_direction;
+    N last_moved(-1);
+    for (int k = 0; k < kMostDescentSteps; ++k) {
+      typename Stage<N>::Elimination& elimination = s_.elimination(free_);
+      if (elimination.rows.independent.empty() || !elimination.possible) return false;
+      least_step(elimination, true);
+      at = point();
+      direction = step_;
+      N moved(0), size(0);
+      for (std::size_t j = 0; j < at.size(); ++j) {
+        if (N v = abs(direction[j]); v > moved) moved = v;
+        if (N v = abs(at[j]); v > size) size = v;
+      }
+      const N floor = unit_roundoff<N>() * N(8) * (size > N(1) ? size : N(1));
+      if (!(moved > floor) || (last_moved >= N(0) && !(moved < last_moved) && moved < floor * N(100))) {
+        clear_round_off();
+        return true;
+      }
+      last_moved = moved;
+      if (!slide(at, direction, part_of_descent(at, direction, last_at, last_direction))) return false;
+      last_at.swap(at);
+      last_direction.swap(direction);
+    }
+    return false;
+  }
+
  private:
   // The guess may be a stationary point of a constraint (the centre of a circle): moves the unknowns of such constraints
   // away from it. Returns false if there are none.
@@ -114,6 +152,56 @@ class Iteration {
       moved = true;
     }
     return moved;
+  }
+
+  // Takes the guess for unknowns that differ from it by the round-off of the largest change.
+  void clear_round_off() {
+    const std::vector<N> at = point();
+    N largest(0);
+    for (std::size_t j = 0; j < at.size(); ++j)
+      if (N v = abs(N(at[j] - guess_[j])); v > largest) largest = v;
+    for (std::size_t j = 0; j < at.size(); ++j)
+      if (abs(N(at[j] - guess_[j])) < unit_roundoff<N>() * largest) *x_[j] = guess_[j];
+    if (!s_.evaluate(state_) || !solved()) go_to(at);
+  }
+
+  N distance(const Matrix<N>& metric) const {
+    N sum(0);
+    for (std::size_t i = 0; i < x_.size(); ++i)
+      for (std::size_t j = 0; j < x_.size(); ++j)
+        sum += (*x_[i] - guess_[i]) * metric(free_[i], free_[j]) * (*x_[j] - guess_[j]);
+    return sum;
+  }
+
+  // The part of the direction that the next step of a descent makes, from the change of the direction in the last one.
+  N part_of_descent(const std::vector<N>& at, const std::vector<N>& direction, const std::vector<N>& last_at,
+                    const std::vector<N>& last_direction) const {
+    constexpr double kLeast = 0x1p-20, kMost = 16;
+    if (last_at.empty()) return N(1);
+    N way(0), bent(0);
+    for (std::size_t i = 0; i < at.size(); ++i)
+      for (std::size_t j = 0; j < at.size(); ++j) {
+        const N& g = s_.metric(free_[i], free_[j]);
+        way += (at[i] - last_at[i]) * g * (at[j] - last_at[j]);
+        bent += (at[i] - last_at[i]) * g * (last_direction[j] - direction[j]);
+      }
+    if (!(bent > N(kLeast) * way)) return N(kMost);
+    const N part = N(way / bent);
+    return part < N(kLeast) ? N(kLeast) : part > N(kMost) ? N(kMost) : part;
+  }
+
+  // Makes this part of a step of the descent, or less, so that the distance does not grow in the metric at its start.
+  // Returns false, at the start of the step, if no part does that. Distances are known to the rounding of the solutions.
+  bool slide(const std::vector<N>& at, const std::vector<N>& direction, N part) {
+    constexpr int kMostParts = 12;
+    const Matrix<N> metric = s_.metric;
+    const N before = distance(metric) * (N(1) + N(16) * stage_rounding<N>());
+    for (int k = 0; k < kMostParts; ++k, part = part * N(0.25)) {
+      for (std::size_t j = 0; j < x_.size(); ++j) *x_[j] = at[j] + part * direction[j];
+      if (run(false) && solved() && !(distance(metric) > before)) return true;
+    }
+    go_to(at);
+    return false;
   }
 
   // Computes the step that least changes the point, or the guess if `nearest`.
@@ -195,6 +283,7 @@ class Iteration {
   std::vector<N> scale_, old_;   // at the start of a step
   std::vector<N> old_residual_;  // of a step along Newton's flow
   double flow_part_ = 1;         // the part of the last step that was made along the flow
+  bool settled_ = false;         // whether the last step of run() vanished
   int in_vain_ = 0;              // searches in a row that found no improvement along their step
 };
 
@@ -220,39 +309,6 @@ std::vector<N> around(const std::vector<N>& guess, const std::vector<bool>& move
   return p;
 }
 
-// The largest partial derivative of the equations at the point.
-template <Number N>
-N steepness(const Stage<N>& s) {
-  N largest(0);
-  for (std::size_t i = 0; i < s.size(); ++i)
-    for (std::size_t j = 0; j < s.unknowns(); ++j)
-      if (N slope = abs(s.jacobian(i, j)); slope > largest) largest = slope;
-  return largest;
-}
-
-// Puts unknowns of a solution back to their guess one by one where a nearer solution in the others is found from there,
-// unless an equation is very steep there: close to the end of a root.
-template <Number N>
-void go_back(Stage<N>& s, InitialState<N>& state, std::vector<std::size_t> open, Iteration<N>& newton,
-             const std::vector<bool>& moved, std::vector<N>& best, N& least) {
-  constexpr std::size_t kMost = 60;
-  constexpr double kSteep = 1e6;
-  if (best.size() > kMost || !newton.go_to(best)) return;
-  const N steepest = N(kSteep) * (N(1) + steepness(s));
-  const std::vector<std::size_t> all = open;
-  for (std::size_t j = 0; j < best.size(); ++j) {
-    if (!moved[j] || !(abs(N(best[j] - newton.guess()[j])) > N(0))) continue;
-    std::vector<std::size_t> others = open;
-    std::erase(others, all[j]);
-    std::vector<N> there = best;
-    there[j] = newton.guess()[j];
-    if (!newton.go_to(there)) continue;
-    Iteration<N> rest(s, state, others);
-    if (!rest.run(false) || !rest.solved() || steepness(s) > steepest) continue;
-    if (const N d = newton.distance(); d < least) least = d, best = newton.point(), open = std::move(others);
-  }
-}
-
 }  // namespace
 
 template <Number N>
@@ -264,7 +320,7 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
     std::vector<N> there = newton.guess();
     for (std::size_t j = 0; j < free.size(); ++j)
       if (const double* x = near->value(s.unknown(free[j]))) there[j] = N(*x);
-    if (newton.go_to(there) && newton.run(true) && newton.solved()) return true;
+    if (newton.go_to(there) && newton.run_to_nearest() && newton.solved()) return true;
     newton.go_to(newton.guess());
   }
   if (by_flow && !free.empty()) {
@@ -272,29 +328,23 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
       // Then to the nearest of a family of solutions, and to all digits. Another solution is farther by more than round-off.
       const std::vector<N> there = newton.point();
       const N farther = N(2) * newton.distance();
-      if (!newton.run(true) || !newton.solved() || newton.distance() > farther) newton.go_to(there);
+      if (!newton.run_to_nearest() || !newton.solved() || newton.distance() > farther) newton.go_to(there);
       return true;
     }
     newton.go_to(newton.guess());
   }
-  const bool value = newton.run(true);
+  const bool value = newton.run_to_nearest();
   if ((value && newton.solved()) || free.empty() || s.linear()) return value;
   const InitialState<N> first = state;
   const std::vector<bool> moved = held(s, free);
   std::vector<N> best;
   N least(0);
-  bool nearest = false;  // of its neighbours
   for (int k = 0; k <= kStarts && (best.empty() || k < 3); ++k) {
     if (!newton.go_to(around(newton.guess(), moved, k)) || !newton.run(false) || !newton.solved()) continue;
-    const std::vector<N> there = newton.point();
-    const bool settled = newton.run(true) && newton.solved();
-    if (!settled) newton.go_to(there);
-    if (const N d = newton.distance(); best.empty() || d < least) least = d, best = newton.point(), nearest = settled;
+    newton.descend();
+    if (const N d = newton.distance(); best.empty() || d < least) least = d, best = newton.point();
   }
-  if (!best.empty()) {
-    if (!nearest) go_back(s, state, free, newton, moved, best, least);
-    return newton.go_to(best);
-  }
+  if (!best.empty()) return newton.go_to(best);
   state = first;
   return value && s.evaluate(state);
 }

@@ -1,10 +1,14 @@
 // Every form without multipliers is B^T (E - G) = 0 on the manifold of the constraints, B the tangents found there by
 // numbers; at random free higher derivatives, so that those that must cancel do. For every shipped model.
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <set>
 
 #include <gtest/gtest.h>
 
+#include "proof/equations_of_motion.h"
 #include "setup/eliminate.h"
 #include "support/contraction.h"
 #include "support/models.h"
@@ -37,6 +41,49 @@ TEST_P(ReducedForms, AreTheContractionOfNewtonsLaw) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Model, ReducedForms, testing::ValuesIn(test::shipped_models()),
+                         [](const auto& p) { return test::test_name(p.param); });
+
+// By how much equations miss on motions of the system, relative to their sides. Returns nullopt if no point of a motion is
+// found.
+std::optional<double> miss_on_motion(EquationsOfMotion& motion, const Column& left, const Column& right) {
+  if (motion.on_motion().empty()) return std::nullopt;
+  double most = 0;
+  for (PointValues& at : motion.on_motion()) {
+    double size = 1e-3, miss = 0;
+    for (std::size_t a = 0; a < left.size(); ++a) {
+      size = std::max({size, std::abs(at(left[a])), std::abs(at(right[a]))});
+      miss = std::max(miss, std::abs(at(left[a]) - at(right[a])));
+    }
+    most = std::max(most, miss / size);
+  }
+  return most;
+}
+
+// The n equations of Udwadia and Kalaba hold the reactions as functions of the state, which no contraction sees: all n hold on
+// every motion of Routh's equations. With twice the reactions, whose contraction is the same, they do not.
+class UdwadiaKalaba : public testing::TestWithParam<std::string> {};
+
+TEST_P(UdwadiaKalaba, HoldsAcrossTheConstraints) {
+  constexpr double kHolds = 1e-7;  // doubles, less what a nearly singular point takes
+  const System s(test::shipped(GetParam()));
+  const Formulation& form = *find_formulation("udwadia-kalaba");
+  if (!obstacle(form, s.m).empty()) return;
+  EquationsOfMotion motion(s.m, 2, {});
+  if (!motion.regular) return;
+  Equations q = form.equations(s.m, elimination_for(s.m, form.unknowns, {}, {}));
+  for (Column* side : {&q.left, &q.right})
+    for (Expr& e : *side) e = put_rates(*s.model, put_masses(*s.model, e));
+  const std::optional<double> miss = miss_on_motion(motion, q.left, q.right);
+  if (!miss) return;
+  EXPECT_LE(*miss, kHolds);
+  if (s.m.phi.empty()) return;
+  Column given = put_masses(*s.model, forces(s.m));
+  for (Expr& e : given) e = put_rates(*s.model, e);
+  const Column reactions = q.right - given;
+  EXPECT_GT(*miss_on_motion(motion, q.left, given + reactions + reactions), 100 * kHolds);
+}
+
+INSTANTIATE_TEST_SUITE_P(Model, UdwadiaKalaba, testing::ValuesIn(test::shipped_models()),
                          [](const auto& p) { return test::test_name(p.param); });
 
 // As many constraints as coordinates: nothing is left to be said, by no equations. Ends in a crash as long as the

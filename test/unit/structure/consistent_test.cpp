@@ -338,5 +338,36 @@ TEST(ConsistentState, NothingMovesThatNeedNot) {
   EXPECT_NEAR(s.qd[0], 1, kRoundoff);
 }
 
+// The shape of a chain between two hooks that is nearest to a guess which misses both hooks: Newton's method does not find it
+// from there, a descent does. The values solve M (z - guess) = A^T mu and the constraints (theory: initial-data), found by
+// mpmath with the mass matrix written by hand.
+template <class N>
+InitialState<N> chain_between_hooks() {
+  InitialState<N> s;
+  EXPECT_TRUE(
+      solve<N>("coordinates = [\"th[i]\"]\nindex.n = 4\nindex.i = \"1..n\"\n[parameters]\nl = \"1/n\"\nm = \"1/n\"\n"
+               "[point]\n\"P[0]\" = \"0\"\n\"P[i]\" = \"P[i-1] + l*(cos(th[i])*ex + sin(th[i])*ey)\"\n"
+               "[[body]]\nname = \"link[i]\"\nmass = \"m\"\ninertia = \"m*l^2/12\"\ncenter = \"(P[i-1] + "
+               "P[i])/2\"\nangle = \"th[i]\"\n[[constraint]]\nname = \"hook\"\nequation = \"P[n] = 0.6*ex\"\n"
+               "[initial]\nguess = {\"th[i]\" = \"-1.2 + 2.4*(i - 1/2)/n + 0.3*sin(2*pi*i/n)\"}\n",
+               s)
+          .ok());
+  return s;
+}
+
+TEST(ConsistentState, TheNearestOfManySolutionsIsFoundInEveryNumberType) {
+  constexpr double kMetric = 1e-11;  // of the addition to the mass matrix, 1e-12
+  const double nearest[] = {-0.54612046519630899667, -0.29551283933196027283, -0.1035201490844144212,
+                            1.9886999402759545819};
+  const InitialState<double> s = chain_between_hooks<double>();
+  const InitialState<long double> wide = chain_between_hooks<long double>();
+  const InitialState<Quad> quad = chain_between_hooks<Quad>();
+  for (std::size_t a = 0; a < 4; ++a) {
+    EXPECT_NEAR(s.q[a], nearest[a], kMetric);
+    EXPECT_NEAR(s.q[a], to_double(wide.q[a]), 4 * kRoundoff);
+    EXPECT_NEAR(s.q[a], to_double(quad.q[a]), 4 * kRoundoff);
+  }
+}
+
 }  // namespace
 }  // namespace anholon::consistent_test
