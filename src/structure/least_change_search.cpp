@@ -49,6 +49,7 @@ class Iteration {
   bool run(bool nearest) {
     in_vain_ = 0;
     settled_ = free_.empty();
+    direct_ = true;
     const N rounding = stage_rounding<N>();
     if (!s_.evaluate(state_)) return false;
     N last_step(-1);
@@ -58,6 +59,7 @@ class Iteration {
       const RowChoice<N>& rows = elimination.rows;
       if (rows.dependent.size() && !nudged && s_.worst() > rounding && k == 0) {
         nudged = true;
+        direct_ = false;
         if (leave_stationary_point(rows)) {
           if (!s_.evaluate(state_)) return false;
           continue;
@@ -81,6 +83,9 @@ class Iteration {
     }
     return true;
   }
+
+  // True if run() made full steps only, from a point at which the equations are independent.
+  bool direct() const { return direct_; }
 
   // Goes to the solution nearest to the guess, from a solution that is not the nearest by a descent. Returns false if the
   // equations have no value there.
@@ -154,14 +159,14 @@ class Iteration {
     return moved;
   }
 
-  // Takes the guess for unknowns that differ from it by the round-off of the largest change.
+  // Takes the guess for unknowns that differ from it by the round-off of the largest change only.
   void clear_round_off() {
     const std::vector<N> at = point();
     N largest(0);
     for (std::size_t j = 0; j < at.size(); ++j)
       if (N v = abs(N(at[j] - guess_[j])); v > largest) largest = v;
     for (std::size_t j = 0; j < at.size(); ++j)
-      if (abs(N(at[j] - guess_[j])) < unit_roundoff<N>() * largest) *x_[j] = guess_[j];
+      if (abs(N(at[j] - guess_[j])) < unit_roundoff<N>() * N(16) * largest) *x_[j] = guess_[j];
     if (!s_.evaluate(state_) || !solved()) go_to(at);
   }
 
@@ -269,6 +274,7 @@ class Iteration {
       const bool less = s_.worst(scale_) <= now * N(0.9) + stage_rounding<N>() * N(4);
       in_vain_ = less ? 0 : in_vain_ + (halvings == 11);
       better = less || halvings == 11;
+      direct_ = direct_ && halvings == 0;
     }
     for (std::size_t j = 0; j < x_.size(); ++j) step_[j] = *x_[j] - old_[j];
     return better || s_.evaluate(state_);
@@ -284,7 +290,8 @@ class Iteration {
   std::vector<N> old_residual_;  // of a step along Newton's flow
   double flow_part_ = 1;         // the part of the last step that was made along the flow
   bool settled_ = false;         // whether the last step of run() vanished
-  int in_vain_ = 0;              // searches in a row that found no improvement along their step
+  bool direct_ = false;
+  int in_vain_ = 0;  // searches in a row that found no improvement along their step
 };
 
 // Tells for each of these unknowns whether an equation contains it.
@@ -314,7 +321,9 @@ std::vector<N> around(const std::vector<N>& guess, const std::vector<bool>& move
 template <Number N>
 bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& free,
                           const InitialState<double>* near, bool by_flow) {
-  constexpr int kStarts = 12;
+  constexpr int kStarts = 12, kStartsInMany = 3;
+  constexpr std::size_t kMany = 60;  // unknowns
+  constexpr double kNearer = 1e-6;   // a solution that is nearer by less is not
   Iteration<N> newton(s, state, free);
   if (near && !free.empty()) {
     std::vector<N> there = newton.guess();
@@ -334,15 +343,21 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
     newton.go_to(newton.guess());
   }
   const bool value = newton.run_to_nearest();
-  if ((value && newton.solved()) || free.empty() || s.linear()) return value;
+  const bool solved = value && newton.solved();
+  if ((solved && newton.direct()) || free.empty() || s.linear()) return value;
   const InitialState<N> first = state;
   const std::vector<bool> moved = held(s, free);
   std::vector<N> best;
   N least(0);
-  for (int k = 0; k <= kStarts && (best.empty() || k < 3); ++k) {
-    if (!newton.go_to(around(newton.guess(), moved, k)) || !newton.run(false) || !newton.solved()) continue;
+  const auto offer = [&] {
+    if (const N d = newton.distance(); best.empty() || d < least * N(1 - kNearer)) least = d, best = newton.point();
+  };
+  if (solved) offer();
+  for (int k = 0; k <= kStarts && (best.empty() || k < kStartsInMany || free.size() <= kMany); ++k) {
+    if (!newton.go_to(around(newton.guess(), moved, k))) continue;
+    if (!newton.follow() && !(newton.run(false) && newton.solved())) continue;
     newton.descend();
-    if (const N d = newton.distance(); best.empty() || d < least) least = d, best = newton.point();
+    offer();
   }
   if (!best.empty()) return newton.go_to(best);
   state = first;

@@ -144,7 +144,7 @@ N stage_rounding() {
 }
 
 // min |x - x0| over the free unknowns subject to the equations, with x0 the values in the state, by Newton's method
-// with a line search. If the search does not converge, solutions are searched from x0 and from points around it, and
+// with a line search. If it does not converge by full steps, solutions are searched from x0 and from points around it, too, and
 // the nearest is taken; if none is found, the state ends at the least residual reached, which the caller examines.
 // Returns false if the equations have no value there. `near`: the start of the first search, if not x0. `by_flow`: searches
 // first along Newton's flow from x0, d/ds F(x(s)) = -F(x(s)), which leads to the solution that belongs to x0 among several.

@@ -52,6 +52,14 @@ static void equations_of_motion(System& s, const Mechanics& m, const Elimination
   }
 }
 
+// True if equations of motion may have to be differentiated: for constraints of order 3 and more, and for those that an
+// input enforces.
+static bool differentiates_motion(const Mechanics& m) {
+  const std::vector<Constraint>& list = m.model->constraints;
+  return std::any_of(m.order.begin(), m.order.end(), [](int order) { return order > 2; }) ||
+         std::any_of(list.begin(), list.end(), [](const Constraint& c) { return c.by.has_value(); });
+}
+
 System implicit_system(std::shared_ptr<const Model> model, const Mechanics& m, const Formulation& form,
                        const std::vector<std::size_t>& constraints, const Elimination& elimination) {
   System s;
@@ -61,6 +69,9 @@ System implicit_system(std::shared_ptr<const Model> model, const Mechanics& m, c
   s.coordinates = model->coordinates.size();
   s.constraints = constraints;
   equations_of_motion(s, m, elimination);
+  // A state has no derivative beyond its rate: the formula of its rate takes the place of the rate.
+  if (differentiates_motion(m))
+    for (Expr& e : s.equations) e = put_state_rates(*model, e, 1);
   for (const Coordinate& c : model->coordinates) s.variable_names.push_back(c.name);
   for (std::size_t r : constraints) {
     s.equations.push_back(put_masses(*model, m.phi[r]));
