@@ -1,5 +1,6 @@
 // Systems with constraints of order 3 and more, and nonlinear ones of order 2: every form gives the same motion, the
 // energy balance closes, the hidden constraints hold, and a branch that ends stops the run.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -42,10 +43,18 @@ std::string with_order_four() {
          "lambdadot = {snap = -0.2}\n";
 }
 
+// A force holds the rate of a state; the equations of motion are differentiated for the constraint.
+std::string with_rate_in_force() {
+  return "coordinates = [\"x\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = [\"x\", \"y\", \"0\"]}]\n"
+         "state.fuel = {rate = \"-0.05*fuel\", initial = 1}\n[[force]]\non = \"p\"\nvector = \"fuel'*ey\"\n"
+         "[[constraint]]\nname = \"jerk\"\nequation = \"x''' + y''' = 0\"\n";
+}
+
 class HigherOrder : public testing::TestWithParam<std::string> {
  protected:
-  std::shared_ptr<const Model> model =
-      GetParam() == "order four" ? test::model_of(with_order_four()) : test::shipped("zoo/" + GetParam());
+  std::shared_ptr<const Model> model = GetParam() == "order four"      ? test::model_of(with_order_four())
+                                       : GetParam() == "rate in force" ? test::model_of(with_rate_in_force())
+                                                                       : test::shipped("zoo/" + GetParam());
 };
 
 TEST_P(HigherOrder, EveryFormGivesTheSameMotion) {
@@ -81,8 +90,18 @@ TEST_P(HigherOrder, TheEnergyBalanceCloses) {
 INSTANTIATE_TEST_SUITE_P(Model, HigherOrder,
                          testing::Values("third-order-linear", "constant-jerk", "constant-jerk-central",
                                          "constant-acceleration", "rheonomic-order-2", "rheonomic-order-3",
-                                         "order four"),
+                                         "order four", "rate in force"),
                          [](const auto& p) { return test::test_name(p.param); });
+
+// x'' = lambda and y'' = lambda + fuel' with 2 lambda' = -fuel'', lambda = 0 at the start.
+TEST(RateInForce, HasItsMultiplierInClosedForm) {
+  const Motion m = run(test::model_of(with_rate_in_force()), *find_formulation("routh"), Rational(1));
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  const auto& names = m.rows.names();
+  const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), "lambda.jerk") - names.begin());
+  ASSERT_LT(at, names.size());
+  EXPECT_NEAR(std::stod(m.rows.rows().back().at(at)), 0.025 * (std::exp(-0.05) - 1), 1e-16);
+}
 
 std::string on_the_other_branch(const std::string& name) {
   std::string text = test::shipped_text("zoo/" + name);
