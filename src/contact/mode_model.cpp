@@ -409,7 +409,7 @@ void put_ideal_mode(Model& model, const std::vector<Contact>& contacts, const st
   }
   if (!contacts.empty() && contacts[0].forces) put_forces(*contacts[0].forces, normals, components, model);
   model.title += (model.title.empty() ? "" : ": ") + mode;
-  std::erase_if(model.notes, [](const std::string& n) { return n.rfind(kOpenContacts) != std::string::npos; });
+  std::erase_if(model.notes, [](const ModelNote& n) { return n.of_modes(); });
 }
 
 }  // namespace anholon

@@ -39,7 +39,7 @@ void put_modes(Model& model, const std::vector<Contact>& contacts, const std::ve
   }
   if (!contacts.empty() && contacts[0].forces)
     put_forces(*contacts[0].forces, forces, std::vector<std::vector<Expr>>(contacts.size()), model);
-  std::erase_if(model.notes, [](const std::string& n) { return n.rfind(kOpenContacts) != std::string::npos; });
+  std::erase_if(model.notes, [](const ModelNote& n) { return n.of_modes(); });
 }
 
 }  // namespace anholon

@@ -8,6 +8,8 @@ template <>
 inline constexpr bool kHoldsNoExpressions<SymbolNames> = true;
 template <>
 inline constexpr bool kHoldsNoExpressions<MotionSettings> = true;
+template <>
+inline constexpr bool kHoldsNoExpressions<ModelNote> = true;
 
 static void for_each_expression(Coordinate& c, const ExprVisitor& f) {
   auto& [name, span] = c;

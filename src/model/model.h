@@ -4,10 +4,12 @@
 // All vectors are components along the observer's axes (theory: weighted-points). Masses and weights
 // that vary stand as frozen symbols mu_i; `masses` says what each one is.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/diagnostic.h"
@@ -209,6 +211,17 @@ struct InitialData {
   std::vector<BranchChoice> branches;
 };
 
+// What the reader did on its own, as components that it dropped; or the modes in which the equations hold.
+struct ModelNote {
+  enum class About : std::uint8_t { reading, open_contacts, modes_of_start };
+  ModelNote(std::string what, About of = About::reading)
+      : text(std::move(what)), about(of) {}  // NOLINT: a text is a note
+  std::string text;
+  About about;
+  // True if the equations hold in other modes as well, as other equations.
+  bool of_modes() const { return about != About::reading; }
+};
+
 struct Model {
   std::shared_ptr<Graph> graph;
   SourceText source_text;
@@ -239,7 +252,7 @@ struct Model {
   std::vector<std::string> cases;  // scenarios of the file, [case.NAME]
   // Where the file has units: those of coordinates and parameters, empty where nothing tells.
   std::vector<std::string> coordinate_units, parameter_units;
-  std::vector<std::string> notes;  // what the reader did on its own: components dropped, …
+  std::vector<ModelNote> notes;
 };
 
 // The handles of the model (expr/handles.h).

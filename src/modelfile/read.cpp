@@ -162,8 +162,10 @@ class Reader {  // its references are used only while it runs
     for (const Contact& c : contacts_)
       if (!c.under) names += (count++ == 0 ? "'" : ", '") + c.name + "'";
     const bool one = count == 1;
-    model_.notes.push_back((one ? "contact " : "contacts ") + names + (one ? " is no " : " are no ") + kOpenContacts +
-                           (one ? "it is open" : "all of them are open"));
+    model_.notes.push_back({(one ? "contact " : "contacts ") + names + (one ? " is no " : " are no ") +
+                                "part of these equations, which hold while " +
+                                (one ? "it is open" : "all of them are open"),
+                            ModelNote::About::open_contacts});
   }
 
   void scenarios(Item& root) {

@@ -172,7 +172,7 @@ std::string as_text(const std::vector<Derivation>& list) {
   std::string with;
   for (const auto& [name, text] : masses(list[0], Format::text)) with += "  " + name + " = " + text + "\n";
   if (!with.empty()) out += "\nwith\n" + with;
-  for (const std::string& n : list[0].model->notes) out += "note: " + n + "\n";
+  for (const ModelNote& n : list[0].model->notes) out += "note: " + n.text + "\n";
   return out;
 }
 

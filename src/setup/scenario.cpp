@@ -270,7 +270,8 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
   s.given_nodes = model->graph->size();
   s.mechanics = std::make_unique<Mechanics>(mechanics(*model));
   s.classes = classify(*s.mechanics);
-  s.notes = model->notes;
+  s.notes.clear();
+  for (const ModelNote& n : model->notes) s.notes.push_back(n.text);
   const std::vector<double> parameters = parameter_values<double>(*model);
   // Without formulas for all given functions there are no numbers, but there is a structure.
   const bool numbers = model->unknown_functions.empty();

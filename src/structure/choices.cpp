@@ -121,25 +121,19 @@ void StateSolver<N>::mark_undetermined(Stage<N>& stage, const InitialState<N>& b
   }
 }
 
-static const char* const kLeastChange =
-    " at the start, the least change that satisfies the constraints: other values in [initial]";
-
-// Says which positions and velocities were chosen by least change, in place of a note of this kind that was made before:
-// what it names and is still chosen is named again, with its value now.
+// Says which positions and velocities were chosen by least change, in place of the note that was made before: what it names and
+// is still chosen is named again, with its value now.
 template <Number N>
 void StateSolver<N>::say_least_change() {
-  const auto is_one = [](const std::string& note) { return note.ends_with(kLeastChange); };
-  if (const auto said = std::find_if(state_.notes.begin(), state_.notes.end(), is_one); said != state_.notes.end()) {
-    for (const Column* list : {&m_.q, &m_.qd})
-      for (Expr x : *list) {
-        const Node n = node(x);
-        const bool known = std::any_of(changed_least_.begin(), changed_least_.end(),
-                                       [&](const Node& o) { return o.index == n.index && o.order == n.order; });
-        if (!known && *state_.origin(n) == Origin::chosen && said->find(" " + entry_name(n) + " = ") != said->npos)
-          changed_least_.push_back(n);
-      }
-    state_.notes.erase(said);
+  LeastChangeNote& said = state_.least_change;
+  for (const Node& n : said.entries) {
+    const bool known = std::any_of(changed_least_.begin(), changed_least_.end(),
+                                   [&](const Node& o) { return o.index == n.index && o.order == n.order; });
+    if (!known && *state_.origin(n) == Origin::chosen) changed_least_.push_back(n);
   }
+  if (said.place) state_.notes.erase(state_.notes.begin() + static_cast<std::ptrdiff_t>(*said.place));
+  said = {changed_least_, std::nullopt};
+  if (changed_least_.empty()) return;
   constexpr std::size_t kNamed = 8;  // the table of `check` shows all
   std::string list;
   for (std::size_t k = 0; k < changed_least_.size() && k < kNamed; ++k) {
@@ -147,7 +141,9 @@ void StateSolver<N>::say_least_change() {
     list += (list.empty() ? "" : ", ") + entry_name(n) + " = " + number_text(to_double(*state_.value(n)), 6);
   }
   if (changed_least_.size() > kNamed) list += ", …";
-  if (!list.empty()) state_.notes.push_back("a choice: " + list + kLeastChange);
+  said.place = state_.notes.size();
+  state_.notes.push_back("a choice: " + list +
+                         " at the start, the least change that satisfies the constraints: other values in [initial]");
 }
 
 #define INSTANTIATE(N)                                                                                                 \

@@ -1,6 +1,7 @@
 // The initial state during its computation: every value with its origin.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,12 @@ struct Level {
   std::vector<Origin> origin;
 };
 
+// The note on positions and velocities that the least change has chosen.
+struct LeastChangeNote {
+  std::vector<Node> entries;         // that it names
+  std::optional<std::size_t> place;  // among the notes of the state
+};
+
 template <Number N>
 struct InitialState {
   N t{0};
@@ -31,6 +38,7 @@ struct InitialState {
   std::vector<Origin> states_origin, state_rates_origin;
   N largest_correction{0};         // the largest correction of a given value
   std::vector<std::string> notes;  // the choices made
+  LeastChangeNote least_change;
 
   // Takes all values away; the memory of the lists is kept for the next state.
   void clear() {
@@ -39,6 +47,7 @@ struct InitialState {
     higher.clear(), multipliers.clear();
     states.clear(), state_rates.clear(), states_origin.clear(), state_rates_origin.clear();
     notes.clear();
+    least_change = {};
   }
 
   // q_a^(k) or lambda_r^(k); null for orders that the state does not hold, and for other symbols.

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "cli/say.h"
-#include "modelfile/contacts.h"
 
 namespace anholon::cli {
 
@@ -14,9 +13,9 @@ static bool cyclic(const Conserved& c) { return c.name.rfind("momentum of ", 0) 
 
 // In which modes of contacts and of constraints with 'active' the equations hold, if the model has any.
 static std::string modes(const Model& model) {
-  for (const std::string& note : model.notes)
-    if (note.find(kOpenContacts) != std::string::npos)
-      return note.starts_with("contact") ? "no contact touches" : "the modes are those of the start";
+  for (const ModelNote& note : model.notes)
+    if (note.of_modes())
+      return note.about == ModelNote::About::open_contacts ? "no contact touches" : "the modes are those of the start";
   return "";
 }
 

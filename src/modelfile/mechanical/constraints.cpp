@@ -170,8 +170,9 @@ std::vector<Contact> ConstraintReader::switched() {
       const double value = evaluate_parameters<double>(*model_.graph, values).back();
       values.pop_back();
       const bool holds = value > 0;
-      model_.notes.push_back("constraint '" + c.name + "' is " + (holds ? "" : "no ") + kOpenContacts +
-                             "the modes are those of the start");
+      model_.notes.push_back({"constraint '" + c.name + "' is " + (holds ? "" : "no ") +
+                                  "part of these equations, which hold while the modes are those of the start",
+                              ModelNote::About::modes_of_start});
       if (!holds) return;
       c.held->at_start = model_.constraints.size();
       model_.constraints.push_back({c.name, c.gap, c.held->order, c.held->equation, c.span});

@@ -82,9 +82,6 @@ std::map<std::string, std::string> column_units(const std::vector<Contact>& cont
 // How a coefficient of a contact is varied, if a word such as "floor.friction" names one; else empty.
 std::string hint_for_coefficient(const std::string& name);
 
-// In the notes of a model whose contacts are open, or whose modes are those of the start.
-inline constexpr const char* kOpenContacts = "part of these equations, which hold while ";
-
 // Whether a [[constraint]] has one_sided = true. Throws Failure if that is neither true nor false.
 bool is_one_sided(const Item& constraint);
 

@@ -15,7 +15,7 @@ class EquationsSection {
 
   std::string write() const {
     std::string out;
-    for (const std::string& note : model_.notes) out += "<p>" + user(sentence(note)) + "</p>\n";
+    for (const ModelNote& note : model_.notes) out += "<p>" + user(sentence(note.text)) + "</p>\n";
     for (std::size_t k = 0; k < p_.equations.size(); ++k) {
       const Derivation& d = p_.equations[k];
       out += "<article class=\"form\"><h3>" + markup_escape(d.form->title) + "</h3><p class=\"source\">" +
