@@ -84,6 +84,8 @@ class Iteration {
     return true;
   }
 
+  // True if run() has come to a solution, and to the nearest of its neighbours if that was asked for.
+  bool settled() const { return settled_ && solved(); }
   // True if run() made full steps only, from a point at which the equations are independent.
   bool direct() const { return direct_; }
 
@@ -337,14 +339,17 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
       // Then to the nearest of a family of solutions, and to all digits. Another solution is farther by more than round-off.
       const std::vector<N> there = newton.point();
       const N farther = N(2) * newton.distance();
-      if (!newton.run_to_nearest() || !newton.solved() || newton.distance() > farther) newton.go_to(there);
+      if (!newton.run(true) || !newton.settled() || newton.distance() > farther) {
+        newton.go_to(there);
+        newton.descend();
+      }
       return true;
     }
     newton.go_to(newton.guess());
   }
   const bool value = newton.run_to_nearest();
   const bool solved = value && newton.solved();
-  if ((solved && newton.direct()) || free.empty() || s.linear()) return value;
+  if ((solved && (by_flow || newton.direct())) || free.empty() || s.linear()) return value;
   const InitialState<N> first = state;
   const std::vector<bool> moved = held(s, free);
   std::vector<N> best;
