@@ -93,11 +93,9 @@ class SweepRequest:
 
     def _recipe(self) -> str:
         model = self._model
-        # The text of the model is in the folder; a text that refers to further files is read where it lies.
-        path = "" if model._core.stands_alone or model._again.text is not None else model._again.name
         mode = {"mode": list(model._again.mode)} if model._again.mode else {}
         return json.dumps(
-            {"path": path, "set": model._given, "case": model._cases, **mode, "form": self._form, "initial": self._initial, "words": self._words}
+            {"set": model._given, "case": model._cases, **mode, "form": self._form, "initial": self._initial, "words": self._words}
         )
 
 

@@ -277,6 +277,34 @@ def test_motions_of_a_folder_of_the_command_line(tmp_path: pathlib.Path) -> None
     assert folder.run(0).model.parameters["m"] == 2
 
 
+def test_a_folder_keeps_the_files_of_its_model(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The motion of a case and its missing parts follow from the folder alone, wherever it is opened."""
+    place = tmp_path / "models"
+    place.mkdir()
+    (place / "thrust.csv").write_text("0,1\n3,2\n6,-1\n")
+    (place / "below.toml").write_text(
+        'coordinates = ["x"]\nparameters.k = 1\nparticle = [{name = "p", mass = 1, position = "x*ex"}]\n'
+        'table = [{name = "f", file = "thrust.csv"}]\nforce = [{point = "p", vector = "(f(t) - k*x)*ex"}]\ninitial.x = 1\n'
+    )
+    (place / "cart.toml").write_text('base = "below.toml"\ninitial.x = 2\n')
+    monkeypatch.chdir(place)
+    made = an.load("cart.toml").sweep({"k": [1, 2, 3]}, to=6, out=tmp_path / "f", chunk=1)
+    expected, before = made["x"].tolist(), hashes(tmp_path / "f")
+    subprocess.run([sys.executable, "-c", FILLED_ELSEWHERE, str(tmp_path / "f"), str(place)], check=True, cwd=tmp_path)
+    assert hashes(tmp_path / "f") == before
+    assert an.open_sweep(tmp_path / "f").run(1)["x"][-1] == pytest.approx(expected[1], rel=1e-9)
+    assert an.open_sweep(tmp_path / "f").run(1).model.with_(k=3).simulate(to=6)["x"][-1] == pytest.approx(expected[2], rel=1e-9)
+
+
+FILLED_ELSEWHERE = """
+import os, shutil, sys
+import anholon as an
+shutil.rmtree(sys.argv[2])
+os.remove(sys.argv[1] + "/part-000001.parquet")
+assert an.open_sweep(os.path.relpath(sys.argv[1])).fill().missing == []
+"""
+
+
 def test_motions_of_scenarios_of_the_command_line(tmp_path: pathlib.Path) -> None:
     model = tmp_path / "spring.toml"
     model.write_text(

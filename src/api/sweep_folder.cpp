@@ -48,8 +48,12 @@ std::vector<std::pair<std::string, std::string>> asked_of(const PreparedSweep& p
   // The mode comes first: messages name it before the title that tells it, too.
   add("mode", inner::joined(model.mode, " ")), add("title", system.model->model->title),
       add("model", model.source.text);
-  const std::vector<inner::SourceText>& others = model.model->source_text.others;
-  for (std::size_t k = 0; k < others.size(); ++k) add("base file " + std::to_string(k + 1), others[k].text);
+  for (const PreparedPiece& piece : p.pieces) {
+    // Each scenario may have tables of its own; the base files are the same.
+    inner::SourceText source = piece.system.data().model->model->source_text;
+    if (&piece != &first) source.others.clear();
+    add_files(all, source);
+  }
   std::string set;
   for (const auto& [name, value] : model.overrides) set += (set.empty() ? "" : " ") + name + "=" + value;
   add("set", set), add("case", inner::joined(model.cases, " ")), add("form", forms_of(p));
@@ -128,6 +132,16 @@ std::size_t SweepFolder::chunk() const { return data_->store.request().chunk; }
 const std::vector<std::string>& SweepFolder::columns() const { return data_->store.request().columns; }
 const std::string& SweepFolder::recipe() const { return data_->store.request().recipe; }
 const std::string& SweepFolder::asked(const std::string& name) const { return data_->store.asked(name); }
+
+bool SweepFolder::keeps_files() const {
+  const inner::SourceText source = model_asked(data_->store.request());
+  return !source.others.empty() || !source.tables.empty();
+}
+
+Result<Model> SweepFolder::model(const ReadOptions& options) const {
+  const inner::SourceText source = model_asked(data_->store.request());
+  return guarded(source, [&] { return v1::opened(source, options); });
+}
 
 Result<std::vector<std::size_t>> SweepFolder::missing() const {
   return told([&]() -> Result<std::vector<std::size_t>> { return data_->now().missing(); });

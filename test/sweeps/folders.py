@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Sweeps in folders: whatever happens to the processes, what is collected has the bytes of one quiet sweep.
 
-    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model part status plot watched refine page outside
+    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model tables part status plot watched refine page outside
     folders.py --self-test                                  a part with other numbers is found
 
 Kills come at random moments. Nothing is lost but parts under way, and nothing is left behind that a later process does not clear.
@@ -141,6 +141,32 @@ class Folders:
         shutil.rmtree(self.folder)
         _, error = self.run("sweep", "status", str(self.folder), status=2)
         must("is no folder of a sweep" in error, error)
+
+    def tables(self):
+        """The data file of a table belongs to the request, and the folder keeps it."""
+        model, data = self.place / "cart.toml", self.place / "thrust.csv"
+        model.write_text(
+            'coordinates = ["x"]\nparameters.k = 1\nparticle = [{name = "p", mass = 1, position = "x*ex"}]\n'
+            'table = [{name = "f", file = "thrust.csv"}]\nforce = [{point = "p", vector = "(f(t) - k*x)*ex"}]\ninitial.x = 1\n'
+        )
+        data.write_text("0,1\n3,2\n6,-1\n")
+        words = ["sweep", str(model), "--vary", "k=1:3:4", "--to", "6", "--chunk", "1", "--quiet", "-o", f"{self.folder}/"]
+        self.run(*words, status=0)
+        part = self.folder / "part-000001.parquet"
+        before = part.read_bytes()
+        part.unlink()
+        data.write_text("0,1\n3,-2\n6,-1\n")
+        _, error = self.run(*words, status=2)
+        must("holds another sweep: data file thrust.csv differs" in error and not part.exists(), error)
+        data.write_text("0,1\n3,2\n6,-1\n")
+        self.run(*words, status=0)
+        must(part.read_bytes() == before, "the part has other bytes")
+        data.unlink()
+        model.unlink()
+        page = self.place / "page.html"
+        self.run("plot", str(self.folder), "x", "--motions", "2", "-o", str(page), status=0)
+        must("<canvas" in page.read_text(), "no motions")
+        shutil.rmtree(self.folder)
 
     def part(self):
         """A part that was changed by hand is named; without it the command computes it again."""
@@ -415,7 +441,7 @@ class Folders:
             must(message in error and not self.folder.exists(), error)
 
 
-PARTS = ["kill", "stop", "two", "shards", "disk", "model", "part", "status", "plot", "watched", "refine", "page", "outside"]
+PARTS = ["kill", "stop", "two", "shards", "disk", "model", "tables", "part", "status", "plot", "watched", "refine", "page", "outside"]
 
 
 def run_parts(arguments):

@@ -149,6 +149,7 @@ std::vector<SweepPiece> pieces_of(std::deque<Part>& parts) {
 
 // Everything on which the rows depend.
 std::vector<std::pair<std::string, std::string>> asked_of(const RunInfo& info, const SweepCommand& o,
+                                                          const std::deque<Part>& parts,
                                                           const std::string& table_text) {
   std::vector<std::pair<std::string, std::string>> all;
   const auto add = [&](const std::string& name, const std::string& text) {
@@ -157,8 +158,13 @@ std::vector<std::pair<std::string, std::string>> asked_of(const RunInfo& info, c
   // The mode comes first: messages name it before the title that tells it, too.
   if (const auto mode = info.settings.find("mode"); mode != info.settings.end()) add("mode", joined(mode->second, " "));
   add("title", info.title);
-  for (std::size_t k = 0; k < info.model.size(); ++k)
-    add(k == 0 ? "model" : "base file " + std::to_string(k), info.model[k].text);
+  add("model", parts.front().in.source.text);
+  for (const Part& p : parts) {
+    // Each scenario may have tables of its own; the base files are the same.
+    SourceText source = p.in.model->source_text;
+    if (&p != &parts.front()) source.others.clear();
+    add_files(all, source);
+  }
   for (const auto& [name, words] : info.settings)
     if (name != "model_sha256" && name != "error-estimate" && name != "mode") add(name, joined(words, " "));
   add("vary", joined(o.varied, " ")), add("table of cases", table_text), add("n", o.case_count), add("draw", o.draw);
@@ -226,7 +232,7 @@ int sweep(const SweepCommand& asked) {
   if (names_folder(o.output))
     // Each scenario has settings of its own, which follow from its name.
     return sweep_into_folder(o, {pieces_of(parts),
-                                 asked_of(names.empty() ? info : info_with(first.asked.motion), asked, table_text),
+                                 asked_of(names.empty() ? info : info_with(first.asked.motion), asked, parts, table_text),
                                  cases, parts.size() == 1 ? &*first.variation : nullptr});
   for (const auto& [option, word] :
        {std::pair{"--shard", &o.shard}, {"--chunk", &o.chunk}, {"--refine", &o.refine}, {"--refine-by", &o.refine_by}})

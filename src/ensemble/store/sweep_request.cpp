@@ -1,8 +1,10 @@
 #include "ensemble/store/sweep_request.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include <nlohmann/json.hpp>
 
-#include "base/diagnostic.h"
 #include "base/json.h"
 
 namespace anholon {
@@ -10,6 +12,12 @@ namespace anholon {
 namespace {
 
 constexpr int kVersion = 1;
+constexpr const char *kBase = "base file ", *kTable = "data file ";
+
+// A text as JSON gives it back: bytes that are not UTF-8 are lost.
+std::string as_kept(const std::string& text) {
+  return nlohmann::json::parse(JsonWriter().string(text).text()).get<std::string>();
+}
 
 }  // namespace
 
@@ -61,6 +69,26 @@ SweepRequest request_of(const std::string& text, const std::string& path) {
     r.model_name = named->get<std::string>();
   if (const auto made = j.find("program"); made != j.end() && made->is_string()) r.program = made->get<std::string>();
   return r;
+}
+
+void add_files(std::vector<std::pair<std::string, std::string>>& asked, const SourceText& model) {
+  for (std::size_t k = 0; k < model.others.size(); ++k)
+    asked.emplace_back(kBase + std::to_string(k + 1), model.others[k].text);
+  for (const SourceText& s : model.tables) {
+    const std::string name = as_kept(kTable + s.name);
+    if (std::none_of(asked.begin(), asked.end(), [&](const auto& each) { return each.first == name; }))
+      asked.emplace_back(name, as_kept(s.text));
+  }
+}
+
+SourceText model_asked(const SweepRequest& r) {
+  SourceText source{r.model_name.empty() ? "model" : r.model_name, {}};
+  for (const auto& [name, text] : r.asked) {
+    if (name == "model") source.text = text;
+    if (name.starts_with(kBase)) source.others.push_back({name, text});
+    if (name.starts_with(kTable)) source.tables.push_back({name.substr(std::strlen(kTable)), text});
+  }
+  return source;
 }
 
 std::vector<std::string> judgement_text(const std::string& json) {

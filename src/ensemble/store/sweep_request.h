@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/diagnostic.h"
+
 namespace anholon {
 
 struct SweepRequest {
@@ -26,6 +28,12 @@ struct SweepRequest {
 std::string request_json(const SweepRequest& request, const std::string& program);
 // Throws Failure without a place; `path` names the file in messages.
 SweepRequest request_of(const std::string& json, const std::string& path);
+
+// Adds the files to which the text of a model refers, by name: its base files in their order, and the data files of its
+// tables that are not there yet.
+void add_files(std::vector<std::pair<std::string, std::string>>& asked, const SourceText& model);
+// The text of the model that was asked for, with these files. A model without a name is called "model", as no base file is.
+SourceText model_asked(const SweepRequest& request);
 
 // The sentences of a judgement, which is kept as JSON; empty if the text holds none.
 std::vector<std::string> judgement_text(const std::string& json);
