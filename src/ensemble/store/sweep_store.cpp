@@ -86,13 +86,21 @@ std::string read_or_fail(const std::string& path) {
   return text;
 }
 
-// The number of a part by the name of its file.
+// The name of the file of a part.
+std::string name_of(std::size_t part) {
+  std::string number = std::to_string(part);
+  constexpr std::size_t kDigits = 6;
+  if (number.size() < kDigits) number.insert(0, kDigits - number.size(), '0');
+  return std::string(kPart) + number + std::string(kEnding);
+}
+
+// The number of a part by the name of its file; nullopt of any other file, such as a copy part-2.parquet.
 std::optional<std::size_t> part_of(std::string_view name) {
   if (!name.starts_with(kPart) || !name.ends_with(kEnding)) return std::nullopt;
-  name.remove_prefix(kPart.size()), name.remove_suffix(kEnding.size());
+  const std::string_view digits = name.substr(kPart.size(), name.size() - kPart.size() - kEnding.size());
   std::size_t number = 0;
-  const auto [end, why] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (why != std::errc() || end != name.data() + name.size()) return std::nullopt;
+  const auto [end, why] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (why != std::errc() || end != digits.data() + digits.size() || name_of(number) != name) return std::nullopt;
   return number;
 }
 
@@ -288,12 +296,7 @@ std::pair<std::size_t, std::size_t> SweepStore::range(std::size_t part) const {
   return {from, std::min(of.first_case + of.cases, from + request_.chunk)};
 }
 
-std::string SweepStore::path_of(std::size_t part) const {
-  std::string number = std::to_string(part);
-  constexpr std::size_t kDigits = 6;
-  if (number.size() < kDigits) number.insert(0, kDigits - number.size(), '0');
-  return folder_ + "/" + std::string(kPart) + number + std::string(kEnding);
-}
+std::string SweepStore::path_of(std::size_t part) const { return folder_ + "/" + name_of(part); }
 
 std::vector<std::size_t> SweepStore::present() const {
   std::vector<std::size_t> list;

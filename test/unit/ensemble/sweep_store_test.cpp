@@ -76,6 +76,15 @@ TEST_F(SweepStoreTest, APartCountsOnce) {
   EXPECT_EQ(files_of(folder).size(), 2U) << "nothing unfinished is left";
 }
 
+TEST_F(SweepStoreTest, ACopyOfAPartIsNoPart) {
+  const SweepStore store = SweepStore::open(folder, request(), "1");
+  EXPECT_EQ(store.commit(2, part(8, 10)), "");
+  for (const char* name : {"part-2.parquet", "part-0000002.parquet", "part-000002.parquet.parquet"})
+    fs::copy_file(folder / "part-000002.parquet", folder / name);
+  EXPECT_EQ(store.present(), (std::vector<std::size_t>{2}));
+  EXPECT_EQ(store.progress().cases, 2U);
+}
+
 TEST_F(SweepStoreTest, RefusesAnotherSweep) {
   SweepStore::open(folder, request(), "1");
   SweepRequest other = request();
