@@ -211,6 +211,9 @@ void Variation::add(const std::string& name, const std::vector<Constant>& values
 }
 
 void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) {
+  const auto is_case = [](const auto& quantity) { return quantity.name == "case"; };
+  table->must_number_cases(model.cases, std::any_of(model.parameters.begin(), model.parameters.end(), is_case) ||
+                                            std::any_of(model.coordinates.begin(), model.coordinates.end(), is_case));
   const std::size_t axis = new_axis(table->rows());
   std::vector<GivenQuantity> quantities;
   for (std::size_t k = 0; k < table->names().size(); ++k) {
