@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Sweeps in folders: whatever happens to the processes, what is collected has the bytes of one quiet sweep.
 
-    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model tables part status plot watched refine page outside
+    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model tables part judgement status plot watched refine page outside
     folders.py --self-test                                  a part with other numbers is found
 
 Kills come at random moments. Nothing is lost but parts under way, and nothing is left behind that a later process does not clear.
@@ -182,6 +182,21 @@ class Folders:
         must("1 of 20 parts are missing" in error, error)
         self.run("sweep", "collect", str(self.folder), "--partial", "-o", str(self.place / "some.csv"), status=0)
         self.run(*self.into())
+        self.check()
+
+    def judgement(self):
+        """A judgement that was damaged is named; without it the command judges again."""
+        self.run(*self.into())
+        judgement = self.folder / "_judgement.json"
+        before = judgement.read_bytes()
+        for wrong in ("garbage", "", "{}", "[]"):
+            judgement.write_text(wrong)
+            for words in (["sweep", "status", str(self.folder)], ["sweep", "status", str(self.folder), "--json"], self.into()):
+                _, error = self.run(*words, status=2)
+                must("_judgement.json is damaged" in error and "remove it" in error, error)
+        judgement.unlink()
+        self.run(*self.into())
+        must(judgement.read_bytes() == before, "another judgement")
         self.check()
 
     def status(self):
@@ -441,7 +456,7 @@ class Folders:
             must(message in error and not self.folder.exists(), error)
 
 
-PARTS = ["kill", "stop", "two", "shards", "disk", "model", "tables", "part", "status", "plot", "watched", "refine", "page", "outside"]
+PARTS = ["kill", "stop", "two", "shards", "disk", "model", "tables", "part", "judgement", "status", "plot", "watched", "refine", "page", "outside"]
 
 
 def run_parts(arguments):

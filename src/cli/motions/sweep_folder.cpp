@@ -112,13 +112,15 @@ std::string generation_list(const SweepStore& store) {
 
 // The sentences that say how far the cases can be trusted.
 void say_judgement(const SweepStore& store, std::FILE* to) {
-  for (const std::string& line : judgement_text(store.judgement())) say(to, "%s\n", line.c_str());
+  const std::string judgement = store.judgement();
+  if (judgement.empty()) return;
+  for (const std::string& line : *judgement_text(judgement)) say(to, "%s\n", line.c_str());
 }
 
 // A JSON object, to which the judgement of the folder is added.
 std::string with_judgement(std::string object, const SweepStore& store) {
   const std::string judgement = store.judgement();
-  if (judgement_text(judgement).empty()) return object;
+  if (judgement.empty()) return object;
   object.resize(object.rfind('}'));
   while (object.ends_with('\n') || object.ends_with(' ')) object.pop_back();
   return object + ",\n  \"judgement\": " + judgement.substr(0, judgement.find_last_not_of('\n') + 1) + "\n}";

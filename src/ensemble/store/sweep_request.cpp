@@ -91,14 +91,15 @@ SourceText model_asked(const SweepRequest& r) {
   return source;
 }
 
-std::vector<std::string> judgement_text(const std::string& json) {
+std::optional<std::vector<std::string>> judgement_text(const std::string& json) {
   using Json = nlohmann::ordered_json;
-  std::vector<std::string> lines;
   const Json j = Json::parse(json, nullptr, false);
-  if (!j.is_object()) return lines;
-  if (const auto text = j.find("text"); text != j.end() && text->is_array())
-    for (const Json& line : *text)
-      if (line.is_string()) lines.push_back(line.get<std::string>());
+  if (!j.is_object()) return std::nullopt;
+  const auto text = j.find("text");
+  if (text == j.end() || !text->is_array()) return std::nullopt;
+  std::vector<std::string> lines;
+  for (const Json& line : *text)
+    if (line.is_string()) lines.push_back(line.get<std::string>());
   return lines;
 }
 

@@ -1,6 +1,7 @@
 // The request of a sweep in a folder, and its file sweep.json. (doc/sweeps.md)
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,7 +36,7 @@ void add_files(std::vector<std::pair<std::string, std::string>>& asked, const So
 // The text of the model that was asked for, with these files. A model without a name is called "model", as no base file is.
 SourceText model_asked(const SweepRequest& request);
 
-// The sentences of a judgement, which is kept as JSON; empty if the text holds none.
-std::vector<std::string> judgement_text(const std::string& json);
+// The sentences of a judgement, which is kept as JSON; nullopt if the text is none.
+std::optional<std::vector<std::string>> judgement_text(const std::string& json);
 
 }  // namespace anholon

@@ -346,8 +346,12 @@ ParquetTable SweepStore::read(std::size_t part) const {
 }
 
 std::string SweepStore::judgement() const {
+  const std::string path = folder_ + "/" + kJudgement;
   std::string text;
-  return read_file(folder_ + "/" + kJudgement, text, nullptr) ? text : std::string();
+  if (!read_file(path, text, nullptr)) return {};
+  if (!judgement_text(text))
+    throw Failure({}, path + " is damaged", "remove it; the same command of the sweep writes it again");
+  return text;
 }
 
 std::string SweepStore::add_judgement(const std::string& json) const {

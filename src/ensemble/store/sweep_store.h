@@ -79,8 +79,9 @@ class SweepStore {
 
   std::string path_of(std::size_t part) const;
 
-  // How far the cases can be trusted, a JSON object; empty if the folder does not say so. The first text that is added
-  // stays. Returns an empty string, or the reason why it could not be written.
+  // How far the cases can be trusted, a JSON object; empty if the folder does not say so. Throws Failure without a place if
+  // the text is damaged. The first text that is added stays; adding returns an empty string, or the reason why it could
+  // not be written.
   std::string judgement() const;
   std::string add_judgement(const std::string& json) const;
 
