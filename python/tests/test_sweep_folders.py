@@ -148,8 +148,11 @@ def test_borders_are_refined_whoever_computes(tmp_path: pathlib.Path, disc: an.M
     # The grid is halved between neighbours, and only at some places.
     spins = np.unique(once["phi'(0)"])
     assert np.isclose(np.diff(spins).min(), 0.125) and once.cases < 49 * 33 / 2
-    with pytest.raises(an.ModelError, match="was refined by 'theta:0.5'"):
-        once.fill(refine=3, refine_by=("theta", 0.25))
+    for generations in (3, 2, 1):
+        with pytest.raises(an.ModelError, match="was refined by 'theta:0.5'"):
+            once.fill(refine=generations, refine_by=("theta", 0.25))
+    with pytest.raises(an.ModelError, match="was refined by 'theta:0.5', not by these alone"):
+        disc.sweep(GRID, to=3, out=tmp_path / "once", refine=1)
     with pytest.raises(an.ModelError, match="lies no grid"):
         disc.sweep({"m": [1, 3, 2]}, to=1, out=tmp_path / "none", refine=1)
 

@@ -242,6 +242,7 @@ Result<std::size_t> SweepFolder::refine(const std::string& word, std::optional<s
     const PreparedSweep& p = prepared(*data_);
     inner::SweepStore store = data_->now();
     const inner::RefineRule rule = rule_for(p, columns(), word);
+    must_go_on(store, rule);
     const std::size_t next = store.generations().size();
     if (number && *number < next) return store.generations()[*number].cases;
     if (number && *number > next)
@@ -336,11 +337,14 @@ static Result<SweepFolder> opened(std::shared_ptr<const PreparedSweep> prepared,
   TabledPieces tabled(*prepared);
   inner::SweepRequest request{asked_of(*prepared), {}, prepared->cases, chunk, recipe};
   for (const inner::SweepColumn& c : tabled.tables.front().columns()) request.columns.push_back(c.name);
-  if (refine) rule_for(*prepared, request.columns, *refine);
+  std::optional<inner::RefineRule> rule;
+  if (refine) rule = rule_for(*prepared, request.columns, *refine);
   if (chunk > inner::kMostInPart) return mistake("a part has at most " + std::to_string(inner::kMostInPart) + " cases");
   if (chunk == 0) request.chunk = inner::SweepStore::is_there(folder) ? 1 : inner::cases_in_part(tabled.pieces);
-  return SweepFolder(std::make_shared<const SweepFolder::Data>(
-      SweepFolder::Data{inner::SweepStore::open(folder, request, "anholon " ANHOLON_VERSION), std::move(prepared)}));
+  inner::SweepStore store = inner::SweepStore::open(folder, request, "anholon " ANHOLON_VERSION);
+  if (rule) must_go_on(store, *rule);
+  return SweepFolder(
+      std::make_shared<const SweepFolder::Data>(SweepFolder::Data{std::move(store), std::move(prepared)}));
 }
 
 Result<SweepFolder> sweep_into(const System& system, const SweepOptions& asked, const std::string& folder,

@@ -349,13 +349,17 @@ class Folders:
         must(alone.read_text().splitlines()[1].split(",")[1:] == rows[-1].split(",")[1:], "a refined case has other numbers than alone")
 
         # Another rule, no grid, a plan that was changed.
-        _, error = self.run(*self.refined(self.folder, "--refine", "4", rule="theta:0.2"), status=2)
-        must("refined by 'theta:0.25', not by 'theta:0.2'" in error, error)
+        for generations in "4", "3", "1":
+            _, error = self.run(*self.refined(self.folder, "--refine", generations, rule="theta:0.2"), status=2)
+            must("refined by 'theta:0.25', not by 'theta:0.2'" in error, error)
+        _, error = self.run(*self.refined(self.folder, "--refine", "2", rule=""), status=2)
+        must("refined by 'theta:0.25', not by these alone" in error, error)
         for words, rule, message in [
             (["--vary", "m~normal(1,0.1)", "-n", "200"], "", "lies no grid"),
             (["--vary", "m=1,3,2"], "", "neither ascend nor descend"),
             (["--columns", "theta"], "", "without the column 'outcome'"),
             (["--columns", "theta"], "theta:1", None),
+            ([], "outcome:1", "the column 'outcome' holds words"),
             (["--columns", "phi"], "theta:1", "keeps no column 'theta'"),
             ([], "thta:1", "did you mean 'theta'"),
             ([], "theta", "COLUMN:BOUND"),

@@ -216,6 +216,7 @@ int sweep_into_folder(const SweepCommand& o, const FolderSweep& sweep) {
   const Refinement refinement = refinement_of(o, sweep, request.columns);
   if (request.chunk == 0) request.chunk = SweepStore::is_there(o.output) ? 1 : cases_in_part(sweep.pieces);
   SweepStore store = SweepStore::open(o.output, request, "anholon " ANHOLON_VERSION);
+  if (refinement.generations > 0) must_go_on(store, refinement.rule);
   if (!o.chunk.empty() && store.request().chunk != request.chunk)
     say(stderr, "note: the parts of %s have %zu cases; --chunk holds for new folders\n", store.folder().c_str(),
         store.request().chunk);
