@@ -328,11 +328,19 @@ std::vector<Rational> Variation::between(std::span<const std::int64_t> places, u
   return out;
 }
 
-void must_not_be_given(const std::vector<Varied>& varied, const StateChoice& state) {
-  for (const StateOverride& given : state.overrides)
-    for (const Varied& v : varied)
+void must_not_be_given(const std::vector<Varied>& varied, const StateChoice& state,
+                       const std::vector<std::string>& parameters) {
+  const auto refuse = [](const Varied& v) {
+    throw Failure({}, "'" + v.name + "' is both given and varied", "leave out one of them");
+  };
+  for (const Varied& v : varied) {
+    if (v.kind == Varied::Kind::parameter &&
+        std::find(parameters.begin(), parameters.end(), v.name) != parameters.end())
+      refuse(v);
+    for (const StateOverride& given : state.overrides)
       if (v.kind == Varied::Kind::initial && !given.multiplier && given.coordinate == v.index && given.order == v.order)
-        throw Failure({}, "'" + v.name + "' is both given and varied", "leave out one of them");
+        refuse(v);
+  }
 }
 
 }  // namespace anholon

@@ -114,7 +114,9 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   p.variation = variation_of(o, *p.in.model, table, !p.word.empty());
   EnsembleOptions& e = p.options;
   e.state = state_choice(o, *p.in.model);
-  must_not_be_given(p.variation->varied(), e.state);
+  std::vector<std::string> set;
+  for (const std::string& word : split(o.set)) set.push_back(normal_name(word.substr(0, word.find('='))));
+  must_not_be_given(p.variation->varied(), e.state, set);
   e.varied = p.variation->varied();
   e.state.open_parameters = varied_parameters(e);
   e.cases = p.variation->cases();
@@ -148,9 +150,8 @@ std::vector<SweepPiece> pieces_of(std::deque<Part>& parts) {
 }
 
 // Everything on which the rows depend.
-std::vector<std::pair<std::string, std::string>> asked_of(const RunInfo& info, const SweepCommand& o,
-                                                          const std::deque<Part>& parts,
-                                                          const std::string& table_text) {
+std::vector<std::pair<std::string, std::string>>
+asked_of(const RunInfo& info, const SweepCommand& o, const std::deque<Part>& parts, const std::string& table_text) {
   std::vector<std::pair<std::string, std::string>> all;
   const auto add = [&](const std::string& name, const std::string& text) {
     if (!text.empty()) all.emplace_back(name, text);
@@ -231,9 +232,9 @@ int sweep(const SweepCommand& asked) {
   const RunInfo info = info_with(merged(o.motion, first.in.model->simulate));
   if (names_folder(o.output))
     // Each scenario has settings of its own, which follow from its name.
-    return sweep_into_folder(o, {pieces_of(parts),
-                                 asked_of(names.empty() ? info : info_with(first.asked.motion), asked, parts, table_text),
-                                 cases, parts.size() == 1 ? &*first.variation : nullptr});
+    return sweep_into_folder(
+        o, {pieces_of(parts), asked_of(names.empty() ? info : info_with(first.asked.motion), asked, parts, table_text),
+            cases, parts.size() == 1 ? &*first.variation : nullptr});
   for (const auto& [option, word] :
        {std::pair{"--shard", &o.shard}, {"--chunk", &o.chunk}, {"--refine", &o.refine}, {"--refine-by", &o.refine_by}})
     if (!word->empty())
