@@ -355,7 +355,7 @@ def open_sweep(folder: str | os.PathLike[str]) -> SweepFolder:
         >>> try:
         ...     an.open_sweep(tempfile.mkdtemp())
         ... except an.ModelError as error:
-        ...     print("holds no sweep.json" in str(error))
+        ...     print("holds no _sweep.json" in str(error))
         True
     """
     return SweepFolder(_core.open_sweep(os.fspath(folder)))

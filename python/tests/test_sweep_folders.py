@@ -50,6 +50,13 @@ def test_frames_have_the_same_columns(quiet: pathlib.Path) -> None:
     assert list(folder.to_pandas(["theta", "x"]).columns) == ["theta", "x"]
 
 
+def test_pandas_reads_a_folder_as_one_table(quiet: pathlib.Path) -> None:
+    import pandas
+
+    read = pandas.read_parquet(quiet, engine="pyarrow")
+    assert read["case"].tolist() == list(range(60)) and read["theta"].tolist() == an.open_sweep(quiet)["theta"].tolist()
+
+
 def test_a_model_travels_to_another_process(disc: an.Model) -> None:
     heavy = pickle.loads(pickle.dumps(disc.with_(m=2)))
     assert heavy.parameters == disc.with_(m=2).parameters and heavy.text == disc.text

@@ -66,7 +66,7 @@ class Folders:
     def check(self):
         """The folder holds the whole sweep and nothing else, with the right numbers."""
         names = sorted(os.listdir(self.folder))
-        must(names == ["_judgement.json"] + [f"part-{k:06}.parquet" for k in range(20)] + ["sweep.json"], f"in the folder: {names}")
+        must(names == ["_judgement.json", "_sweep.json"] + [f"part-{k:06}.parquet" for k in range(20)], f"in the folder: {names}")
         collected = self.place / "all.csv"
         self.run("sweep", "collect", str(self.folder), "--quiet", "-o", str(collected), status=0)
         must(self.hash(collected) == self.expected, "what was collected has other bytes")
@@ -79,7 +79,7 @@ class Folders:
             time.sleep(random.uniform(0, 0.25))
             process.kill()
             process.communicate()
-            if (self.folder / "sweep.json").exists():
+            if (self.folder / "_sweep.json").exists():
                 self.run("sweep", "status", str(self.folder))
         self.run(*self.into())
         self.check()
@@ -421,7 +421,7 @@ class Folders:
     def outside(self):
         """Mistakes from outside: each is named, and nothing is overwritten."""
         self.run(*self.into())
-        part, request = self.folder / "part-000001.parquet", self.folder / "sweep.json"
+        part, request = self.folder / "part-000001.parquet", self.folder / "_sweep.json"
         whole, text = part.read_bytes(), request.read_text()
         for wrong, message in [(whole[:1000], "no whole Parquet file"), (b"", "no whole Parquet file")]:
             part.write_bytes(wrong)
@@ -436,11 +436,22 @@ class Folders:
             request.write_text(wrong)
             for words in (["sweep", "status", str(self.folder)], self.into(), ["plot", str(self.folder), "-o", "x.svg"]):
                 _, error = self.run(*words, status=2)
-                must("sweep.json" in error and ("does not tell of a sweep" in error or "is damaged" in error), error)
+                must("_sweep.json" in error and ("does not tell of a sweep" in error or "is damaged" in error), error)
             must(request.read_text() == wrong, "a damaged file was overwritten")
         request.unlink()
         _, error = self.run(*self.into(), status=2)
-        must("its sweep.json is missing" in error, error)
+        must("its _sweep.json is missing" in error, error)
+        # A folder of an earlier version has the request under another name, and was made by another program.
+        older = self.folder / "sweep.json"
+        older.write_text(text.replace('"program": "anholon ', '"program": "anholon 0.0.1 before '))
+        part.unlink()
+        self.run("sweep", "status", str(self.folder), status=1)
+        _, error = self.run(*self.into())
+        must("was made by anholon 0.0.1 before" in error and part.read_bytes() == whole, error)
+        _, error = self.run(*self.into())
+        must("was made by" not in error, error)
+        must(not request.exists(), "a second request")
+        older.unlink()
         request.write_text(text)
         self.check()
         for share in ("3/2", "0/2", "1/0", "a/b", "1", "-1/2", "1/2/3", "99999999999999999999/2"):

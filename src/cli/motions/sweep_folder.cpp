@@ -24,6 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kProgram = "anholon " ANHOLON_VERSION;
+
 // --shard i/N: every N-th part, from the i-th on.
 struct Shard {
   std::size_t number = 1, of = 1;
@@ -215,7 +217,10 @@ int sweep_into_folder(const SweepCommand& o, const FolderSweep& sweep) {
   for (const SweepColumn& c : sweep.pieces.front().table->columns()) request.columns.push_back(c.name);
   const Refinement refinement = refinement_of(o, sweep, request.columns);
   if (request.chunk == 0) request.chunk = SweepStore::is_there(o.output) ? 1 : cases_in_part(sweep.pieces);
-  SweepStore store = SweepStore::open(o.output, request, "anholon " ANHOLON_VERSION);
+  SweepStore store = SweepStore::open(o.output, request, kProgram);
+  if (const std::string& made_by = store.request().program; made_by != kProgram && !store.missing().empty())
+    say(stderr, "note: %s was made by %s, and %s computes the parts that are missing: their last digits may differ\n",
+        store.folder().c_str(), made_by.empty() ? "another program" : made_by.c_str(), kProgram);
   if (refinement.generations > 0) must_go_on(store, refinement.rule);
   if (!o.chunk.empty() && store.request().chunk != request.chunk)
     say(stderr, "note: the parts of %s have %zu cases; --chunk holds for new folders\n", store.folder().c_str(),
@@ -330,7 +335,7 @@ int sweep_collect(const SweepFolderCommand& o) {
                      " parts are missing in " + store.folder() +
                      "\nhint: the command of the sweep computes them; --partial collects those that are there\n"};
   SweepInfo info;
-  info.origin.title = store.asked("title"), info.origin.created_by = "anholon " ANHOLON_VERSION;
+  info.origin.title = store.asked("title"), info.origin.created_by = kProgram;
   info.origin.command = o.command_line;
   info.origin.model.push_back({store.folder(), store.asked("model")});
   info.form = store.asked("form");

@@ -1,4 +1,4 @@
-// The request of a sweep in a folder, and its file sweep.json. (doc/sweeps.md)
+// The request of a sweep in a folder, and its file _sweep.json. (doc/sweeps.md)
 #pragma once
 #include <cstddef>
 #include <optional>

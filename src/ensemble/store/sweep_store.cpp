@@ -22,11 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRequest = "sweep.json";
 constexpr std::string_view kPart = "part-", kEnding = ".parquet";
 constexpr const char *kSweepNote = "anholon.sweep", *kFirstNote = "anholon.first", *kOutcomesNote = "anholon.outcomes",
                      *kRuleNote = "anholon.rule";
-// Readers of a folder as one table leave out names that begin so.
+// Readers of a folder as one table leave out names that begin so. A folder may have the request under the second name,
+// which pandas takes for a part.
+constexpr const char *kRequest = "_sweep.json", *kOtherRequest = "sweep.json";
 constexpr const char* kPlan = "_generation-";
 constexpr const char* kJudgement = "_judgement.json";
 constexpr const char* kRemove = "remove it; the same command of the sweep computes it again";
@@ -73,6 +74,13 @@ std::string create_folder(const std::string& folder) {
   fs::create_directories(folder, why);
   if (why && !fs::is_directory(folder)) return "cannot create the folder " + folder + ": " + why.message();
   return {};
+}
+
+// The name of the request in a folder.
+const char* request_in(const std::string& folder) {
+  std::error_code none;
+  const bool other = !fs::exists(folder + "/" + kRequest, none) && fs::exists(folder + "/" + kOtherRequest, none);
+  return other ? kOtherRequest : kRequest;
 }
 
 std::string without_slash(std::string folder) {
@@ -166,7 +174,7 @@ SweepStore::SweepStore(std::string folder, SweepRequest request)
 
 bool SweepStore::is_there(const std::string& folder) {
   std::error_code none;
-  return fs::is_regular_file(folder + "/" + kRequest, none);
+  return fs::is_regular_file(folder + "/" + request_in(folder), none);
 }
 
 SweepStore SweepStore::open(const std::string& named) {
@@ -174,7 +182,8 @@ SweepStore SweepStore::open(const std::string& named) {
   if (!is_there(folder))
     throw Failure({}, folder + " is no folder of a sweep: it holds no " + kRequest,
                   "anholon sweep MODEL --vary … -o " + folder + "/ makes one");
-  SweepStore store{folder, request_of(read_or_fail(folder + "/" + kRequest), folder + "/" + kRequest)};
+  const std::string path = folder + "/" + request_in(folder);
+  SweepStore store{folder, request_of(read_or_fail(path), path)};
   store.look_for_generations();
   return store;
 }
@@ -329,7 +338,7 @@ std::string SweepStore::commit(std::size_t part, ParquetTable rows) const {
 void SweepStore::check(std::size_t part, const std::string& path, std::string_view belongs,
                        std::string_view first) const {
   if (belongs != id_ || first != std::to_string(range(part).first))
-    throw Failure({}, path + " belongs to another sweep, or " + kRequest + " was changed", kRemove);
+    throw Failure({}, path + " belongs to another sweep, or " + request_in(folder_) + " was changed", kRemove);
 }
 
 ParquetTable SweepStore::read(std::size_t part) const {

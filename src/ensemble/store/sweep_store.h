@@ -1,4 +1,4 @@
-// A sweep in a folder: sweep.json says what was asked, and each part file holds a range of the cases.
+// A sweep in a folder: _sweep.json says what was asked, and each part file holds a range of the cases.
 //
 // A part is written once and never changed, so a range may be computed twice and counts once: two processes that compute
 // the same cases write the same bytes. The same request opens the folder again and computes what is missing; another

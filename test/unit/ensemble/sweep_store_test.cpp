@@ -132,7 +132,7 @@ TEST_F(SweepStoreTest, RefusesForeignFoldersAndParts) {
   for (const std::string text :
        {"", "{", "[]", "{\"format\": 3}", "{\"format\": \"anholon sweep\", \"format_version\": 9}",
         "{\"format\": \"anholon sweep\", \"format_version\": 1, \"cases\": -1}"}) {
-    std::ofstream(folder / "sweep.json") << text;
+    std::ofstream(folder / "_sweep.json") << text;
     EXPECT_NE(message([&] { SweepStore::open(folder.string()); }), "no failure") << text;
   }
 }
