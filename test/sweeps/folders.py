@@ -213,8 +213,15 @@ class Folders:
         alone = json.loads(self.run(*[w for w in SWEEP if w != "--quiet"], "--json")[0])
         must(told["error_estimate"] == alone["error_estimate"] and told["residuals"] == alone["residuals"], f"{told}\n{alone['residuals']}")
         must(told["residuals"]["checked"] and told["residuals"]["newton"]["worst"] < 1e-9, str(told))
-        collected = json.loads(self.run("sweep", "collect", str(self.folder), "--json", status=0)[0])
-        must(collected["report"]["judgement"] == told if "report" in collected else collected["judgement"] == told, str(list(collected)))
+        # So is the report of a collected file, and why cases stopped.
+        report, _ = self.run(*[w for w in SWEEP if w != "--quiet"], "--json")
+        must(self.run("sweep", "collect", str(self.folder), "--json", status=0)[0] == report, "the JSON of collect differs")
+        stopped = json.loads(report)["stopped"]
+        must(len(stopped) > 0 and sum(s["cases"] for s in stopped) == 40 and stopped[0]["first"] == 3, str(stopped))
+        must(json.loads(self.run("sweep", "status", str(self.folder), "--json", status=0)[0])["stopped"] == stopped, "status tells other reasons")
+        line = f"stopped ({stopped[0]['outcome']}), 40 cases, first case 3: {stopped[0]['message']}\nhint: {stopped[0]['hint']}"
+        for out in (self.run("sweep", "status", str(self.folder))[0], self.run("sweep", "collect", str(self.folder))[1], self.run(*self.into())[1]):
+            must(line in out, out)
         self.check()
 
 

@@ -244,7 +244,7 @@ int sweep(const SweepCommand& asked) {
   const std::string write_error = out.close(r);
   if (!o.quiet) report_sweep(r, cases, out);
   report_without_value(r);
-  report_stopped(out);
+  report_stopped(out.stopped());
   if (!r.outcome.ok() && (write_error.empty() || stop_requested())) {
     print_outcome(r.outcome);
     if (!o.output.empty() && write_error.empty())

@@ -14,6 +14,7 @@
 #include "cli/say.h"
 #include "cli/stop.h"
 #include "ensemble/parts/judgement.h"
+#include "ensemble/parts/sweep_report.h"
 #include "ensemble/refine/refine.h"
 #include "result/file.h"
 #include "result/parquet/parquet_sweep.h"
@@ -134,6 +135,25 @@ void say_progress(const SweepStore& store, const SweepStore::Progress& p) {
   if (const std::string list = generation_list(store); !list.empty()) say(stderr, "generations: %s\n", list.c_str());
 }
 
+// Cases that stopped, of the parts that tell it.
+StoppedByKind stopped_of(const SweepStore::Progress& p) {
+  StoppedByKind all;
+  for (const std::string& note : p.stopped) add_stopped(all, note);
+  return all;
+}
+
+// How many cases finished. Outcomes are those of rows, as many of each case; without them the cases that stopped tell it.
+std::size_t finished_of(const SweepStore::Progress& p) {
+  std::size_t rows = 0, finished = p.cases;
+  for (const auto& [outcome, count] : p.outcomes) rows += count;
+  if (rows >= p.cases && p.cases > 0) {
+    const auto at = p.outcomes.find(name(OutcomeKind::finished));
+    return at == p.outcomes.end() ? 0 : at->second / (rows / p.cases);
+  }
+  for (const auto& [kind, stopped] : stopped_of(p)) finished -= std::min(finished, stopped.count);
+  return finished;
+}
+
 bool all_finished(const SweepStore::Progress& p) {
   const auto finished = p.outcomes.find(name(OutcomeKind::finished));
   return p.outcomes.empty() || (p.outcomes.size() == 1 && finished != p.outcomes.end());
@@ -244,6 +264,7 @@ int sweep_into_folder(const SweepCommand& o, const FolderSweep& sweep) {
   const SweepStore::Progress p = store.progress();
   if (p.parts == p.all_parts && !judge(sweep, store)) return stopped_early(o, store);
   if (!o.quiet) say_progress(store, p), say_judgement(store, stderr);
+  report_stopped(stopped_of(p));
   if (!o.quiet && p.parts < p.all_parts)
     say(stderr, "this share is complete; the others are missing: %zu parts\n", p.all_parts - p.parts);
   if (waits && shard.of > 1) {
@@ -310,13 +331,16 @@ int sweep_status(const SweepFolderCommand& o) {
       count("parts", p.parts_there[g]), count("all_parts", of.parts);
       j.close();
     }
-    hand_out(with_judgement(j.close().close().text(), store) + "\n");
+    std::string object = j.close().close().text();
+    object.resize(object.rfind('\n'));
+    hand_out(with_judgement(object + ",\n  \"stopped\": " + stopped_json(stopped_of(p)) + "\n}", store) + "\n");
     return p.parts == p.all_parts ? kOk : kStopped;
   }
   say(stdout, "%s: %zu of %zu parts, %zu of %zu cases\n", store.folder().c_str(), p.parts, p.all_parts, p.cases,
       p.all_cases);
   if (const std::string list = generation_list(store); !list.empty()) say(stdout, "generations: %s\n", list.c_str());
   if (!p.outcomes.empty()) say(stdout, "outcomes: %s\n", outcome_list(p.outcomes).c_str());
+  report_stopped(stopped_of(p), stdout);
   say_judgement(store, stdout);
   if (p.parts < p.all_parts && p.cases_per_second > 0)
     say(stdout, "lately %.3g cases per second; %s left\n", p.cases_per_second, duration(left(p)).c_str());
@@ -338,7 +362,7 @@ int sweep_collect(const SweepFolderCommand& o) {
   info.origin.title = store.asked("title"), info.origin.created_by = kProgram;
   info.origin.command = o.command_line;
   info.origin.model.push_back({store.folder(), store.asked("model")});
-  info.form = store.asked("form");
+  info.form = store.asked("form").empty() ? "routh" : store.asked("form");
   std::unique_ptr<SweepWriter> file;
   std::size_t cases = 0;
   for (const std::size_t part : parts) {
@@ -354,14 +378,12 @@ int sweep_collect(const SweepFolderCommand& o) {
   }
   if (!file) throw UsageError{"error: no part is in " + store.folder() + "\n"};
   const SweepStore::Progress p = store.progress();
-  JsonWriter j;
-  j.open_object().key("cases").integer(static_cast<long long>(cases)).key("outcomes").open_object();
-  for (const auto& [outcome, count] : p.outcomes) j.key(outcome).integer(static_cast<long long>(count));
-  if (const std::string why = file->close(with_judgement(j.close().close().text(), store)); !why.empty()) {
+  const CollectedReport report{stopped_of(p), store.judgement(), cases, finished_of(p)};
+  if (const std::string why = file->close(sweep_report_json(report)); !why.empty()) {
     say(stderr, "error: %s\n", why.c_str());
     return kBadInput;
   }
-  if (!o.quiet) say_progress(store, p), say_judgement(store, stderr);
+  if (!o.quiet) say_progress(store, p), say_judgement(store, stderr), report_stopped(report.stopped);
   return kOk;
 }
 

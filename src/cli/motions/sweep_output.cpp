@@ -51,9 +51,9 @@ void report_without_value(const EnsembleReport& r) {
         name.c_str(), cases);
 }
 
-void report_stopped(const SweepOutput& out) {
-  for (const auto& [kind, stopped] : out.stopped())
-    say(stderr, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,
+void report_stopped(const StoppedByKind& all, std::FILE* to) {
+  for (const auto& [kind, stopped] : all)
+    say(to, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,
         stopped.count == 1 ? "case" : "cases", stopped.first, stopped.outcome.message.c_str(),
         stopped.outcome.hint.c_str());
 }

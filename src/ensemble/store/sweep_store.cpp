@@ -324,7 +324,9 @@ std::vector<std::size_t> SweepStore::missing() const {
 }
 
 std::string SweepStore::commit(std::size_t part, ParquetTable rows) const {
-  rows.notes = {{kSweepNote, id_}, {kFirstNote, std::to_string(range(part).first)}, {kOutcomesNote, outcomes_of(rows)}};
+  const std::vector<std::pair<std::string, std::string>> notes{
+      {kSweepNote, id_}, {kFirstNote, std::to_string(range(part).first)}, {kOutcomesNote, outcomes_of(rows)}};
+  rows.notes.insert(rows.notes.begin(), notes.begin(), notes.end());
   const std::string bytes = parquet_bytes(rows), path = path_of(part);
   const Committed done = commit_file(folder_, fs::path(path).filename().string(), bytes);
   if (done.how != Committed::How::other) return done.error;
@@ -393,6 +395,7 @@ SweepStore::Progress SweepStore::progress() const {
     ++p.parts, p.cases += to - from;
     ++p.parts_there[generation_of(generations_, from)];
     add_outcomes(notes.note(kOutcomesNote), p.outcomes);
+    if (const std::string_view stopped = notes.note(kStoppedNote); !stopped.empty()) p.stopped.emplace_back(stopped);
     written.emplace_back(read.written, to - from);
   }
   // Rows of a table may be several for a case, so cases are counted by ranges.
