@@ -195,6 +195,9 @@ EnsembleReport compute(std::deque<Part>& parts, std::size_t cases, SweepOutput& 
 }  // namespace
 
 int sweep(const SweepCommand& asked) {
+  if (asked.json && names_folder(asked.output))
+    throw UsageError{"error: --json is the format of a file, and " + asked.output +
+                     " is a folder\nhint: anholon sweep status " + asked.output + " --json tells how far it is\n"};
   const ResultFormat& format = sweep_format(asked.output, asked.json);
   SweepCommand o = asked;
   const std::vector<std::string> names = cases_of_file(o.varied);

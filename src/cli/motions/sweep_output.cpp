@@ -33,6 +33,8 @@ const ResultFormat& sweep_format(const std::string& output, bool json) {
   check_ending(output, sweep_formats());
   if (named && named->missing)
     throw UsageError{"error: " + std::string(named->missing) + "\nhint: " + named->missing_hint + "\n"};
+  if (json && named && named != &report_format())
+    throw UsageError{"error: --json and '" + output + "' ask for two formats\nhint: leave out --json\n"};
   if (json) return report_format();
   return named ? *named : plain_format();
 }
