@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "ensemble/columns.h"
 
@@ -56,6 +57,16 @@ void SweepTable::choose(const std::vector<std::size_t>& columns) {
   for (std::size_t k : columns) add(k);
   const std::size_t reductions = 1 + varied_ + kBeforeState + state_;
   for (std::size_t k = 0; k < reduced_; ++k) add(reductions + k);
+}
+
+void SweepTable::must_tell_columns_apart() const {
+  std::set<std::string> names;
+  for (const SweepColumn& c : columns())
+    if (!names.insert(c.name).second)
+      throw Failure(
+          {}, "two columns of the sweep are called '" + c.name + "'",
+          "case, case_name, outcome, event, t and steps are columns of sweeps; another name in the model, or --columns "
+          "that leaves one of them out");
 }
 
 void SweepTable::add_word(const std::string& name) {

@@ -140,6 +140,7 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
     p.table->choose(chosen_columns(all, names));
   }
   if (!p.word.empty()) p.table->add_word("case_name");
+  p.table->must_tell_columns_apart();
   return true;
 }
 
