@@ -57,6 +57,24 @@ def test_pandas_reads_a_folder_as_one_table(quiet: pathlib.Path) -> None:
     assert read["case"].tolist() == list(range(60)) and read["theta"].tolist() == an.open_sweep(quiet)["theta"].tolist()
 
 
+def test_an_array_is_over_all_cases_while_parts_are_missing(tmp_path: pathlib.Path, disc: an.Model) -> None:
+    for place, times in (("end", []), ("rows", [0.25, 0.5])):
+        options: dict[str, Any] = {"to": 1, "at": times, "chunk": 2, "columns": ["outcome", "theta", "steps"]}
+        whole = disc.sweep({"phi'": [5, 6, 7, 8, 9]}, out=tmp_path / place, **options)
+        expected, steps, rows = whole["theta"], whole["steps"], max(1, len(times))
+        lean = expected[3 * rows]
+        (tmp_path / place / "part-000000.parquet").unlink()
+        assert whole["theta"].shape == expected.shape and np.isnan(whole["theta"][: 2 * rows]).all()
+        assert np.array_equal(whole["theta"][2 * rows :], expected[2 * rows :]) and np.array_equal(whole["steps"][2 * rows :], steps[2 * rows :])
+        assert whole["case"].tolist() == np.repeat(np.arange(5), rows).tolist()
+        assert whole["outcome"].tolist() == [""] * (2 * rows) + ["finished"] * (3 * rows)
+        assert whole.where({"theta": (lean, lean)}).tolist() == [3] and whole.where({"outcome": ""}).size == 0
+        assert whole.to_dict(["case"])["case"].tolist() == np.repeat([2, 3, 4], rows).tolist()
+        for part in (1, 2):
+            (tmp_path / place / f"part-00000{part}.parquet").unlink()
+        assert np.isnan(whole["theta"]).all() and whole["theta"].size == 5
+
+
 def test_a_model_travels_to_another_process(disc: an.Model) -> None:
     heavy = pickle.loads(pickle.dumps(disc.with_(m=2)))
     assert heavy.parameters == disc.with_(m=2).parameters and heavy.text == disc.text
