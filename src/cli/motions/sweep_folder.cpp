@@ -115,9 +115,9 @@ std::string generation_list(const SweepStore& store) {
 
 // The sentences that say how far the cases can be trusted.
 void say_judgement(const SweepStore& store, std::FILE* to) {
-  const std::string judgement = store.judgement();
-  if (judgement.empty()) return;
-  for (const std::string& line : *judgement_text(judgement)) say(to, "%s\n", line.c_str());
+  const auto lines = judgement_text(store.judgement());
+  if (!lines) return;
+  for (const std::string& line : *lines) say(to, "%s\n", line.c_str());
 }
 
 // A JSON object, to which the judgement of the folder is added.
