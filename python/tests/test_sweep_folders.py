@@ -312,7 +312,7 @@ def test_a_folder_keeps_the_files_of_its_model(tmp_path: pathlib.Path, monkeypat
     (place / "thrust.csv").write_text("0,1\n3,2\n6,-1\n")
     (place / "below.toml").write_text(
         'coordinates = ["x"]\nparameters.k = 1\nparticle = [{name = "p", mass = 1, position = "x*ex"}]\n'
-        'table = [{name = "f", file = "thrust.csv"}]\nforce = [{point = "p", vector = "(f(t) - k*x)*ex"}]\ninitial.x = 1\n'
+        'table = [{name = "f", file = "thrust.csv"}]\nforce = [{on = "p", vector = "(f(t) - k*x)*ex"}]\ninitial.x = 1\n'
     )
     (place / "cart.toml").write_text('base = "below.toml"\ninitial.x = 2\n')
     monkeypatch.chdir(place)

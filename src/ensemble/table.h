@@ -40,7 +40,8 @@ class SweepTable {
   std::vector<std::size_t> chosen_;
   std::size_t varied_, state_, reduced_;
   std::vector<double> times_;
-  bool named_ = false;  // the column of a word is there
+  bool named_ = false;    // the column of a word is there
+  bool chooses_ = false;  // columns were chosen
   std::vector<SweepCell> all_, cells_;
 };
 

@@ -147,7 +147,7 @@ class Folders:
         model, data = self.place / "cart.toml", self.place / "thrust.csv"
         model.write_text(
             'coordinates = ["x"]\nparameters.k = 1\nparticle = [{name = "p", mass = 1, position = "x*ex"}]\n'
-            'table = [{name = "f", file = "thrust.csv"}]\nforce = [{point = "p", vector = "(f(t) - k*x)*ex"}]\ninitial.x = 1\n'
+            'table = [{name = "f", file = "thrust.csv"}]\nforce = [{on = "p", vector = "(f(t) - k*x)*ex"}]\ninitial.x = 1\n'
         )
         data.write_text("0,1\n3,2\n6,-1\n")
         words = ["sweep", str(model), "--vary", "k=1:3:4", "--to", "6", "--chunk", "1", "--quiet", "-o", f"{self.folder}/"]
@@ -165,7 +165,8 @@ class Folders:
         model.unlink()
         page = self.place / "page.html"
         self.run("plot", str(self.folder), "x", "--motions", "2", "-o", str(page), status=0)
-        must("<canvas" in page.read_text(), "no motions")
+        motions = page.read_text().split('<script type="application/json" id="motions">')[1].split("</script>")[0]
+        must(len(json.loads(motions)) == 2, "no motions")
         shutil.rmtree(self.folder)
 
     def part(self):
