@@ -39,7 +39,7 @@ class CaseTable {
   std::size_t header_ = 0;          // where its line begins
   std::vector<std::size_t> lines_;  // where they begin
   std::vector<std::string> names_;
-  std::vector<std::size_t> places_;  // of the names among the cells of a line
+  std::vector<std::size_t> places_;    // of the names among the cells of a line
   std::optional<std::size_t> number_;  // the place of a column "case"
 };
 

@@ -11,7 +11,7 @@
 #include <random>
 #include <thread>
 
-#include "ensemble/parts/sweep_report.h"
+#include "ensemble/store/stopped.h"
 #include "result/parquet/parquet_sweep.h"
 
 namespace anholon {

@@ -125,7 +125,8 @@ TEST(Json, KeepsWords) {
   RunFile run;
   run.table = table_of("case,outcome,event,x\n0,finished,,1.5\n1,\"a, \"\"b\"\"\",far,\n");
   const std::string text = json_run(run);
-  EXPECT_NE(text.find("[[0, \"finished\", null, 1.5], [1, \"a, \\\"b\\\"\", \"far\", null]]"), std::string::npos) << text;
+  EXPECT_NE(text.find("[[0, \"finished\", null, 1.5], [1, \"a, \\\"b\\\"\", \"far\", null]]"), std::string::npos)
+      << text;
   const RunTable again = read_json_run(text).table;
   EXPECT_EQ(again.text(0, 1), "finished");
   EXPECT_EQ(again.text(1, 1), "a, \"b\"");
