@@ -1,8 +1,5 @@
 #include "ensemble/store/stopped.h"
 
-#include <nlohmann/json.hpp>
-
-#include "base/diagnostic.h"
 #include "base/json.h"
 
 namespace anholon {
@@ -24,28 +21,6 @@ std::string stopped_json(const StoppedByKind& stopped) {
     first = false;
   }
   return text + (first ? "" : "\n  ") + "]";
-}
-
-void add_stopped(StoppedByKind& all, const std::string& json) {
-  try {
-    const nlohmann::json list = nlohmann::json::parse(json);
-    for (const nlohmann::json& each : list) {
-      StoppedCases next{each.at("cases"), each.at("first"), {}};
-      const std::string called = each.at("outcome");
-      auto kind = OutcomeKind::finished;
-      while (kind != OutcomeKind::too_large && called != name(kind))
-        kind = static_cast<OutcomeKind>(static_cast<std::uint8_t>(kind) + 1);
-      next.outcome = {kind, each.at("message"), each.at("hint")};
-      StoppedCases& known = all[kind];
-      next.count += known.count;
-      if (known.count == 0 || next.first < known.first)
-        known = std::move(next);
-      else
-        known.count = next.count;
-    }
-  } catch (const nlohmann::json::exception&) {
-    throw Failure({}, "what a part tells of cases that stopped is damaged");
-  }
 }
 
 }  // namespace anholon

@@ -20,7 +20,5 @@ void count_stopped(StoppedByKind& stopped, std::size_t number, const Outcome& ou
 
 // A list in JSON: outcome, cases, first, message, hint of each kind. A part keeps that of its cases as a note.
 std::string stopped_json(const StoppedByKind& stopped);
-// Adds the cases of such a list. Throws Failure without a place if the text is none.
-void add_stopped(StoppedByKind& all, const std::string& json);
 
 }  // namespace anholon

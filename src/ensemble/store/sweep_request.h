@@ -1,4 +1,4 @@
-// The request of a sweep in a folder, and its file _sweep.json. (doc/sweeps.md)
+// The request of a sweep in a folder, its file _sweep.json, and other texts in JSON that the folder keeps. (doc/sweeps.md)
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/diagnostic.h"
+#include "ensemble/store/stopped.h"
 
 namespace anholon {
 
@@ -38,5 +39,8 @@ SourceText model_asked(const SweepRequest& request);
 
 // The sentences of a judgement, which is kept as JSON; nullopt if the text is none.
 std::optional<std::vector<std::string>> judgement_text(const std::string& json);
+
+// Adds the cases of a list that stopped_json wrote. Throws Failure without a place if the text is none.
+void add_stopped(StoppedByKind& all, const std::string& json);
 
 }  // namespace anholon
