@@ -86,6 +86,14 @@ TEST(Csv, WordsMakeAColumnOfWords) {
   EXPECT_TRUE(std::isnan(t.values[1][1]));
 }
 
+// The first cases of a sweep may have no event.
+TEST(Csv, AColumnOfWordsMayBeginEmpty) {
+  const RunTable t = table_of("case,event,x\n0,,1\n1,far,\n2,,3\n");
+  EXPECT_EQ(t.text(1, 1), "far");
+  EXPECT_EQ(t.values[2][2], 3);
+  EXPECT_EQ(trouble("case,x\n0,1\n1,\n2,far\n"), "4:3: 'far' is not a number");
+}
+
 // What a kill leaves of a row is no row.
 TEST(Csv, TheRestOfAKilledRun) {
   const RunFile run = read_csv("t,x,y\n0,1,2\n0.5,1.2");
