@@ -383,7 +383,7 @@ def _over_all(numbers: npt.NDArray[Any], values: npt.NDArray[Any], cases: int) -
     if values is numbers:
         return np.repeat(np.arange(cases), times)
     whole = np.full(cases * times, "", dtype=object) if values.dtype == object else np.full(cases * times, np.nan)
-    whole[numbers * times + np.arange(numbers.size) % times] = values
+    whole[numbers.astype(np.int64) * times + np.arange(numbers.size) % times] = values
     return whole
 
 
