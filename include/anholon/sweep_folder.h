@@ -57,6 +57,10 @@ class ANHOLON_API SweepFolder {
   const std::string& recipe() const;
   // What was asked, by name: "model", "vary", "to", "tolerance", …; empty if it was not.
   const std::string& asked(const std::string& name) const;
+  // Whether the text of the model refers to further files, which the folder keeps.
+  bool keeps_files() const;
+  // The model whose cases the folder holds, from its text and the files that the folder keeps. Errors: as `read_file`.
+  Result<Model> model(const ReadOptions& options = {}) const;
   // Numbers of parts, ascending. Errors: the folder cannot be read.
   Result<std::vector<std::size_t>> missing() const;
   Result<std::vector<std::size_t>> present() const;

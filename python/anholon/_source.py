@@ -9,14 +9,17 @@ from . import _core
 
 @dataclass(frozen=True)
 class Source:
-    """Where a model is read: a text with its name, or a file; and in which mode of its contacts."""
+    """Where a model is read: a text with its name, a file, or the folder of a sweep; and in which mode of its contacts."""
 
     text: str | None
     name: str
     mode: tuple[str, ...] = ()
+    folder: str = ""
 
     def __call__(self, given: dict[str, str], cases: list[str]) -> _core.Model:
         """Reads the model."""
+        if self.folder:
+            return _core.open_sweep(self.folder).model(given, cases, list(self.mode))
         if self.text is None:
             return _core.read_file(self.name, given, cases, list(self.mode))
         return _core.read_text(self.text, given, cases, list(self.mode), self.name)

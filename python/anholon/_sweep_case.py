@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import json
+import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _core
 from ._errors import ModelError
+from ._source import Source
 
 if TYPE_CHECKING:
     from .model import Model
@@ -64,14 +65,14 @@ def model_of(core: _core.SweepFolder, recipe: dict[str, Any]) -> Model:
 
 
 def _model(core: _core.SweepFolder, parameters: Mapping[str, str], scenarios: Sequence[str]) -> Model:
-    """The model of a folder. Its text is there; a text that refers to further files is read where Python found it."""
-    from .reading import load, loads
+    """The model of a folder, from its text there and from the files to which the text refers."""
+    from .model import made
+    from .reading import loads
 
-    path = json.loads(core.recipe)["path"] if core.recipe else ""
-    if not path and core.asked("base file 1"):
-        raise ModelError(f"the model of {core.path} refers to other files\nhint: anholon simulate with the numbers of the case")
-    given: Any = {"set": parameters, "case": scenarios}
-    model = load(path, **given) if path else loads(core.asked("model"), **given)
+    if core.keeps_files:
+        model = made(Source(None, "", folder=os.path.abspath(core.path)), dict(parameters), list(scenarios))
+    else:
+        model = loads(core.asked("model"), set=parameters, case=scenarios)
     mode = core.asked("mode").split()
     return model.in_mode(*mode) if mode else model
 

@@ -93,11 +93,9 @@ class SweepRequest:
 
     def _recipe(self) -> str:
         model = self._model
-        # The text of the model is in the folder; a text that refers to further files is read where it lies.
-        path = "" if model._core.stands_alone or model._again.text is not None else model._again.name
         mode = {"mode": list(model._again.mode)} if model._again.mode else {}
         return json.dumps(
-            {"path": path, "set": model._given, "case": model._cases, **mode, "form": self._form, "initial": self._initial, "words": self._words}
+            {"set": model._given, "case": model._cases, **mode, "form": self._form, "initial": self._initial, "words": self._words}
         )
 
 
@@ -124,12 +122,14 @@ def _key(folder: str) -> tuple[str, bytes]:
     import hashlib
 
     path = os.path.realpath(folder)
-    with open(os.path.join(path, "sweep.json"), "rb") as file:
+    # A folder of an earlier version has the second name.
+    names = [os.path.join(path, name) for name in ("_sweep.json", "sweep.json")]
+    with open(next(filter(os.path.exists, names), names[0]), "rb") as file:
         return path, hashlib.sha256(file.read()).digest()
 
 
 def computing(folder: str) -> _core.SweepFolder:
-    """The sweep of a folder, ready to be computed, from what its sweep.json says."""
+    """The sweep of a folder, ready to be computed, from what its _sweep.json says."""
     looked_at = _core.open_sweep(folder)
     key = _key(folder)
     if key not in _opened:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
@@ -28,8 +28,9 @@ if TYPE_CHECKING:
 class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
     """A sweep in a folder. It is read when it is asked, so it shows the parts that are there then.
 
-    ``folder["theta"]`` has one number for each case (each case and time with ``at``), in the order of the cases; columns of
-    words (``outcome``, ``event``, ``case_name``) are arrays of strings. Each part that is read is compared with the hash in its file.
+    ``folder["theta"]`` has one number for each case (each case and time with ``at``), in the order of the cases, NaN where the
+    part of the case is missing; columns of words (``outcome``, ``event``, ``case_name``) are arrays of strings, empty there.
+    :meth:`to_dict` and the frames have the rows of the parts that are there. Each part that is read is compared with the hash in its file.
 
     Example:
         >>> import anholon as an, tempfile
@@ -107,15 +108,24 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return self._core.progress().outcomes
 
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
-        """A column of the parts that are there, shape (cases,) or (cases * times,), in SI units.
+        """A column, shape (cases,) or (cases * times,), in SI units: ``folder["theta"][k]`` belongs to case k without ``at``.
+
+        A number is NaN, and a word empty, where the part of its case is missing; whole numbers are doubles then.
 
         Raises:
             KeyError: there is no such column.
             ModelError: a part was changed.
         """
-        if name not in self._core.columns:
-            raise KeyError(f"there is no column {name!r}; there are {', '.join(self._core.columns)}")
-        return _array(self._core.read([name])[0][1])
+        columns = self._columns(["case", name])
+        return _over_all(columns["case"], columns[name], self.cases) if "case" in columns else columns[name]
+
+    def _columns(self, names: Iterable[str]) -> dict[str, npt.NDArray[Any]]:
+        """Columns of the parts that are there, read at once; a folder of an earlier version may lack the column "case"."""
+        for name in names:
+            if name not in self._core.columns and name != "case":
+                raise KeyError(f"there is no column {name!r}; there are {', '.join(self._core.columns)}")
+        wanted = [name for name in dict.fromkeys(names) if name in self._core.columns]
+        return {name: _array(column) for name, column in self._core.read(wanted)}
 
     @property
     def generations(self) -> list[int]:
@@ -187,12 +197,14 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
         if not isinstance(conditions, Mapping):
             raise TypeError(f"conditions are given by column, as {{'outcome': 'finished', 'theta': (1, 2)}}, not as a {type(conditions).__name__}")
-        numbers = self["case"]
+        asked = [("case_name" if name == "case" and isinstance(wanted, str) else name, wanted) for name, wanted in conditions.items()]
+        columns = self._columns(["case", *(name for name, _ in asked)])
+        numbers = columns["case"]
         chosen = np.ones(numbers.shape, dtype=bool)
-        for name, wanted in conditions.items():
+        for name, wanted in asked:
             if isinstance(wanted, tuple) and len(wanted) != 2:
                 raise ValueError(f"{name}: a range is a pair (from, to), not {wanted!r:.60}")
-            column = self["case_name" if name == "case" and isinstance(wanted, str) else name]
+            column = columns[name]
             chosen &= (column >= wanted[0]) & (column <= wanted[1]) if isinstance(wanted, tuple) else column == wanted
         return np.unique(numbers[chosen])
 
@@ -277,7 +289,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return len(self._core.columns)
 
     def to_dict(self, columns: Sequence[str] = ()) -> dict[str, npt.NDArray[Any]]:
-        """Columns as arrays, all of them without names; each part is read once."""
+        """Columns of the parts that are there as arrays, all of them without names; each part is read once."""
         return {name: _array(column) for name, column in self._core.read(list(columns))}
 
     def to_pandas(self, columns: Sequence[str] = ()) -> pandas.DataFrame:
@@ -355,10 +367,24 @@ def open_sweep(folder: str | os.PathLike[str]) -> SweepFolder:
         >>> try:
         ...     an.open_sweep(tempfile.mkdtemp())
         ... except an.ModelError as error:
-        ...     print("holds no sweep.json" in str(error))
+        ...     print("holds no _sweep.json" in str(error))
         True
     """
     return SweepFolder(_core.open_sweep(os.fspath(folder)))
+
+
+def _over_all(numbers: npt.NDArray[Any], values: npt.NDArray[Any], cases: int) -> npt.NDArray[Any]:
+    """A column over all cases, from its rows in the parts that are there and the numbers of their cases, which ascend."""
+    import numpy as np
+
+    times = numbers.size // np.unique(numbers).size if numbers.size > 0 else 1
+    if numbers.size >= cases * times:
+        return values
+    if values is numbers:
+        return np.repeat(np.arange(cases), times)
+    whole = np.full(cases * times, "", dtype=object) if values.dtype == object else np.full(cases * times, np.nan)
+    whole[numbers.astype(np.int64) * times + np.arange(numbers.size) % times] = values
+    return whole
 
 
 def _array(column: Any) -> npt.NDArray[Any]:

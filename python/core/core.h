@@ -35,6 +35,10 @@ using namespace nb::literals;
 // Numbers come from Python as the texts of exact decimals or formulas.
 using Numbers = std::map<std::string, std::string>;
 std::map<std::string, Number> numbers(const Numbers& texts);
+using Words = std::vector<std::string>;
+inline ReadOptions read_options(const Numbers& set, const Words& cases, const Words& mode) {
+  return {numbers(set), cases, mode};
+}
 
 // Adds the method by which a notebook shows an object: a function of that name in anholon._display.
 template <class C>

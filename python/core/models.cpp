@@ -4,12 +4,6 @@ namespace anholon::python {
 
 namespace {
 
-using Words = std::vector<std::string>;
-
-ReadOptions read_options(const Numbers& set, const Words& cases, const Words& mode) {
-  return {numbers(set), cases, mode};
-}
-
 void bind_model(nb::module_& m) {
   nb::class_<Coordinate>(m, "Coordinate", "A coordinate of a model.")
       .def_ro("name", &Coordinate::name)
@@ -52,7 +46,6 @@ void bind_model(nb::module_& m) {
       .def_prop_ro("cases", &Model::cases)
       .def_prop_ro("remarks", &Model::remarks)
       .def_prop_ro("text", &Model::text)
-      .def_prop_ro("stands_alone", [](const Model& m) { return m.base_files() == 0; })
       .def("forms", [](const Model& model) { return value_of(interruptible([=] { return model.forms(); })); });
   m.def(
       "read_file",

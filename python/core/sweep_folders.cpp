@@ -1,6 +1,6 @@
 #include "anholon/page.h"
 #include "anholon/sweep_folder.h"
-#include "core.h"
+#include "interruptible.h"
 #include "sweep_options.h"
 
 namespace anholon::python {
@@ -57,6 +57,13 @@ void bind_sweep_folders(nb::module_& m) {
       .def_prop_ro("columns", &SweepFolder::columns)
       .def_prop_ro("recipe", &SweepFolder::recipe)
       .def("asked", &SweepFolder::asked, "name"_a)
+      .def_prop_ro("keeps_files", &SweepFolder::keeps_files)
+      .def(
+          "model",
+          [](const SweepFolder& f, const Numbers& set, const Words& cases, const Words& mode) {
+            return value_of(interruptible([=] { return f.model(read_options(set, cases, mode)); }));
+          },
+          "set"_a, "cases"_a, "mode"_a)
       .def("missing", [](const SweepFolder& f) { return value_of(unlocked([&] { return f.missing(); })); })
       .def("present", [](const SweepFolder& f) { return value_of(unlocked([&] { return f.present(); })); })
       .def("progress", [](const SweepFolder& f) { return value_of(unlocked([&] { return f.progress(); })); })

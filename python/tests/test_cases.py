@@ -202,7 +202,7 @@ def test_a_folder_of_a_file_with_a_base_tells_the_base(path: pathlib.Path, tmp_p
     top = tmp_path / "top.toml"
     top.write_text('base = "pendulum.toml"\n[case.short]\nparameters.l = 0.5\n')
     swept = an.load(top).sweep({"case": ["moon", "short"], "theta": [0.1, 0.2]}, out=tmp_path / "f", chunk=1)
-    assert "base file 1" in json.loads((tmp_path / "f" / "sweep.json").read_text())["asked"]
+    assert "base file 1" in json.loads((tmp_path / "f" / "_sweep.json").read_text())["asked"]
     # From any folder: the model is read where it lies.
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")

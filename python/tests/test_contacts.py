@@ -127,7 +127,7 @@ def test_a_sweep_in_a_mode(name: str, mode: str, vary: tuple[str, list[float]], 
         assert np.array_equal(memory[column], folder[column]), column
     # The mode belongs to the request, and each case has it when it moves again.
     for place_of in ("ours", "theirs"):
-        assert json.loads((tmp_path / place_of / "sweep.json").read_text())["asked"]["mode"] == mode
+        assert json.loads((tmp_path / place_of / "_sweep.json").read_text())["asked"]["mode"] == mode
         again = an.open_sweep(tmp_path / place_of)
         last = again.run(len(values) - 1)
         assert not last.events and np.isclose(last["z"][-1], again["z"][-1], rtol=1e-9)

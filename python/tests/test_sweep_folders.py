@@ -50,6 +50,31 @@ def test_frames_have_the_same_columns(quiet: pathlib.Path) -> None:
     assert list(folder.to_pandas(["theta", "x"]).columns) == ["theta", "x"]
 
 
+def test_pandas_reads_a_folder_as_one_table(quiet: pathlib.Path) -> None:
+    import pandas
+
+    read = pandas.read_parquet(quiet, engine="pyarrow")
+    assert read["case"].tolist() == list(range(60)) and read["theta"].tolist() == an.open_sweep(quiet)["theta"].tolist()
+
+
+def test_an_array_is_over_all_cases_while_parts_are_missing(tmp_path: pathlib.Path, disc: an.Model) -> None:
+    for place, times in (("end", []), ("rows", [0.25, 0.5])):
+        options: dict[str, Any] = {"to": 1, "at": times, "chunk": 2, "columns": ["outcome", "theta", "steps"]}
+        whole = disc.sweep({"phi'": [5, 6, 7, 8, 9]}, out=tmp_path / place, **options)
+        expected, steps, rows = whole["theta"], whole["steps"], max(1, len(times))
+        lean = expected[3 * rows]
+        (tmp_path / place / "part-000000.parquet").unlink()
+        assert whole["theta"].shape == expected.shape and np.isnan(whole["theta"][: 2 * rows]).all()
+        assert np.array_equal(whole["theta"][2 * rows :], expected[2 * rows :]) and np.array_equal(whole["steps"][2 * rows :], steps[2 * rows :])
+        assert whole["case"].tolist() == np.repeat(np.arange(5), rows).tolist()
+        assert whole["outcome"].tolist() == [""] * (2 * rows) + ["finished"] * (3 * rows)
+        assert whole.where({"theta": (lean, lean)}).tolist() == [3] and whole.where({"outcome": ""}).size == 0
+        assert whole.to_dict(["case"])["case"].tolist() == np.repeat([2, 3, 4], rows).tolist()
+        for part in (1, 2):
+            (tmp_path / place / f"part-00000{part}.parquet").unlink()
+        assert np.isnan(whole["theta"]).all() and whole["theta"].size == 5
+
+
 def test_a_model_travels_to_another_process(disc: an.Model) -> None:
     heavy = pickle.loads(pickle.dumps(disc.with_(m=2)))
     assert heavy.parameters == disc.with_(m=2).parameters and heavy.text == disc.text
@@ -86,7 +111,7 @@ def test_ctrl_c_keeps_complete_parts(tmp_path: pathlib.Path, disc: an.Model) -> 
     kept = stopped.value.result
     assert isinstance(kept, an.SweepFolder) and 0 < kept.progress().parts < kept.parts
     assert not [path for path in folder.iterdir() if path.name.startswith(".tmp-")]
-    assert kept["case"].size == kept.progress().cases
+    assert kept.to_dict(["case"])["case"].size == np.isfinite(kept["theta"]).sum() == kept.progress().cases
 
 
 def test_stop_and_progress(tmp_path: pathlib.Path, disc: an.Model) -> None:
@@ -148,8 +173,11 @@ def test_borders_are_refined_whoever_computes(tmp_path: pathlib.Path, disc: an.M
     # The grid is halved between neighbours, and only at some places.
     spins = np.unique(once["phi'(0)"])
     assert np.isclose(np.diff(spins).min(), 0.125) and once.cases < 49 * 33 / 2
-    with pytest.raises(an.ModelError, match="was refined by 'theta:0.5'"):
-        once.fill(refine=3, refine_by=("theta", 0.25))
+    for generations in (3, 2, 1):
+        with pytest.raises(an.ModelError, match="was refined by 'theta:0.5'"):
+            once.fill(refine=generations, refine_by=("theta", 0.25))
+    with pytest.raises(an.ModelError, match="was refined by 'theta:0.5', not by these alone"):
+        disc.sweep(GRID, to=3, out=tmp_path / "once", refine=1)
     with pytest.raises(an.ModelError, match="lies no grid"):
         disc.sweep({"m": [1, 3, 2]}, to=1, out=tmp_path / "none", refine=1)
 
@@ -275,6 +303,34 @@ def test_motions_of_a_folder_of_the_command_line(tmp_path: pathlib.Path) -> None
     for case in (0, 6):
         assert np.isclose(folder.run(case)["theta"][-1], folder["theta"][case], rtol=1e-10)
     assert folder.run(0).model.parameters["m"] == 2
+
+
+def test_a_folder_keeps_the_files_of_its_model(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The motion of a case and its missing parts follow from the folder alone, wherever it is opened."""
+    place = tmp_path / "models"
+    place.mkdir()
+    (place / "thrust.csv").write_text("0,1\n3,2\n6,-1\n")
+    (place / "below.toml").write_text(
+        'coordinates = ["x"]\nparameters.k = 1\nparticle = [{name = "p", mass = 1, position = "x*ex"}]\n'
+        'table = [{name = "f", file = "thrust.csv"}]\nforce = [{on = "p", vector = "(f(t) - k*x)*ex"}]\ninitial.x = 1\n'
+    )
+    (place / "cart.toml").write_text('base = "below.toml"\ninitial.x = 2\n')
+    monkeypatch.chdir(place)
+    made = an.load("cart.toml").sweep({"k": [1, 2, 3]}, to=6, out=tmp_path / "f", chunk=1)
+    expected, before = made["x"].tolist(), hashes(tmp_path / "f")
+    subprocess.run([sys.executable, "-c", FILLED_ELSEWHERE, str(tmp_path / "f"), str(place)], check=True, cwd=tmp_path)
+    assert hashes(tmp_path / "f") == before
+    assert an.open_sweep(tmp_path / "f").run(1)["x"][-1] == pytest.approx(expected[1], rel=1e-9)
+    assert an.open_sweep(tmp_path / "f").run(1).model.with_(k=3).simulate(to=6)["x"][-1] == pytest.approx(expected[2], rel=1e-9)
+
+
+FILLED_ELSEWHERE = """
+import os, shutil, sys
+import anholon as an
+shutil.rmtree(sys.argv[2])
+os.remove(sys.argv[1] + "/part-000001.parquet")
+assert an.open_sweep(os.path.relpath(sys.argv[1])).fill().missing == []
+"""
 
 
 def test_motions_of_scenarios_of_the_command_line(tmp_path: pathlib.Path) -> None:

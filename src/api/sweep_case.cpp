@@ -90,16 +90,6 @@ std::vector<std::string> varied(const SweepStore& store) {
   return names;
 }
 
-inner::SourceText source_of(const SweepStore& store) {
-  const std::string& name = store.request().model_name;
-  inner::SourceText source{name.empty() ? "model.toml" : name, store.asked("model")};
-  for (std::size_t k = 1;; ++k) {
-    const std::string& base = store.asked("base file " + std::to_string(k));
-    if (base.empty()) return source;
-    source.others.push_back({"base file " + std::to_string(k), base});
-  }
-}
-
 // The scenarios that the sweep names for all cases. Their names stand side by side and may hold spaces, so the model
 // tells where each one ends.
 std::vector<std::string> scenarios(const SweepStore& store) {
@@ -112,7 +102,7 @@ std::vector<std::string> scenarios(const SweepStore& store) {
   if (text.empty()) return {};
   if (text.find(' ') == std::string::npos) return {text};
   std::vector<std::string> known, list;
-  if (const auto model = opened(source_of(store), {})) known = model->cases();
+  if (const auto model = opened(model_asked(store.request()), {})) known = model->cases();
   std::sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
   while (!text.empty()) {
     const auto at = std::find_if(known.begin(), known.end(), [&](const std::string& name) {
@@ -305,11 +295,11 @@ std::string command_of_case(const SweepStore& store, std::size_t number) {
 }
 
 Result<System> system_of_case(const SweepStore& store, std::size_t number) {
-  return guarded(source_of(store), [&] { return system_of_words(store, words_of_case(store, number)); });
+  return guarded(model_asked(store.request()), [&] { return system_of_words(store, words_of_case(store, number)); });
 }
 
 Result<System> system_of_words(const SweepStore& store, const std::vector<AskedWord>& of_case) {
-  const inner::SourceText source = source_of(store);
+  const inner::SourceText source = model_asked(store.request());
   return guarded(source, [&]() -> Result<System> {
     std::vector<AskedWord> words = words_of_sweep(store);
     words.insert(words.end(), of_case.begin(), of_case.end());
@@ -336,7 +326,7 @@ std::map<std::string, std::vector<double>> points_of_axes(const SweepStore& stor
   std::map<std::string, std::vector<double>> points;
   ReadOptions reading;
   reading.mode = words_of(store.asked("mode"));
-  const Result<Model> model = opened(source_of(store), reading);
+  const Result<Model> model = opened(model_asked(store.request()), reading);
   if (!model) return points;
   const inner::Model& of = *model->data().model;
   const auto take = [&](const auto& add) {

@@ -48,8 +48,12 @@ std::vector<std::pair<std::string, std::string>> asked_of(const PreparedSweep& p
   // The mode comes first: messages name it before the title that tells it, too.
   add("mode", inner::joined(model.mode, " ")), add("title", system.model->model->title),
       add("model", model.source.text);
-  const std::vector<inner::SourceText>& others = model.model->source_text.others;
-  for (std::size_t k = 0; k < others.size(); ++k) add("base file " + std::to_string(k + 1), others[k].text);
+  for (const PreparedPiece& piece : p.pieces) {
+    // Each scenario may have tables of its own; the base files are the same.
+    inner::SourceText source = piece.system.data().model->model->source_text;
+    if (&piece != &first) source.others.clear();
+    add_files(all, source);
+  }
   std::string set;
   for (const auto& [name, value] : model.overrides) set += (set.empty() ? "" : " ") + name + "=" + value;
   add("set", set), add("case", inner::joined(model.cases, " ")), add("form", forms_of(p));
@@ -128,6 +132,16 @@ std::size_t SweepFolder::chunk() const { return data_->store.request().chunk; }
 const std::vector<std::string>& SweepFolder::columns() const { return data_->store.request().columns; }
 const std::string& SweepFolder::recipe() const { return data_->store.request().recipe; }
 const std::string& SweepFolder::asked(const std::string& name) const { return data_->store.asked(name); }
+
+bool SweepFolder::keeps_files() const {
+  const inner::SourceText source = model_asked(data_->store.request());
+  return !source.others.empty() || !source.tables.empty();
+}
+
+Result<Model> SweepFolder::model(const ReadOptions& options) const {
+  const inner::SourceText source = model_asked(data_->store.request());
+  return guarded(source, [&] { return v1::opened(source, options); });
+}
 
 Result<std::vector<std::size_t>> SweepFolder::missing() const {
   return told([&]() -> Result<std::vector<std::size_t>> { return data_->now().missing(); });
@@ -228,6 +242,7 @@ Result<std::size_t> SweepFolder::refine(const std::string& word, std::optional<s
     const PreparedSweep& p = prepared(*data_);
     inner::SweepStore store = data_->now();
     const inner::RefineRule rule = rule_for(p, columns(), word);
+    must_go_on(store, rule);
     const std::size_t next = store.generations().size();
     if (number && *number < next) return store.generations()[*number].cases;
     if (number && *number > next)
@@ -322,11 +337,14 @@ static Result<SweepFolder> opened(std::shared_ptr<const PreparedSweep> prepared,
   TabledPieces tabled(*prepared);
   inner::SweepRequest request{asked_of(*prepared), {}, prepared->cases, chunk, recipe};
   for (const inner::SweepColumn& c : tabled.tables.front().columns()) request.columns.push_back(c.name);
-  if (refine) rule_for(*prepared, request.columns, *refine);
+  std::optional<inner::RefineRule> rule;
+  if (refine) rule = rule_for(*prepared, request.columns, *refine);
   if (chunk > inner::kMostInPart) return mistake("a part has at most " + std::to_string(inner::kMostInPart) + " cases");
   if (chunk == 0) request.chunk = inner::SweepStore::is_there(folder) ? 1 : inner::cases_in_part(tabled.pieces);
-  return SweepFolder(std::make_shared<const SweepFolder::Data>(
-      SweepFolder::Data{inner::SweepStore::open(folder, request, "anholon " ANHOLON_VERSION), std::move(prepared)}));
+  inner::SweepStore store = inner::SweepStore::open(folder, request, "anholon " ANHOLON_VERSION);
+  if (rule) must_go_on(store, *rule);
+  return SweepFolder(
+      std::make_shared<const SweepFolder::Data>(SweepFolder::Data{std::move(store), std::move(prepared)}));
 }
 
 Result<SweepFolder> sweep_into(const System& system, const SweepOptions& asked, const std::string& folder,

@@ -198,6 +198,7 @@ TabledPieces::TabledPieces(const PreparedSweep& sweep) {
       table.choose(inner::chosen_columns(all, sweep.asked.columns));
     }
     if (!piece.word.empty()) table.add_word("case_name");
+    table.must_tell_columns_apart();
     must_have_columns_of(tables.front(), sweep.pieces.front().word, table, piece.word, "choose columns that both have");
     pieces.push_back({piece.scenario, &options.emplace_back(piece.options), &table, piece.word});
   }

@@ -41,6 +41,8 @@ struct SourceText {
   std::string text;
   std::string path = {};                // the path of the file, if it differs from the name
   std::vector<SourceText> others = {};  // the files that this text refers to
+  // The data files of its tables, under the names by which tables refer to them; such a file is not read from disk again.
+  std::vector<SourceText> tables = {};
   std::string line(std::uint32_t number) const;
   const SourceText& of(Span span) const {
     return span.file == 0 || span.file > others.size() ? *this : others[span.file - 1];

@@ -19,6 +19,9 @@ std::string trimmed(const std::string& text) {
 }  // namespace
 
 CaseTable::CaseTable(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
+  if (text_.starts_with("PAR1"))
+    throw Failure({}, file_ + " is a Parquet file, and a table of cases is CSV",
+                  "with pandas: pd.read_parquet(\"cases.parquet\").to_csv(\"cases.csv\", index=False)");
   constexpr std::string_view kMark = "\xEF\xBB\xBF";  // of UTF-8, which some programs write first
   if (text_.compare(0, kMark.size(), kMark) == 0) text_.erase(0, kMark.size());
   bool header = false;
@@ -44,7 +47,10 @@ CaseTable::CaseTable(std::string text, std::string file) : text_(std::move(text)
   const std::vector<std::string> all = split_csv(line(header_));
   for (std::size_t k = 0; k < all.size(); ++k) {
     std::string name = trimmed(all[k]);
-    if (name == "case") continue;
+    if (name == "case") {
+      number_ = k;
+      continue;
+    }
     // As a sweep names initial values.
     if (name.ends_with("(0)")) name.erase(name.size() - 3);
     names_.push_back(name);
@@ -52,6 +58,23 @@ CaseTable::CaseTable(std::string text, std::string file) : text_(std::move(text)
   }
   if (names_.empty()) mistake_at(header_, 0, "the table names nothing that varies", kTableHint);
   if (lines_.empty()) mistake_at(header_, 0, "the table has no cases", kTableHint);
+}
+
+void CaseTable::must_number_cases(const std::vector<std::string>& scenarios, bool varies) const {
+  if (!number_) return;
+  if (varies)
+    mistake_at(header_, *number_, "'case' numbers the cases of a table, and the model calls a quantity so",
+               "another name in the model, or a table without this column");
+  for (const std::size_t begin : lines_) {
+    const std::string cell = trimmed(split_csv(line(begin))[*number_]);
+    const bool named = std::find(scenarios.begin(), scenarios.end(), cell) != scenarios.end();
+    if (!named && (cell.empty() || parse_rational(cell))) continue;
+    mistake_at(begin, *number_,
+               named ? "'" + cell + "' is a scenario of the model, and the column 'case' of a table numbers its cases"
+                     : "the column 'case' of a table numbers its cases, and '" + cell + "' is no number of a case",
+               named ? "--vary case=" + cell + " computes all lines in the scenario; a table for each scenario"
+                     : "leave out the column");
+  }
 }
 
 std::string_view CaseTable::line(std::size_t begin) const {

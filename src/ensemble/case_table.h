@@ -2,6 +2,7 @@
 //
 // The text is kept as it was read, and a cell becomes a number when its case is computed: many rows need little memory.
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,7 +17,10 @@ class CaseTable {
   // row, or a line with another number of cells than the header.
   CaseTable(std::string text, std::string file);
 
-  // Without a column "case", which holds numbers of cases in the table of a sweep.
+  // Without a column "case", which holds numbers of cases in the table of a sweep and varies nothing. Throws
+  // MistakeInWord if a cell of such a column is no whole number or is one of these names of scenarios; also if the model
+  // gives the name "case" to something that may vary.
+  void must_number_cases(const std::vector<std::string>& scenarios, bool varies) const;
   const std::vector<std::string>& names() const { return names_; }
   std::size_t rows() const { return lines_.size(); }
   // The cells of a row, in the order of the names.
@@ -35,7 +39,8 @@ class CaseTable {
   std::size_t header_ = 0;          // where its line begins
   std::vector<std::size_t> lines_;  // where they begin
   std::vector<std::string> names_;
-  std::vector<std::size_t> places_;  // of the names among the cells of a line
+  std::vector<std::size_t> places_;    // of the names among the cells of a line
+  std::optional<std::size_t> number_;  // the place of a column "case"
 };
 
 }  // namespace anholon

@@ -45,6 +45,7 @@ std::vector<SweepColumn> SweepTable::columns() const {
 }
 
 void SweepTable::choose(const std::vector<std::size_t>& columns) {
+  chooses_ = true;
   chosen_ = {kCase};
   const std::size_t time = 1 + varied_ + kTime;
   if (!times_.empty()) chosen_.push_back(time);
@@ -56,6 +57,20 @@ void SweepTable::choose(const std::vector<std::size_t>& columns) {
   for (std::size_t k : columns) add(k);
   const std::size_t reductions = 1 + varied_ + kBeforeState + state_;
   for (std::size_t k = 0; k < reduced_; ++k) add(reductions + k);
+}
+
+void SweepTable::must_tell_columns_apart() const {
+  const auto with_name = [](const std::vector<SweepColumn>& list, const std::string& name) {
+    return std::count_if(list.begin(), list.end(), [&](const SweepColumn& c) { return c.name == name; });
+  };
+  const std::vector<SweepColumn> written = columns();
+  for (const SweepColumn& c : written)
+    // A name that chooses a column does not say which of two is meant.
+    if (with_name(chooses_ ? available_ : written, c.name) > 1)
+      throw Failure({}, "two columns of the sweep are called '" + c.name + "'",
+                    "case, case_name, outcome, event, t and steps are columns of sweeps; another name in the model, or "
+                    "--columns that leaves '" +
+                        c.name + "' out");
 }
 
 void SweepTable::add_word(const std::string& name) {

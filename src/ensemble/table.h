@@ -23,6 +23,9 @@ class SweepTable {
   // they are not among them: case, t if there are times, and what varies. The reductions, which were asked for by their
   // names, stand behind them.
   void choose(const std::vector<std::size_t>& columns);
+  // Throws Failure without a place if two of the columns have one name, as where a monitor is called "outcome": no reader
+  // of a file tells them apart.
+  void must_tell_columns_apart() const;
   // Adds a column of one word after the number of the case; each call of `rows` tells the word.
   void add_word(const std::string& name);
 
@@ -37,7 +40,8 @@ class SweepTable {
   std::vector<std::size_t> chosen_;
   std::size_t varied_, state_, reduced_;
   std::vector<double> times_;
-  bool named_ = false;  // the column of a word is there
+  bool named_ = false;    // the column of a word is there
+  bool chooses_ = false;  // columns were chosen
   std::vector<SweepCell> all_, cells_;
 };
 

@@ -211,6 +211,9 @@ void Variation::add(const std::string& name, const std::vector<Constant>& values
 }
 
 void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) {
+  const auto is_case = [](const auto& quantity) { return quantity.name == "case"; };
+  table->must_number_cases(model.cases, std::any_of(model.parameters.begin(), model.parameters.end(), is_case) ||
+                                            std::any_of(model.coordinates.begin(), model.coordinates.end(), is_case));
   const std::size_t axis = new_axis(table->rows());
   std::vector<GivenQuantity> quantities;
   for (std::size_t k = 0; k < table->names().size(); ++k) {
@@ -325,11 +328,19 @@ std::vector<Rational> Variation::between(std::span<const std::int64_t> places, u
   return out;
 }
 
-void must_not_be_given(const std::vector<Varied>& varied, const StateChoice& state) {
-  for (const StateOverride& given : state.overrides)
-    for (const Varied& v : varied)
+void must_not_be_given(const std::vector<Varied>& varied, const StateChoice& state,
+                       const std::vector<std::string>& parameters) {
+  const auto refuse = [](const Varied& v) {
+    throw Failure({}, "'" + v.name + "' is both given and varied", "leave out one of them");
+  };
+  for (const Varied& v : varied) {
+    if (v.kind == Varied::Kind::parameter &&
+        std::find(parameters.begin(), parameters.end(), v.name) != parameters.end())
+      refuse(v);
+    for (const StateOverride& given : state.overrides)
       if (v.kind == Varied::Kind::initial && !given.multiplier && given.coordinate == v.index && given.order == v.order)
-        throw Failure({}, "'" + v.name + "' is both given and varied", "leave out one of them");
+        refuse(v);
+  }
 }
 
 }  // namespace anholon

@@ -86,7 +86,9 @@ class Variation {
   std::uint32_t streams_ = 0;  // of random values
 };
 
-// Throws Failure without a place if a name is both varied and given in the state that all cases share.
-void must_not_be_given(const std::vector<Varied>& varied, const StateChoice& state);
+// Throws Failure without a place if a name is both varied and given in the state that all cases share, or among these
+// parameters.
+void must_not_be_given(const std::vector<Varied>& varied, const StateChoice& state,
+                       const std::vector<std::string>& parameters = {});
 
 }  // namespace anholon

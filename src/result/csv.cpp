@@ -62,6 +62,7 @@ class CsvReader {
       fail(line, 0, "the first line has no names of columns", "a line such as t,x,y,x',y' before the numbers");
     table_.set_columns(std::move(names));
     words_.assign(table_.columns.size(), false);
+    empty_.assign(table_.columns.size(), true);
   }
 
   static std::size_t entries_of(std::string_view line) {
@@ -72,9 +73,11 @@ class CsvReader {
 
   // Adds a cell at the place `from` of the line.
   void add(std::size_t column, std::string_view cell, std::string_view line, std::size_t from) {
-    // A column whose first cell is a word is a column of words, like the outcomes of a sweep.
+    // A column whose first cell that is not empty is a word is a column of words, like outcomes and events of a sweep.
+    const bool first = empty_[column];
+    empty_[column] = first && cell.empty();
     if (table_.add(column, cell) || words_[column]) return;
-    if (table_.values[column].size() > 1) fail(line, from, "'" + std::string(cell) + "' is not a number", {}, cell);
+    if (!first) fail(line, from, "'" + std::string(cell) + "' is not a number", {}, cell);
     words_[column] = true;
   }
 
@@ -116,7 +119,7 @@ class CsvReader {
   std::uint32_t number_ = 0;
   RunTable table_;
   RunFile run_;
-  std::vector<char> words_;
+  std::vector<char> words_, empty_;  // columns of words; those whose cells have been empty so far
 };
 
 // Cases have outcomes among their numbers, so their lines are written as cells.

@@ -197,7 +197,11 @@ class JsonReader {
         if (column >= table.columns.size())
           fail(table.columns.empty() ? "the columns come before the rows"
                                      : "this row is longer than the list of columns");
-        table.add(column++, number());
+        // The file of a sweep holds words, too: outcomes and events.
+        if (peek() == '"')
+          table.add(column++, string());
+        else
+          table.add(column++, number());
       });
       if (column != table.columns.size()) fail("this row is shorter than the list of columns");
     });
@@ -235,12 +239,14 @@ class JsonReader {
   RunFile run_;
 };
 
-// Appends the number in JSON's syntax.
+// Appends the number, or the word, in JSON's syntax.
 void append_json_number(std::string& to, const RunTable& table, std::size_t row, std::size_t column) {
   const bool has_text =
       column < table.texts.size() && row < table.texts[column].size() && !table.texts[column][row].empty();
   const double value = table.values[column][row];
-  if (has_text) {
+  if (double ignored = 0; has_text && !parse_number(table.text(row, column), ignored)) {
+    to += '"' + json_escape(table.text(row, column)) + '"';
+  } else if (has_text) {
     const std::string number = json_number(table.text(row, column));
     to += number.find('n') == std::string::npos ? number : "null";
   } else if (std::isfinite(value)) {

@@ -183,15 +183,15 @@ def mistakes(program, folder):
         part.write_bytes(whole)
         if "data" not in ask("7") or s.ask("sweep")[1].get("parts") != 4:
             found.append("a part that was put back is not read")
-        text = (falls / "sweep.json").read_text()
-        (falls / "sweep.json").write_text(text.replace('"program": "anholon ', '"program": "anholon 0.0.1 before '))
+        text = (falls / "_sweep.json").read_text()
+        (falls / "_sweep.json").write_text(text.replace('"program": "anholon ', '"program": "anholon 0.0.1 before '))
         told = s.ask("sweep")[1]
         if not told.get("program", "").startswith("anholon 0.0.1") or not told.get("other_program"):
             found.append(f"a folder of another version: {told.get('program')}, {told.get('other_program')}")
-        (falls / "sweep.json").write_text(text.replace('"to": "2"', '"to": "3"'))
-        expect("another request", ask("7"), "sweep.json was changed")
-        (falls / "sweep.json").write_text("{}")
-        expect("a request that is none", ask("7"), "sweep.json")
+        (falls / "_sweep.json").write_text(text.replace('"to": "2"', '"to": "3"'))
+        expect("another request", ask("7"), "_sweep.json was changed")
+        (falls / "_sweep.json").write_text("{}")
+        expect("a request that is none", ask("7"), "_sweep.json")
     with Studio(program, "few", cwd=folder) as s:
         if "--set m=" not in s.ask("case", "1")[1].get("command", ""):
             found.append("a folder with few columns does not tell what varies")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Sweeps in folders: whatever happens to the processes, what is collected has the bytes of one quiet sweep.
 
-    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model part status plot watched refine page outside
+    folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model tables part judgement status plot watched refine page outside
     folders.py --self-test                                  a part with other numbers is found
 
 Kills come at random moments. Nothing is lost but parts under way, and nothing is left behind that a later process does not clear.
@@ -66,7 +66,7 @@ class Folders:
     def check(self):
         """The folder holds the whole sweep and nothing else, with the right numbers."""
         names = sorted(os.listdir(self.folder))
-        must(names == ["_judgement.json"] + [f"part-{k:06}.parquet" for k in range(20)] + ["sweep.json"], f"in the folder: {names}")
+        must(names == ["_judgement.json", "_sweep.json"] + [f"part-{k:06}.parquet" for k in range(20)], f"in the folder: {names}")
         collected = self.place / "all.csv"
         self.run("sweep", "collect", str(self.folder), "--quiet", "-o", str(collected), status=0)
         must(self.hash(collected) == self.expected, "what was collected has other bytes")
@@ -79,7 +79,7 @@ class Folders:
             time.sleep(random.uniform(0, 0.25))
             process.kill()
             process.communicate()
-            if (self.folder / "sweep.json").exists():
+            if (self.folder / "_sweep.json").exists():
                 self.run("sweep", "status", str(self.folder))
         self.run(*self.into())
         self.check()
@@ -142,6 +142,33 @@ class Folders:
         _, error = self.run("sweep", "status", str(self.folder), status=2)
         must("is no folder of a sweep" in error, error)
 
+    def tables(self):
+        """The data file of a table belongs to the request, and the folder keeps it."""
+        model, data = self.place / "cart.toml", self.place / "thrust.csv"
+        model.write_text(
+            'coordinates = ["x"]\nparameters.k = 1\nparticle = [{name = "p", mass = 1, position = "x*ex"}]\n'
+            'table = [{name = "f", file = "thrust.csv"}]\nforce = [{on = "p", vector = "(f(t) - k*x)*ex"}]\ninitial.x = 1\n'
+        )
+        data.write_text("0,1\n3,2\n6,-1\n")
+        words = ["sweep", str(model), "--vary", "k=1:3:4", "--to", "6", "--chunk", "1", "--quiet", "-o", f"{self.folder}/"]
+        self.run(*words, status=0)
+        part = self.folder / "part-000001.parquet"
+        before = part.read_bytes()
+        part.unlink()
+        data.write_text("0,1\n3,-2\n6,-1\n")
+        _, error = self.run(*words, status=2)
+        must("holds another sweep: data file thrust.csv differs" in error and not part.exists(), error)
+        data.write_text("0,1\n3,2\n6,-1\n")
+        self.run(*words, status=0)
+        must(part.read_bytes() == before, "the part has other bytes")
+        data.unlink()
+        model.unlink()
+        page = self.place / "page.html"
+        self.run("plot", str(self.folder), "x", "--motions", "2", "-o", str(page), status=0)
+        motions = page.read_text().split('<script type="application/json" id="motions">')[1].split("</script>")[0]
+        must(len(json.loads(motions)) == 2, "no motions")
+        shutil.rmtree(self.folder)
+
     def part(self):
         """A part that was changed by hand is named; without it the command computes it again."""
         self.run(*self.into())
@@ -158,6 +185,21 @@ class Folders:
         self.run(*self.into())
         self.check()
 
+    def judgement(self):
+        """A judgement that was damaged is named; without it the command judges again."""
+        self.run(*self.into())
+        judgement = self.folder / "_judgement.json"
+        before = judgement.read_bytes()
+        for wrong in ("garbage", "", "{}", "[]"):
+            judgement.write_text(wrong)
+            for words in (["sweep", "status", str(self.folder)], ["sweep", "status", str(self.folder), "--json"], self.into()):
+                _, error = self.run(*words, status=2)
+                must("_judgement.json is damaged" in error and "remove it" in error, error)
+        judgement.unlink()
+        self.run(*self.into())
+        must(judgement.read_bytes() == before, "another judgement")
+        self.check()
+
     def status(self):
         """What any process that sees the folder is told."""
         self.run(*self.into("--shard", "1/2"))
@@ -172,8 +214,15 @@ class Folders:
         alone = json.loads(self.run(*[w for w in SWEEP if w != "--quiet"], "--json")[0])
         must(told["error_estimate"] == alone["error_estimate"] and told["residuals"] == alone["residuals"], f"{told}\n{alone['residuals']}")
         must(told["residuals"]["checked"] and told["residuals"]["newton"]["worst"] < 1e-9, str(told))
-        collected = json.loads(self.run("sweep", "collect", str(self.folder), "--json", status=0)[0])
-        must(collected["report"]["judgement"] == told if "report" in collected else collected["judgement"] == told, str(list(collected)))
+        # So is the report of a collected file, and why cases stopped.
+        report, _ = self.run(*[w for w in SWEEP if w != "--quiet"], "--json")
+        must(self.run("sweep", "collect", str(self.folder), "--json", status=0)[0] == report, "the JSON of collect differs")
+        stopped = json.loads(report)["stopped"]
+        must(len(stopped) > 0 and sum(s["cases"] for s in stopped) == 40 and stopped[0]["first"] == 3, str(stopped))
+        must(json.loads(self.run("sweep", "status", str(self.folder), "--json", status=0)[0])["stopped"] == stopped, "status tells other reasons")
+        line = f"stopped ({stopped[0]['outcome']}), 40 cases, first case 3: {stopped[0]['message']}\nhint: {stopped[0]['hint']}"
+        for out in (self.run("sweep", "status", str(self.folder))[0], self.run("sweep", "collect", str(self.folder))[1], self.run(*self.into())[1]):
+            must(line in out, out)
         self.check()
 
 
@@ -308,13 +357,17 @@ class Folders:
         must(alone.read_text().splitlines()[1].split(",")[1:] == rows[-1].split(",")[1:], "a refined case has other numbers than alone")
 
         # Another rule, no grid, a plan that was changed.
-        _, error = self.run(*self.refined(self.folder, "--refine", "4", rule="theta:0.2"), status=2)
-        must("refined by 'theta:0.25', not by 'theta:0.2'" in error, error)
+        for generations in "4", "3", "1":
+            _, error = self.run(*self.refined(self.folder, "--refine", generations, rule="theta:0.2"), status=2)
+            must("refined by 'theta:0.25', not by 'theta:0.2'" in error, error)
+        _, error = self.run(*self.refined(self.folder, "--refine", "2", rule=""), status=2)
+        must("refined by 'theta:0.25', not by these alone" in error, error)
         for words, rule, message in [
             (["--vary", "m~normal(1,0.1)", "-n", "200"], "", "lies no grid"),
             (["--vary", "m=1,3,2"], "", "neither ascend nor descend"),
             (["--columns", "theta"], "", "without the column 'outcome'"),
             (["--columns", "theta"], "theta:1", None),
+            ([], "outcome:1", "the column 'outcome' holds words"),
             (["--columns", "phi"], "theta:1", "keeps no column 'theta'"),
             ([], "thta:1", "did you mean 'theta'"),
             ([], "theta", "COLUMN:BOUND"),
@@ -376,7 +429,7 @@ class Folders:
     def outside(self):
         """Mistakes from outside: each is named, and nothing is overwritten."""
         self.run(*self.into())
-        part, request = self.folder / "part-000001.parquet", self.folder / "sweep.json"
+        part, request = self.folder / "part-000001.parquet", self.folder / "_sweep.json"
         whole, text = part.read_bytes(), request.read_text()
         for wrong, message in [(whole[:1000], "no whole Parquet file"), (b"", "no whole Parquet file")]:
             part.write_bytes(wrong)
@@ -391,11 +444,22 @@ class Folders:
             request.write_text(wrong)
             for words in (["sweep", "status", str(self.folder)], self.into(), ["plot", str(self.folder), "-o", "x.svg"]):
                 _, error = self.run(*words, status=2)
-                must("sweep.json" in error and ("does not tell of a sweep" in error or "is damaged" in error), error)
+                must("_sweep.json" in error and ("does not tell of a sweep" in error or "is damaged" in error), error)
             must(request.read_text() == wrong, "a damaged file was overwritten")
         request.unlink()
         _, error = self.run(*self.into(), status=2)
-        must("its sweep.json is missing" in error, error)
+        must("its _sweep.json is missing" in error, error)
+        # A folder of an earlier version has the request under another name, and was made by another program.
+        older = self.folder / "sweep.json"
+        older.write_text(text.replace('"program": "anholon ', '"program": "anholon 0.0.1 before '))
+        part.unlink()
+        self.run("sweep", "status", str(self.folder), status=1)
+        _, error = self.run(*self.into())
+        must("was made by anholon 0.0.1 before" in error and part.read_bytes() == whole, error)
+        _, error = self.run(*self.into())
+        must("was made by" not in error, error)
+        must(not request.exists(), "a second request")
+        older.unlink()
         request.write_text(text)
         self.check()
         for share in ("3/2", "0/2", "1/0", "a/b", "1", "-1/2", "1/2/3", "99999999999999999999/2"):
@@ -415,7 +479,7 @@ class Folders:
             must(message in error and not self.folder.exists(), error)
 
 
-PARTS = ["kill", "stop", "two", "shards", "disk", "model", "part", "status", "plot", "watched", "refine", "page", "outside"]
+PARTS = ["kill", "stop", "two", "shards", "disk", "model", "tables", "part", "judgement", "status", "plot", "watched", "refine", "page", "outside"]
 
 
 def run_parts(arguments):

@@ -114,7 +114,7 @@ class Workers:
     def check(self):
         """The folder holds the whole sweep and nothing else, with the right numbers."""
         names = sorted(name for name in os.listdir(self.folder) if name != "_judgement.json")
-        must(names == [f"part-{k:06}.parquet" for k in range(PARTS)] + ["sweep.json"], f"in the folder: {names}")
+        must(names == ["_sweep.json"] + [f"part-{k:06}.parquet" for k in range(PARTS)], f"in the folder: {names}")
         must(self.collected() == self.expected, "what was collected has other bytes")
         shutil.rmtree(self.folder)
 

@@ -200,7 +200,7 @@ std::string SweepCases::command() const {
 // Units and meanings come from the model in the folder; a model that refers to files that are not there has none.
 void SweepCases::read_model() {
   Diagnostics diagnostics;
-  const auto open = inner::open_model(inner::SourceText{store_->folder(), store_->asked("model")}, diagnostics);
+  const auto open = inner::open_model(model_asked(store_->request()), diagnostics);
   if (!open) return;
   for (const auto& [name, unit] : inner::quantity_units(*open->model, inner::contacts(*open->names)))
     known_[name].unit = unit;

@@ -114,7 +114,9 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   p.variation = variation_of(o, *p.in.model, table, !p.word.empty());
   EnsembleOptions& e = p.options;
   e.state = state_choice(o, *p.in.model);
-  must_not_be_given(p.variation->varied(), e.state);
+  std::vector<std::string> set;
+  for (const std::string& word : split(o.set)) set.push_back(normal_name(word.substr(0, word.find('='))));
+  must_not_be_given(p.variation->varied(), e.state, set);
   e.varied = p.variation->varied();
   e.state.open_parameters = varied_parameters(e);
   e.cases = p.variation->cases();
@@ -138,6 +140,7 @@ bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
     p.table->choose(chosen_columns(all, names));
   }
   if (!p.word.empty()) p.table->add_word("case_name");
+  p.table->must_tell_columns_apart();
   return true;
 }
 
@@ -148,8 +151,8 @@ std::vector<SweepPiece> pieces_of(std::deque<Part>& parts) {
 }
 
 // Everything on which the rows depend.
-std::vector<std::pair<std::string, std::string>> asked_of(const RunInfo& info, const SweepCommand& o,
-                                                          const std::string& table_text) {
+std::vector<std::pair<std::string, std::string>>
+asked_of(const RunInfo& info, const SweepCommand& o, const std::deque<Part>& parts, const std::string& table_text) {
   std::vector<std::pair<std::string, std::string>> all;
   const auto add = [&](const std::string& name, const std::string& text) {
     if (!text.empty()) all.emplace_back(name, text);
@@ -157,8 +160,13 @@ std::vector<std::pair<std::string, std::string>> asked_of(const RunInfo& info, c
   // The mode comes first: messages name it before the title that tells it, too.
   if (const auto mode = info.settings.find("mode"); mode != info.settings.end()) add("mode", joined(mode->second, " "));
   add("title", info.title);
-  for (std::size_t k = 0; k < info.model.size(); ++k)
-    add(k == 0 ? "model" : "base file " + std::to_string(k), info.model[k].text);
+  add("model", parts.front().in.source.text);
+  for (const Part& p : parts) {
+    // Each scenario may have tables of its own; the base files are the same.
+    SourceText source = p.in.model->source_text;
+    if (&p != &parts.front()) source.others.clear();
+    add_files(all, source);
+  }
   for (const auto& [name, words] : info.settings)
     if (name != "model_sha256" && name != "error-estimate" && name != "mode") add(name, joined(words, " "));
   add("vary", joined(o.varied, " ")), add("table of cases", table_text), add("n", o.case_count), add("draw", o.draw);
@@ -188,6 +196,9 @@ EnsembleReport compute(std::deque<Part>& parts, std::size_t cases, SweepOutput& 
 }  // namespace
 
 int sweep(const SweepCommand& asked) {
+  if (asked.json && names_folder(asked.output))
+    throw UsageError{"error: --json is the format of a file, and " + asked.output +
+                     " is a folder\nhint: anholon sweep status " + asked.output + " --json tells how far it is\n"};
   const ResultFormat& format = sweep_format(asked.output, asked.json);
   SweepCommand o = asked;
   const std::vector<std::string> names = cases_of_file(o.varied);
@@ -225,9 +236,9 @@ int sweep(const SweepCommand& asked) {
   const RunInfo info = info_with(merged(o.motion, first.in.model->simulate));
   if (names_folder(o.output))
     // Each scenario has settings of its own, which follow from its name.
-    return sweep_into_folder(o, {pieces_of(parts),
-                                 asked_of(names.empty() ? info : info_with(first.asked.motion), asked, table_text),
-                                 cases, parts.size() == 1 ? &*first.variation : nullptr});
+    return sweep_into_folder(
+        o, {pieces_of(parts), asked_of(names.empty() ? info : info_with(first.asked.motion), asked, parts, table_text),
+            cases, parts.size() == 1 ? &*first.variation : nullptr});
   for (const auto& [option, word] :
        {std::pair{"--shard", &o.shard}, {"--chunk", &o.chunk}, {"--refine", &o.refine}, {"--refine-by", &o.refine_by}})
     if (!word->empty())
@@ -237,7 +248,7 @@ int sweep(const SweepCommand& asked) {
   const std::string write_error = out.close(r);
   if (!o.quiet) report_sweep(r, cases, out);
   report_without_value(r);
-  report_stopped(out);
+  report_stopped(out.stopped());
   if (!r.outcome.ok() && (write_error.empty() || stop_requested())) {
     print_outcome(r.outcome);
     if (!o.output.empty() && write_error.empty())

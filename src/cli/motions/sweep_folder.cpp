@@ -14,6 +14,7 @@
 #include "cli/say.h"
 #include "cli/stop.h"
 #include "ensemble/parts/judgement.h"
+#include "ensemble/parts/sweep_report.h"
 #include "ensemble/refine/refine.h"
 #include "result/file.h"
 #include "result/parquet/parquet_sweep.h"
@@ -23,6 +24,8 @@ namespace anholon::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kProgram = "anholon " ANHOLON_VERSION;
 
 // --shard i/N: every N-th part, from the i-th on.
 struct Shard {
@@ -112,13 +115,15 @@ std::string generation_list(const SweepStore& store) {
 
 // The sentences that say how far the cases can be trusted.
 void say_judgement(const SweepStore& store, std::FILE* to) {
-  for (const std::string& line : judgement_text(store.judgement())) say(to, "%s\n", line.c_str());
+  const auto lines = judgement_text(store.judgement());
+  if (!lines) return;
+  for (const std::string& line : *lines) say(to, "%s\n", line.c_str());
 }
 
 // A JSON object, to which the judgement of the folder is added.
 std::string with_judgement(std::string object, const SweepStore& store) {
   const std::string judgement = store.judgement();
-  if (judgement_text(judgement).empty()) return object;
+  if (judgement.empty()) return object;
   object.resize(object.rfind('}'));
   while (object.ends_with('\n') || object.ends_with(' ')) object.pop_back();
   return object + ",\n  \"judgement\": " + judgement.substr(0, judgement.find_last_not_of('\n') + 1) + "\n}";
@@ -128,6 +133,25 @@ void say_progress(const SweepStore& store, const SweepStore::Progress& p) {
   say(stderr, "%s: %zu of %zu parts, %zu of %zu cases%s%s\n", store.folder().c_str(), p.parts, p.all_parts, p.cases,
       p.all_cases, p.outcomes.empty() ? "" : ": ", outcome_list(p.outcomes).c_str());
   if (const std::string list = generation_list(store); !list.empty()) say(stderr, "generations: %s\n", list.c_str());
+}
+
+// Cases that stopped, of the parts that tell it.
+StoppedByKind stopped_of(const SweepStore::Progress& p) {
+  StoppedByKind all;
+  for (const std::string& note : p.stopped) add_stopped(all, note);
+  return all;
+}
+
+// How many cases finished. Outcomes are those of rows, as many of each case; without them the cases that stopped tell it.
+std::size_t finished_of(const SweepStore::Progress& p) {
+  std::size_t rows = 0, finished = p.cases;
+  for (const auto& [outcome, count] : p.outcomes) rows += count;
+  if (rows >= p.cases && p.cases > 0) {
+    const auto at = p.outcomes.find(name(OutcomeKind::finished));
+    return at == p.outcomes.end() ? 0 : at->second / (rows / p.cases);
+  }
+  for (const auto& [kind, stopped] : stopped_of(p)) finished -= std::min(finished, stopped.count);
+  return finished;
 }
 
 bool all_finished(const SweepStore::Progress& p) {
@@ -213,7 +237,11 @@ int sweep_into_folder(const SweepCommand& o, const FolderSweep& sweep) {
   for (const SweepColumn& c : sweep.pieces.front().table->columns()) request.columns.push_back(c.name);
   const Refinement refinement = refinement_of(o, sweep, request.columns);
   if (request.chunk == 0) request.chunk = SweepStore::is_there(o.output) ? 1 : cases_in_part(sweep.pieces);
-  SweepStore store = SweepStore::open(o.output, request, "anholon " ANHOLON_VERSION);
+  SweepStore store = SweepStore::open(o.output, request, kProgram);
+  if (const std::string& made_by = store.request().program; made_by != kProgram && !store.missing().empty())
+    say(stderr, "note: %s was made by %s, and %s computes the parts that are missing: their last digits may differ\n",
+        store.folder().c_str(), made_by.empty() ? "another program" : made_by.c_str(), kProgram);
+  if (refinement.generations > 0) must_go_on(store, refinement.rule);
   if (!o.chunk.empty() && store.request().chunk != request.chunk)
     say(stderr, "note: the parts of %s have %zu cases; --chunk holds for new folders\n", store.folder().c_str(),
         store.request().chunk);
@@ -236,6 +264,7 @@ int sweep_into_folder(const SweepCommand& o, const FolderSweep& sweep) {
   const SweepStore::Progress p = store.progress();
   if (p.parts == p.all_parts && !judge(sweep, store)) return stopped_early(o, store);
   if (!o.quiet) say_progress(store, p), say_judgement(store, stderr);
+  report_stopped(stopped_of(p));
   if (!o.quiet && p.parts < p.all_parts)
     say(stderr, "this share is complete; the others are missing: %zu parts\n", p.all_parts - p.parts);
   if (waits && shard.of > 1) {
@@ -302,13 +331,16 @@ int sweep_status(const SweepFolderCommand& o) {
       count("parts", p.parts_there[g]), count("all_parts", of.parts);
       j.close();
     }
-    hand_out(with_judgement(j.close().close().text(), store) + "\n");
+    std::string object = j.close().close().text();
+    object.resize(object.rfind('\n'));
+    hand_out(with_judgement(object + ",\n  \"stopped\": " + stopped_json(stopped_of(p)) + "\n}", store) + "\n");
     return p.parts == p.all_parts ? kOk : kStopped;
   }
   say(stdout, "%s: %zu of %zu parts, %zu of %zu cases\n", store.folder().c_str(), p.parts, p.all_parts, p.cases,
       p.all_cases);
   if (const std::string list = generation_list(store); !list.empty()) say(stdout, "generations: %s\n", list.c_str());
   if (!p.outcomes.empty()) say(stdout, "outcomes: %s\n", outcome_list(p.outcomes).c_str());
+  report_stopped(stopped_of(p), stdout);
   say_judgement(store, stdout);
   if (p.parts < p.all_parts && p.cases_per_second > 0)
     say(stdout, "lately %.3g cases per second; %s left\n", p.cases_per_second, duration(left(p)).c_str());
@@ -327,10 +359,10 @@ int sweep_collect(const SweepFolderCommand& o) {
                      " parts are missing in " + store.folder() +
                      "\nhint: the command of the sweep computes them; --partial collects those that are there\n"};
   SweepInfo info;
-  info.origin.title = store.asked("title"), info.origin.created_by = "anholon " ANHOLON_VERSION;
+  info.origin.title = store.asked("title"), info.origin.created_by = kProgram;
   info.origin.command = o.command_line;
   info.origin.model.push_back({store.folder(), store.asked("model")});
-  info.form = store.asked("form");
+  info.form = store.asked("form").empty() ? "routh" : store.asked("form");
   std::unique_ptr<SweepWriter> file;
   std::size_t cases = 0;
   for (const std::size_t part : parts) {
@@ -346,14 +378,12 @@ int sweep_collect(const SweepFolderCommand& o) {
   }
   if (!file) throw UsageError{"error: no part is in " + store.folder() + "\n"};
   const SweepStore::Progress p = store.progress();
-  JsonWriter j;
-  j.open_object().key("cases").integer(static_cast<long long>(cases)).key("outcomes").open_object();
-  for (const auto& [outcome, count] : p.outcomes) j.key(outcome).integer(static_cast<long long>(count));
-  if (const std::string why = file->close(with_judgement(j.close().close().text(), store)); !why.empty()) {
+  const CollectedReport report{stopped_of(p), store.judgement(), cases, finished_of(p)};
+  if (const std::string why = file->close(sweep_report_json(report)); !why.empty()) {
     say(stderr, "error: %s\n", why.c_str());
     return kBadInput;
   }
-  if (!o.quiet) say_progress(store, p), say_judgement(store, stderr);
+  if (!o.quiet) say_progress(store, p), say_judgement(store, stderr), report_stopped(report.stopped);
   return kOk;
 }
 

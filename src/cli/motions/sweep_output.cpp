@@ -33,6 +33,8 @@ const ResultFormat& sweep_format(const std::string& output, bool json) {
   check_ending(output, sweep_formats());
   if (named && named->missing)
     throw UsageError{"error: " + std::string(named->missing) + "\nhint: " + named->missing_hint + "\n"};
+  if (json && named && named != &report_format())
+    throw UsageError{"error: --json and '" + output + "' ask for two formats\nhint: leave out --json\n"};
   if (json) return report_format();
   return named ? *named : plain_format();
 }
@@ -51,9 +53,9 @@ void report_without_value(const EnsembleReport& r) {
         name.c_str(), cases);
 }
 
-void report_stopped(const SweepOutput& out) {
-  for (const auto& [kind, stopped] : out.stopped())
-    say(stderr, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,
+void report_stopped(const StoppedByKind& all, std::FILE* to) {
+  for (const auto& [kind, stopped] : all)
+    say(to, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,
         stopped.count == 1 ? "case" : "cases", stopped.first, stopped.outcome.message.c_str(),
         stopped.outcome.hint.c_str());
 }

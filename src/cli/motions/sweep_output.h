@@ -1,6 +1,7 @@
 // The file of a sweep and what is said of its cases at the end.
 #pragma once
 #include <atomic>
+#include <cstdio>
 
 #include "cli/input.h"
 #include "ensemble/parts/sweep_report.h"
@@ -37,7 +38,7 @@ const ResultFormat& sweep_format(const std::string& output, bool json);
 
 // On stderr: how many cases finished, how far they can be trusted; why the others stopped.
 void report_sweep(const EnsembleReport& report, std::size_t cases, const SweepOutput& output);
-void report_stopped(const SweepOutput& output);
+void report_stopped(const StoppedByKind& stopped, std::FILE* to = stderr);
 // Which formulas of reductions have no value, and in how many of the finished cases.
 void report_without_value(const EnsembleReport& report);
 

@@ -11,6 +11,7 @@
 #include <random>
 #include <thread>
 
+#include "ensemble/store/stopped.h"
 #include "result/parquet/parquet_sweep.h"
 
 namespace anholon {
@@ -125,15 +126,21 @@ class PartSink final : public CaseSink {
     const std::size_t number = place_->first + segment_.first + (r.number - segment_.place);
     place_->piece->table->rows(r, number, place_->piece->word,
                                [&](std::span<const SweepCell> cells) { rows_.row(cells); });
-    if (number + 1 == store_.range(segment_.part).second) to_.commit(segment_.part, rows_.take());
+    count_stopped(stopped_, number, r.outcome);
+    if (number + 1 != store_.range(segment_.part).second) return;
+    ParquetTable rows = rows_.take();
+    if (!stopped_.empty()) rows.notes.emplace_back(SweepStore::kStoppedNote, stopped_json(stopped_));
+    stopped_.clear();
+    to_.commit(segment_.part, std::move(rows));
   }
   // Forgets the rows of an unfinished part.
-  void clear() { rows_.take(); }
+  void clear() { rows_.take(), stopped_.clear(); }
 
  private:
   const SweepStore& store_;
   Committer& to_;
   SweepRows rows_;
+  StoppedByKind stopped_;  // among these rows
   const Place* place_ = nullptr;
   const Segments* segments_ = nullptr;
   Segment segment_;

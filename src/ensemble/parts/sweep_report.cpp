@@ -1,30 +1,40 @@
 #include "ensemble/parts/sweep_report.h"
 
+#include "base/diagnostic.h"
 #include "base/json.h"
 #include "ensemble/parts/judgement.h"
 
 namespace anholon {
 
-void count_stopped(StoppedByKind& stopped, std::size_t number, const Outcome& outcome) {
-  if (outcome.ok()) return;
-  StoppedCases& s = stopped[outcome.kind];
-  if (s.count++ == 0) s.first = number, s.outcome = outcome;
+namespace {
+
+std::string report_of(const StoppedByKind& stopped, const std::string& error, const std::string& residuals,
+                      std::size_t cases, std::size_t finished, OutcomeKind outcome) {
+  return "{\n  \"stopped\": " + stopped_json(stopped) + ",\n  \"error_estimate\": " + error +
+         ",\n  \"residuals\": " + residuals + ",\n  \"cases\": " + std::to_string(cases) +
+         ",\n  \"finished\": " + std::to_string(finished) + ",\n  \"outcome\": \"" + name(outcome) + "\"\n}";
 }
 
-std::string sweep_report_json(const StoppedByKind& stopped, const EnsembleReport& report) {
-  std::string text = "{\n  \"stopped\": [";
-  bool first = true;
-  for (const auto& [kind, s] : stopped) {
-    text += std::string(first ? "" : ",") + "\n    {\"outcome\": \"" + name(kind) +
-            "\", \"cases\": " + std::to_string(s.count) + ", \"first\": " + std::to_string(s.first) +
-            ", \"message\": \"" + json_escape(s.outcome.message) + "\", \"hint\": \"" + json_escape(s.outcome.hint) +
-            "\"}";
-    first = false;
-  }
-  return text + (first ? "" : "\n  ") + "],\n  \"error_estimate\": " + error_json(report.error) +
-         ",\n  \"residuals\": " + residuals_json(report.residuals) + ",\n  \"cases\": " + std::to_string(report.done) +
-         ",\n  \"finished\": " + std::to_string(report.finished) + ",\n  \"outcome\": \"" + name(report.outcome.kind) +
-         "\"\n}";
+// The text from one key of a judgement to the next one, as judgement_json wrote it.
+std::string between(const std::string& judgement, const std::string& key, const std::string& next) {
+  const std::string begin = "\"" + key + "\": ", end = ",\n  \"" + next + "\": ";
+  const std::size_t from = judgement.find(begin), to = judgement.find(end);
+  if (from == std::string::npos || to == std::string::npos || to < from)
+    throw Failure({}, "the judgement of the folder is damaged");
+  return judgement.substr(from + begin.size(), to - from - begin.size());
+}
+
+}  // namespace
+
+std::string sweep_report_json(const StoppedByKind& stopped, const EnsembleReport& r) {
+  return report_of(stopped, error_json(r.error), residuals_json(r.residuals), r.done, r.finished, r.outcome.kind);
+}
+
+std::string sweep_report_json(const CollectedReport& r) {
+  const bool judged = !r.judgement.empty();
+  return report_of(r.stopped, judged ? between(r.judgement, "error_estimate", "residuals") : error_json({}),
+                   judged ? between(r.judgement, "residuals", "text") : residuals_json({}), r.cases, r.finished,
+                   OutcomeKind::finished);
 }
 
 }  // namespace anholon

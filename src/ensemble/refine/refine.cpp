@@ -94,6 +94,11 @@ void must_be_refinable(const Variation& variation, const std::vector<std::string
                       (near.empty() ? "" : "; did you mean '" + near + "'?"),
                   kHint);
   }
+  for (const char* words : {"outcome", "event", "case_name"})
+    if (rule.column == words)
+      throw Failure({}, "the column '" + rule.column + "' holds words, and a bound is one of numbers",
+                    "borders between outcomes and events are refined in any case; leave out the rule, or give a column "
+                    "of numbers");
   if (rule.column.empty() && !has("outcome"))
     throw Failure({}, "without the column 'outcome' nothing tells where a border is",
                   "add outcome to the columns, or give a column to refine by");
@@ -104,19 +109,24 @@ void must_be_refinable(const Variation& variation, const std::vector<std::string
     throw Failure({}, "borders are refined over at most " + std::to_string(kMostAxes) + " variations", "fewer grids");
 }
 
+void must_go_on(const SweepStore& store, const RefineRule& rule) {
+  for (std::size_t g = 1; g < store.generations().size(); ++g)
+    if (const std::string& before = store.generations()[g].rule; before != rule.text())
+      throw Failure({},
+                    store.folder() + " was refined by " +
+                        (before.empty() ? "outcomes and events" : "'" + before + "'") + ", not by " +
+                        (rule.column.empty() ? "these alone" : "'" + rule.text() + "'"),
+                    "the same rule goes on; another one needs another folder");
+}
+
 std::size_t add_generation(SweepStore& store, const Variation& variation, const RefineRule& rule) {
+  must_go_on(store, rule);
   const Borders::Differ differ = differ_by(rule);
   Borders borders(variation.axes());
   Kinds kinds;
   std::vector<std::int64_t> next;
   const std::vector<Generation> before = store.generations();
   for (std::size_t g = 0; g < before.size(); ++g) {
-    if (g > 0 && before[g].rule != rule.text())
-      throw Failure({},
-                    store.folder() + " was refined by " +
-                        (before[g].rule.empty() ? "outcomes and events" : "'" + before[g].rule + "'") + ", not by " +
-                        (rule.column.empty() ? "these alone" : "'" + rule.text() + "'"),
-                    "the same rule goes on; another one needs another folder");
     if (g > 0 && store.points_of(g) != next)
       throw Failure({},
                     "generation " + std::to_string(g) + " of " + store.folder() + " has other points than its borders",

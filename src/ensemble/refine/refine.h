@@ -26,6 +26,9 @@ RefineRule refine_rule(const std::string& word);
 // tell what a border is.
 void must_be_refinable(const Variation& variation, const std::vector<std::string>& columns, const RefineRule& rule);
 
+// Throws Failure without a place if a generation of the folder was planned by another rule.
+void must_go_on(const SweepStore& store, const RefineRule& rule);
+
 // Plans the next generation in a folder in which no part is missing. Returns the number of its cases, 0 if there is no
 // border. Throws Failure without a place: an earlier generation followed another rule or was changed, a part is damaged,
 // or the plan cannot be written.

@@ -1,8 +1,10 @@
 #include "ensemble/store/sweep_request.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include <nlohmann/json.hpp>
 
-#include "base/diagnostic.h"
 #include "base/json.h"
 
 namespace anholon {
@@ -10,6 +12,12 @@ namespace anholon {
 namespace {
 
 constexpr int kVersion = 1;
+constexpr const char *kBase = "base file ", *kTable = "data file ";
+
+// A text as JSON gives it back: bytes that are not UTF-8 are lost.
+std::string as_kept(const std::string& text) {
+  return nlohmann::json::parse(JsonWriter().string(text).text()).get<std::string>();
+}
 
 }  // namespace
 
@@ -63,15 +71,58 @@ SweepRequest request_of(const std::string& text, const std::string& path) {
   return r;
 }
 
-std::vector<std::string> judgement_text(const std::string& json) {
+void add_files(std::vector<std::pair<std::string, std::string>>& asked, const SourceText& model) {
+  for (std::size_t k = 0; k < model.others.size(); ++k)
+    asked.emplace_back(kBase + std::to_string(k + 1), model.others[k].text);
+  for (const SourceText& s : model.tables) {
+    const std::string name = as_kept(kTable + s.name);
+    if (std::none_of(asked.begin(), asked.end(), [&](const auto& each) { return each.first == name; }))
+      asked.emplace_back(name, as_kept(s.text));
+  }
+}
+
+SourceText model_asked(const SweepRequest& r) {
+  SourceText source{r.model_name.empty() ? "model" : r.model_name, {}};
+  for (const auto& [name, text] : r.asked) {
+    if (name == "model") source.text = text;
+    if (name.starts_with(kBase)) source.others.push_back({name, text});
+    if (name.starts_with(kTable)) source.tables.push_back({name.substr(std::strlen(kTable)), text});
+  }
+  return source;
+}
+
+std::optional<std::vector<std::string>> judgement_text(const std::string& json) {
   using Json = nlohmann::ordered_json;
-  std::vector<std::string> lines;
   const Json j = Json::parse(json, nullptr, false);
-  if (!j.is_object()) return lines;
-  if (const auto text = j.find("text"); text != j.end() && text->is_array())
-    for (const Json& line : *text)
-      if (line.is_string()) lines.push_back(line.get<std::string>());
+  if (!j.is_object()) return std::nullopt;
+  const auto text = j.find("text");
+  if (text == j.end() || !text->is_array()) return std::nullopt;
+  std::vector<std::string> lines;
+  for (const Json& line : *text)
+    if (line.is_string()) lines.push_back(line.get<std::string>());
   return lines;
+}
+
+void add_stopped(StoppedByKind& all, const std::string& json) {
+  try {
+    const nlohmann::json list = nlohmann::json::parse(json);
+    for (const nlohmann::json& each : list) {
+      StoppedCases next{each.at("cases"), each.at("first"), {}};
+      const std::string called = each.at("outcome");
+      auto kind = OutcomeKind::finished;
+      while (kind != OutcomeKind::too_large && called != name(kind))
+        kind = static_cast<OutcomeKind>(static_cast<std::uint8_t>(kind) + 1);
+      next.outcome = {kind, each.at("message"), each.at("hint")};
+      StoppedCases& known = all[kind];
+      next.count += known.count;
+      if (known.count == 0 || next.first < known.first)
+        known = std::move(next);
+      else
+        known.count = next.count;
+    }
+  } catch (const nlohmann::json::exception&) {
+    throw Failure({}, "what a part tells of cases that stopped is damaged");
+  }
 }
 
 }  // namespace anholon

@@ -1,9 +1,13 @@
-// The request of a sweep in a folder, and its file sweep.json. (doc/sweeps.md)
+// The request of a sweep in a folder, its file _sweep.json, and other texts in JSON that the folder keeps. (doc/sweeps.md)
 #pragma once
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "base/diagnostic.h"
+#include "ensemble/store/stopped.h"
 
 namespace anholon {
 
@@ -27,7 +31,16 @@ std::string request_json(const SweepRequest& request, const std::string& program
 // Throws Failure without a place; `path` names the file in messages.
 SweepRequest request_of(const std::string& json, const std::string& path);
 
-// The sentences of a judgement, which is kept as JSON; empty if the text holds none.
-std::vector<std::string> judgement_text(const std::string& json);
+// Adds the files to which the text of a model refers, by name: its base files in their order, and the data files of its
+// tables that are not there yet.
+void add_files(std::vector<std::pair<std::string, std::string>>& asked, const SourceText& model);
+// The text of the model that was asked for, with these files. A model without a name is called "model", as no base file is.
+SourceText model_asked(const SweepRequest& request);
+
+// The sentences of a judgement, which is kept as JSON; nullopt if the text is none.
+std::optional<std::vector<std::string>> judgement_text(const std::string& json);
+
+// Adds the cases of a list that stopped_json wrote. Throws Failure without a place if the text is none.
+void add_stopped(StoppedByKind& all, const std::string& json);
 
 }  // namespace anholon

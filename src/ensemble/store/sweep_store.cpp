@@ -22,11 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRequest = "sweep.json";
 constexpr std::string_view kPart = "part-", kEnding = ".parquet";
 constexpr const char *kSweepNote = "anholon.sweep", *kFirstNote = "anholon.first", *kOutcomesNote = "anholon.outcomes",
                      *kRuleNote = "anholon.rule";
-// Readers of a folder as one table leave out names that begin so.
+// Readers of a folder as one table leave out names that begin so. A folder may have the request under the second name,
+// which pandas takes for a part.
+constexpr const char *kRequest = "_sweep.json", *kOtherRequest = "sweep.json";
 constexpr const char* kPlan = "_generation-";
 constexpr const char* kJudgement = "_judgement.json";
 constexpr const char* kRemove = "remove it; the same command of the sweep computes it again";
@@ -75,6 +76,13 @@ std::string create_folder(const std::string& folder) {
   return {};
 }
 
+// The name of the request in a folder.
+const char* request_in(const std::string& folder) {
+  std::error_code none;
+  const bool other = !fs::exists(folder + "/" + kRequest, none) && fs::exists(folder + "/" + kOtherRequest, none);
+  return other ? kOtherRequest : kRequest;
+}
+
 std::string without_slash(std::string folder) {
   while (folder.size() > 1 && folder.back() == '/') folder.pop_back();
   return folder;
@@ -86,13 +94,21 @@ std::string read_or_fail(const std::string& path) {
   return text;
 }
 
-// The number of a part by the name of its file.
+// The name of the file of a part.
+std::string name_of(std::size_t part) {
+  std::string number = std::to_string(part);
+  constexpr std::size_t kDigits = 6;
+  if (number.size() < kDigits) number.insert(0, kDigits - number.size(), '0');
+  return std::string(kPart) + number + std::string(kEnding);
+}
+
+// The number of a part by the name of its file; nullopt of any other file, such as a copy part-2.parquet.
 std::optional<std::size_t> part_of(std::string_view name) {
   if (!name.starts_with(kPart) || !name.ends_with(kEnding)) return std::nullopt;
-  name.remove_prefix(kPart.size()), name.remove_suffix(kEnding.size());
+  const std::string_view digits = name.substr(kPart.size(), name.size() - kPart.size() - kEnding.size());
   std::size_t number = 0;
-  const auto [end, why] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (why != std::errc() || end != name.data() + name.size()) return std::nullopt;
+  const auto [end, why] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (why != std::errc() || end != digits.data() + digits.size() || name_of(number) != name) return std::nullopt;
   return number;
 }
 
@@ -158,7 +174,7 @@ SweepStore::SweepStore(std::string folder, SweepRequest request)
 
 bool SweepStore::is_there(const std::string& folder) {
   std::error_code none;
-  return fs::is_regular_file(folder + "/" + kRequest, none);
+  return fs::is_regular_file(folder + "/" + request_in(folder), none);
 }
 
 SweepStore SweepStore::open(const std::string& named) {
@@ -166,7 +182,8 @@ SweepStore SweepStore::open(const std::string& named) {
   if (!is_there(folder))
     throw Failure({}, folder + " is no folder of a sweep: it holds no " + kRequest,
                   "anholon sweep MODEL --vary … -o " + folder + "/ makes one");
-  SweepStore store{folder, request_of(read_or_fail(folder + "/" + kRequest), folder + "/" + kRequest)};
+  const std::string path = folder + "/" + request_in(folder);
+  SweepStore store{folder, request_of(read_or_fail(path), path)};
   store.look_for_generations();
   return store;
 }
@@ -288,12 +305,7 @@ std::pair<std::size_t, std::size_t> SweepStore::range(std::size_t part) const {
   return {from, std::min(of.first_case + of.cases, from + request_.chunk)};
 }
 
-std::string SweepStore::path_of(std::size_t part) const {
-  std::string number = std::to_string(part);
-  constexpr std::size_t kDigits = 6;
-  if (number.size() < kDigits) number.insert(0, kDigits - number.size(), '0');
-  return folder_ + "/" + std::string(kPart) + number + std::string(kEnding);
-}
+std::string SweepStore::path_of(std::size_t part) const { return folder_ + "/" + name_of(part); }
 
 std::vector<std::size_t> SweepStore::present() const {
   std::vector<std::size_t> list;
@@ -312,7 +324,9 @@ std::vector<std::size_t> SweepStore::missing() const {
 }
 
 std::string SweepStore::commit(std::size_t part, ParquetTable rows) const {
-  rows.notes = {{kSweepNote, id_}, {kFirstNote, std::to_string(range(part).first)}, {kOutcomesNote, outcomes_of(rows)}};
+  const std::vector<std::pair<std::string, std::string>> notes{
+      {kSweepNote, id_}, {kFirstNote, std::to_string(range(part).first)}, {kOutcomesNote, outcomes_of(rows)}};
+  rows.notes.insert(rows.notes.begin(), notes.begin(), notes.end());
   const std::string bytes = parquet_bytes(rows), path = path_of(part);
   const Committed done = commit_file(folder_, fs::path(path).filename().string(), bytes);
   if (done.how != Committed::How::other) return done.error;
@@ -326,7 +340,7 @@ std::string SweepStore::commit(std::size_t part, ParquetTable rows) const {
 void SweepStore::check(std::size_t part, const std::string& path, std::string_view belongs,
                        std::string_view first) const {
   if (belongs != id_ || first != std::to_string(range(part).first))
-    throw Failure({}, path + " belongs to another sweep, or " + kRequest + " was changed", kRemove);
+    throw Failure({}, path + " belongs to another sweep, or " + request_in(folder_) + " was changed", kRemove);
 }
 
 ParquetTable SweepStore::read(std::size_t part) const {
@@ -343,8 +357,12 @@ ParquetTable SweepStore::read(std::size_t part) const {
 }
 
 std::string SweepStore::judgement() const {
+  const std::string path = folder_ + "/" + kJudgement;
   std::string text;
-  return read_file(folder_ + "/" + kJudgement, text, nullptr) ? text : std::string();
+  if (!read_file(path, text, nullptr)) return {};
+  if (!judgement_text(text))
+    throw Failure({}, path + " is damaged", "remove it; the same command of the sweep writes it again");
+  return text;
 }
 
 std::string SweepStore::add_judgement(const std::string& json) const {
@@ -377,6 +395,7 @@ SweepStore::Progress SweepStore::progress() const {
     ++p.parts, p.cases += to - from;
     ++p.parts_there[generation_of(generations_, from)];
     add_outcomes(notes.note(kOutcomesNote), p.outcomes);
+    if (const std::string_view stopped = notes.note(kStoppedNote); !stopped.empty()) p.stopped.emplace_back(stopped);
     written.emplace_back(read.written, to - from);
   }
   // Rows of a table may be several for a case, so cases are counted by ranges.

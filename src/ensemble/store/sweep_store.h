@@ -1,4 +1,4 @@
-// A sweep in a folder: sweep.json says what was asked, and each part file holds a range of the cases.
+// A sweep in a folder: _sweep.json says what was asked, and each part file holds a range of the cases.
 //
 // A part is written once and never changed, so a range may be computed twice and counts once: two processes that compute
 // the same cases write the same bytes. The same request opens the folder again and computes what is missing; another
@@ -61,8 +61,9 @@ class SweepStore {
   std::vector<std::size_t> present() const;
   std::vector<std::size_t> missing() const;
 
-  // Adds a part: rows of the columns, by case. Returns an empty string, or the reason why it is not in the folder: a full
+  // Adds a part: rows of the columns, by case, with a note of that name if some of its cases stopped. Returns an empty string, or the reason why it is not in the folder: a full
   // disk, or a part of that number whose numbers are others.
+  static constexpr const char* kStoppedNote = "anholon.stopped";
   std::string commit(std::size_t part, ParquetTable rows) const;
   // Reads a part. Throws Failure without a place if it is damaged, was changed, or belongs to another sweep.
   ParquetTable read(std::size_t part) const;
@@ -73,14 +74,16 @@ class SweepStore {
     double cases_per_second = 0;                  // by the times at which the last parts were written; 0: unknown
     std::size_t unfinished = 0;                   // files of parts under way, or of processes that were killed
     std::vector<std::size_t> parts_there;         // of each generation
+    std::vector<std::string> stopped;             // the notes of parts whose cases stopped
   };
   // Reads the ends of all parts. Throws Failure as `read` does.
   Progress progress() const;
 
   std::string path_of(std::size_t part) const;
 
-  // How far the cases can be trusted, a JSON object; empty if the folder does not say so. The first text that is added
-  // stays. Returns an empty string, or the reason why it could not be written.
+  // How far the cases can be trusted, a JSON object; empty if the folder does not say so. Throws Failure without a place if
+  // the text is damaged. The first text that is added stays; adding returns an empty string, or the reason why it could
+  // not be written.
   std::string judgement() const;
   std::string add_judgement(const std::string& json) const;
 

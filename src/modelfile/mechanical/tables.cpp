@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "base/join.h"
+#include "base/read_file.h"
 #include "modelfile/text/collect.h"
 #include "modelfile/text/keys.h"
 
@@ -133,16 +133,28 @@ class TableReader {
     return out;
   }
 
-  void from_file(const Item& file, const Item* columns, Table& table) {
-    if (file.kind != Item::Kind::string) throw Failure(file.span, "a file is a name in quotes");
-    const std::filesystem::path path = std::filesystem::path(model_.source_text.name).parent_path() / file.text();
+  // The text of a data file, which the source text of the model keeps.
+  const std::string& text_of(const Item& file, const std::filesystem::path& path) {
+    std::vector<SourceText>& known = model_.source_text.tables;
+    const std::string name = file.text();
+    const auto at = std::find_if(known.begin(), known.end(), [&](const SourceText& s) { return s.name == name; });
+    if (at != known.end()) return at->text;
     std::error_code error;
-    model_.table_files.push_back(path.string());
     if (!std::filesystem::is_regular_file(path, error))
       throw Failure(file.span, "there is no file '" + path.string() + "'", "the name is relative to the model file");
     if (std::filesystem::file_size(path, error) > kLargestFile)
       throw Failure(file.span, "the file '" + path.string() + "' is larger than 16 MiB");
-    std::ifstream in(path);
+    std::string text, why;
+    if (!read_file(path.string(), text, &why))
+      throw Failure(file.span, "cannot read the file '" + path.string() + "': " + why);
+    return known.emplace_back(SourceText{name, std::move(text), path.string()}).text;
+  }
+
+  void from_file(const Item& file, const Item* columns, Table& table) {
+    if (file.kind != Item::Kind::string) throw Failure(file.span, "a file is a name in quotes");
+    const std::filesystem::path path = std::filesystem::path(model_.source_text.name).parent_path() / file.text();
+    model_.table_files.push_back(path.string());
+    std::istringstream in(text_of(file, path));
     lines_.clear();
     std::vector<std::string> wanted = {"1", "2"};
     if (columns) {

@@ -76,6 +76,78 @@ TEST_F(SweepStoreTest, APartCountsOnce) {
   EXPECT_EQ(files_of(folder).size(), 2U) << "nothing unfinished is left";
 }
 
+TEST_F(SweepStoreTest, ACopyOfAPartIsNoPart) {
+  const SweepStore store = SweepStore::open(folder, request(), "1");
+  EXPECT_EQ(store.commit(2, part(8, 10)), "");
+  for (const char* name : {"part-2.parquet", "part-0000002.parquet", "part-000002.parquet.parquet"})
+    fs::copy_file(folder / "part-000002.parquet", folder / name);
+  EXPECT_EQ(store.present(), (std::vector<std::size_t>{2}));
+  EXPECT_EQ(store.progress().cases, 2U);
+}
+
+TEST_F(SweepStoreTest, TellsWhyCasesStopped) {
+  const SweepStore store = SweepStore::open(folder, request(), "1");
+  const auto commit = [&](std::size_t number, ParquetTable rows, std::size_t first, const std::string& message) {
+    StoppedByKind stopped;
+    count_stopped(stopped, first, {OutcomeKind::finished, "", ""});
+    count_stopped(stopped, first, {OutcomeKind::singular, message, "a \"hint\""});
+    count_stopped(stopped, first + 1, {OutcomeKind::singular, "another", "hint"});
+    rows.notes.emplace_back(SweepStore::kStoppedNote, stopped_json(stopped));
+    EXPECT_EQ(store.commit(number, std::move(rows)), "");
+  };
+  commit(1, part(4, 8), 5, "the second part");
+  commit(0, part(0, 4), 2, "the first\npart");
+  EXPECT_EQ(store.commit(2, part(8, 10)), "") << "a part without such cases";
+  StoppedByKind all;
+  const SweepStore::Progress p = store.progress();
+  ASSERT_EQ(p.stopped.size(), 2U);
+  for (const std::size_t k : {1U, 0U}) add_stopped(all, p.stopped[k]);
+  ASSERT_EQ(all.size(), 1U);
+  const StoppedCases& s = all.at(OutcomeKind::singular);
+  EXPECT_EQ(s.count, 4U);
+  EXPECT_EQ(s.first, 2U);
+  EXPECT_EQ(s.outcome.message, "the first\npart");
+  EXPECT_EQ(s.outcome.hint, "a \"hint\"");
+  EXPECT_NE(message([&] { add_stopped(all, "[{}]"); }), "no failure");
+}
+
+TEST_F(SweepStoreTest, KeepsTheFilesOfTheModel) {
+  SourceText model{"cart.toml",
+                   "title = \"a\"",
+                   {},
+                   {{"below.toml", "base text"}},
+                   {{"a.csv", "gr\xF6\xDF"
+                              "e,1\n"}}};
+  SweepRequest asked = request();
+  add_files(asked.asked, model);
+  model.others.clear();
+  model.tables.push_back({"b.csv", "0,1\n"});
+  add_files(asked.asked, model);
+  SweepStore::open(folder, asked, "1");
+  // Bytes that are not UTF-8 are lost, and the request agrees with itself.
+  const SourceText kept = model_asked(SweepStore::open(folder, asked, "1").request());
+  EXPECT_EQ(kept.text, "title = \"a\"");
+  ASSERT_EQ(kept.others.size(), 1U);
+  EXPECT_EQ(kept.others[0].text, "base text");
+  ASSERT_EQ(kept.tables.size(), 2U);
+  EXPECT_EQ(kept.tables[0].name, "a.csv");
+  EXPECT_EQ(kept.tables[1].text, "0,1\n");
+  model.tables[1].text = "0,2\n";
+  SweepRequest changed = request();
+  add_files(changed.asked, model);
+  EXPECT_NE(message([&] { SweepStore::open(folder, changed, "1"); }).find("holds another sweep"), std::string::npos);
+}
+
+TEST_F(SweepStoreTest, ReadsAFolderOfAnEarlierVersion) {
+  {
+    EXPECT_EQ(SweepStore::open(folder, request(), "1").commit(0, part(0, 4)), "");
+  }
+  fs::rename(folder / "_sweep.json", folder / "sweep.json");
+  EXPECT_TRUE(SweepStore::is_there(folder));
+  EXPECT_EQ(SweepStore::open(folder, request(), "1").missing(), (std::vector<std::size_t>{1, 2}));
+  EXPECT_EQ(files_of(folder), (std::vector<std::string>{"part-000000.parquet", "sweep.json"}));
+}
+
 TEST_F(SweepStoreTest, RefusesAnotherSweep) {
   SweepStore::open(folder, request(), "1");
   SweepRequest other = request();
@@ -123,7 +195,7 @@ TEST_F(SweepStoreTest, RefusesForeignFoldersAndParts) {
   for (const std::string text :
        {"", "{", "[]", "{\"format\": 3}", "{\"format\": \"anholon sweep\", \"format_version\": 9}",
         "{\"format\": \"anholon sweep\", \"format_version\": 1, \"cases\": -1}"}) {
-    std::ofstream(folder / "sweep.json") << text;
+    std::ofstream(folder / "_sweep.json") << text;
     EXPECT_NE(message([&] { SweepStore::open(folder.string()); }), "no failure") << text;
   }
 }

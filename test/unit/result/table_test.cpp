@@ -86,6 +86,14 @@ TEST(Csv, WordsMakeAColumnOfWords) {
   EXPECT_TRUE(std::isnan(t.values[1][1]));
 }
 
+// The first cases of a sweep may have no event.
+TEST(Csv, AColumnOfWordsMayBeginEmpty) {
+  const RunTable t = table_of("case,event,x\n0,,1\n1,far,\n2,,3\n");
+  EXPECT_EQ(t.text(1, 1), "far");
+  EXPECT_EQ(t.values[2][2], 3);
+  EXPECT_EQ(trouble("case,x\n0,1\n1,\n2,far\n"), "4:3: 'far' is not a number");
+}
+
 // What a kill leaves of a row is no row.
 TEST(Csv, TheRestOfAKilledRun) {
   const RunFile run = read_csv("t,x,y\n0,1,2\n0.5,1.2");
@@ -118,6 +126,19 @@ TEST(Json, KeepsNumbersAndReportAsTheyAreWritten) {
   EXPECT_EQ(run.report, report);
   EXPECT_EQ(run.table.text(0, 1), "1.50");
   EXPECT_TRUE(std::isnan(run.table.values[1][1]));
+}
+
+// The outcomes and events of a sweep.
+TEST(Json, KeepsWords) {
+  RunFile run;
+  run.table = table_of("case,outcome,event,x\n0,finished,,1.5\n1,\"a, \"\"b\"\"\",far,\n");
+  const std::string text = json_run(run);
+  EXPECT_NE(text.find("[[0, \"finished\", null, 1.5], [1, \"a, \\\"b\\\"\", \"far\", null]]"), std::string::npos)
+      << text;
+  const RunTable again = read_json_run(text).table;
+  EXPECT_EQ(again.text(0, 1), "finished");
+  EXPECT_EQ(again.text(1, 1), "a, \"b\"");
+  EXPECT_TRUE(std::isnan(again.values[2][0]));
 }
 
 TEST(Json, SaysWhereSomethingIsWrong) {
