@@ -13,6 +13,8 @@
 
 namespace anholon {
 
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
+
 EnsemblePlan::EnsemblePlan(const Scenario& s, const EnsembleOptions& o)
     : of_all(s), options(o), scenario(s), parameters(scenario, o.varied), lanes(o.cases, o.threads) {
   make();
@@ -61,6 +63,7 @@ void EnsemblePlan::make() {
   Column monitors;
   for (const Monitor& m : model.monitors) monitors.push_back(m.value);
   for (const Expr e : o.reductions.ends) monitors.push_back(s.graph().own(e));
+  highest = largest_order(s, s.structure.d);
   stages = std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitors));
   leading = stages > 0 || std::any_of(s.structure.d.begin(),
                                       s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates),
@@ -307,8 +310,10 @@ bool CaseWalk::keep(const W& t, std::vector<double>& values) {
   // As every reader of a motion does (motion.cpp), unless no step follows.
   if (!stepper_->arrived()) stepper_->leave_kernel();
   if (!stepper_->at(t, *point_, plan_->leading).ok() || (plan_->stages > 0 && !point_->extend().ok())) return false;
+  // As `simulate`, which has no column of velocities if no coordinate is solved for by more than its value.
   for (const int k : {0, 1})
-    for (std::size_t a = 0; a < system.coordinates; ++a) values.push_back(to_double(point_->derivative(a, k)));
+    for (std::size_t a = 0; a < system.coordinates; ++a)
+      values.push_back(k <= plan_->highest ? to_double(point_->derivative(a, k)) : kNoValue);
   for (std::size_t j = system.mechanical(); j < system.size(); ++j)
     values.push_back(to_double(point_->derivative(j, 0)));
   if (!outputs_) return true;
@@ -426,15 +431,16 @@ namespace {
 // Keeps of the rows of `simulate` the columns of an ensemble.
 class EnsembleRowFilter final : public RowSink {
  public:
-  EnsembleRowFilter(const std::vector<Rational>& times, CaseResult& result) : result_(result) {
+  EnsembleRowFilter(const Model& model, const std::vector<Rational>& times, CaseResult& result)
+      : model_(model), result_(result) {
     for (const Rational& t : times) times_.push_back(from_rational<double>(t));
   }
-  void columns(const std::vector<RunColumn>& columns) override { kept_ = ensemble_places(columns); }
+  void columns(const std::vector<RunColumn>& columns) override { kept_ = ensemble_places(model_, columns); }
   void row(const Row& row) override {
     const double t = row.values[0];
     result_.t = t;
     result_.last.clear();
-    for (std::size_t k : kept_) result_.last.push_back(row.values[k]);
+    for (const std::optional<std::size_t>& k : kept_) result_.last.push_back(k ? row.values[*k] : kNoValue);
     if (std::find(times_.begin(), times_.end(), t) == times_.end()) return;
     std::vector<double>& kept = result_.rows.emplace_back();
     kept.push_back(t);
@@ -442,9 +448,10 @@ class EnsembleRowFilter final : public RowSink {
   }
 
  private:
+  const Model& model_;
   std::vector<double> times_;
   CaseResult& result_;
-  std::vector<std::size_t> kept_;  // columns
+  std::vector<std::optional<std::size_t>> kept_;  // columns
 };
 
 }  // namespace
@@ -482,7 +489,7 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
       reducer.ends(std::move(values));
     };
   }
-  EnsembleRowFilter rows(o.at, r);
+  EnsembleRowFilter rows(*own.model, o.at, r);
   const SimulationReport report = o.own_motion ? o.own_motion(own, options, rows) : simulate_in(own, options, rows);
   for (const EventReport& e : report.events) {
     if (e.stop) r.event = e.name;

@@ -55,6 +55,7 @@ class EnsemblePlan {
   std::optional<Outputs> outputs;
   std::optional<RatesOnDemand> rates;  // if a method other than Taylor's may make a case
   int stages = 0;
+  int highest = 0;       // derivative of a coordinate that a row of `simulate` has
   bool leading = false;  // whether the results of a case need more than its state
   StepSettings settings;
 
