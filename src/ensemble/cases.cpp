@@ -37,7 +37,7 @@ void EnsemblePlan::make() {
   for (const VaryingMass& m : model.masses) quadratures.push_back(m.value);
   first_reduced = quadratures.size();
   for (const Expr e : o.reductions.formulas) quadratures.push_back(s.graph().own(e));
-  settings.known_from = 0, settings.known_to = quadratures.size();
+  settings.known_from = 0, settings.known_to = first_reduced, settings.followed_to = quadratures.size();
   watched = watched_series(s, quadratures.size());
   for (const Expr e : watched_formulas(model)) quadratures.push_back(e);
   for (const Event& e : model.events)
@@ -215,9 +215,15 @@ bool CaseWalk::reduce() {
         value_of_quadrature(*stepper_, W(stepper_->before() + W(x)), plan_->first_reduced + i, *point_);
     return FormulaValue{is, made_of};
   };
+  const auto hiding = [&](std::size_t i, double x) -> std::vector<HidingArgument> {
+    const std::vector<HidingSlot>& slots = hiding_.of(*plan_->program, plan_->first_reduced + i);
+    if (slots.empty()) return {};
+    if (!stepper_->arrived()) stepper_->leave_kernel();
+    return hiding_arguments(*stepper_, W(stepper_->before() + W(x)), slots, *point_);
+  };
   const bool last = !stepper_->fired().empty() || stepper_->time() == end_;
   const bool good = reducer_->step({to_double(W(stepper_->time() - stepper_->before())), stepper_->order() - 1,
-                                    coefficient, value, last, stepper_->kinks()});
+                                    coefficient, value, hiding, last, stepper_->kinks()});
   for (const Fired<double>& f : stepper_->fired())
     reducer_->event(plan_->scenario.model->events[f.series].name, to_double(W(stepper_->before() + W(f.where))));
   reducer_->values(result_->reduced);
@@ -478,11 +484,12 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
     options.followed.insert(options.followed.end(), o.reductions.ends.begin(), o.reductions.ends.end());
     options.followed_at_ends = ends;
     options.dense = [&, ends, formulas](const StepPolynomials& step) {
-      (void)reducer.step(
-          {step.end - step.begin, step.one_sided ? 0 : step.order - 1, step.followed, [&](std::size_t i, double x) {
-             const auto [value, made_of] = step.followed_value(i, x);
-             return FormulaValue{value, made_of};
-           }});
+      (void)reducer.step({step.end - step.begin, step.one_sided ? 0 : step.order - 1, step.followed,
+                          [&](std::size_t i, double x) {
+                            const auto [value, made_of] = step.followed_value(i, x);
+                            return FormulaValue{value, made_of};
+                          },
+                          step.followed_hiding});
       std::vector<double> values;
       for (std::size_t i = 0; i < ends; ++i)
         values.push_back(step.followed_value(formulas + i, step.end - step.begin).first);

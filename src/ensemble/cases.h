@@ -17,6 +17,7 @@
 #include "motion/method_choice.h"
 #include "motion/motion.h"
 #include "simulation/event_paces.h"
+#include "simulation/followed_value.h"
 #include "structure/start_memory.h"
 
 namespace anholon {
@@ -121,6 +122,7 @@ class CaseWalk {
   std::optional<Expansion<W>> point_;
   std::optional<Machine<W>> outputs_;
   std::optional<Reducer> reducer_;
+  HidingSlots hiding_;  // of the formulas of the reductions
   std::optional<EventPaces<W>> paces_;
   std::optional<TaylorWatch> watch_;
 };
