@@ -207,9 +207,7 @@ std::uint32_t colour_of_word(std::size_t word) {
 }
 
 RichText axis_label(const NamedColumn& c, const std::string& note, LabelStyle style) {
-  const bool initial = c.name.ends_with("(0)");
-  RichText label = rich_label(c.name.substr(0, c.name.size() - (initial ? 3 : 0)), initial ? "" : c.unit, style);
-  if (initial) label.push_back({c.unit.empty() || c.unit == "1" ? "(0)" : "(0) (" + c.unit + ")"});
+  RichText label = rich_label(c.name, c.unit, style);
   if (!c.meaning.empty()) label.push_back({", " + c.meaning});
   if (!note.empty()) label.push_back({" " + note});
   return label;
