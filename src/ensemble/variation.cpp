@@ -83,6 +83,21 @@ std::string meant_by(const std::string& name, std::vector<std::string> known) {
   return near.empty() ? "" : "; did you mean '" + near + "'?";
 }
 
+// Initial values that the file gives as formulas are varied by a parameter in them.
+void refuse_initial_formula(const std::string& word, const std::string& text, const std::string& name, bool multiplier,
+                            const Model& model) {
+  const auto knows = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (multiplier && knows(model.names.multipliers))
+    mistake_in(word, 0, text.size(), "the initial value of a multiplier varies by a parameter",
+               "parameters = {l0 = 0} in the file, and " + text + " = \"l0\" in [initial]; then l0 varies");
+  if (!multiplier && knows(model.names.states))
+    mistake_in(word, 0, text.size(), "the initial value of the state '" + name + "' varies by a parameter",
+               "parameters = {" + name + "0 = 0} in the file, and initial = \"" + name + "0\" in the state; then " +
+                   name + "0 varies");
+}
+
 Varied named(const std::string& word, const std::string& text, const Model& model) {
   const auto [name, primes, multiplier] = initial_name(text);
   const auto& coordinates = model.names.coordinates;
@@ -104,12 +119,16 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
     known.push_back(model.parameters[i].name);
   }
   known.insert(known.end(), coordinates.begin(), coordinates.end());
+  refuse_initial_formula(word, text, name, multiplier, model);
   const std::string coefficient = hint_for_coefficient(name);
   if (!coefficient.empty())
     mistake_in(word, 0, text.size(), "there is no parameter and no coordinate '" + name + "'", coefficient);
+  const bool family = std::any_of(coordinates.begin(), coordinates.end(),
+                                  [](const std::string& q) { return q.find('[') != std::string::npos; });
   mistake_in(word, 0, text.size(), "there is no parameter and no coordinate '" + name + "'" + meant_by(name, known),
              "the names in [parameters], coordinates, and velocities such as " +
-                 (coordinates.empty() ? std::string("x") : coordinates[0]) + "'");
+                 (coordinates.empty() ? std::string("x") : coordinates[0]) + "'" +
+                 (family ? "; an integer of [index] makes another model: a sweep of its own with --set" : ""));
 }
 
 }  // namespace
