@@ -331,6 +331,25 @@ void Reducer::see(Seen& s, double h, double scale) {
   s.fewest = -greatest_on(c.data(), degree, h, -s.fewest);
 }
 
+namespace {
+
+// A part of a step.
+struct Piece {
+  double from, to;
+  int depth;  // how often it was halved
+};
+
+// The pieces between these points, the first one last.
+std::vector<Piece> pieces_between(const std::vector<double>& points, double h) {
+  std::vector<Piece> list;
+  double end = h;
+  for (std::size_t k = points.size(); k-- > 0; end = points[k]) list.push_back({points[k], end, 0});
+  list.push_back({0, end, 0});
+  return list;
+}
+
+}  // namespace
+
 // Halves the step until an interpolation of its values is as good as the tolerance. At a moment where the formula has no
 // value, or no derivatives, the pieces become as short as the time can show, and their values stand for theirs. The formula
 // is not bounded where these go far beyond all others, and its integral diverges where they weigh in spite of their length.
@@ -338,15 +357,7 @@ void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
   constexpr int kFirst = 2, kDeepest = 48, kTiny = 30, kLongWithout = 8, kMostPieces = 1000;
   Seen& s = seen_[formula];
   const std::function<FormulaValue(double)> f = [&](double x) { return step.value(formula, x); };
-  struct Piece {
-    double from, to;
-    int depth;
-  };
-  std::vector<Piece> left;
-  double end_of_piece = step.h;
-  for (std::size_t k = hidden_.size(); k-- > 0; end_of_piece = hidden_[k])
-    left.push_back({hidden_[k], end_of_piece, 0});
-  left.push_back({0, end_of_piece, 0});
+  std::vector<Piece> left = pieces_between(hidden_, step.h);
   const auto ends_as = [&](const Interpolation& there, const Piece& p) {
     if (hidden_.empty()) return true;
     there.polynomial(polynomial_);

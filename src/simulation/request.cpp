@@ -51,7 +51,8 @@ Rational set_times(const MotionSettings& settings, const Scenario& s, const Aske
   const bool left_out =
       o.to && of_file(at) && o.to != s.model->simulate.to &&
       std::erase_if(at, [&](const WrittenTime& t) { return !lies_between(t.value, start, *o.to); }) > 0;
-  if (left_out) asker.note("rows that the file asks for beyond t = " + number_text(from_rational<double>(*o.to)) + " are left out");
+  if (left_out)
+    asker.note("rows that the file asks for beyond t = " + number_text(from_rational<double>(*o.to)) + " are left out");
   for (const WrittenTime& t : at) o.at.push_back(t.value);
   if (!of_file(at))
     for (const WrittenTime& t : at) o.at_text.push_back(is_number_as_written(t.text) ? t.text : "");
@@ -66,8 +67,9 @@ Rational set_times(const MotionSettings& settings, const Scenario& s, const Aske
   const Rational end = o.to ? *o.to : o.at.front() < start ? o.at.front() : o.at.back();
   if (o.to && !o.at.empty() && !left_out)
     if (const Rational last = end < start ? o.at.front() : o.at.back(); last != end)
-      asker.note("the motion goes on after the last row, t = " + number_text(from_rational<double>(last)) + ", to its end, t = " +
-                 number_text(from_rational<double>(end)) + ", where " + asker.called("at") + " asks for no row");
+      asker.note("the motion goes on after the last row, t = " + number_text(from_rational<double>(last)) +
+                 ", to its end, t = " + number_text(from_rational<double>(end)) + ", where " + asker.called("at") +
+                 " asks for no row");
   if (end < start)
     asker.note("the end lies before the start, t = " + number_text(from_rational<double>(start)) +
                ": the motion is computed backwards");

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ensemble/ensemble.h"
+#include "ensemble/cases/ensemble.h"
 #include "support/models.h"
 #include "support/rows.h"
 

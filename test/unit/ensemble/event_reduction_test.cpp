@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ensemble/ensemble.h"
+#include "ensemble/cases/ensemble.h"
 #include "ensemble/request.h"
 #include "ensemble/with_contacts.h"
 #include "modelfile/contacts.h"

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ensemble/ensemble.h"
+#include "ensemble/cases/ensemble.h"
 #include "ensemble/table.h"
 #include "support/models.h"
 

@@ -1,7 +1,7 @@
-#include "ensemble/cases_error.h"
+#include "ensemble/cases/cases_error.h"
 
-#include "ensemble/case_parameters.h"
 #include "ensemble/case_scenario.h"
+#include "ensemble/cases/case_parameters.h"
 #include "ensemble/columns.h"
 #include "model/exponents.h"
 #include "observe/estimate.h"
