@@ -4,7 +4,7 @@
 
 #include "anholon/sweep.h"
 #include "api/data.h"
-#include "ensemble/ensemble.h"
+#include "ensemble/cases/ensemble.h"
 #include "ensemble/parts/fill.h"
 #include "ensemble/variation.h"
 

@@ -69,6 +69,7 @@ class HybridMotion {
     if (outcome.ok()) outcome = not_inside(when(), kPassed);
     bodies_.look();
     if (outcome.ok()) outcome = as_its_modes();
+    if (bodies_.at.t < end_) segments_->end_early();
     return joined_.report(std::move(outcome), bodies_.at.t.get_d(), segments_->rows());
   }
 

@@ -22,6 +22,8 @@ class ModeSegments {
   bool follow(const Rational& to, Outcome& outcome);
   // Whether the modes last up to `to`, with the state there: the motion itself does not go on.
   bool last_until(const Rational& to, ContactState& at);
+  // The motion has ended before its end: its last state gets a row.
+  void end_early() { rows_.end_early(); }
   std::size_t rows() const { return rows_.rows(); }
 
  private:

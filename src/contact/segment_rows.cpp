@@ -42,12 +42,6 @@ void SegmentRows::row(const Row& row) {
   for (std::size_t k = 0; k < own_.size() && !stopped_.empty(); ++k)
     if ((own_[k].kind == ColumnKind::velocity || own_[k].kind == ColumnKind::acceleration) && stopped_[own_[k].index])
       last_[k] = 0;
-  if (!times_.empty()) {
-    while (due_ < times_.size() && times_[due_] < row.values[0]) ++due_;
-    // The end of a segment may be the row that was asked for, and is not written again.
-    if (due_ == times_.size() || times_[due_] != row.values[0]) return;
-    ++due_;
-  }
   std::vector<double> values;
   for (const auto& place : places_) values.push_back(place ? last_[*place] : std::numeric_limits<double>::quiet_NaN());
   if (times_.empty()) {
@@ -56,7 +50,23 @@ void SegmentRows::row(const Row& row) {
     held_ = std::move(values);
     return;
   }
+  const double t = row.values[0];
+  while (due_ < times_.size() && times_[due_] < t) ++due_;
+  untold_.clear();
+  if (due_ == times_.size() || times_[due_] != t) {
+    // The end of a segment may be the row that was asked for, and is not written again.
+    if (due_ == 0 || times_[due_ - 1] != t) untold_ = std::move(values);
+    return;
+  }
+  ++due_;
   to_.row({values, {}});
+  ++count_;
+}
+
+void SegmentRows::end_early() {
+  if (untold_.empty()) return;
+  to_.row({untold_, {}});
+  untold_.clear();
   ++count_;
 }
 

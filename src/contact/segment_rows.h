@@ -15,6 +15,8 @@ class SegmentRows final : public RowSink {
   // Not whole: the forces of its last row are not determined, as where a slip velocity has vanished, and the row is
   // left out, as the next segment begins there.
   void end_segment(bool whole);
+  // The motion has ended before its last time: its last state is worth a row of its own.
+  void end_early();
 
   void columns(const std::vector<RunColumn>& columns) override;
   void row(const Row& row) override;
@@ -41,6 +43,7 @@ class SegmentRows final : public RowSink {
   std::vector<double> last_;
   std::optional<std::vector<double>> held_;  // the last row of the segment, until it is known whether it counts
   bool first_ = true;                        // it is the first one, too
+  std::vector<double> untold_;               // the last row if it is at none of the times
   std::size_t count_ = 0;
 };
 

@@ -49,6 +49,7 @@ class SwitchedMotion {
                    "events accumulate: '" + last_event_ + "' and others fire again and again" + when(),
                    "let an event end the motion (stop = true), or set a mode in which it does not happen"};
     }
+    if (at_.t < end_) rows_.end_early();
     return joined_.report(std::move(outcome), at_.t.get_d(), rows_.rows());
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "contact/mode_model.h"
@@ -233,6 +234,7 @@ bool Reducer::step(const ReducedStep& step) {
   bool good = true;
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     Seen& s = seen_[i];
+    if (s.done()) continue;
     polynomial_.resize(static_cast<std::size_t>(step.degree) + 1);
     for (int k = 0; k <= step.degree; ++k) polynomial_[static_cast<std::size_t>(k)] = step.coefficient(i, k);
     if (foretold_ && std::isfinite(polynomial_[0]) && !agrees(polynomial_[0], s.last, std::abs(polynomial_[0])))
@@ -256,10 +258,12 @@ bool Reducer::agrees(double is, double foretold, double size) const {
 
 // Whether the polynomial is the formula over the step: by its last two terms, which tell nothing if they are zero or do
 // not fall below the others; by values.
-bool Reducer::holds(const ReducedStep& step, std::size_t formula) const {
+bool Reducer::holds(const ReducedStep& step, std::size_t formula) {
+  hidden_.clear();
   constexpr double kFalls = 1e-3, kTolerances = 100, kNearEnd = 31.0 / 32;
   constexpr int kPoints = 7, kNoise = 4096;
   const int degree = step.degree;
+  if (step.h != 0) find_hidden(step, formula);
   if (degree < 2 || step.h == 0) return step.h == 0 && std::isfinite(polynomial_[0]);
   double power = 1, most = 0, end = 0;
   for (int k = 0; k <= degree; ++k, power *= step.h) {
@@ -269,17 +273,46 @@ bool Reducer::holds(const ReducedStep& step, std::size_t formula) const {
   }
   if (!(end <= kFalls * most) && end > 0) return false;
   if (!(end <= kTolerances * tolerance_ * std::max(1.0, most))) return false;
-  const auto shows = [&](double part) {
-    const double x = part * step.h;
+  const auto shows = [&](double x) {
     const FormulaValue there = step.value(formula, x);
     const double foretold = value_at(polynomial_.data(), degree, x);
     return agrees(there.value, foretold, std::max(most, std::abs(there.value))) ||
            std::abs(there.value - foretold) <= kNoise * std::numeric_limits<double>::epsilon() * there.made_of;
   };
-  if (step.look && !shows(kNearEnd)) return false;
+  if (step.look && !shows(kNearEnd * step.h)) return false;
   for (int k = 1; end == 0 && k <= kPoints; ++k)
-    if (!shows((k - 0.5) / kPoints)) return false;
-  return true;
+    if (!shows((k - 0.5) / kPoints * step.h)) return false;
+  return std::all_of(hidden_.begin(), hidden_.end(), shows);
+}
+
+// The arguments of functions that may hide their variation are smooth: polynomials through a few values tell where.
+void Reducer::find_hidden(const ReducedStep& step, std::size_t formula) {
+  if (!step.hiding) return;
+  const std::size_t count = step.hiding(formula, 0).size();
+  if (count == 0) return;
+  std::map<double, std::vector<HidingArgument>> seen;
+  const std::vector<double> nothing(Interpolation::kPoints, std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> argument, points;
+  for (std::size_t k = 0; k < count; ++k) {
+    std::optional<Hiding> function;
+    const Interpolation of(
+        [&](double x) {
+          const auto [at, is_new] = seen.try_emplace(x);
+          if (is_new) at->second = step.hiding(formula, x);
+          if (k >= at->second.size()) return FormulaValue{};
+          function = at->second[k].function;
+          return FormulaValue{at->second[k].value, 0};
+        },
+        0, step.h);
+    if (of.without_value() > 0) continue;
+    of.polynomial(argument);
+    points.clear();
+    add_hidden_points(*function, argument.data(), nothing.data(), Interpolation::kPoints - 1, 1.0, points);
+    for (const double u : points)
+      if (u > 0 && u < 1) hidden_.push_back(u * step.h);
+  }
+  std::sort(hidden_.begin(), hidden_.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  hidden_.erase(std::unique(hidden_.begin(), hidden_.end()), hidden_.end());
 }
 
 // polynomial_ over [0, h], in units of `scale`.
@@ -298,18 +331,52 @@ void Reducer::see(Seen& s, double h, double scale) {
   s.fewest = -greatest_on(c.data(), degree, h, -s.fewest);
 }
 
+namespace {
+
+// A part of a step.
+struct Piece {
+  double from, to;
+  int depth;  // how often it was halved
+};
+
+// The pieces between these points, the first one last.
+std::vector<Piece> pieces_between(const std::vector<double>& points, double h) {
+  std::vector<Piece> list;
+  double end = h;
+  for (std::size_t k = points.size(); k-- > 0; end = points[k]) list.push_back({points[k], end, 0});
+  list.push_back({0, end, 0});
+  return list;
+}
+
+}  // namespace
+
 // Halves the step until an interpolation of its values is as good as the tolerance. At a moment where the formula has no
-// value, or no derivatives, the pieces become as short as the time can show, and their values stand for theirs.
+// value, or no derivatives, the pieces become as short as the time can show, and their values stand for theirs. The formula
+// is not bounded where these go far beyond all others, and its integral diverges where they weigh in spite of their length.
 void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
   constexpr int kFirst = 2, kDeepest = 48, kTiny = 30, kLongWithout = 8, kMostPieces = 1000;
   Seen& s = seen_[formula];
   const std::function<FormulaValue(double)> f = [&](double x) { return step.value(formula, x); };
-  struct Piece {
-    double from, to;
-    int depth;
+  std::vector<Piece> left = pieces_between(hidden_, step.h);
+  const auto ends_as = [&](const Interpolation& there, const Piece& p) {
+    if (hidden_.empty()) return true;
+    there.polynomial(polynomial_);
+    const double first = f(p.from).value, last = f(p.to).value;
+    return agrees(first, polynomial_[0], std::max(there.size(), std::abs(first))) &&
+           agrees(last, value_at(polynomial_.data(), Interpolation::kPoints - 1, 1.0),
+                  std::max(there.size(), std::abs(last)));
   };
-  std::vector<Piece> left = {{0, step.h, 0}};
-  double size = 0;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double size = 0, weight = 0;                                 // of what is seen
+  double most = -kInfinity, fewest = kInfinity, in_doubt = 0;  // of the shortest pieces
+  // Where a value is that of a small difference, no interpolation of its round-off is good: a piece is halved as long as it
+  // may hold an extreme or weighs in the mean.
+  const auto matters = [&](double lowest, double highest, double length) {
+    const double spread = highest - lowest;
+    return !(spread * std::abs(length) <= tolerance_ * size * std::abs(step.h)) ||
+           (s.greatest && highest + spread > std::max(s.most, most)) ||
+           (s.least && lowest - spread < std::min(s.fewest, fewest));
+  };
   for (int pieces = 0; !left.empty() && !s.lost;) {
     const Piece p = left.back();
     left.pop_back();
@@ -323,24 +390,42 @@ void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
     const Interpolation there(f, p.from, p.to);
     size = std::max(size, there.size());
     if (there.without_value() > 0) {
-      if (p.depth >= kTiny) continue;
+      if (p.depth >= kTiny) {
+        const double length = std::abs(p.to - p.from);
+        for (const double v : there.values()) {
+          if (std::isinf(v)) (v > 0 ? most : fewest) = v;
+          if (std::isfinite(v)) in_doubt = std::max(in_doubt, std::abs(v) * length);
+        }
+        continue;
+      }
       s.lost = !divisible || (p.depth >= kLongWithout && there.without_value() == Interpolation::kPoints);
     }
-    const bool good = there.good(tolerance_ * size);
-    if (!good && divisible) {
+    const bool good = there.good(tolerance_ * size) && ends_as(there, p);
+    const auto [lowest, highest] = std::minmax_element(there.values().begin(), there.values().end());
+    if (!good && divisible && (there.without_value() > 0 || matters(*lowest, *highest, p.to - p.from))) {
       left.push_back({middle, p.to, p.depth + 1}), left.push_back({p.from, middle, p.depth + 1});
       continue;
     }
     if (s.lost) break;
+    weight += std::abs(there.mean() * (p.to - p.from));
     if (good) {
       there.polynomial(polynomial_);
       see(s, 1, p.to - p.from);
       continue;
     }
     add_compensated(s.integral, s.carry, there.mean() * (p.to - p.from));
-    for (const double v : there.values()) s.most = std::max(s.most, v), s.fewest = std::min(s.fewest, v);
+    most = std::max(most, *highest), fewest = std::min(fewest, *lowest);
+    in_doubt += (*highest - *lowest) * std::abs(p.to - p.from);
     s.last = there.values().back();
   }
+  const auto far_beyond = [size](double x, double others) {
+    constexpr double kFar = 1e-3;
+    return std::isinf(x) || (std::isfinite(others) && x - others > kFar * size);
+  };
+  if (most > s.most) s.greatest = s.greatest && !far_beyond(most, s.most), s.most = most;
+  if (fewest < s.fewest) s.least = s.least && !far_beyond(-fewest, -s.fewest), s.fewest = fewest;
+  constexpr double kMostDoubt = 1e-6;
+  if (in_doubt > kMostDoubt * weight) s.mean = false;
   if (const double end = f(step.h).value; std::isfinite(end)) s.last = end;
 }
 
@@ -370,13 +455,13 @@ void Reducer::values(std::vector<double>& to) const {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     switch (r.kind) {
     case Reduction::Kind::greatest:
-      to.push_back(none ? kNone : s.most);
+      to.push_back(none || !s.greatest ? kNone : s.most);
       break;
     case Reduction::Kind::least:
-      to.push_back(none ? kNone : s.fewest);
+      to.push_back(none || !s.least ? kNone : s.fewest);
       break;
     case Reduction::Kind::mean:
-      to.push_back(none ? kNone : length_ == 0 ? s.last : (s.integral + s.carry) / length_);
+      to.push_back(none || !s.mean ? kNone : length_ == 0 ? s.last : (s.integral + s.carry) / length_);
       break;
     case Reduction::Kind::last:
     case Reduction::Kind::count:

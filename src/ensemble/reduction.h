@@ -4,13 +4,16 @@
 // Those of a formula are those of its Taylor polynomials, step by step, not of its values at some times. The steps are
 // as short as the tolerance asks for the series of these formulas (StepSettings::known). Where a polynomial is not the
 // formula over the whole step (the radius of convergence of the formula is shorter than that of the motion, or the formula
-// has no series, as a norm that is zero), pieces of the step get polynomials of their own, through values of the formula.
+// has no series, as a norm that is zero), pieces of the step get polynomials of their own, through values of the formula;
+// they begin and end where a function that is all but constant at the start of the step may vary, as exp in a pulse.
+// A formula that is not bounded has no greatest or no least value, and one whose integral diverges has no mean: NaN.
 // A last value is that of the formula at the end alone: no step is shorter for its sake.
 #pragma once
 #include <string>
 #include <vector>
 
 #include "ensemble/reduce/pieces.h"
+#include "integrate/series/hidden_points.h"
 #include "modelfile/contacts.h"
 #include "modelfile/read.h"
 #include "setup/scenario.h"
@@ -42,6 +45,8 @@ struct ReducedStep {
   int degree = 0;                                           // of the polynomials; 0: they hold at the beginning alone
   std::function<double(std::size_t i, int k)> coefficient;  // of formula i, k <= degree
   std::function<FormulaValue(std::size_t i, double x)> value;  // of formula i at x from the beginning
+  // There: the arguments of the functions in formula i that may hide their variation; without it there are none.
+  std::function<std::vector<HidingArgument>(std::size_t i, double x)> hiding;
   bool look = true;       // whether the polynomials are compared with values; else the next step tells
   std::size_t kinks = 0;  // met in the motion so far, at which formulas may jump
 };
@@ -64,14 +69,17 @@ class Reducer {
 
  private:
   struct Seen {
-    bool greatest = false, least = false, mean = false, lost = false;  // what is asked for; whether a value is missing
+    bool greatest = false, least = false, mean = false;  // what is asked for and can still be had
+    bool lost = false;                                   // a value is missing
+    bool done() const { return lost || !(greatest || least || mean); }
     double most = 0, fewest = 0, last = 0, integral = 0, carry = 0;
   };
   struct Fired {
     double times = 0, first = 0;
   };
   bool agrees(double is, double foretold, double size) const;
-  bool holds(const ReducedStep& step, std::size_t formula) const;
+  bool holds(const ReducedStep& step, std::size_t formula);
+  void find_hidden(const ReducedStep& step, std::size_t formula);
   void see(Seen& s, double h, double scale);
   void see_by_values(const ReducedStep& step, std::size_t formula);
 
@@ -81,6 +89,7 @@ class Reducer {
   std::vector<double> ends_;
   std::vector<Fired> fired_;
   std::vector<double> polynomial_;
+  std::vector<double> hidden_;  // points within the step where the formula may do what its polynomial does not show
   double length_ = 0;
   std::size_t kinks_ = 0;
   bool foretold_ = false;  // whether the last values are those of polynomials that nobody has looked at

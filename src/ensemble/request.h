@@ -1,6 +1,6 @@
 // What is asked of many motions, made into the options of their computation.
 #pragma once
-#include "ensemble/ensemble.h"
+#include "ensemble/case.h"
 #include "simulation/request.h"
 
 namespace anholon {

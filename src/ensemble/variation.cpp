@@ -35,7 +35,7 @@ std::vector<Part> parts(const std::string& word, std::size_t from, std::size_t t
   return list;
 }
 
-constexpr const char* kHint = "--vary m=1:3:5 (from, to, how many), m=1,2,5, 'm~normal(1,0.1)' or 'm~uniform(0,2)'";
+constexpr const char* kVaryHint = "--vary m=1:3:5 (from, to, how many), m=1,2,5, 'm~normal(1,0.1)' or 'm~uniform(0,2)'";
 
 // A number, a formula of numbers and pi, or a number with a unit.
 Constant constant_in(const std::string& word, const Part& p) {
@@ -44,7 +44,7 @@ Constant constant_in(const std::string& word, const Part& p) {
   } catch (const Failure& f) {
     const std::string& why = f.diagnostic.message;
     mistake_in(word, p.at, p.text.size(),
-               "'" + p.text + "' is not a number" + (why.rfind("'" + p.text, 0) == 0 ? "" : ": " + why), kHint);
+               "'" + p.text + "' is not a number" + (why.rfind("'" + p.text, 0) == 0 ? "" : ": " + why), kVaryHint);
   }
 }
 
@@ -54,7 +54,7 @@ Part without_blanks(const std::string& word, const Part& p) {
   while (skip < p.text.size() && p.text[skip] == ' ') ++skip;
   std::string text = p.text.substr(skip);
   while (!text.empty() && text.back() == ' ') text.pop_back();
-  if (text.empty()) mistake_in(word, p.at + skip, 1, "a number is missing here", kHint);
+  if (text.empty()) mistake_in(word, p.at + skip, 1, "a number is missing here", kVaryHint);
   return {p.at + skip, std::move(text)};
 }
 
@@ -83,6 +83,21 @@ std::string meant_by(const std::string& name, std::vector<std::string> known) {
   return near.empty() ? "" : "; did you mean '" + near + "'?";
 }
 
+// Initial values that the file gives as formulas are varied by a parameter in them.
+void refuse_initial_formula(const std::string& word, const std::string& text, const std::string& name, bool multiplier,
+                            const Model& model) {
+  const auto knows = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (multiplier && knows(model.names.multipliers))
+    mistake_in(word, 0, text.size(), "the initial value of a multiplier varies by a parameter",
+               "parameters = {l0 = 0} in the file, and " + text + " = \"l0\" in [initial]; then l0 varies");
+  if (!multiplier && knows(model.names.states))
+    mistake_in(word, 0, text.size(), "the initial value of the state '" + name + "' varies by a parameter",
+               "parameters = {" + name + "0 = 0} in the file, and initial = \"" + name + "0\" in the state; then " +
+                   name + "0 varies");
+}
+
 Varied named(const std::string& word, const std::string& text, const Model& model) {
   const auto [name, primes, multiplier] = initial_name(text);
   const auto& coordinates = model.names.coordinates;
@@ -104,12 +119,16 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
     known.push_back(model.parameters[i].name);
   }
   known.insert(known.end(), coordinates.begin(), coordinates.end());
+  refuse_initial_formula(word, text, name, multiplier, model);
   const std::string coefficient = hint_for_coefficient(name);
   if (!coefficient.empty())
     mistake_in(word, 0, text.size(), "there is no parameter and no coordinate '" + name + "'", coefficient);
+  const bool family = std::any_of(coordinates.begin(), coordinates.end(),
+                                  [](const std::string& q) { return q.find('[') != std::string::npos; });
   mistake_in(word, 0, text.size(), "there is no parameter and no coordinate '" + name + "'" + meant_by(name, known),
              "the names in [parameters], coordinates, and velocities such as " +
-                 (coordinates.empty() ? std::string("x") : coordinates[0]) + "'");
+                 (coordinates.empty() ? std::string("x") : coordinates[0]) + "'" +
+                 (family ? "; an integer of [index] makes another model: a sweep of its own with --set" : ""));
 }
 
 }  // namespace
@@ -188,7 +207,7 @@ std::size_t Variation::new_axis(std::size_t size) {
 void Variation::add(const std::string& word, const Model& model) {
   const std::size_t sign = word.find_first_of("=~");
   if (sign == std::string::npos || sign == 0)
-    mistake_in(word, 0, word.size(), "this is not of the form NAME=VALUES or NAME~LAW(…)", kHint);
+    mistake_in(word, 0, word.size(), "this is not of the form NAME=VALUES or NAME~LAW(…)", kVaryHint);
   GivenQuantity of = name(word, sign, model);
   values_.push_back(word[sign] == '~' ? law(word, sign, of) : listed(word, sign, of));
   if (!values_.back().drawn()) values_.back().axis = new_axis(values_.back().points());
@@ -241,7 +260,7 @@ void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) 
 }
 
 void Variation::finish(std::optional<std::size_t> cases, const std::string& called) {
-  if (varied_.empty()) throw Failure({}, "nothing is varied", kHint);
+  if (varied_.empty()) throw Failure({}, "nothing is varied", kVaryHint);
   if (draws_ == Draws::sobol && streams_ > kSobolDimensions)
     throw Failure({}, "a Sobol sequence has at most " + std::to_string(kSobolDimensions) + " dimensions here",
                   "fewer drawn values, or random ones");

@@ -6,8 +6,8 @@
 #pragma once
 #include <span>
 
+#include "ensemble/case.h"
 #include "ensemble/case_table.h"
-#include "ensemble/ensemble.h"
 #include "ensemble/mistake_in_word.h"
 #include "setup/choice.h"
 

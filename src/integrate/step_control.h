@@ -22,6 +22,7 @@ struct StepSettings {
       0;  // so many of the first quadratures are integrated to the tolerance; the others as the motion's steps have it
   std::size_t known_from = 0,
               known_to = 0;     // the series of these quadratures are known to the tolerance over each step
+  std::size_t followed_to = 0;  // so are those from there on, unless steps would be much shorter than the motion's
   bool other_rounding = false;  // of a kernel's coefficients (Rounding::other)
   bool coarse_times = false;    // of events: multiples of two round-offs, for a run whose roundings are to differ
   bool ordinary_steps = true;   // are not looked at closely

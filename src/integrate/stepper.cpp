@@ -250,6 +250,13 @@ void Stepper<N>::limit_by_quadratures(const Series& series) {
   for (std::size_t i = settings_.known_from; i < std::min(settings_.known_to, program_->quadratures); ++i)
     if (!series.constant_quadrature(i))
       horizon_ = limited_by_value(horizon_, order_, tolerance_, [&](int k) -> N { return series.quadrature(i, k); });
+  // Near a point where a formula has no series they do not converge, however short the step is.
+  constexpr double kShortest = 0x1p-6;
+  const N shortest = horizon_ * N(kShortest);
+  for (std::size_t i = settings_.known_to; i < std::min(settings_.followed_to, program_->quadratures); ++i)
+    if (!series.constant_quadrature(i))
+      horizon_ = limited_by_value(horizon_, order_, tolerance_, [&](int k) -> N { return series.quadrature(i, k); });
+  if (!(horizon_ > shortest)) horizon_ = shortest;
 }
 
 // Where there is no such step in either direction of time, the fault stands.
@@ -430,7 +437,8 @@ void Stepper<N>::accelerate(std::shared_ptr<Kernel> kernel, int lane)
 // Formulas that are watched, or have to be known over each step, may have kinks, too.
 template <Number N>
 void Stepper<N>::watch_kinks() {
-  const bool equations_alone = events_.empty() && settings_.known_from >= settings_.known_to;
+  const bool equations_alone =
+      events_.empty() && settings_.known_from >= std::max(settings_.known_to, settings_.followed_to);
   const std::size_t end = equations_alone ? program_->tape.main_end : program_->tape.code.size();
   end_.set_slots(static_cast<std::uint32_t>(end));
   kink_arguments_ = kink_arguments(program_->tape, end_.slots());

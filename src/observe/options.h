@@ -3,6 +3,7 @@
 #include <functional>
 #include <utility>
 
+#include "integrate/series/hidden_points.h"
 #include "mechanics/conserved.h"
 #include "motion/course.h"
 #include "motion/saved.h"
@@ -25,6 +26,8 @@ struct StepPolynomials {
   bool one_sided;
   // The value of one of them at begin + x, which is NaN where it has none, and the magnitude of all that it is made of.
   std::function<std::pair<double, double>(std::size_t i, double x)> followed_value;
+  // The arguments, there, of the functions in its formula that may be all but constant far from their variation.
+  std::function<std::vector<HidingArgument>(std::size_t i, double x)> followed_hiding;
 };
 
 // Rows for a picture, where no times of rows are asked for: so many in each step, no further apart than `widest`, and one

@@ -86,7 +86,7 @@ class MapLayout {
     }
     bottom_ = d_.height - kMapGap - 2 * kLabelSize - kMarkSize;
     const std::vector<double> xs = borders(m_.x.values), ys = borders(m_.y.values);
-    x_ = {xs.front(), xs.back()}, y_ = {ys.front(), ys.back()};
+    x_ = range(m_.x.values, xs), y_ = range(m_.y.values, ys);
     const Ticks y_ticks = ticks(y_, static_cast<int>((bottom_ - top_) / 28));
     left_ = 2 * kMapGap + 1.3 * kLabelSize + widest(y_ticks.labels) + kMapTick;
     right_ = d_.width - 2.5 * kMapGap;
@@ -97,6 +97,11 @@ class MapLayout {
   }
 
  private:
+  // Of an axis. Cells of further generations are known up to the first and the last value alone: there the map ends.
+  Axis range(const std::vector<double>& values, const std::vector<double>& ends) const {
+    return m_.finer.empty() || values.size() < 2 ? Axis{ends.front(), ends.back()}
+                                                 : Axis{values.front(), values.back()};
+  }
   static double widest(const std::vector<std::string>& labels) {
     double width = 0;
     for (const std::string& l : labels)
@@ -160,14 +165,19 @@ class MapLayout {
         }
         const std::uint32_t rgb = colour(v);
         if (open && d_.patches.back().rgb == rgb)
-          d_.patches.back().to.x = x_at(xs[i + 1]);
+          d_.patches.back().to.x = std::min(x_at(xs[i + 1]), right_);
         else
-          d_.patches.push_back({{x_at(xs[i]), y_at(ys[k + 1])}, {x_at(xs[i + 1]), y_at(ys[k])}, rgb});
+          patch({xs[i], ys[k]}, {xs[i + 1], ys[k + 1]}, rgb);
         open = true;
       }
     }
-    for (const HeatMap::Finer& f : m_.finer)
-      d_.patches.push_back({{x_at(f.from.x), y_at(f.to.y)}, {x_at(f.to.x), y_at(f.from.y)}, colour(f.value)});
+    for (const HeatMap::Finer& f : m_.finer) patch(f.from, f.to, colour(f.value));
+  }
+  // What lies within the map of a cell with these corners.
+  void patch(Point from, Point to, std::uint32_t rgb) {
+    d_.patches.push_back({{std::max(x_at(from.x), left_), std::max(y_at(to.y), top_)},
+                          {std::min(x_at(to.x), right_), std::min(y_at(from.y), bottom_)},
+                          rgb});
   }
   std::uint32_t colour(double v) const {
     return m_.words.empty() ? scale_colour((v - least_) / (greatest_ - least_))
@@ -207,9 +217,7 @@ std::uint32_t colour_of_word(std::size_t word) {
 }
 
 RichText axis_label(const NamedColumn& c, const std::string& note, LabelStyle style) {
-  const bool initial = c.name.ends_with("(0)");
-  RichText label = rich_label(c.name.substr(0, c.name.size() - (initial ? 3 : 0)), initial ? "" : c.unit, style);
-  if (initial) label.push_back({c.unit.empty() || c.unit == "1" ? "(0)" : "(0) (" + c.unit + ")"});
+  RichText label = rich_label(c.name, c.unit, style);
   if (!c.meaning.empty()) label.push_back({", " + c.meaning});
   if (!note.empty()) label.push_back({" " + note});
   return label;

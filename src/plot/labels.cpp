@@ -38,10 +38,27 @@ struct Symbol {
   std::string name;  // without marks of derivatives
   unsigned order = 0;
   std::string root, sub;
+  std::string after;  // an initial value's (0), the part of a quantile: x(0), x 10 %
 };
 
-Symbol symbol(const std::string& column) {
+// Where that begins that follows the name of a column of a sweep.
+std::size_t end_of_name(const std::string& column) {
+  constexpr std::string_view kAtStart = "(0)", kPart = " %";
+  std::size_t end = column.size();
+  if (column.ends_with(kPart)) {
+    const std::size_t space = column.rfind(' ', end - kPart.size() - 1);
+    if (space != std::string::npos && space + 1 < end - kPart.size() &&
+        column.find_first_not_of("0123456789", space + 1) == end - kPart.size())
+      end = space;
+  }
+  const std::string_view name = std::string_view(column).substr(0, end);
+  return name.ends_with(kAtStart) && name.size() > kAtStart.size() ? end - kAtStart.size() : end;
+}
+
+Symbol symbol(const std::string& whole) {
   Symbol s;
+  const std::string column = whole.substr(0, end_of_name(whole));
+  s.after = whole.substr(column.size());
   s.name = column;
   if (column.rfind("D(", 0) == 0 && column.back() == ')')
     if (const std::size_t comma = column.rfind(',');
@@ -113,7 +130,7 @@ std::string text_label(const std::string& as_written, const std::string& unit, L
   const std::string column = shown(as_written);
   if (style == LabelStyle::plain) return column + in_unit(unit);
   const Symbol s = symbol(column);
-  return s.root + marks(s.order, one_letter(s.root)) + subscript(s.sub) + in_unit(unit);
+  return s.root + marks(s.order, one_letter(s.root)) + subscript(s.sub) + s.after + in_unit(unit);
 }
 
 RichText rich_label(const std::string& column, const std::string& unit, LabelStyle style) {
@@ -124,18 +141,18 @@ RichText rich_label(const std::string& column, const std::string& unit, LabelSty
   if (s.order > 3 || (s.order > 0 && !letter)) text.push_back({marks(s.order, false)});
   if (!s.sub.empty())
     text.push_back({s.sub, one_letter(s.sub) && !std::isdigit(static_cast<unsigned char>(s.sub[0])), true});
-  if (!in_unit(unit).empty()) text.push_back({in_unit(unit)});
+  if (const std::string rest = s.after + in_unit(unit); !rest.empty()) text.push_back({rest});
   return text;
 }
 
 std::string latex_label(const std::string& column, const std::string& unit) {
   const Symbol s = symbol(column);
-  if (s.root == column && utf8_length(column) != 1 && !is_identifier(column))
-    return latex_escape(column + in_unit(unit));
+  const std::string base = column.substr(0, column.size() - s.after.size());
+  if (s.root == base && utf8_length(base) != 1 && !is_identifier(base)) return latex_escape(column + in_unit(unit));
   std::string name = s.name;
   // A point makes a subscript, like an underscore.
   if (const std::size_t point = name.find('.'); point != std::string::npos && name.find('_') > point) name[point] = '_';
-  return "$" + derivative_name(latex_name(name), s.order, Format::latex) + "$" +
+  return "$" + derivative_name(latex_name(name), s.order, Format::latex) + "$" + latex_escape(s.after) +
          (in_unit(unit).empty() ? "" : " (" + latex_escape(unit) + ")");
 }
 

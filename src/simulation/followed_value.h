@@ -1,8 +1,11 @@
-// The value of a formula at a time within the last step, by the equations there.
+// The value of a formula at a time within the last step, by the equations there; the arguments of the functions in it that
+// may hide their variation.
 #pragma once
 #include <limits>
+#include <map>
 #include <utility>
 
+#include "integrate/series/hidden_points.h"
 #include "integrate/stepper.h"
 
 namespace anholon {
@@ -19,6 +22,41 @@ std::pair<double, double> value_of_quadrature(const Stepper<N>& stepper, const W
   const Program& program = point.program();
   return {to_double(point.quadrature(quadrature)[0]),
           to_double(sizes[program.tape.roots[program.unknowns() + quadrature]])};
+}
+
+// A function that may hide its variation, by the slot of its argument.
+struct HidingSlot {
+  Hiding function;
+  std::uint32_t argument;
+};
+
+// Those of the quadratures of a program. Quotients and powers are none of them: their series show from afar where they
+// vary.
+class HidingSlots {
+ public:
+  const std::vector<HidingSlot>& of(const Program& program, std::size_t quadrature) {
+    const auto [at, is_new] = known_.try_emplace(quadrature);
+    if (!is_new) return at->second;
+    for (const std::uint32_t slot : precedents(program.tape, {program.tape.roots[program.unknowns() + quadrature]}))
+      if (const auto function = may_hide(program.tape, program.tape.code[slot]); function && function->function)
+        at->second.push_back({*function, hidden_argument(program.tape.code[slot])});
+    return at->second;
+  }
+  void forget() { known_.clear(); }
+
+ private:
+  std::map<std::size_t, std::vector<HidingSlot>> known_;
+};
+
+// Their arguments; none where the motion has no solution. The point is an expansion of the caller.
+template <Number N>
+std::vector<HidingArgument> hiding_arguments(const Stepper<N>& stepper, const Wider<N>& t,
+                                             const std::vector<HidingSlot>& slots, Expansion<Wider<N>>& point) {
+  std::vector<HidingArgument> list;
+  if (!stepper.at(t, point).ok()) return list;
+  point.evaluate_quadratures();
+  for (const HidingSlot& s : slots) list.push_back({s.function, to_double(point.machine().series(s.argument)[0])});
+  return list;
 }
 
 }  // namespace anholon

@@ -51,7 +51,8 @@ Rational set_times(const MotionSettings& settings, const Scenario& s, const Aske
   const bool left_out =
       o.to && of_file(at) && o.to != s.model->simulate.to &&
       std::erase_if(at, [&](const WrittenTime& t) { return !lies_between(t.value, start, *o.to); }) > 0;
-  if (left_out) asker.note("rows that the file asks for beyond t = " + number_text(o.to->get_d()) + " are left out");
+  if (left_out)
+    asker.note("rows that the file asks for beyond t = " + number_text(from_rational<double>(*o.to)) + " are left out");
   for (const WrittenTime& t : at) o.at.push_back(t.value);
   if (!of_file(at))
     for (const WrittenTime& t : at) o.at_text.push_back(is_number_as_written(t.text) ? t.text : "");
@@ -66,10 +67,11 @@ Rational set_times(const MotionSettings& settings, const Scenario& s, const Aske
   const Rational end = o.to ? *o.to : o.at.front() < start ? o.at.front() : o.at.back();
   if (o.to && !o.at.empty() && !left_out)
     if (const Rational last = end < start ? o.at.front() : o.at.back(); last != end)
-      asker.note("the motion goes on after the last row, t = " + number_text(last.get_d()) + ", to its end, t = " +
-                 number_text(end.get_d()) + ", where " + asker.called("at") + " asks for no row");
+      asker.note("the motion goes on after the last row, t = " + number_text(from_rational<double>(last)) +
+                 ", to its end, t = " + number_text(from_rational<double>(end)) + ", where " + asker.called("at") +
+                 " asks for no row");
   if (end < start)
-    asker.note("the end lies before the start, t = " + number_text(start.get_d()) +
+    asker.note("the end lies before the start, t = " + number_text(from_rational<double>(start)) +
                ": the motion is computed backwards");
   if (o.every && abs(Rational(end - start)) > kMostRows * *o.every)
     throw Failure({}, asker.called("every") + " asks for more than " + std::to_string(kMostRows) + " rows");
@@ -180,16 +182,16 @@ void must_lie_between(const std::vector<Rational>& at, const Rational& start, co
   if (outside == at.end()) return;
   const bool before_start = (*outside < start) == (start <= end);
   throw Failure({},
-                "the time " + number_text(outside->get_d()) + " lies " +
-                    (before_start ? "before the start, t = " + number_text(start.get_d())
-                                  : "beyond the end, t = " + number_text(end.get_d())),
+                "the time " + number_text(from_rational<double>(*outside)) + " lies " +
+                    (before_start ? "before the start, t = " + number_text(from_rational<double>(start))
+                                  : "beyond the end, t = " + number_text(from_rational<double>(end))),
                 asker.called("at") + " asks for rows between the start and the end of the motion");
 }
 
 void must_go_forwards(const Scenario& s, const Rational& start, const Rational& end) {
   if (end < start && sets_values(*s.model))
     throw Failure({}, "what events set cannot be taken back: the motion goes forwards only",
-                  "an end after the start, t = " + number_text(start.get_d()));
+                  "an end after the start, t = " + number_text(from_rational<double>(start)));
 }
 
 Method method(const MotionSettings& settings, const Scenario& s, const SimulationOptions& o, const Asker& asker) {

@@ -29,7 +29,8 @@ StepSettings step_settings(const Model& model, const SimulationOptions& o) {
   StepSettings s{natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
   s.integrals = 1;   // the power
   s.known_from = 1;  // the masses, whose sign is looked at
-  s.known_to = s.known_from + model.masses.size() + o.followed.size() - o.followed_at_ends;
+  s.known_to = s.known_from + model.masses.size();
+  s.followed_to = s.known_to + o.followed.size() - o.followed_at_ends;
   s.multipliers = o.rigorous.has_value();
   return s;
 }
@@ -268,9 +269,19 @@ class Run {
     const std::size_t n = s_.system.coordinates, mechanical = s_.system.mechanical(),
                       first = 1 + s_.model->masses.size();
     std::optional<Expansion<W>> point;
-    const auto value = [&](std::size_t i, double x) -> std::pair<double, double> {
+    const auto expansion = [&]() -> Expansion<W>& {
       if (!point) point.emplace(motion().program(), motion().parameters(), std::max(1, stages_));
-      return value_of_quadrature(stepper, W(stepper.before() + W(x)), first + i, *point);
+      return *point;
+    };
+    const auto value = [&](std::size_t i, double x) -> std::pair<double, double> {
+      return value_of_quadrature(stepper, W(stepper.before() + W(x)), first + i, expansion());
+    };
+    if (const std::size_t times = motion().eliminations(); std::exchange(hiding_since_, times) != times)
+      hiding_.forget();
+    const auto hiding = [&](std::size_t i, double x) -> std::vector<HidingArgument> {
+      const std::vector<HidingSlot>& slots = hiding_.of(motion().program(), first + i);
+      if (slots.empty()) return {};
+      return hiding_arguments(stepper, W(stepper.before() + W(x)), slots, expansion());
     };
     o_.dense({to_double(stepper.before()), to_double(end), stepper.order(),
               [&](std::size_t j, int k) {
@@ -278,7 +289,7 @@ class Run {
                 return k > stepper.degree(unknown) ? 0 : to_double(stepper.coefficient(unknown, k));
               },
               [&](std::size_t i, int k) { return to_double(stepper.quadrature_coefficient(first + i, k)); },
-              stepper.one_sided(), value});
+              stepper.one_sided(), value, hiding});
   }
 
   // Takes the events that fired in the last step; returns false if they end the motion.
@@ -428,6 +439,8 @@ class Run {
   AngleWatch angles_;
   Judge<N> judge_;
   std::optional<FloorWatch> floors_;
+  HidingSlots hiding_;  // of what is followed, in the program since so many eliminations
+  std::size_t hiding_since_ = 0;
   std::size_t looks_ = 0;  // between rows
   EventPaces<W> paces_;
   PacedStretch<W> stretch_;

@@ -13,6 +13,9 @@ namespace {
 using inner::Failure;
 using inner::plot::NamedColumn;
 
+// The axis that is none: a curve is drawn, of the other numbers that vary the quantiles.
+constexpr const char* kNoAxis = "none";
+
 // A number of a legend, in few digits.
 std::string in_legend(double v) {
   constexpr int kDigits = 6;
@@ -26,11 +29,12 @@ std::vector<std::string> axes_of(const SweepCases& cases, const SweepPictureRequ
   const auto is_in = [](const std::vector<std::string>& list, const std::string& name) {
     return std::find(list.begin(), list.end(), name) != list.end();
   };
+  const bool one = o.y == kNoAxis && !cases.has(kNoAxis);
   std::vector<std::string> axes;
-  for (const std::string& given : {o.x, o.y})
+  for (const std::string& given : {o.x, one ? "" : o.y})
     if (!given.empty()) axes.push_back(given);
   for (const std::string& name : cases.varied())
-    if (axes.size() < 2 && !is_in(shown, name) && !is_in(axes, name)) axes.push_back(name);
+    if (axes.size() < (one ? 1 : 2) && !is_in(shown, name) && !is_in(axes, name)) axes.push_back(name);
   if (axes.empty())
     throw Failure({}, "the columns of the sweep do not tell what varies",
                   o.dashes + "x and " + o.dashes + "y name columns of the sweep");
@@ -75,6 +79,30 @@ bool take_curves(SweepPicture& picture, const SweepCases& cases, const SweepPict
   return true;
 }
 
+// Curves over one variation: of each scenario by itself, if the cases have several, with the columns of the others.
+std::vector<inner::plot::NamedRun> curves_of_scenarios(const SweepCases& cases, const NamedColumn& at,
+                                                       const std::vector<NamedColumn>& of) {
+  std::vector<inner::plot::NamedRun> together = {{inner::plot::over_variation(at, of), ""}}, curves;
+  if (!cases.has("case_name")) return together;
+  std::vector<std::string> words;
+  const NamedColumn scenario = cases.read({"case_name"}, words)[0];
+  if (words.size() < 2 || words.size() > kMostCurves) return together;
+  for (std::size_t k = 0; k < words.size(); ++k) {
+    const auto own = [&](NamedColumn c) {
+      std::vector<double> values;
+      for (std::size_t row = 0; row < c.values.size(); ++row)
+        if (scenario.values[row] == static_cast<double>(k)) values.push_back(c.values[row]);
+      c.values = std::move(values);
+      return c;
+    };
+    std::vector<NamedColumn> list;
+    for (const NamedColumn& c : of) list.push_back(own(c));
+    curves.push_back({inner::plot::over_variation(own(at), list), words[k]});
+    if (curves[k].run.table.columns != curves[0].run.table.columns) return together;
+  }
+  return curves;
+}
+
 // Throws Failure if there is no part. The title with the note, if parts are missing.
 std::string title_with(SweepPicture& picture, const SweepCases& cases, const std::string& title) {
   if (!cases.store()) return title;
@@ -117,7 +145,7 @@ SweepPicture picture_of_sweep(const SweepCases& cases, const SweepPictureRequest
       throw Failure({}, "one variation shows numbers, and '" + inner::joined(shown, "' or '") + "' holds words",
                     "name a column of numbers" +
                         (o.dashes.empty() ? "" : ", or " + o.dashes + "histogram " + shown[0]));
-    picture.curves = {{inner::plot::over_variation(at[0], of), ""}};
+    picture.curves = curves_of_scenarios(cases, at[0], of);
     picture.options.x = at[0].name;
     const std::vector<std::string>& columns = picture.curves[0].run.table.columns;
     picture.options.names.assign(columns.begin() + 1, columns.end());

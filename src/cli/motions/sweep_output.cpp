@@ -49,7 +49,9 @@ void report_sweep(const EnsembleReport& r, std::size_t cases, const SweepOutput&
 
 void report_without_value(const EnsembleReport& r) {
   for (const auto& [name, cases] : r.without_value)
-    say(stderr, "note: %s has no value in %zu of the finished cases: the formula has none on a part of their motions\n",
+    say(stderr,
+        "note: %s has no value in %zu of the finished cases: the formula has none, or no bound, on a part of their "
+        "motions\n",
         name.c_str(), cases);
 }
 

@@ -189,6 +189,10 @@ std::vector<NamedRun> drawn_sweep(const PlotCommand& o, Target t, FigureOptions&
     if (!o.size.empty()) drawn.width = options.width, drawn.height = options.height;
     must_be_written(write_drawing(lay_out(drawn), drawn.title, t, o.output));
   };
+  if (!(o.from.empty() && o.to.empty()) && (picture.map || picture.histogram || picture.options.x != "t"))
+    throw UsageError{
+        "error: --from and --to belong to curves over t\nhint: leave them out; --at of the sweep chooses its "
+        "times\n"};
   if (picture.map || picture.histogram) {
     if (t == Target::terminal || t == Target::tex)
       throw UsageError{
@@ -270,6 +274,9 @@ int plot(const PlotCommand& o) {
   if (t == Target::html && o.log)
     throw UsageError{
         "error: --log belongs to curves: a page of a sweep has no logarithmic scale\nhint: leave out --log\n"};
+  if (t == Target::html && !(o.from.empty() && o.to.empty()))
+    throw UsageError{
+        "error: --from and --to belong to curves over t, and a page shows a sweep\nhint: leave them out\n"};
   if (t == Target::html) return write_page_of_sweep(o);
   std::vector<NamedRun> runs;
   if (of_sweep) {

@@ -86,7 +86,9 @@ void add_plot(CommandLine& line) {
                 "the column along the horizontal axis (default: t; of a sweep the first that varies, or t if cases "
                 "have several rows)")
       ->type_name("COLUMN");
-  c->add_option("--y", o.ordinate, "of a sweep: the column along the vertical axis (default: the second that varies)")
+  c->add_option(
+       "--y", o.ordinate,
+       "of a sweep: the column along the vertical axis (default: the second that varies); none: curves over --x")
       ->type_name("COLUMN");
   c->add_option("--histogram", o.histogram, "of a sweep: how often the numbers or words of this column occur")
       ->type_name("COLUMN");

@@ -6,7 +6,7 @@
 #pragma once
 #include <span>
 
-#include "ensemble/ensemble.h"
+#include "ensemble/cases/ensemble.h"
 #include "ensemble/store/sweep_store.h"
 #include "ensemble/table.h"
 

@@ -1,7 +1,7 @@
 #include "ensemble/parts/judgement.h"
 
 #include "base/json.h"
-#include "ensemble/cases_error.h"
+#include "ensemble/cases/cases_error.h"
 #include "simulation/report_json.h"
 #include "simulation/report_text.h"
 

@@ -112,11 +112,16 @@ std::optional<std::size_t> part_of(std::string_view name) {
   return number;
 }
 
+// Of each case once: it has a row at each of the times that are asked for.
 std::string outcomes_of(const ParquetTable& rows) {
   std::map<std::string, std::size_t> count;
+  const std::vector<std::int64_t>* numbers = nullptr;
+  for (const ParquetColumn& c : rows.columns)
+    if (c.name == "case" && !numbers) numbers = std::get_if<std::vector<std::int64_t>>(&c.values);
   for (const ParquetColumn& c : rows.columns)
     if (const auto* words = std::get_if<Words>(&c.values); words && c.name == "outcome")
-      for (const std::uint32_t k : words->rows) ++count[words->different[k]];
+      for (std::size_t row = 0; row < words->rows.size(); ++row)
+        if (row == 0 || !numbers || (*numbers)[row] != (*numbers)[row - 1]) ++count[words->different[words->rows[row]]];
   std::string text;
   for (const auto& [outcome, cases] : count) text += (text.empty() ? "" : ",") + outcome + " " + std::to_string(cases);
   return text;

@@ -8,6 +8,12 @@
 
 namespace anholon {
 
+// The value of the argument of such a function at a moment.
+struct HidingArgument {
+  Hiding function;
+  double value;
+};
+
 // For a quotient, a power of -1, these are points where the divisor is nearly zero. `argument` and `value`: the Taylor
 // coefficients of orders 0..degree of the argument and of the function. Adds the points, in (0, h).
 template <Number N>

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ensemble/ensemble.h"
+#include "ensemble/cases/ensemble.h"
 #include "support/models.h"
 #include "support/rows.h"
 
@@ -563,6 +563,54 @@ x = 1
     for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(list[k].last[i], row[1 + i]) << k;
   }
   EXPECT_EQ(run.report.in_workspaces, 1U);
+}
+
+// A coordinate that follows from the others has no velocity in a run, and none in a case; one that follows beside others
+// that move has one.
+TEST(Ensemble, AVelocityThatARunDoesNotHaveHasNoNumber) {
+  const std::string text = R"toml(
+coordinates = ["x"]
+parameters = {a = 1, m = 0}
+particle = [{name = "p", mass = "m", position = "x*ex"}]
+force = [{on = "p", vector = "(z - 4*x)*ex"}]
+state.z = {rate = "-a*z", initial = 2}
+monitor.twice = "2*x"
+)toml";
+  for (const Method method : {Method::automatic, Method::taylor, Method::runge_kutta}) {
+    Sweep run(text);
+    run.options.method = method;
+    run.options.varied = {parameter(run.model(), "a")};
+    run.options.at = {Rational(0), Rational(1)};
+    run.cases({{Rational(1)}, {Rational(2)}});
+    for (const CaseResult& r : run.go()) {
+      ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
+      ASSERT_EQ(r.rows.size(), 2U);
+      for (const std::vector<double>& row : r.rows) {
+        ASSERT_EQ(row.size(), 5U) << name(method);
+        const double z = 2 * std::exp(-r.values[0] * row[0]);
+        EXPECT_NEAR(row[1], z / 4, 1e-10) << name(method);
+        EXPECT_TRUE(std::isnan(row[2])) << name(method);
+        EXPECT_NEAR(row[3], z, 1e-10) << name(method);
+        EXPECT_NEAR(row[4], z / 2, 1e-10) << name(method);
+      }
+      EXPECT_EQ(r.last.size(), 4U);
+    }
+    EXPECT_TRUE(method == Method::runge_kutta || run.report.in_workspaces == 0);
+  }
+
+  // A case of another structure: with a mass the motion has velocities.
+  Sweep mass(text);
+  mass.options.varied = {parameter(mass.model(), "m")};
+  mass.cases({{Rational(0)}, {Rational(1)}});
+  mass.options.estimate = ErrorEstimate::always;
+  const auto list = mass.go();
+  ASSERT_EQ(list[0].last.size(), 4U);
+  ASSERT_EQ(list[1].last.size(), 4U);
+  EXPECT_TRUE(std::isnan(list[0].last[1]));
+  EXPECT_FALSE(std::isnan(list[1].last[1]));
+  EXPECT_EQ(list[0].last[3], 2 * list[0].last[0]);
+  EXPECT_EQ(list[1].last[3], 2 * list[1].last[0]);
+  EXPECT_TRUE(mass.report.error.error.has_value());
 }
 
 TEST(Ensemble, RowsAreThoseOfTheTimes) {

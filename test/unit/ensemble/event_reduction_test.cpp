@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ensemble/ensemble.h"
+#include "ensemble/cases/ensemble.h"
 #include "ensemble/request.h"
 #include "ensemble/with_contacts.h"
 #include "modelfile/contacts.h"
@@ -172,6 +172,30 @@ TEST(EventReduction, AContactHitsAsOftenAsItsClosedForm) {
     EXPECT_NEAR(r.reduced[5], -std::sqrt(20.0), 1e-13);
     EXPECT_NEAR(r.reduced[6], kEnd / 2, 1e-13);
     EXPECT_NEAR(r.reduced[7], (r.last[0] - 1) / kEnd, 1e-12);
+  }
+}
+
+// An event of the model that ends a motion with contacts leaves its state there, at none of the times of rows.
+TEST(EventReduction, AStopAmongContactsHasAState) {
+  const std::string stop = R"toml(
+[[event]]
+name = "low"
+when = "z - 0.5"
+stop = true
+)toml";
+  for (const bool rows : {false, true}) {
+    Sweep run(std::string(kBall) + kContact + stop, {"last(z)"});
+    if (rows) run.options.at = {Rational(1, 10), Rational(1)};
+    const CaseResult r = run.go(1, 1).front();
+    ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
+    EXPECT_EQ(r.event, "low");
+    EXPECT_NEAR(r.t, std::sqrt(0.1), 1e-14);
+    ASSERT_GE(r.last.size(), 3U);
+    EXPECT_NEAR(r.last[0], 0.5, 1e-14);
+    EXPECT_NEAR(r.last[1], -std::sqrt(10.0), 1e-13);
+    EXPECT_EQ(r.last[2], r.last[0]) << "height";
+    EXPECT_EQ(r.last[0], r.reduced[0]);
+    EXPECT_EQ(r.rows.size(), rows ? 1U : 0U);
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ensemble/ensemble.h"
+#include "ensemble/cases/ensemble.h"
 #include "ensemble/table.h"
 #include "support/models.h"
 
@@ -45,6 +45,13 @@ direction = "down"
 stop = true
 )toml";
 
+const char* const kOscillator = R"toml(
+coordinates = ["x"]
+particle = [{name = "p", mass = 1, position = "x*ex"}]
+potential.V = "x^2/2"
+initial = {x = 1}
+)toml";
+
 class Results final : public CaseSink {
  public:
   void result(const CaseResult& r) override { list.push_back(r); }
@@ -68,6 +75,16 @@ struct Sweep {
     Results results;
     report = ensemble(scenario, options, results);
     return results.list;
+  }
+  // x = cos t, up to t = 10.
+  CaseResult one() {
+    options.to = 10;
+    options.cases = 1;
+    options.varied = {{Varied::Kind::initial, 0, 1, "x'"}};
+    options.numbers = [](std::size_t) { return EnsembleCase{{Rational(0)}, {}}; };
+    Results results;
+    report = ensemble(scenario, options, results);
+    return results.list.at(0);
   }
   std::optional<OpenModel> open;  // in whose graph the formulas are
   Scenario scenario;
@@ -208,6 +225,44 @@ initial = {x = 1}
   EXPECT_NEAR(r.reduced[2], pi, 1e-8);
   EXPECT_NEAR(r.reduced[3], (pi * pi - (2 * pi - 4) * (2 * pi - 4) / 2) / 4, 1e-8);
   EXPECT_TRUE(report.without_value.empty());
+}
+
+// x = cos t passes 0.3 three times, in steps at whose start the formula and its derivatives are 0 in double: exp(-49000).
+TEST(Reduction, APulseWithinAStepIsSeen) {
+  constexpr double kMean = 0.00176269447011, kSign = -0.0575222039231;  // mpmath
+  Sweep run(kOscillator, {"max(exp(-100000*(x - 0.3)^2))", "mean(exp(-100000*(x - 0.3)^2))",
+                          "max(1 + exp(-100000*(x - 0.3)^2))", "max(tanh(1000*x))", "mean(tanh(1000*x))"});
+  for (const bool kernel : {true, false}) {
+    run.options.kernel = kernel;
+    const CaseResult r = run.one();
+    ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
+    EXPECT_NEAR(r.reduced[0], 1, 1e-11);
+    EXPECT_NEAR(r.reduced[1], kMean, 1e-11);
+    EXPECT_NEAR(r.reduced[2], 2, 1e-11);
+    EXPECT_NEAR(r.reduced[3], 1, 1e-11);
+    EXPECT_NEAR(r.reduced[4], kSign, 1e-9);
+  }
+}
+
+// The motion does not depend on whether a formula has values and derivatives along it.
+TEST(Reduction, AFormulaWithoutAValueDoesNotEndTheMotion) {
+  Sweep run(kOscillator, {"max(sqrt(x))", "mean(sqrt(x))", "max(1/x)", "min(1/x)", "mean(1/x)", "mean(tan(2*x))",
+                          "min(log(abs(x)))", "max(1/sqrt(abs(x)))", "mean(sqrt(abs(x)))", "mean(abs(x)^(1/3))",
+                          "mean(log(abs(x)))", "max(log(abs(x)))", "min(sqrt(abs(x)))", "max(sign(x))"});
+  for (const bool kernel : {true, false}) {
+    run.options.kernel = kernel;
+    const CaseResult r = run.one();
+    ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
+    EXPECT_NEAR(r.last[0], std::cos(10), 1e-12);
+    for (std::size_t k = 0; k < 8; ++k) EXPECT_TRUE(std::isnan(r.reduced[k])) << run.options.reductions.list[k].name;
+    EXPECT_NEAR(r.reduced[8], 0.774806089878175, 1e-11);  // mpmath, as the others
+    EXPECT_NEAR(r.reduced[9], 0.832579052528112, 1e-10);
+    EXPECT_NEAR(r.reduced[10], -0.656560131336238, 1e-8);
+    EXPECT_NEAR(r.reduced[11], 0, 1e-12);
+    EXPECT_NEAR(r.reduced[12], 0, 1e-8);
+    EXPECT_EQ(r.reduced[13], 1);
+    EXPECT_EQ(run.report.without_value.size(), 8U);
+  }
 }
 
 // The pendulum rises to the height of its start: y = -sqrt(l^2 - x^2). Between the ends of steps lie its lowest points.

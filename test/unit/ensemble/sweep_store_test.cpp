@@ -67,6 +67,19 @@ TEST_F(SweepStoreTest, GoesOnWhereItStopped) {
   EXPECT_EQ(p.outcomes, (std::map<std::string, std::size_t>{{"finished", 3}, {"singular", 1}}));
 }
 
+// A case has a row at each of the times that are asked for.
+TEST_F(SweepStoreTest, ACaseWithSeveralRowsCountsOnce) {
+  const SweepStore store = SweepStore::open(folder, request(), "1");
+  ParquetTable rows;
+  Words words;
+  for (const char* word :
+       {"finished", "finished", "singular", "singular", "finished", "finished", "finished", "finished"})
+    words.add(word);
+  rows.columns = {{"case", std::vector<std::int64_t>{0, 0, 1, 1, 2, 2, 3, 3}}, {"outcome", words}};
+  EXPECT_EQ(store.commit(0, rows), "");
+  EXPECT_EQ(store.progress().outcomes, (std::map<std::string, std::size_t>{{"finished", 3}, {"singular", 1}}));
+}
+
 TEST_F(SweepStoreTest, APartCountsOnce) {
   const SweepStore store = SweepStore::open(folder, request(), "1");
   EXPECT_EQ(store.commit(0, part(0, 4)), "");

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ensemble/ensemble.h"
+#include "ensemble/cases/ensemble.h"
 #include "model/exponents.h"
 #include "support/models.h"
 #include "support/motion.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ensemble/ensemble.h"
+#include "ensemble/cases/ensemble.h"
 #include "integrate/end_check.h"
 #include "integrate/stepper.h"
 #include "kernel/kernel.h"

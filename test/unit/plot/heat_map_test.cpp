@@ -71,6 +71,27 @@ TEST(HeatMap, DrawsFurtherGenerationsAtTheirSizes) {
               (d.patches[d.patches.size() - 3].to.x - d.patches[d.patches.size() - 3].from.x) / 2, 1e-9);
 }
 
+// Beyond the first and the last value no case tells how fine the cells are.
+TEST(HeatMap, OfFurtherGenerationsEndsAtTheOutermostValues) {
+  HeatMap m = make_heat_map({"x", "", {0, 4, 0, 4, 0, 1}}, {"y", "", {0, 0, 2, 2, 1, 0}}, {"v", "", {1, 2, 3, 4, 5, 6}},
+                            {}, {0, 0, 0, 0, 1, 2});
+  ASSERT_EQ(m.finer.size(), 2U);
+  EXPECT_LT(m.finer[0].from.x, 0);
+  const Drawing d = lay_out(m);
+  double left = 1e9, right = -1e9;
+  for (const auto& s : d.strokes)
+    if (s.points.size() == 5) left = std::min(left, s.points[0].x), right = std::max(right, s.points[0].x);
+  // The scale at the right has a frame, too.
+  for (const auto& p : d.patches) {
+    EXPECT_GE(p.from.x, left);
+    EXPECT_LE(p.from.x, p.to.x);
+    EXPECT_LE(p.from.y, p.to.y);
+  }
+  std::size_t at_left = 0;
+  for (const auto& p : d.patches) at_left += p.from.x == left;
+  EXPECT_EQ(at_left, 3U) << "two coarse cells and a finer one";
+}
+
 TEST(Histogram, CountsNumbersAndWords) {
   NamedColumn of{"v", "m", {kNone}};
   for (int k = 0; k < 1000; ++k) of.values.push_back(k < 900 ? 0.001 * k : 2);

@@ -25,6 +25,12 @@ TEST(Labels, InUnicode) {
   EXPECT_EQ(unicode("speed'"), "speed′");
   EXPECT_EQ(unicode("x'", "m/s"), "x\u0307 (m/s)");
   EXPECT_EQ(unicode("theta", "1"), "θ");
+  // Initial values and quantiles of a sweep.
+  EXPECT_EQ(unicode("phi'(0)", "1/s"), "φ\u0307(0) (1/s)");
+  EXPECT_EQ(unicode("theta 10 %", "rad"), "θ 10 % (rad)");
+  EXPECT_EQ(unicode("N.theta 90 %"), "N_θ 90 %");
+  EXPECT_EQ(unicode("(0)"), "(0)");
+  EXPECT_EQ(unicode("a %"), "a %");
   // Names of other programs stay as they are.
   EXPECT_EQ(unicode("v [m/s]"), "v [m/s]");
   EXPECT_EQ(text_label("theta'", "", LabelStyle::plain), "theta'");
@@ -36,6 +42,8 @@ TEST(Labels, InLatex) {
   EXPECT_EQ(latex_label("N.theta", ""), "$N_{\\theta}$");
   EXPECT_EQ(latex_label("D(x,4)", ""), "$x^{(4)}$");
   EXPECT_EQ(latex_label("x", "m/s^2"), "$x$ (m/s\\textasciicircum{}2)");
+  EXPECT_EQ(latex_label("theta'(0)", "rad"), "$\\dot{\\theta}$(0) (rad)");
+  EXPECT_EQ(latex_label("theta 50 %", ""), "$\\theta$ 50 \\%");
   EXPECT_EQ(latex_label("100% v_x", ""), "100\\% v\\_x");
 }
 

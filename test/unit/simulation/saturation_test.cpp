@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ensemble/ensemble.h"
+#include "ensemble/cases/ensemble.h"
 #include "integrate/stepper.h"
 #include "simulation/simulate.h"
 #include "support/models.h"

@@ -1,4 +1,4 @@
-#include "ensemble/case_parameters.h"
+#include "ensemble/cases/case_parameters.h"
 
 #include <algorithm>
 #include <cmath>

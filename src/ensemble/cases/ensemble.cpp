@@ -1,4 +1,4 @@
-#include "ensemble/ensemble.h"
+#include "ensemble/cases/ensemble.h"
 
 #include <algorithm>
 #include <atomic>
@@ -13,8 +13,8 @@
 #include <tbb/task_arena.h>
 
 #include "base/assert.h"
-#include "ensemble/cases.h"
-#include "ensemble/cases_error.h"
+#include "ensemble/cases/case_worker.h"
+#include "ensemble/cases/cases_error.h"
 
 namespace anholon {
 

@@ -1,7 +1,7 @@
-#include "ensemble/cases_error.h"
+#include "ensemble/cases/cases_error.h"
 
-#include "ensemble/case_parameters.h"
 #include "ensemble/case_scenario.h"
+#include "ensemble/cases/case_parameters.h"
 #include "ensemble/columns.h"
 #include "model/exponents.h"
 #include "observe/estimate.h"
@@ -71,14 +71,20 @@ SimulationReport FurtherRuns::compare(const CaseResult& r) {
   SimulationOptions options = options_of_case(o, numbers);
   options.estimate = o.estimate;
   RunToJudge<long double> run;
-  run.columns = ensemble_places(columns_after_time(s, largest_order(s, s.structure.d)));
+  const std::vector<std::optional<std::size_t>> places =
+      ensemble_places(*s.model, columns_after_time(s, largest_order(s, s.structure.d)));
+  for (const std::optional<std::size_t>& place : places)
+    if (place) run.columns.push_back(*place);
   run.knows_resets = false;
   run.plans = &compared_;
   run.by_kernel = o.kernel && made_by_kernel(s);
   report.steps = r.steps;
   const auto end = from_rational<long double>(numbers.to ? *numbers.to : o.to);
   const auto add = [&](long double t, auto begin, auto last) {
-    run.rows.add(t, std::vector<long double>(begin, last), 0);
+    std::vector<long double> row;
+    for (std::size_t k = 0; begin != last; ++begin, ++k)
+      if (places[k]) row.push_back(*begin);
+    run.rows.add(t, row, 0);
   };
   for (const std::vector<double>& row : r.rows) add(row[0], row.begin() + 1, row.end());
   // The results hold the double next to the time that was asked for.

@@ -1,0 +1,79 @@
+// A plain case of an ensemble, step by step in a lane of a kernel.
+//
+// It is computed by the tapes of the plan: parameters, consistent positions and velocities, the stepping program, events,
+// outputs. It builds no expressions, so all threads share one graph.
+#pragma once
+#include "ensemble/cases/ensemble_plan.h"
+#include "integrate/lanes/ordinary_steps.h"
+#include "simulation/event_paces.h"
+#include "simulation/followed_value.h"
+#include "structure/start_memory.h"
+
+namespace anholon {
+
+// How a case is computed: plainly, by the tapes of the plan; or in a workspace of its own, by `simulate` with the
+// program of the scenario, or with one that is derived anew.
+enum class CaseWay : std::uint8_t { plain, simulation, derivation };
+
+// Computes one plain case after the other, in one lane of a kernel.
+class CaseWalk {
+ public:
+  using W = Wider<double>;
+
+  // Begins the next case with its numbers and its consistent start. Returns the way in which it has to be computed;
+  // `walking` tells whether it is plain and has steps to make.
+  CaseWay begin(const EnsemblePlan& plan, CaseResult& result, const std::shared_ptr<Kernel>& kernel, int lane);
+  bool walking() const { return result_ != nullptr; }
+  void abandon() { result_ = nullptr, ready_ = false, stepper_.reset(); }
+  CaseResult& result() const { return *result_; }
+  const EnsembleCase& numbers() const { return numbers_; }
+  // One step, in the parts of Stepper::step; the kernel works between them. A case that is not walking after one of the
+  // parts is done, or has to be computed in the way that the part returns.
+  CaseWay begin_step();
+  CaseWay aim();
+  CaseWay look_at_end();
+  bool looks_elsewhere() const { return looks_elsewhere_; }
+  CaseWay finish_step();
+  // The whole step, alone in its kernel.
+  CaseWay step();
+  // As long as its steps are ordinary, the motion needs none of these parts.
+  OrdinarySteps::Motion motion() const;
+
+ private:
+  void equip(const std::vector<W>& parameters, const std::vector<double>& narrow);
+  CaseWay after_step();
+  CaseWay arrive();
+  CaseWay take_events();
+  CaseWay stopped(const Outcome& why);
+  CaseWay stop(CaseWay way);
+  bool another_method_pays();
+  bool reduce();
+  bool rows();
+  bool keep(const W& t, std::vector<double>& values);
+  void tell_ends();
+
+  const EnsemblePlan* plan_ = nullptr;
+  CaseResult* result_ = nullptr;
+  EnsembleCase numbers_;
+  std::vector<W> parameters_;
+  std::vector<double> narrow_parameters_;
+  bool ready_ = false, same_structure_ = true;  // for these parameters
+  bool looks_elsewhere_ = false;                // whether the step has to end at another time
+  W end_{0};
+  std::vector<W> times_;                  // of rows
+  std::optional<StartMemory<W>> starts_;  // for these parameters
+  InitialState<W> named_;
+  struct Lane {
+    std::shared_ptr<Kernel> kernel{};
+    int number = 0;
+  } lane_;
+  std::unique_ptr<Stepper<double>> stepper_;
+  std::optional<Expansion<W>> point_;
+  std::optional<Machine<W>> outputs_;
+  std::optional<Reducer> reducer_;
+  HidingSlots hiding_;  // of the formulas of the reductions
+  std::optional<EventPaces<W>> paces_;
+  std::optional<TaylorWatch> watch_;
+};
+
+}  // namespace anholon
