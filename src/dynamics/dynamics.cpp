@@ -105,7 +105,8 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
     made->put_independent_velocities(s.system, *mapped);
   else
     made->put_state_of_motion(s.system, s.structure.d);
-  if (made->plan_) made->plan_->compile(code_cache());
+  if (made->plan_ && !made->plan_->compile(code_cache()).empty())
+    made->plan_->compile(code_cache(), 1, CodeEffort::quick);
   return made;
 }
 
@@ -324,8 +325,11 @@ void Dynamics::rates(double t, const double* x, std::size_t count, double* rates
     with_kernel(1, call, [&](Kernel& k) { compute(k, call, 0, count); });
     return;
   }
-  const int lanes = tiers().back().lanes;
-  plan_->compile(code_cache(), lanes);
+  int lanes = tiers().back().lanes;
+  // Of a plan that is too large for the compiler there is code that is translated.
+  if (!plan_->compile(code_cache(), lanes).empty() &&
+      plan_->compile(code_cache(), lanes_at_first(), CodeEffort::quick).empty())
+    lanes = lanes_at_first();
   in_pieces(count, kManyThreads, [&](const NextPiece& next) {
     with_kernel(lanes, call, [&](Kernel& k) {
       while (const std::optional<std::size_t> from = next())
