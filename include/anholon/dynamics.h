@@ -57,6 +57,8 @@ class ANHOLON_API Dynamics {
     std::span<const double> u = {}, p = {};
   };
 
+  // Under a StopRequest the functions of many states end early if it asks for it, and their numbers are NaN.
+
   // The rates of `count` states at time t. Number i of state k is at [i * count + k] of both arrays, of the size
   // states() * count. NaN where the equations have no solution. A state has the same bits alone and among others.
   // REQUIRES: the sizes fit.

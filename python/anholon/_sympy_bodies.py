@@ -61,7 +61,8 @@ class Bodies:
         made, sm = self._made, sympy_module()
         frame = made.parts.frame
         try:
-            return Turned(spin, frame.dcm(body.frame), body.central_inertia.to_matrix(body.frame), factors_between(frame, body.frame))
+            inertia = body.central_inertia.to_matrix(body.frame).applyfunc(_without_what_cancels)
+            return Turned(spin, frame.dcm(body.frame), inertia, factors_between(frame, body.frame))
         except ValueError:
             pass
         refused = ModelError(
@@ -133,11 +134,11 @@ class Bodies:
         sm, formula = sympy_module(), self._made.writer.formula
         inertia, acting = turned.inertia, [k for k in range(3) if not vanish([turned.own[k]], {})]
         others_are_zero = all(x == 0 for i, row in enumerate(inertia.tolist()) for j, x in enumerate(row) if (i, j) != (2, 2))
-        if acting == [2] and others_are_zero:
+        if acting == [2] and (others_are_zero or not possible(inertia, given, [])):
             return f"inertia = {json.dumps(formula(inertia[2, 2]))}"
-        if not possible(inertia, given):
+        if not possible(inertia, given, acting):
             inertia = _of_the_same_motion(inertia, acting)
-            if not possible(inertia, given):
+            if not possible(inertia, given, acting):
                 if len(acting) > 1 and not self._keeps_its_axis(turned):
                     self._warn(body, turned)
                 weights, turn = [inertia.trace() / 2 - inertia[k, k] for k in range(3)], turned.rotation
@@ -198,9 +199,22 @@ def _of_the_same_motion(inertia: Any, acting: list[int]) -> Any:
     return made
 
 
-def possible(inertia: Any, given: Mapping[Any, Any]) -> bool:
-    """Whether a body may have this inertia: it varies, or no moment is more than the sum of the two others, with the values that are
-    given and some of the other symbols. A negative moment is left to the model, which refuses it."""
+def _without_what_cancels(e: Any) -> Any:
+    """An expression without the coordinates, and the time, on which it does not depend: J for J (sin(q)^2 + cos(q)^2)."""
+    sm, time = sympy_module(), mechanics_module().dynamicsymbols._t
+
+    def without(x: Any) -> Any:
+        plain = e.xreplace({x: sm.Integer(0)})
+        return e if plain.has(sm.nan, sm.zoo, sm.oo) or not vanish([e - plain], {}) else plain
+
+    for q in sorted(e.atoms(sm.core.function.AppliedUndef), key=str):
+        e = e if e.has(sm.Derivative) else without(q)
+    return without(time) if e.has(time) and not e.atoms(sm.core.function.AppliedUndef) else e
+
+
+def possible(inertia: Any, given: Mapping[Any, Any], acting: list[int]) -> bool:
+    """Whether a body may have this inertia: it varies, or no moment is negative or more than the sum of the two others, with the values
+    that are given and some of the other symbols. A negative moment that acts is left to the model, which refuses it."""
     import mpmath
 
     sm = sympy_module()
@@ -216,6 +230,6 @@ def possible(inertia: Any, given: Mapping[Any, Any]) -> bool:
             for k, x in enumerate(f(*(mpmath.mpf(draw.uniform(0.3, 1.3)) for _ in listed))):
                 numbers[k // 3, k % 3] = x
             trace = sum(numbers[k, k] for k in range(3))
-            if any(numbers[k, k] < 0 for k in range(3)) or min(mpmath.eigsy(trace / 2 * mpmath.eye(3) - numbers, eigvals_only=True)) >= -1e-9 * trace:
+            if any(numbers[k, k] < 0 for k in acting) or min(mpmath.eigsy(trace / 2 * mpmath.eye(3) - numbers, eigvals_only=True)) >= -1e-9 * trace:
                 return True
     return False

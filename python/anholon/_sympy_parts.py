@@ -54,6 +54,7 @@ class Parts:
     loads: list[Any]
     holonomic: list[Any] = field(default_factory=list)
     velocity: list[Any] = field(default_factory=list)
+    acceleration: list[Any] = field(default_factory=list)  # constraints that were told beside the rates of those of velocities
     auxiliary: list[Any] = field(default_factory=list)  # speeds that are zero
     lagrangian: Any = None  # where no bodies tell the inertia
     by_energies: bool = False  # whether the equations are Lagrange's of these bodies
@@ -81,7 +82,7 @@ def parts_of(method: Any) -> Parts:
             list(method.loads) + [load for actuator in method.actuators for load in actuator.to_loads()],
             list(method.holonomic_constraints),
             list(method.velocity_constraints or method.nonholonomic_constraints),
-            list(method.u_aux),
+            auxiliary=list(method.u_aux),
         )
     if hasattr(mechanics, "JointsMethod") and isinstance(method, mechanics.JointsMethod):
         if method.method is None:
@@ -93,7 +94,7 @@ def parts_of(method: Any) -> Parts:
 def names_in(parts: Parts) -> set[str]:
     """The names of all symbols and given functions of time in the parts."""
     sm = sympy_module()
-    found = [*parts.kinematic, *parts.holonomic, *parts.velocity, *([] if parts.lagrangian is None else [parts.lagrangian])]
+    found = [*parts.kinematic, *parts.holonomic, *parts.velocity, *parts.acceleration, *([] if parts.lagrangian is None else [parts.lagrangian])]
     vectors = [x for load in parts.loads for x in load if hasattr(x, "to_matrix")]
     found += [x for load in parts.loads for x in load if isinstance(x, sm.Basic)]
     points = [x for load in parts.loads for x in load if isinstance(x, mechanics_module().Point)]
@@ -103,10 +104,19 @@ def names_in(parts: Parts) -> set[str]:
         points.append(center_of(body))
     seen = set(points)
     while points:
-        near = points.pop()._pos_dict
-        vectors += near.values()
+        point = points.pop()
+        near = point._pos_dict
+        vectors += [*near.values(), *point._vel_dict.values(), *point._acc_dict.values()]
         points += [p for p in near if p not in seen]
         seen.update(near)
+    frames = [parts.frame] if parts.frame is not None else []
+    known = set(frames)
+    while frames:
+        frame = frames.pop()
+        found += [x for matrix in frame._dcm_dict.values() for x in matrix]
+        vectors += frame._ang_vel_dict.values()
+        frames += [f for f in frame._dcm_dict if f not in known]
+        known.update(frame._dcm_dict)
     found += [x for vector in vectors for matrix, _ in vector.args for x in matrix]
     atoms = set().union(*(e.free_symbols | e.atoms(sm.core.function.AppliedUndef) for e in map(sm.sympify, found)))
     return {str(a.func) if a.args else str(a) for a in atoms - {mechanics_module().dynamicsymbols._t, *parts.q, *parts.u, *parts.auxiliary}}
@@ -161,6 +171,7 @@ def _parts_of_kane(method: Any) -> Parts:
         list(method.loads or []),
         list(method._f_h or []),
         velocity,
+        [] if not method._k_dnh or method._k_dnh is method._k_nh else list(method._k_dnh * method._udot + method._f_dnh),
         list(method._uaux or []),
     )
 

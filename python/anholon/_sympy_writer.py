@@ -60,9 +60,14 @@ class Writer:
         self._taken.add(name)
         return name
 
-    def formula(self, e: Any) -> str:
-        """The formula of an expression in coordinates, rates, parameters and the time."""
+    def formula(self, e: Any, place: str = "") -> str:
+        """The formula of an expression in coordinates, rates, parameters and the time. Errors name the place, if there is one."""
         sm = self._sm
+        if place:
+            try:
+                return self.formula(e)
+            except ModelError as mistake:
+                raise ModelError(f"{place}: {mistake}") from None
         e = sm.sympify(e)
         if e in self.names:
             return self.names[e]
@@ -81,6 +86,8 @@ class Writer:
             return "((1 + sqrt(5))/2)"
         if e.is_NumberSymbol:
             return f"({e.evalf(40)})"
+        if e.has(sm.nan, sm.zoo, sm.oo, -sm.oo) or e is sm.I:
+            raise ModelError(f"{e} is no real number\nhint: formulas of a model have finite real numbers alone")
         if e.is_Integer:
             return f"({int(e)})" if int(e) < 0 else str(int(e))
         if e.is_Rational:
@@ -91,9 +98,10 @@ class Writer:
             return self.parameters.get(e) or self._parameter(e)
         if isinstance(e, sm.core.function.AppliedUndef):
             if e.args != (self.time,):
+                why = ", as delays have no counterpart in a model" if not any(x.atoms(sm.core.function.AppliedUndef) for x in e.args) else ""
                 raise ModelError(
                     f"{e} is no function of the time {self.time} alone\n"
-                    f"hint: a given function has the argument {self.time}; put a formula in the place of {e}, as delays have no counterpart in a model"
+                    f"hint: a given function has the argument {self.time}; put a formula in the place of {e}{why}"
                 )
             if e not in self.functions:
                 self.functions[e] = self.new(str(e.func))
@@ -109,7 +117,7 @@ class Writer:
 
     def _function(self, e: Any) -> str:
         """The formula of a function of SymPy."""
-        sm, name = self._sm, str(e.func)
+        sm, name = self._sm, e.func.__name__
         if isinstance(e, sm.Piecewise):
             return self._piecewise(e)
         if isinstance(e, sm.Heaviside):
@@ -118,6 +126,13 @@ class Writer:
             return self.formula(e.args[0])
         if name == "im":
             return "0"
+        if name not in _SAME | _OTHER_NAMES.keys() | _RECIPROCAL.keys() | _OF_RECIPROCAL.keys():
+            if (plain := e.doit()) != e:
+                return self.formula(plain)  # as curves of muscles
+            raise ModelError(
+                f"{name} in {e} has no counterpart in a model\n"
+                "hint: put a formula of elementary functions or Piecewise in its place, or a function of time that is given by values={f: …}"
+            )
         arguments = [self.formula(x) for x in e.args]
         if name in ("Max", "Min"):
             made = arguments[0]
@@ -128,13 +143,6 @@ class Writer:
             return f"(1/{_RECIPROCAL[name]}({arguments[0]}))"
         if name in _OF_RECIPROCAL:
             return f"{_OF_RECIPROCAL[name]}(1/{arguments[0]})"
-        if name not in _SAME and name not in _OTHER_NAMES and (plain := e.doit()) != e:
-            return self.formula(plain)  # as curves of muscles
-        if name not in _SAME and name not in _OTHER_NAMES:
-            raise ModelError(
-                f"{name} in {e} has no counterpart in a model\n"
-                "hint: put a formula of elementary functions or Piecewise in its place, or a function of time that is given by values={f: …}"
-            )
         return f"{_OTHER_NAMES.get(name, name)}({', '.join(arguments)})"
 
     def _piecewise(self, e: Any) -> str:

@@ -356,7 +356,11 @@ class Dynamics:
             raise ValueError(f"the vector has the shape {array.shape}; it has to be {fits}")
         return jacobian, array if array.ndim > 1 else array.reshape(array.shape + (1,) * len(batch))
 
-    def _equations(self, t: float, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array]:
+    def _equations(self, t: float, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array, Array]:
+        """M, Phi and the right side of  M q'' = Phi^T lambda + right,  in which the rates of the model's states are those of
+        their equations: a thrust, or another force with such a rate, is on the right."""
+        import numpy as np
+
         if self.minimal:
             raise ModelError("in independent velocities there is no mass matrix\nhint: dynamics(minimal=False)")
         names = [c.name for c in self.model.coordinates]
@@ -369,8 +373,22 @@ class Dynamics:
         state, some, others, batch = self._states(time, x, u, p)
         matrix: Array
         right: Array
-        _, matrix, right = self._core.equations(time, state, some, others)
-        return matrix.reshape((*matrix.shape[:2], *batch)), right.reshape((len(right), *batch))
+        unknowns, matrix, right = self._core.equations(time, state, some, others)
+        n, rates = len(names), {f"{z}'" for z in self.model.states}
+        end = len(unknowns) - sum(unknown in rates for unknown in unknowns)  # rates that nothing else holds are no unknowns
+        forces, acting = matrix[:n, :n], right[:n]
+        if matrix[:n, end:].any():
+            rows = np.moveaxis(matrix[end:], 2, 0)
+            by_rates = np.moveaxis(matrix[:n, end:], 2, 0) @ np.linalg.inv(rows[:, :, end:])
+            if (by_rates @ rows[:, :, n:end]).any():
+                raise ModelError("a force holds a multiplier by the rate of a state, so no M q'' + bias = Phi^T lambda is in the equations")
+            forces = forces - np.moveaxis(by_rates @ rows[:, :, :n], 0, 2)
+            acting = acting - np.einsum("kij,jk->ik", by_rates, right[end:])
+
+        def of_batch(array: Array) -> Array:
+            return array.reshape((*array.shape[:-1], *batch))
+
+        return of_batch(forces), of_batch(matrix[n:end, :n]), of_batch(acting)
 
     def mass_matrix(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
         """M of  M q'' + bias = Phi^T lambda,  shape (coordinates, coordinates), or (coordinates, coordinates, …) of many
@@ -385,19 +403,17 @@ class Dynamics:
             >>> f.mass_matrix(0, f.start).shape, f.constraint_jacobian(0, f.start).shape
             ((3, 3), (1, 3))
         """
-        n = len(self.model.coordinates)
-        return self._equations(t, x, None, p)[0][:n, :n]
+        return self._equations(t, x, None, p)[0]
 
     def bias(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None) -> Array:
-        """What remains of  M q'' + bias = Phi^T lambda:  inertia and forces without accelerations, shape (coordinates, …)."""
-        return -self._equations(t, x, u, p)[1][: len(self.model.coordinates)]
+        """What remains of  M q'' + bias = Phi^T lambda:  inertia and forces without accelerations, among them the thrust of
+        expelled matter and forces with the rate of a state, shape (coordinates, …)."""
+        return -self._equations(t, x, u, p)[2]
 
     def constraint_jacobian(self, t: float, x: npt.ArrayLike, p: Values = None) -> Array:
         """Phi, the derivatives of the constraints by the velocities (of holonomic ones by the coordinates), shape
         (constraints, coordinates, …)."""
-        n, states = len(self.model.coordinates), len(self.model.states)
-        matrix = self._equations(t, x, None, p)[0]
-        return matrix[n : len(matrix) - states, :n]
+        return self._equations(t, x, None, p)[1]
 
     @property
     def formulas(self) -> Formulas:

@@ -223,8 +223,12 @@ class Formulas:
         t, x, u, p = (casadi.SX.sym(n, k) for n, k in (("t", 1), ("x", len(d.states)), ("u", len(d.inputs)), ("p", len(d.parameters))))
 
         def solve(matrix: list[list[Any]], right: list[Any]) -> Any:
-            a = casadi.vertcat(*(casadi.horzcat(*row) for row in matrix))
-            return casadi.solve(a, casadi.vertcat(*right))
+            # CasADi's factors have no pivots, and lose digits where the equations are nearly singular: what the solution
+            # misses is solved for with the same factors.
+            a, b = casadi.vertcat(*(casadi.horzcat(*row) for row in matrix)), casadi.vertcat(*right)
+            q, r = casadi.qr(a)
+            solved = casadi.solve(r, q.T @ b)
+            return solved + casadi.solve(r, q.T @ (b - a @ solved))
 
         library = _Library(casadi, _SHORT | {"abs": "fabs"}, casadi.if_else)
         rates, outputs = self.evaluate(library, solve, t, x, u, p)

@@ -66,12 +66,13 @@ class _Import:
         self._kept: tuple[Any, list[Any]] | None = None
         self.bodies = Bodies(self)
         self._place_centers([u for u in parts.u if u not in known])
+        self._look_at_acceleration_constraints()
 
     def _without_auxiliary(self) -> None:
         """Sets auxiliary speeds to zero where they are known now; ``in_rates`` does it in velocities and loads."""
         zero = self.sm.Integer(0)
         self._zero = {**{u.diff(self.time): zero for u in self.parts.auxiliary}, **dict.fromkeys(self.parts.auxiliary, zero)}
-        for name in ("kinematic", "holonomic", "velocity"):
+        for name in ("kinematic", "holonomic", "velocity", "acceleration"):
             setattr(self.parts, name, [real(self.sm.sympify(e)).xreplace(self._zero) for e in getattr(self.parts, name)])
 
     def _solve(self, equations: list[Any], speeds: list[Any]) -> list[Any]:
@@ -114,7 +115,11 @@ class _Import:
         return set(e.atoms(self.sm.core.function.AppliedUndef))
 
     def _without_denominator(self, e: Any) -> Any:
-        """An equation e = 0 that holds where the denominator vanishes, too: of x' tan(q) - y' the numerator."""
+        """An equation e = 0 that holds where the denominator vanishes, too: of x' tan(q) - y' the numerator. Tangents are
+        fractions of sines: a tangent that is multiplied with would have a pole where the equation has none."""
+        sm = self.sm
+        for function, above, below in ((sm.tan, sm.sin, sm.cos), (sm.cot, sm.cos, sm.sin), (sm.sec, None, sm.cos), (sm.csc, None, sm.sin)):
+            e = e.replace(function, lambda x, above=above, below=below: (above(x) if above else sm.Integer(1)) / below(x))
         above, below = self.sm.fraction(self.sm.together(e))
         return above if self._coordinates_of(below) else e
 
@@ -171,6 +176,28 @@ class _Import:
                 f"the acceleration that was set for the point {point.name} is not the rate of its velocity; "
                 "the model follows the velocity, and SymPy's equations differ from its equations",
                 stacklevel=6,
+            )
+
+    def _look_at_acceleration_constraints(self) -> None:
+        """Warns if constraints of accelerations do not follow from the rates of those of velocities."""
+        import mpmath
+
+        sm, draw, at = self.sm, random.Random(8), self._on_constraints() if self.parts.acceleration else {}
+        if not at:
+            return
+        rates = [self.in_rates(e.diff(self.time)) for e in self.velocity_constraints()]
+        rates += [self.in_rates(e.diff(self.time, 2)) for e in self.parts.holonomic]
+        every, second = sm.Matrix([*rates, *map(self.in_rates, self.parts.acceleration)]), [r.diff(self.time) for r in self.writer.rates]
+        table = every.jacobian(second).row_join(every.xreplace(dict.fromkeys(second, sm.Integer(0))))
+        listed = atoms_of(table)
+        with mpmath.workdps(40):
+            numbers = numeric(listed, table.tolist())(*(at.get(a, mpmath.mpf(draw.uniform(0.3, 1.3))) for a in listed))
+            rows = [[sm.Float(str(x), 40) for x in row] for row in numbers]
+        if rank_of(rows, every) > rank_of(rows[: len(rates)], every):
+            warnings.warn(
+                "the acceleration constraints are not the rates of the velocity constraints; "
+                "the model follows the velocity constraints, and SymPy's equations differ from its equations",
+                stacklevel=4,
             )
 
     def in_rates(self, e: Any) -> Any:
@@ -290,7 +317,18 @@ class _Import:
             else:
                 sums[at] = sums.get(at, 0) + self.in_rates(what)
         self._add_varying(sums)
-        return {q: real(s) for q, s in sums.items() if s != 0}
+        sums = {q: self._without_what_cancels(real(s)) for q, s in sums.items()}
+        return {q: s for q, s in sums.items() if s != 0}
+
+    def _without_what_cancels(self, force: Any) -> Any:
+        """A generalized force without the forces of auxiliary speeds, which do no work: their values are unknown."""
+        sm, loads = self.sm, [x for load in self.parts.loads for x in load if self.parts.auxiliary and hasattr(x, "to_matrix")]
+        told = {x for vector in loads for matrix, _ in vector.args for e in matrix for x in e.free_symbols | e.atoms(sm.core.function.AppliedUndef)}
+        for x in sorted((force.free_symbols | force.atoms(sm.core.function.AppliedUndef)) & told - {self.time, *self.parts.q}, key=str):
+            plain = force.xreplace({x: sm.Integer(0)})
+            if not plain.has(sm.nan, sm.zoo, sm.oo) and self._vanishes([force - plain]):
+                force = plain
+        return force
 
     def velocity_constraints(self) -> list[Any]:
         """Those that do not follow from the holonomic ones or from others, by the rank at random points."""
@@ -328,12 +366,11 @@ class _Import:
         constraints = [(f"holonomic{k + 1}", w.formula(e)) for k, e in enumerate(self.parts.holonomic)]
         constraints += [(f"velocity{k + 1}", w.formula(e)) for k, e in enumerate(self.velocity_constraints())]
         constraints += [(name, w.formula(e)) for name, e in self.centers]
-        forces = {w.names[q]: w.formula(s) for q, s in self.generalized_forces().items()}
+        forces = {w.names[q]: w.formula(s, f"the generalized force of {w.names[q]}") for q, s in self.generalized_forces().items()}
+        self._must_be_known(values)
         given, conditions = self._start(initial)
         value_of = self._values(values)
-        missing = sorted(symbol.name for symbol in w.parameters if value_of(symbol) is None)
-        if missing:
-            raise ModelError(f"values are missing for {', '.join(missing)}\nhint: from_sympy(…, values={{{missing[0]}: 1}})")
+        self._must_have_values([symbol for symbol in w.parameters if value_of(symbol) is None])
         lines = [f"title = {json.dumps(title)}", 'source = "imported from sympy.physics.mechanics"', ""]
         lines.append(f"coordinates = {json.dumps([w.names[q] for q in w.q])}\n")
         if w.parameters:
@@ -357,6 +394,34 @@ class _Import:
         if conditions:
             lines.append(f"conditions = {json.dumps(conditions)}")
         return "\n".join(lines) + "\n"
+
+    def _must_be_known(self, values: Mapping[Any, Number]) -> None:
+        """Raises ModelError for coordinates and speeds among the keys of the values, and for texts that name no symbol and no function
+        of the system. Further symbols may be those of other systems."""
+        if not values:
+            return
+        w, states = self.writer, {name_of(x) for x in [*self.parts.q, *self.parts.u]}
+        known = names_in(self.parts) | {name_of(x) for x in [*w.parameters, *w.functions]}
+        for key, name in ((key, name_of(key)) for key in values):
+            if name in states - known:
+                raise ModelError(f"'{name}' in values is a coordinate or speed\nhint: from_sympy(…, initial={{{name}: …}}) gives its value at the start")
+            if isinstance(key, str) and name not in known:
+                raise ModelError(f"'{name}' in values is no symbol and no function of the system{nearest(name, known)}\nhint: {', '.join(sorted(known))}")
+
+    def _must_have_values(self, missing: list[Any]) -> None:
+        """Raises ModelError for symbols without a value. Symbols of one name have values by symbol alone."""
+        if not missing:
+            return
+        names = [symbol.name for symbol in self.writer.parameters]
+        twice = next((s for s in sorted(missing, key=self.sm.srepr) if names.count(s.name) > 1), None)
+        if twice is not None:
+            of_name = sorted(self.sm.srepr(symbol) for symbol in self.writer.parameters if symbol.name == twice.name)
+            raise ModelError(
+                f"{len(of_name)} symbols have the name {twice.name}: {', '.join(of_name)}\n"
+                f"hint: give the value of each by the symbol itself, from_sympy(…, values={{{self.sm.srepr(twice)}: 1}}), or make one symbol of them"
+            )
+        listed = sorted(symbol.name for symbol in missing)
+        raise ModelError(f"values are missing for {', '.join(listed)}\nhint: from_sympy(…, values={{{listed[0]}: 1}})")
 
     def _values(self, values: Mapping[Any, Number]) -> Callable[[Any], str | None]:
         """The formula that is given for a symbol or function: by itself, else by its name if no other one has this name."""
@@ -404,16 +469,6 @@ class _Import:
             raise mistake if isinstance(mistake, ModelError) else type(mistake)(f"{name_of(key)}: {mistake}") from None
 
 
-def _must_be_known(keys: list[str], parts: Any) -> None:
-    """Raises ModelError for a name that no symbol and no function of the system has."""
-    if not keys:
-        return
-    known = sorted(names_in(parts))
-    for key in keys:
-        if key not in known:
-            raise ModelError(f"'{key}' in values is no symbol and no function of the system{nearest(key, known)}\nhint: {', '.join(known)}")
-
-
 def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, Number] | None = None, initial: Mapping[Any, Number] | None = None) -> Model:
     """The model of a KanesMethod, a LagrangesMethod, a System or a JointsMethod of ``sympy.physics.mechanics``.
 
@@ -429,12 +484,12 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
         A model; ``model.text`` is its file. Coordinates and parameters keep their names where these are names.
 
     Raises:
-        ModelError: something has no counterpart in a model; a name in `values` or `initial` is none of the system.
+        ModelError: something has no counterpart in a model; a text in `values`, or what is in `initial`, is none of the system.
         TypeError: the object is none of these; `values` or `initial` is no mapping.
 
     Warns:
-        UserWarning: an acceleration was set that is not the rate of the velocity of its point; no body has the moments of inertia of one
-            that turns in space.
+        UserWarning: an acceleration was set that is not the rate of the velocity of its point, or constraints of accelerations that are not
+            the rates of those of velocities; no body has the moments of inertia of one that turns in space.
 
     Example:
         >>> import anholon as an, sympy as sm
@@ -452,7 +507,4 @@ def from_sympy(method: Any, *, title: str = "from SymPy", values: Mapping[Any, N
     for name, given, example in (("values", values, "{m: 1}"), ("initial", initial, "{q: 1, u: 0}")):
         if given is not None and not isinstance(given, Mapping):
             raise TypeError(f"{name} is a mapping by symbol or name, as {name}={example}, not a {type(given).__name__}")
-    made = _Import(method)
-    _must_be_known([key for key in values or {} if isinstance(key, str)], made.parts)
-    text = made.text(title, values or {}, initial or {})
-    return loads(text, name="model from SymPy")
+    return loads(_Import(method).text(title, values or {}, initial or {}), name="model from SymPy")

@@ -20,6 +20,15 @@ std::size_t states_of(const Dynamics& f, const In& x) {
   return count;
 }
 
+// So many states that their rates, or their derivatives and outputs, may take a tenth of a second.
+constexpr std::size_t kManyRates = 16'384, kManyDerivatives = 256;
+
+// Calls f() without the interpreter's lock; if it is of `many` states or more, Ctrl-C ends it.
+template <class F>
+void for_states(std::size_t count, std::size_t many, const F& f) {
+  count < many ? unlocked(f) : stoppable(f);
+}
+
 // Without the interpreter's lock where that pays.
 void rates(const Dynamics& f, double t, const In& x, const Out& out, const Some& u, const Some& p) {
   constexpr std::size_t kLong = 64;
@@ -29,7 +38,7 @@ void rates(const Dynamics& f, double t, const In& x, const Out& out, const Some&
   const std::span<double> to(out.data(), out.size());
   const Dynamics::Given given{span_of(u), span_of(p)};
   if (count < kLong) return f.rates(t, from, count, to, given);
-  unlocked([&] { f.rates(t, from, count, to, given); });
+  for_states(count, kManyRates, [&] { f.rates(t, from, count, to, given); });
 }
 
 }  // namespace
@@ -56,8 +65,10 @@ void bind_dynamics(nb::module_& m) {
           "outputs_at",
           [](const Dynamics& f, double t, const In& x, const Some& u, const Some& p) {
             const std::size_t count = states_of(f, x), rows = f.outputs().size();
-            return array<2>(unlocked([&] { return f.outputs(t, span_of(x), count, {span_of(u), span_of(p)}); }),
-                            {rows, count});
+            Doubles made;
+            for_states(count, kManyDerivatives,
+                       [&] { made = f.outputs(t, span_of(x), count, {span_of(u), span_of(p)}); });
+            return array<2>(std::move(made), {rows, count});
           },
           "t"_a, "x"_a, "u"_a.none(), "p"_a.none())
       .def(
@@ -77,8 +88,9 @@ void bind_dynamics(nb::module_& m) {
           "jacobian",
           [](const Dynamics& f, double t, const In& x, const Some& u, const Some& p) {
             const std::size_t count = states_of(f, x);
-            Dynamics::Jacobian made =
-                unlocked([&] { return f.jacobian(t, span_of(x), count, {span_of(u), span_of(p)}); });
+            Dynamics::Jacobian made;
+            for_states(count, kManyDerivatives,
+                       [&] { made = f.jacobian(t, span_of(x), count, {span_of(u), span_of(p)}); });
             return array<3>(std::move(made.values), {made.rows, made.columns, count});
           },
           "t"_a, "x"_a, "u"_a.none(), "p"_a.none())
@@ -86,8 +98,9 @@ void bind_dynamics(nb::module_& m) {
           "equations",
           [](const Dynamics& f, double t, const In& x, const Some& u, const Some& p) {
             const std::size_t count = states_of(f, x);
-            Dynamics::Equations made =
-                unlocked([&] { return f.equations(t, span_of(x), count, {span_of(u), span_of(p)}); });
+            Dynamics::Equations made;
+            for_states(count, kManyDerivatives,
+                       [&] { made = f.equations(t, span_of(x), count, {span_of(u), span_of(p)}); });
             const std::size_t n = made.unknowns.size();
             return std::tuple(made.unknowns, array<3>(std::move(made.matrix), {n, n, count}),
                               array<2>(std::move(made.right), {n, count}));

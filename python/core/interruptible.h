@@ -74,4 +74,27 @@ auto interruptible(F f) {
   return *std::move(shared->value);
 }
 
+// Calls f(), which may read arrays of the caller, without the interpreter's lock and in a thread of its own. Throws
+// nb::python_error if a handler of signals raises; f, which looks for a stop often, has ended before.
+template <class F>
+void stoppable(const F& f) {
+  if (Ending::elsewhere()) Ending::stay();
+  const auto whole = [&] { return f(), true; };
+  Interruptible shared(std::cref(whole));
+  std::thread thread([&, running = std::make_unique<Running>()]() mutable {
+    shared.run();
+    shared.tell();
+    running.reset();
+  });
+  std::optional<nb::python_error> raised;
+  while (!shared.wait())
+    if (PyErr_CheckSignals() != 0) {
+      raised.emplace();
+      shared.asked_to_stop = true;
+    }
+  thread.join();
+  if (raised) throw nb::python_error(*raised);
+  if (shared.failed) std::rethrow_exception(shared.failed);
+}
+
 }  // namespace anholon::python

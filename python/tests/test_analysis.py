@@ -11,6 +11,7 @@ import subprocess
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import anholon as an
@@ -277,6 +278,40 @@ def test_ctrl_c_ends_what_keeps_nothing(name: str, call: Callable[[an.Model], ob
     # On a busy machine one call may wait for a core; a call that answers late by itself does so each time.
     assert any(latency() < 0.1 for _ in range(5))
     assert model.coordinates[0].name == "x"  # the model is as it was
+
+
+BATCHES: dict[str, Callable[[an.Dynamics], Callable[[], object]]] = {
+    "rates": lambda f: partial(f, 0, np.tile(f.start[:, None], 400_000)),
+    "derivatives": lambda f: partial(f.jac, 0, np.tile(f.start[:, None], 10_000)),
+    "outputs": lambda f: partial(f.output, 0, np.tile(f.start[:, None], 100_000)),
+}
+
+
+@pytest.mark.parametrize("what", BATCHES)
+def test_ctrl_c_ends_a_batch_of_dynamics(what: str) -> None:
+    f = an.load("whipple").dynamics()
+    f.jac(0, f.start)  # makes the formulas
+    call = BATCHES[what](f)
+    begun = time.perf_counter()
+    call()
+    whole = time.perf_counter() - begun
+
+    def latency() -> float:
+        pressed: list[float] = []
+
+        def press() -> None:
+            pressed.append(time.perf_counter())
+            signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+
+        threading.Timer(whole / 8, press).start()
+        with pytest.raises(KeyboardInterrupt):
+            call()
+        return time.perf_counter() - pressed[0]
+
+    # On a busy machine one call may wait for a core.
+    assert any(latency() < min(0.1, whole / 2) for _ in range(5))
+    assert _core.running() == 0
+    np.testing.assert_array_equal(f(0, np.tile(f.start[:, None], 2000))[:, 7], f(0, f.start))
 
 
 def test_ctrl_c_ends_a_proof_of_the_command() -> None:

@@ -147,3 +147,9 @@ def test_a_folder_in_another_mode_is_refused(tmp_path: pathlib.Path) -> None:
     hoop.sweep({"R": [1, 2]}, to=1, out=tmp_path / "changing")
     with pytest.raises(an.ModelError, match="mode is not given there and 'hoop=open' here"):
         hoop.in_mode("hoop=open").sweep({"R": [1, 2]}, to=1, out=tmp_path / "changing")
+
+
+@pytest.mark.parametrize("call", ["c_code", "python_code"])
+def test_programs_of_models_with_contacts_name_the_call(call: str) -> None:
+    with pytest.raises(an.ModelError, match=f"'{call}' needs the mode of the contacts"):
+        getattr(an.load("stick-slip"), call)()

@@ -489,3 +489,12 @@ def test_independent_velocities_of_a_blade_that_drifts_have_no_poles() -> None:
         assert sorted(np.abs(f(0, x)[3:])) == pytest.approx([0, 0.1], abs=1e-14)
     run = model.simulate(to=3, at=[3]).expect()
     assert run["x'"][-1] * np.cos(3) + run["y'"][-1] * np.sin(3) == pytest.approx(1.3, rel=1e-13)
+
+
+def test_a_start_without_rates_is_told() -> None:
+    pendulum = an.loads("""coordinates = ["theta", "phi"]
+particle = [{name = "bob", mass = "1", position = "sin(theta)*cos(phi)*ex + sin(theta)*sin(phi)*ey - cos(theta)*ez"}]
+""")
+    with pytest.raises(an.ModelError, match=r"the equations are singular at the start\nhint: another start .*dynamics\(initial=\{…\}\)"):
+        pendulum.dynamics()
+    assert pendulum.dynamics(initial={"theta": 0.5})(0, [0.5, 0, 0, 0]).tolist() == [0, 0, 0, 0]

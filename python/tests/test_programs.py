@@ -110,3 +110,29 @@ def test_where_a_formula_has_no_value_there_is_nan() -> None:
         assert np.isnan(made["rates"](0, [0.0] * 5, p)[3])
         many = made["rates"](0, np.array([[0.0, 1.0, 1.0], [0.0, 0.0, 1.0], *[[0.0] * 3] * 3]), p)
         assert np.isnan(many[3, 0]) and np.isinf(many[3, 1]) and np.isfinite(many[:, 2]).all()
+
+
+def test_nearly_singular_equations_keep_their_digits(program: Callable[..., str]) -> None:
+    """The matrix of the rattleback is nearly singular: an elimination alone loses six digits, and its solution is corrected."""
+    mpmath = pytest.importorskip("mpmath")
+    f = an.load("rattleback").dynamics(minimal=False)
+    made, names = run(program("derive", "rattleback", "--format", "python")), [state.name for state in f.states]
+    own = [names.index(name) for name in made["STATE"]]
+    x = f.start[:, None] + 0.1 * np.random.default_rng(0).standard_normal((len(names), 24))
+    with mpmath.workdps(40):
+        exact = np.array([[float(v) for v in f.formulas.mpmath(0, [mpmath.mpf(v) for v in state.tolist()])[0]] for state in x.T]).T
+    size = np.maximum(1, np.abs(exact))
+    assert size.max() > 1e3
+    many = made["rhs"](0.0, x[own])
+    np.testing.assert_allclose(many / size[own], exact[own] / size[own], rtol=0, atol=1e-12)
+    for k in range(5):
+        np.testing.assert_allclose(made["rhs"](0.0, x[own, k]) / size[own, k], exact[own, k] / size[own, k], rtol=0, atol=1e-12)
+    assert "_y0" not in program("derive", "falling-chain", "--format", "python")  # well-conditioned equations need no correction
+
+
+def test_expressions_of_casadi_keep_their_digits() -> None:
+    pytest.importorskip("casadi")
+    f = an.load("rattleback").dynamics(minimal=False)
+    function, x = f.formulas.casadi(), f.start + 0.02 * np.random.default_rng(3).standard_normal(len(f.start))
+    rates = f(0, x)
+    np.testing.assert_allclose(np.array(function(0, x, [], f.p0)[0])[:, 0] / np.maximum(1, abs(rates)), rates / np.maximum(1, abs(rates)), rtol=0, atol=1e-11)

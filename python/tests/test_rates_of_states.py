@@ -58,3 +58,44 @@ def test_motions_by_other_methods(method: str) -> None:
     model = an.loads(WEAR)
     run, taylor = model.simulate(to=3, method=method, tolerance="1e-9"), model.simulate(to=3)
     assert run.outcome.ok and abs(run["wear"][-1] - taylor["wear"][-1]) < 1e-7
+
+
+ROCKET = """coordinates = ["x", "y"]
+parameters = {c = 100, k = 0.1, g = 9.8}
+state.fuel = {rate = "-2 - k*x''", initial = 3}
+constraint = [{name = "rail", equation = "y' = x'*x"}]
+particle = [{name = "rocket", mass = "10 + fuel", position = "x*ex + y*ey", expelled_velocity = "-c*ex"}]
+force = [{on = "rocket", vector = "fuel'*ey - (10 + fuel)*g*ey"}]
+initial = {x = 0.4, "x'" = 0.3}
+"""
+
+
+def test_forces_with_rates_of_states_are_in_the_arrays_of_the_equations(f: an.Dynamics) -> None:
+    rocket = an.loads(ROCKET).dynamics(minimal=False)
+    x = np.stack([rocket.start, rocket.start + [0.2, 0, 0.1, 0.12, 1]], axis=1)
+    mass, phi, bias = rocket.mass_matrix(0, x), rocket.constraint_jacobian(0, x), rocket.bias(0, x)
+    for k, (fuel, at) in enumerate([(3, 0.4), (4, 0.6)]):
+        # By hand: fuel' = -2 - k x'', so the thrust c fuel' along -x and the force fuel' along y have a part by x''.
+        np.testing.assert_allclose(mass[..., k], [[10 + fuel - 100 * 0.1, 0], [0.1, 10 + fuel]], rtol=1e-14, atol=1e-14)
+        np.testing.assert_allclose(bias[:, k], [-200, 2 + (10 + fuel) * 9.8], rtol=1e-14)
+        direction = np.array([1, at])  # along the rail
+        np.testing.assert_allclose(phi[..., k] @ direction, 0, atol=1e-15)
+        assert abs(direction @ (mass[..., k] @ rocket(0, x[:, k])[2:4] + bias[:, k])) < 1e-12
+        np.testing.assert_array_equal(bias[:, k], rocket.bias(0, x[:, k]))
+    # The rate of 'wear' is no unknown of the equations, as it is no linear function of these.
+    plate = f.model.dynamics(minimal=False)
+    assert phi.shape == (1, 2, 2) and plate.constraint_jacobian(0, plate.start).shape == (1, 3)
+
+
+def test_the_thrust_of_a_shipped_rocket_is_in_the_bias() -> None:
+    launcher = an.load("launcher").dynamics(minimal=False)
+    n, x = len(launcher.model.coordinates), launcher.start
+    left = launcher.mass_matrix(0, x) @ launcher(0, x)[n : 2 * n] + launcher.bias(0, x)
+    assert launcher.constraint_jacobian(0, x).shape == (0, n)
+    np.testing.assert_allclose(left, 0, atol=1e-9 * np.abs(launcher.bias(0, x)).max())
+
+
+def test_no_bias_where_a_force_holds_a_multiplier_by_a_rate() -> None:
+    held = an.loads(ROCKET.replace('"-2 - k*x\'\'"', '"-2 - k*lambda.rail"')).dynamics(minimal=False)
+    with pytest.raises(an.ModelError, match="a force holds a multiplier by the rate of a state"):
+        held.bias(0, held.start)

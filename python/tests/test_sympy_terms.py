@@ -1,6 +1,8 @@
 """Terms of SymPy's equations that bodies and loads alone do not have come in: accelerations are those of SymPy's own matrices."""
 
+import math
 import re
+import warnings
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -243,7 +245,7 @@ def test_values_belong_to_symbols_not_to_names() -> None:
     plain, positive = sm.Symbol("F"), sm.Symbol("F", positive=True)
     model = an.from_sympy(pushed(-plain - 10 * positive - 100 * F(t)), values={"m": 1, plain: 2, positive: 3, F(t): 4})
     assert model.evaluate().accelerations["x''"] == -432
-    with pytest.raises(an.ModelError, match="values are missing for F, F"):
+    with pytest.raises(an.ModelError, match="2 symbols have the name F: "):
         an.from_sympy(pushed(-plain - 10 * positive), values={"m": 1, "F": 2})
     assert an.from_sympy(pushed(-10 * positive), values={m: 1, plain: 2}).evaluate().accelerations["x''"] == -20
 
@@ -405,3 +407,73 @@ def test_speeds_along_the_axes_of_a_body_at_any_heading() -> None:
     assert run["psi"][0] < sm.pi / 2 < run["psi"][-1] and min(of.digits for of in run.report.trust) >= 11
     state = an.from_sympy(method, values=values, initial={**start, names[3]: "pi/2", names[7]: 0.5}).evaluate()
     assert [state.qdot[name] for name in ("x'", "y'")] == pytest.approx([-0.5, 2 * float(sm.cos(0.1))], rel=1e-13)
+
+
+def carried_coin() -> tuple[Any, dict[Any, Any]]:
+    """A coin on a floor. Its first three speeds are those of a frame that does not turn about the axis of the coin, whose
+    own turning is u2 / tan(beta)."""
+    x, y, a, b, c, u1, u2, u3 = me.dynamicsymbols("x y alpha beta gamma u1 u2 u3")
+    m, R, g = sm.symbols("m R g")
+    N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    A = N.orientnew("A", "Axis", [a, N.z])
+    L = A.orientnew("L", "Axis", [b, A.x])
+    D = L.orientnew("D", "Axis", [c, L.z])
+    carried, spin = u1 * L.x + u2 * L.y + u2 / sm.tan(b) * L.z, u1 * L.x + u2 * L.y + u3 * L.z
+    kd = [b.diff(t) - u1, a.diff(t) * sm.sin(b) - u2, a.diff(t) * sm.cos(b) + c.diff(t) - u3]
+    L.set_ang_vel(N, carried)
+    D.set_ang_vel(N, spin)
+    C = O.locatenew("C", x * N.x + y * N.y + R * L.y)
+    C.set_vel(N, spin.cross(R * L.y))
+    slip = x.diff(t) * N.x + y.diff(t) * N.y + carried.cross(R * L.y) - spin.cross(R * L.y)
+    method = me.KanesMethod(N, [a, b, c, x, y], [u1, u2, u3], kd_eqs=[*kd, slip.dot(N.x).simplify(), slip.dot(N.y).simplify()])
+    method.kanes_equations([me.RigidBody("coin", C, D, m, (me.inertia(L, m * R**2 / 4, m * R**2 / 4, m * R**2 / 2), C))], [(C, -m * g * N.z)])
+    return method, {m: 1, R: 0.4, g: 9.81}
+
+
+def test_tangents_in_denominators_have_no_poles() -> None:
+    """An upright coin that spins and rolls, where tan(beta) has its pole, accelerates as by SymPy's equations beside it."""
+    method, values = carried_coin()
+    rates = {"alpha'": 0.4, "beta'": 0.3, "gamma'": 3}
+    upright = an.from_sympy(method, values=values, initial={"alpha": 0.1, "beta": "pi/2", **rates})
+    assert "tan" not in upright.text
+    # By hand, of a thin disc: (5/4) beta'' = -(3/2) alpha' (gamma' + alpha' cos beta) sin beta + (1/4) alpha'^2 sin beta cos beta
+    # + (g/R) cos beta, and (1/4) alpha'' sin beta = (1/2) beta' (gamma' + alpha' cos beta) - (1/2) alpha' beta' cos beta.
+    found = upright.evaluate().accelerations
+    assert found["beta''"] == pytest.approx(-1.2 * 0.4 * 3, rel=1e-12)
+    assert found["alpha''"] == pytest.approx(2 * 0.3 * 3, rel=1e-12)
+    assert upright.simulate(to=0.1).outcome.ok
+
+
+@pytest.mark.parametrize("more", [0, 1])
+def test_acceleration_constraints_that_say_something_else_are_told(more: int) -> None:
+    x, y, ux, uy = me.dynamicsymbols("x y u_x u_y")
+    N, P = me.ReferenceFrame("N"), me.Point("P")
+    P.set_vel(N, ux * N.x + uy * N.y)
+    slip, m = uy - sm.sin(x) * ux, sm.Symbol("m")
+    rate = 2 * slip.diff(t).subs(x.diff(t), ux) + 3 * slip
+    method = me.KanesMethod(
+        N, [x, y], [ux], kd_eqs=[x.diff(t) - ux, y.diff(t) - uy], u_dependent=[uy], velocity_constraints=[slip], acceleration_constraints=[rate + more]
+    )
+    method.kanes_equations([me.Particle("p", P, m)], [(P, -m * N.y)])
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        an.from_sympy(method, values={m: 1})
+    assert [("acceleration constraints are not the rates" in str(w.message), w.filename.endswith("test_sympy_terms.py")) for w in told] == [(True, True)] * more
+
+
+def test_the_force_of_an_auxiliary_speed_needs_no_value() -> None:
+    """The tension of a pendulum does no work, and cancels."""
+    q, u, aux, tension = me.dynamicsymbols("q u u_a T")
+    m, l, g = sm.symbols("m l g")
+    N, O = me.ReferenceFrame("N"), me.Point("O")  # noqa: E741
+    O.set_vel(N, 0)
+    B = N.orientnew("B", "Axis", [q, N.z])
+    B.set_ang_vel(N, u * N.z)
+    P = O.locatenew("P", l * B.x)
+    P.set_vel(N, l * u * B.y + aux * B.x)
+    method = me.KanesMethod(N, [q], [u], kd_eqs=[q.diff(t) - u], u_auxiliary=[aux])
+    method.kanes_equations([me.Particle("P", P, m)], [(P, m * g * N.x - tension * B.x)])
+    model = an.from_sympy(method, values={m: 1, l: 0.5, g: 9.81}, initial={q: 0.3})
+    assert "T" not in model.text.split("[[force]]")[1] and "[functions]" not in model.text
+    assert model.evaluate().accelerations["q''"] == pytest.approx(-9.81 / 0.5 * math.sin(0.3), rel=1e-14)

@@ -7,7 +7,7 @@ from typing import Any
 import anholon as an
 import pytest
 from anholon.from_sympy import _Import
-from test_sympy import accelerations_of_sympy, consistent
+from test_sympy import accelerations_of_sympy, consistent, rolling_disc
 
 sm = pytest.importorskip("sympy")
 me = pytest.importorskip("sympy.physics.mechanics")
@@ -62,7 +62,7 @@ def test_of_a_body_on_an_axis_one_moment_acts(name: str) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         model = agree(one_axis(*ONE_AXIS[name]), NUMBERS)
-    assert ('inertia = "J"' in model.text) == (name == "z about z")
+    assert ('inertia = "J"' in model.text) == (name in ("z about z", "products that do not act"))
 
 
 def two_axes(inertia: Any) -> Any:
@@ -245,3 +245,27 @@ def test_a_sphere_whose_frame_has_only_an_angular_velocity() -> None:
     ball = me.RigidBody("ball", C, B, m, (me.inertia(N, moment, 0.4 * m * r**2, moment), C))
     method.kanes_equations([ball], [(C, m * N.x), (B, 0.1 * N.z - c * u1 * N.x)])
     agree(method, NUMBERS)
+
+
+def test_a_moment_about_a_pivot_that_is_not_the_mass_centre() -> None:
+    """SymPy moves (0, 0, J) to the mass centre, where moments that do not act are negative."""
+    B = N.orientnew("B", "Axis", [q, N.z])
+    B.set_ang_vel(N, u * N.z)
+    G = O.locatenew("G", l * B.y)
+    G.v2pt_theory(O, N, B)
+    method = me.KanesMethod(N, [q], [u], kd_eqs=[q.diff() - u])
+    method.kanes_equations([me.RigidBody("b", G, B, m, (me.inertia(B, 0, 0, J), O))], [(G, -m * 9.81 * N.y)])
+    model = agree(method, {m: 1.5, J: 1.1, l: 0.75})
+    start = model.evaluate()
+    assert start.accelerations["q''"] == pytest.approx(1.5 * 9.81 * 0.75 * sm.sin(start.q["q"]) / 1.1)
+    with pytest.raises(an.ModelError, match="the moment of inertia is -0.7"):
+        an.from_sympy(method, values={m: 1.5, J: 0.1, l: 0.75})
+
+
+def test_an_inertia_along_the_axes_of_another_frame_is_constant() -> None:
+    """The rolling disc of SymPy's pages has the inertia of its disc along a frame that does not turn with the disc."""
+    disc, values = rolling_disc()
+    model = an.from_sympy(disc, values=values, initial={"q2": 0.3})
+    assert "cos" not in next(line for line in model.text.splitlines() if line.startswith("inertia"))
+    f = model.dynamics()
+    assert f.minimal, f.obstacle

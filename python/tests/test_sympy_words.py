@@ -85,6 +85,8 @@ def test_functions_by_identities(force: Any) -> None:
 
 GIVEN: dict[Any, Any] = {m: 1, k: 2, F: 3}
 MISTAKES: list[tuple[dict[str, Any], type[Exception], str]] = [
+    ({"values": {**GIVEN, x: 3}}, an.ModelError, r"'x' in values is a coordinate or speed\nhint: .*initial=\{x: …\}"),
+    ({"values": {**GIVEN, "v": 3}}, an.ModelError, r"'v' in values is a coordinate or speed"),
     ({"values": {**GIVEN, "kk": 3}}, an.ModelError, r"'kk' in values is no symbol and no function of the system; did you mean 'k'\?\nhint: F, k, m"),
     ({"values": {m: 1, k: 2, "F(t)": 3}}, an.ModelError, r"'F\(t\)' in values is no .*; did you mean 'F'\?"),
     ({"values": [1]}, TypeError, r"values is a mapping by symbol or name, as values=\{m: 1\}, not a list"),
@@ -127,3 +129,48 @@ def test_a_joints_method() -> None:
     model = an.from_sympy(joints, values={m: 1, k: 2}, initial={x: 0.4, v: 0.3})
     assert model.evaluate().accelerations["x''"] == pytest.approx(float(expected[0]), rel=1e-13)
     assert math.isfinite(float(expected[0]))
+
+
+def test_two_symbols_of_one_name() -> None:
+    positive = sm.Symbol("k", positive=True)
+    method = pushed(-k * x - positive * v)
+    with pytest.raises(an.ModelError, match=r"2 symbols have the name k: Symbol\('k'\), Symbol\('k', positive=True\)\nhint: .*by the symbol itself"):
+        an.from_sympy(method, values={m: 1, "k": 2})
+    with pytest.raises(an.ModelError, match=r"values=\{Symbol\('k', positive=True\): 1\}"):
+        an.from_sympy(method, values={m: 1, k: 2})
+    model = an.from_sympy(method, values={m: 1, k: 2, positive: 3}, initial={x: 1, v: 1})
+    assert model.evaluate().accelerations == {"x''": -5.0}
+
+
+def test_symbols_of_an_orientation_have_values() -> None:
+    """A tilt stands in no velocity and no load, and has a value all the same."""
+    tilt = sm.Symbol("tilt")
+    A, P = N.orientnew("A", "Axis", [tilt, N.z]), me.Point("P")
+    P.set_vel(N, v * A.x)
+    method = me.KanesMethod(N, [x], [v], kd_eqs=[x.diff(t) - v])
+    method.kanes_equations([me.Particle("p", P, m)], [(P, -m * N.y)])
+    for key in (tilt, "tilt"):
+        model = an.from_sympy(method, values={m: 1, key: sm.pi / 6})
+        assert model.evaluate().accelerations["x''"] == pytest.approx(-0.5)
+    P.set_vel(N, v * N.x)
+    method = me.KanesMethod(N, [x], [v], kd_eqs=[x.diff(t) - v])
+    method.kanes_equations([me.Particle("p", P, m)], [(P, -k * x * N.x), (P, k * A.z)])
+    assert an.from_sympy(method, values={m: 1, k: 1, tilt: 1}).parameters == {"m": 1.0, "k": 1.0}
+
+
+NO_COUNTERPART: dict[str, tuple[Any, str]] = {
+    "an integral": (sm.Integral(x, (t, 0, t)), r"Integral in Integral\(x\(t\), \(t, 0, t\)\) has no counterpart"),
+    "infinity": (sm.oo * x, r"nan is no real number"),
+    "an imaginary number": (sm.I * x, r"I is no real number"),
+    "an indexed symbol": (sm.IndexedBase("a")[0] * x, r"Indexed in a\[0\] has no counterpart"),
+    "an entry of a matrix": (sm.MatrixSymbol("A", 2, 2)[0, 1] * x, r"MatrixElement in A\[0, 1\] has no counterpart"),
+    "a function of a coordinate": (sm.Function("F")(x), r"F\(x\(t\)\) is no function of the time t alone\nhint: .* in the place of F\(x\(t\)\)$"),
+    "a delay": (x.subs(t, t - 1), r"x\(t - 1\) is no function of the time t alone\nhint: .*, as delays have no counterpart"),
+}
+
+
+@pytest.mark.parametrize("name", NO_COUNTERPART)
+def test_what_has_no_counterpart_has_a_name_and_a_place(name: str) -> None:
+    force, said = NO_COUNTERPART[name]
+    with pytest.raises(an.ModelError, match="^the generalized force of x: " + said):
+        an.from_sympy(pushed(force), values=GIVEN)

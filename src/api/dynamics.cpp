@@ -1,10 +1,11 @@
 #include "anholon/dynamics.h"
 
-#include <atomic>
+#include <algorithm>
+#include <limits>
 #include <mutex>
-#include <thread>
 
 #include "api/data.h"
+#include "dynamics/pieces.h"
 #include "dynamics/rate_formulas_of.h"
 #include "model/exponents.h"
 #include "setup/chosen_outputs.h"
@@ -12,7 +13,17 @@
 
 namespace anholon::v1 {
 
-constexpr std::size_t kStatesAtOnce = 256;  // that one thread takes, of outputs and derivatives
+constexpr std::size_t kStatesAtOnce = 64;  // that one thread takes, of outputs and derivatives
+
+// Calls f(), which computes these numbers; NaN if a StopRequest ended it.
+template <class F>
+static void or_stopped(std::span<double> numbers, const F& f) {
+  try {
+    f();
+  } catch (const inner::StopRequested&) {
+    std::fill(numbers.begin(), numbers.end(), std::numeric_limits<double>::quiet_NaN());
+  }
+}
 
 struct Dynamics::Data {
   System system;
@@ -62,6 +73,8 @@ struct Dynamics::Data {
     return all;
   }
 
+  void rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates, const Given& given) const;
+
   // Calls f(k, solved) with the point of each of `count` states and a Work, on several threads if they are many. A
   // state's numbers do not depend on the others.
   template <class F>
@@ -69,8 +82,7 @@ struct Dynamics::Data {
                       const F& f) const {
     const std::size_t n = states.size(), u = inputs.size(), p = function->free_parameters().size();
     values();
-    std::atomic<std::size_t> next = 0;
-    const auto work = [&] {
+    inner::in_pieces(count, kStatesAtOnce, [&](const inner::NextPiece& next) {
       inner::FormulaValues::Work own;
       std::vector<double> state(n), some, parameters;
       const auto of_state = [&](std::span<const double> all, std::size_t size, std::size_t k, std::vector<double>& to) {
@@ -79,17 +91,13 @@ struct Dynamics::Data {
         for (std::size_t i = 0; i < size; ++i) to[i] = all[i * count + k];
         return std::span<const double>(to);
       };
-      for (std::size_t from; (from = next.fetch_add(kStatesAtOnce)) < count;)
-        for (std::size_t k = from; k < std::min(count, from + kStatesAtOnce); ++k) {
+      while (const std::optional<std::size_t> from = next())
+        for (std::size_t k = *from; k < std::min(count, *from + kStatesAtOnce); ++k) {
           for (std::size_t i = 0; i < n; ++i) state[i] = x[i * count + k];
           f(k, solved(t, state, {of_state(given.u, u, k, some), of_state(given.p, p, k, parameters)}, with_lead).at,
             own);
         }
-    };
-    std::vector<std::jthread> others;
-    const std::size_t threads = std::min<std::size_t>(std::thread::hardware_concurrency(), count / kStatesAtOnce);
-    while (others.size() + 1 < threads) others.emplace_back(work);
-    work();
+    });
   }
 
  private:
@@ -139,7 +147,9 @@ Result<Dynamics> dynamics(const System& system, const DynamicsOptions& options) 
     data->function = inner::Dynamics::make(s, choice, {options.minimal, data->inputs.size()}, data->obstacle);
     if (!data->function)
       return mistake("there is no function x' = f(t, x) of these equations: " + data->obstacle,
-                     "simulate integrates them all the same");
+                     data->scenario->elimination.pivots().empty()
+                         ? "another start may have one: give other initial values, in Python dynamics(initial={…})"
+                         : "simulate integrates them all the same");
     for (const inner::Dynamics::State& state : data->function->states())
       data->states.push_back({state.name, state.meaning});
     if (options.outputs && !data->values().formulas().left_out.empty())
@@ -184,22 +194,28 @@ std::vector<double> Dynamics::start_inputs() const {
 
 void Dynamics::rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates,
                      const Given& given) const {
+  or_stopped(rates, [&] { data_->rates(t, x, count, rates, given); });
+}
+
+void Dynamics::Data::rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates,
+                           const Given& given) const {
   inner::InputsAndParameters numbers{given.u, given.p};
   std::vector<double> u;
-  if (given.u.empty() && !data_->inputs.empty() && count > 0) {
+  if (given.u.empty() && !inputs.empty() && count > 0) {
     // By the formulas of the model, state by state.
-    const std::size_t inputs = data_->inputs.size(), parameters = data_->function->free_parameters().size();
-    u.resize(inputs * count);
-    std::vector<double> state(data_->states.size()), p(given.p.empty() ? 0 : parameters);
+    const std::size_t parameters = function->free_parameters().size();
+    u.resize(inputs.size() * count);
+    std::vector<double> state(states.size()), p(given.p.empty() ? 0 : parameters);
     for (std::size_t k = 0; k < count; ++k) {
+      if (k % kStatesAtOnce == 0) inner::look_for_stop();
       for (std::size_t i = 0; i < state.size(); ++i) state[i] = x[i * count + k];
       for (std::size_t i = 0; i < p.size(); ++i) p[i] = given.p[given.p.size() == parameters ? i : i * count + k];
-      const std::vector<double> of_state = data_->given_inputs(t, state, {{}, p});
-      for (std::size_t i = 0; i < inputs; ++i) u[i * count + k] = of_state[i];
+      const std::vector<double> of_state = given_inputs(t, state, {{}, p});
+      for (std::size_t i = 0; i < inputs.size(); ++i) u[i * count + k] = of_state[i];
     }
     numbers.u = u;
   }
-  data_->function->rates(t, x.data(), count, rates.data(), numbers);
+  function->rates(t, x.data(), count, rates.data(), numbers);
 }
 
 std::vector<double> Dynamics::inputs(double t, const std::vector<double>& x, std::span<const double> p) const {
@@ -216,9 +232,11 @@ std::vector<double> Dynamics::inputs(double t, const std::vector<double>& x, std
 std::vector<double> Dynamics::outputs(double t, std::span<const double> x, std::size_t count,
                                       const Given& given) const {
   std::vector<double> out(outputs().size() * count);
-  data_->for_each_state(t, x, count, given, true, [&](std::size_t k, const auto& at, auto& work) {
-    const std::vector<double> y = data_->values().outputs(at, work);
-    for (std::size_t i = 0; i < y.size(); ++i) out[i * count + k] = y[i];
+  or_stopped(out, [&] {
+    data_->for_each_state(t, x, count, given, true, [&](std::size_t k, const auto& at, auto& work) {
+      const std::vector<double> y = data_->values().outputs(at, work);
+      for (std::size_t i = 0; i < y.size(); ++i) out[i * count + k] = y[i];
+    });
   });
   return out;
 }
@@ -228,9 +246,11 @@ Dynamics::Jacobian Dynamics::jacobian(double t, std::span<const double> x, std::
   const inner::RateFormulas& f = data_->values().formulas();
   Jacobian out{f.rates.size() + f.outputs.size(), f.x.size() + f.u.size() + f.p.size(), {}};
   out.values.resize(out.rows * out.columns * count);
-  data_->for_each_state(t, x, count, given, true, [&](std::size_t k, const auto& at, auto& work) {
-    const std::vector<double> d = data_->values().derivatives(at, work).values;
-    for (std::size_t i = 0; i < d.size(); ++i) out.values[i * count + k] = d[i];
+  or_stopped(out.values, [&] {
+    data_->for_each_state(t, x, count, given, true, [&](std::size_t k, const auto& at, auto& work) {
+      const std::vector<double> d = data_->values().derivatives(at, work).values;
+      for (std::size_t i = 0; i < d.size(); ++i) out.values[i * count + k] = d[i];
+    });
   });
   return out;
 }
@@ -240,10 +260,12 @@ Dynamics::Equations Dynamics::equations(double t, std::span<const double> x, std
   const std::vector<std::string>& unknowns = data_->values().formulas().lead.names;
   const std::size_t n = unknowns.size();
   Equations out{unknowns, std::vector<double>(n * n * count), std::vector<double>(n * count)};
-  data_->for_each_state(t, x, count, given, false, [&](std::size_t k, const auto& at, auto& work) {
-    const auto [matrix, right] = data_->values().equations(at, work);
-    for (std::size_t i = 0; i < n * n; ++i) out.matrix[i * count + k] = matrix[i];
-    for (std::size_t i = 0; i < n; ++i) out.right[i * count + k] = right[i];
+  or_stopped(out.right, [&] {
+    data_->for_each_state(t, x, count, given, false, [&](std::size_t k, const auto& at, auto& work) {
+      const auto [matrix, right] = data_->values().equations(at, work);
+      for (std::size_t i = 0; i < n * n; ++i) out.matrix[i * count + k] = matrix[i];
+      for (std::size_t i = 0; i < n; ++i) out.right[i * count + k] = right[i];
+    });
   });
   return out;
 }

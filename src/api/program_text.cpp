@@ -8,7 +8,7 @@ namespace anholon::v1 {
 Result<std::string> program_text(const System& system, Language language) {
   const System::Data& of = system.data();
   return guarded(of.model->source, [&]() -> Result<std::string> {
-    of.model->without_contacts("program text");
+    of.model->without_contacts(language == Language::python ? "python_code" : "c_code");
     std::string name = of.model->source.name;
     if (const std::size_t slash = name.rfind('/'); slash != std::string::npos) name.erase(0, slash + 1);
     if (const std::size_t dot = name.rfind('.'); dot != std::string::npos) name.erase(dot);

@@ -1,12 +1,11 @@
 #include "dynamics/dynamics.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <thread>
 
+#include "dynamics/pieces.h"
 #include "kernel/plan/planner.h"
 #include "motion/representation.h"
 #include "program/expansion.h"
@@ -106,7 +105,8 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
     made->put_independent_velocities(s.system, *mapped);
   else
     made->put_state_of_motion(s.system, s.structure.d);
-  if (made->plan_) made->plan_->compile(code_cache());
+  if (made->plan_ && !made->plan_->compile(code_cache()).empty())
+    made->plan_->compile(code_cache(), 1, CodeEffort::quick);
   return made;
 }
 
@@ -325,31 +325,24 @@ void Dynamics::rates(double t, const double* x, std::size_t count, double* rates
     with_kernel(1, call, [&](Kernel& k) { compute(k, call, 0, count); });
     return;
   }
-  const int lanes = tiers().back().lanes;
-  plan_->compile(code_cache(), lanes);
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
+  int lanes = tiers().back().lanes;
+  // Of a plan that is too large for the compiler there is code that is translated.
+  if (!plan_->compile(code_cache(), lanes).empty() &&
+      plan_->compile(code_cache(), lanes_at_first(), CodeEffort::quick).empty())
+    lanes = lanes_at_first();
+  in_pieces(count, kManyThreads, [&](const NextPiece& next) {
     with_kernel(lanes, call, [&](Kernel& k) {
-      for (std::size_t from; (from = next.fetch_add(kManyThreads)) < count;)
-        compute(k, call, from, std::min(count, from + kManyThreads));
+      while (const std::optional<std::size_t> from = next())
+        compute(k, call, *from, std::min(count, *from + kManyThreads));
     });
-  };
-  std::vector<std::jthread> others;
-  const std::size_t threads = std::min<std::size_t>(std::thread::hardware_concurrency(), count / kManyThreads);
-  while (others.size() + 1 < threads) others.emplace_back(work);
-  work();
+  });
 }
 
 void Dynamics::rates_by_reference(const Call& call) const {
-  std::atomic<std::size_t> next = 0;
-  const auto work = [&] {
-    for (std::size_t from; (from = next.fetch_add(kManyLanes)) < call.count;)
-      compute_by_reference(call, from, std::min(call.count, from + kManyLanes));
-  };
-  std::vector<std::jthread> others;
-  const std::size_t threads = std::min<std::size_t>(std::thread::hardware_concurrency(), call.count / kManyLanes);
-  while (others.size() + 1 < threads) others.emplace_back(work);
-  work();
+  in_pieces(call.count, kManyLanes, [&](const NextPiece& next) {
+    while (const std::optional<std::size_t> from = next())
+      compute_by_reference(call, *from, std::min(call.count, *from + kManyLanes));
+  });
 }
 
 std::vector<double> Dynamics::leading(double t, const std::vector<double>& x, InputsAndParameters given) const {

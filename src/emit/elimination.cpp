@@ -1,5 +1,6 @@
 #include "emit/elimination.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "emit/text.h"
@@ -13,6 +14,7 @@ constexpr std::size_t kMostUnknowns = 200;  // of an elimination that is written
 constexpr int kSamples = 6;
 constexpr double kAround = 0.3;     // of the samples, in coordinates and velocities
 constexpr double kThreshold = 0.1;  // of a pivot against its column
+constexpr double kLost = 1e-13;  // of a number of size 1; a tenth of the 1e-12 to which programs agree with the motion
 
 using Table = std::vector<std::vector<double>>;
 
@@ -114,69 +116,148 @@ class Search {
   std::vector<bool> row_done_, column_done_;
 };
 
-}  // namespace
-
-std::optional<Pivots> pivots_at_start(const System& s, const Motion& m, const EmitOptions::Start& start) {
-  if (!m.linear || m.jacobian.size() > kMostUnknowns) return std::nullopt;
-  std::vector<Table> samples = samples_of(s, m, start);
-  if (samples.empty()) return std::nullopt;
-  return Search(m, std::move(samples)).run();
-}
-
-std::string python_elimination(const Pivots& pivots, const EliminationNames& names) {
-  const std::size_t n = pivots.size();
-  std::vector<std::string> a = names.matrix, b = names.right;
+// Solves a x = b by the elimination, in double.
+std::vector<double> solved(Table a, std::vector<double> b, const Pivots& pivots) {
+  const std::size_t n = b.size();
   std::vector<bool> done(n);
-  std::vector<std::string> inverse(n);  // of pivots that are divided by more than once, by row
-  std::string out, suits;
-  std::size_t multipliers = 0;
-  const auto fresh = [&](const char* kind, std::size_t i) { return names.prefix + kind + std::to_string(i); };
   for (const auto& [row, column] : pivots) {
     done[row] = true;
     for (std::size_t i = 0; i < n; ++i) {
-      if (done[i] || a[i * n + column].empty()) continue;
-      if (inverse[row].empty()) {
-        inverse[row] = fresh("d", row);
-        out += "    " + inverse[row] + " = 1.0/" + a[row * n + column] + "\n";
-      }
-      const std::string l = fresh("l", multipliers++);
-      out += "    " + l + " = " + a[i * n + column] + "*" + inverse[row] + "\n";
-      suits += (suits.empty() ? "(abs(" : " & (abs(") + l + ") < 1e3)";
-      for (std::size_t j = 0; j < n; ++j) {
-        if (j == column || a[row * n + j].empty()) continue;
-        std::string& entry = a[i * n + j];
-        if (entry.empty()) {
-          entry = fresh("f", i * n + j);
-          out += "    " + entry + " = -" + l + "*" + a[row * n + j] + "\n";
-        } else {
-          const std::string changed = fresh("f", i * n + j);
-          out += "    " + changed + " = " + entry + " - " + l + "*" + a[row * n + j] + "\n";
-          entry = changed;
-        }
-      }
-      if (!b[row].empty()) {
-        const std::string changed = fresh("g", i);
-        out += "    " + changed + " = " + (b[i].empty() ? "-" : b[i] + " - ") + l + "*" + b[row] + "\n";
-        b[i] = changed;
-      }
-      a[i * n + column].clear();
+      if (done[i] || a[i][column] == 0) continue;
+      const double l = a[i][column] / a[row][column];
+      for (std::size_t j = 0; j < n; ++j) a[i][j] = j == column ? 0 : a[i][j] - l * a[row][j];
+      b[i] -= l * b[row];
     }
   }
-  std::vector<std::string> lead(n);
+  std::vector<double> x(n);
   for (std::size_t k = n; k-- > 0;) {
     const auto [row, column] = pivots[k];
-    std::string sum = b[row];
+    double sum = b[row];
     for (std::size_t j = 0; j < n; ++j)
-      if (j != column && !a[row * n + j].empty()) sum += (sum.empty() ? "-" : " - ") + a[row * n + j] + "*" + lead[j];
-    lead[column] = fresh("x", column);
-    out += "    " + lead[column] + " = " +
-           (sum.empty() ? "0.0*" + a[row * n + column]
-                        : "(" + sum + ")" + (inverse[row].empty() ? "/" + a[row * n + column] : "*" + inverse[row])) +
-           "\n";
+      if (j != column) sum -= a[row][j] * x[j];
+    x[column] = sum / a[row][column];
   }
-  out += "    return [";
-  for (std::size_t i = 0; i < n; ++i) out += (i ? ", " : "") + lead[i];
-  return out + "], " + (suits.empty() ? "True" : suits) + "\n";
+  return x;
+}
+
+// Whether one correction of a solution with numbers of size 1 is more than kLost in a sample.
+bool loses_digits(const std::vector<Table>& samples, const Pivots& pivots) {
+  const std::size_t n = pivots.size();
+  const auto missing = [&](const Table& a, const std::vector<double>& b, const std::vector<double>& x) {
+    std::vector<double> rest = b;
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = 0; j < n; ++j) rest[i] -= a[i][j] * x[j];
+    return rest;
+  };
+  return std::any_of(samples.begin(), samples.end(), [&](const Table& a) {
+    std::vector<double> b = missing(a, std::vector<double>(n), std::vector<double>(n, -1.0));
+    const std::vector<double> x = solved(a, b, pivots), more = solved(a, missing(a, b, x), pivots);
+    return std::any_of(more.begin(), more.end(), [](double d) { return !(std::abs(d) <= kLost); });
+  });
+}
+
+}  // namespace
+
+std::optional<PivotOrder> elimination_at_start(const System& s, const Motion& m, const EmitOptions::Start& start) {
+  if (!m.linear || m.jacobian.size() > kMostUnknowns) return std::nullopt;
+  const std::vector<Table> samples = samples_of(s, m, start);
+  if (samples.empty()) return std::nullopt;
+  const std::optional<Pivots> pivots = Search(m, samples).run();
+  return pivots ? std::optional(PivotOrder{*pivots, loses_digits(samples, *pivots)}) : std::nullopt;
+}
+
+namespace {
+
+// Writes the statements of an elimination.
+class PythonElimination {
+ public:
+  PythonElimination(const PivotOrder& e, const EliminationNames& names)
+      : e_(e), names_(names), n_(e.pivots.size()), a_(names.matrix), inverse_(n_), multipliers_(n_) {}
+
+  std::string run() {
+    eliminate();
+    std::vector<std::string> x = substituted(reduced(names_.right, "g"), "x");
+    if (e_.refined) {
+      std::string lead;
+      for (const std::string& number : x) lead += (lead.empty() ? "" : ", ") + number;
+      put("lead", "[" + lead + "]");
+      out_ += names_.residual;
+      const std::vector<std::string> more = substituted(reduced(names_.left, "s"), "y");
+      for (std::size_t j = 0; j < n_; ++j) x[j] += " - " + more[j];
+    }
+    std::string list;
+    for (const std::string& number : x) list += (list.empty() ? "" : ", ") + number;
+    return out_ + "    return [" + list + "], " + (suits_.empty() ? "True" : suits_) + "\n";
+  }
+
+ private:
+  std::string fresh(const char* kind, std::size_t i) const { return names_.prefix + kind + std::to_string(i); }
+  void put(const std::string& name, const std::string& value) { out_ += "    " + name + " = " + value + "\n"; }
+  std::string entry(std::size_t row, std::size_t column) const { return a_[row * n_ + column]; }
+
+  void eliminate() {
+    std::vector<bool> done(n_);
+    std::size_t count = 0;
+    for (const auto& [row, column] : e_.pivots) {
+      done[row] = true;
+      for (std::size_t i = 0; i < n_; ++i) {
+        if (done[i] || entry(i, column).empty()) continue;
+        if (inverse_[row].empty()) put(inverse_[row] = fresh("d", row), "1.0/" + entry(row, column));
+        const std::string l = fresh("l", count++);
+        put(l, entry(i, column) + "*" + inverse_[row]);
+        suits_ += (suits_.empty() ? "(abs(" : " & (abs(") + l + ") < 1e3)";
+        multipliers_[row].push_back({i, l});
+        for (std::size_t j = 0; j < n_; ++j) {
+          if (j == column || entry(row, j).empty()) continue;
+          const std::string changed = fresh("f", i * n_ + j), less = l + "*" + entry(row, j);
+          put(changed, entry(i, j).empty() ? "-" + less : entry(i, j) + " - " + less);
+          a_[i * n_ + j] = changed;
+        }
+        a_[i * n_ + column].clear();
+      }
+    }
+  }
+
+  // What the elimination makes of a right side; empty entries vanish.
+  std::vector<std::string> reduced(std::vector<std::string> b, const char* kind) {
+    for (const auto& [row, column] : e_.pivots)
+      for (const auto& [i, l] : multipliers_[row]) {
+        if (b[row].empty()) continue;
+        put(fresh(kind, i), (b[i].empty() ? "-" : b[i] + " - ") + l + "*" + b[row]);
+        b[i] = fresh(kind, i);
+      }
+    return b;
+  }
+
+  // The solution, by its unknowns.
+  std::vector<std::string> substituted(const std::vector<std::string>& b, const char* kind) {
+    std::vector<std::string> x(n_);
+    for (std::size_t k = n_; k-- > 0;) {
+      const auto [row, column] = e_.pivots[k];
+      std::string sum = b[row];
+      for (std::size_t j = 0; j < n_; ++j)
+        if (j != column && !entry(row, j).empty()) sum += (sum.empty() ? "-" : " - ") + entry(row, j) + "*" + x[j];
+      x[column] = fresh(kind, column);
+      put(x[column], sum.empty()
+                         ? "0.0*" + entry(row, column)
+                         : "(" + sum + ")" + (inverse_[row].empty() ? "/" + entry(row, column) : "*" + inverse_[row]));
+    }
+    return x;
+  }
+
+  const PivotOrder& e_;
+  const EliminationNames& names_;
+  std::size_t n_;
+  std::vector<std::string> a_;
+  std::vector<std::string> inverse_;  // of pivots that are divided by more than once, by row
+  std::vector<std::vector<std::pair<std::size_t, std::string>>> multipliers_;  // by row of the pivot: row, name
+  std::string out_, suits_;
+};
+
+}  // namespace
+
+std::string python_elimination(const PivotOrder& elimination, const EliminationNames& names) {
+  return PythonElimination(elimination, names).run();
 }
 
 }  // namespace anholon::emit

@@ -10,17 +10,27 @@ namespace anholon::emit {
 // Row and column of each pivot, in order.
 using Pivots = std::vector<std::pair<std::size_t, std::size_t>>;
 
+struct PivotOrder {
+  Pivots pivots;
+  // Whether a solution loses digits at the start or around it, so that it is corrected by what remains of the equations, with
+  // the same multipliers and pivots.
+  bool refined = false;
+};
+
 // An order with few statements whose multipliers stay small at the start and around it (Markowitz). Returns nullopt if
 // the equations are not linear in the leading derivatives, or have no such order.
-std::optional<Pivots> pivots_at_start(const System& system, const Motion& motion, const EmitOptions::Start& start);
+std::optional<PivotOrder> elimination_at_start(const System& system, const Motion& motion,
+                                               const EmitOptions::Start& start);
 
 // The names of the entries of matrix and right side, row by row; those that vanish are empty.
 struct EliminationNames {
   std::vector<std::string> matrix, right;
-  std::string prefix;  // of further names
+  std::string prefix;             // of further names
+  std::string residual;           // of a correction: statements that compute, of a solution `lead`,
+  std::vector<std::string> left;  // what remains of the equations, by these names
 };
 
 // Python: overwrites the entries by the solution; `lead` is the list of it, `suits` whether no multiplier is large.
-std::string python_elimination(const Pivots& pivots, const EliminationNames& names);
+std::string python_elimination(const PivotOrder& elimination, const EliminationNames& names);
 
 }  // namespace anholon::emit

@@ -168,7 +168,7 @@ class PythonModule {
         inputs_(!m_.inputs.empty()) {}
 
   std::string text() {
-    if (options_.start) pivots_ = pivots_at_start(system_, m_, *options_.start);
+    if (options_.start) elimination_ = elimination_at_start(system_, m_, *options_.start);
     return documentation() + tables() + start() + parameters() + inputs() + equations() + newton() + one() +
            elimination() + leading() + right_side() + rates() + results() + demonstration();
   }
@@ -284,14 +284,14 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
   }
 
   // Functions of single numbers are faster by the module math.
-  bool fast() const { return pivots_ || options_.rates; }
+  bool fast() const { return elimination_ || options_.rates; }
   std::string one() const { return fast() ? "\n\n_DEFAULTS = DEFAULTS.tolist()\n\n\n" + scalars() : ""; }
 
   std::string rates() const { return options_.rates ? python_rates(*options_.rates) : ""; }
 
   // The matrix and the right side by names, then the elimination: a function of the library for numbers.
   std::string elimination() {
-    if (!pivots_) return {};
+    if (!elimination_) return {};
     Graph& g = *system_.model->graph;
     const Column right = substitute(m_.residual, [&](NodeId id) {
       const auto j = system_.variable(id);
@@ -310,6 +310,10 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
     for (std::size_t i = 0; i < matrix.size(); ++i) names.matrix.push_back(name(matrix[i], "a", i));
     for (std::size_t i = 0; i < right.size(); ++i) names.right.push_back(name(-right[i], "b", i));
     const Statements body = writer_.body(es, own);
+    if (elimination_->refined) {
+      for (std::size_t i = 0; i < right.size(); ++i) names.left.push_back(names.prefix + "r" + std::to_string(i));
+      names.residual = writer_.body(m_.residual, names.left).text;
+    }
     std::string out;
     if (inputs_) {
       const Statements formulas = writer_.body(m_.input_values, targets(m_.inputs.size()));
@@ -320,16 +324,16 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
            "):\n    \"\"\"lead by elimination with pivots that suit the start, and whether they suit this "
            "state.\"\"\"\n" +
            (inputs_ && body.reads("u") ? "    if u is None:\n        u = _own_inputs(np, t, state, p)\n" : "") +
-           body.text + python_elimination(*pivots_, names);
+           body.text + python_elimination(*elimination_, names);
   }
 
   std::string leading() const {
-    std::string text = replaced(replaced(put(kLeading, "@FAST", pivots_ ? kFast : ""), "@GIVEN", u_argument()),
+    std::string text = replaced(replaced(put(kLeading, "@FAST", elimination_ ? kFast : ""), "@GIVEN", u_argument()),
                                 "@PASSED", inputs_ ? ", u=u" : "");
     text = replaced(text, "@FAST_U", inputs_ ? ", None if u is None else np.asarray(u, dtype=float).tolist()" : "");
-    text = put(text, "@BLOCKS", pivots_ ? kBlocks : "    left = range(flat.shape[1])\n");
+    text = put(text, "@BLOCKS", elimination_ ? kBlocks : "    left = range(flat.shape[1])\n");
     text = replaced(text, "@BLOCK_U", inputs_ ? ", _block(u, block, None)" : "");
-    if (pivots_)
+    if (elimination_)
       text = "\ndef _block(a, block, otherwise=" + std::string("_DEFAULTS") +
              "):\n    return otherwise if a is None else a if np.ndim(a) < 2 else np.asarray(a, "
              "dtype=float).reshape(len(a), -1)[:, block]\n" +
@@ -407,7 +411,7 @@ if __name__ == "__main__":
   LocalNames names_;
   Writer writer_;
   bool inputs_;
-  std::optional<Pivots> pivots_;
+  std::optional<PivotOrder> elimination_;
 };
 
 }  // namespace

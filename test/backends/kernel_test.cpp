@@ -593,6 +593,43 @@ TEST(Kernels, EliminateChainsLinkByLink) {
   }
 }
 
+// Code of plans of one stage that are too large for the compiler is translated, with the bits of the tables.
+TEST(Kernels, OfLargePlansAreTranslated) {
+  if (!compiler()) GTEST_SKIP() << "no compiler beside the program";
+  for (const auto& [name, why] : kNotCompiled) {
+    const Reference r(name);
+    ASSERT_EQ(r.why, "");
+    const auto of_points = [&] {
+      return KernelPlan::make(r.stepping, 1, r.parameters, static_cast<double>(r.start.t),
+                              Reference::narrow(r.start.state));
+    };
+    const auto plain = of_points(), code = of_points();
+    ASSERT_TRUE(plain && code);
+    EXPECT_EQ(code->compile({}), why) << name;
+    EXPECT_EQ(r.plan()->compile({}, 1, CodeEffort::quick), why) << name << ": a motion";
+    for (const int lanes : {1, lanes_at_first()}) {
+      if (!translated_at_first(lanes)) continue;
+      ASSERT_EQ(code->compile({}, lanes, CodeEffort::quick), "") << name;
+      ASSERT_TRUE(code->code(lanes)->translated);
+      Kernel a(plain, lanes), b(code, lanes);
+      for (Kernel* k : {&a, &b}) {
+        for (int lane = 0; lane < lanes; ++lane) {
+          k->set_parameters(lane, r.parameters);
+          std::vector<double> state = Reference::narrow(r.start.state);
+          for (double& x : state) x += 1e-3 * (lane + 1);
+          k->load(lane, static_cast<double>(r.start.t), state, Reference::narrow(r.start.leading));
+        }
+        k->expand();
+      }
+      const Plan& p = plain->plan();
+      for (int lane = 0; lane < lanes; ++lane)
+        for (std::size_t j = 0; j < p.x.size(); ++j)
+          for (int k = 0; k <= p.stages + p.d[j]; ++k)
+            EXPECT_EQ(a.coefficient(j, k, lane), b.coefficient(j, k, lane)) << name << " order " << k;
+    }
+  }
+}
+
 // The other direction: who is on a list belongs there, for the reason given.
 TEST(Kernels, AreMissingForTheseReasonsOnly) {
   for (const auto& [name, why] : kWithoutKernel) EXPECT_EQ(Reference(name).why, why) << name;

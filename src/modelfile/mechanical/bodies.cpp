@@ -251,7 +251,7 @@ void BodyReader::read_axes(Body& body, const Item* inertia, const Item* axes) {
     const Expr j = scope_.number(*inertia);
     const auto v = constant_value(model_, j);
     if (v && *v < 0)
-      throw Failure(inertia->span, "the moment of inertia is " + number_text(*v, 6) + ": it is not negative");
+      throw Failure(inertia->span, "the moment of inertia is " + number_text(*v, 6) + ", and none is negative");
     if (const Vector& w = body.orientation->own_rate; !proved_zero(w.x) || !proved_zero(w.y))
       diagnostics_.warning(inertia->span,
                            "the body '" + body.name +
@@ -340,7 +340,7 @@ void BodyReader::check_inertia(const Body& body, const Expr (&moment)[3][3], Spa
   for (int i = 0; i < 3; ++i)
     if (j[i][i] < 0)
       throw Failure(span, "the moment of inertia of '" + body.name + "' about " + "xyz"[i] + " is " +
-                              number_text(j[i][i], 6) + ": it is not negative");
+                              number_text(j[i][i], 6) + ", and none is negative");
   const double trace = j[0][0] + j[1][1] + j[2][2], slack = 1e-9 * std::abs(trace);
   double e[3][3];
   for (int i = 0; i < 3; ++i)

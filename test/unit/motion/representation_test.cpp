@@ -8,9 +8,10 @@ namespace anholon::representation_test {
 namespace {
 
 struct Written {
-  explicit Written(const std::string& name, const Overrides& overrides = {}) {
-    if (!make_scenario(test::model_of(test::shipped_text(name), overrides), *find_formulation("routh"), {}, prepared)
-             .ok())
+  explicit Written(const std::string& name, const Overrides& overrides = {})
+      : Written(test::model_of(test::shipped_text(name), overrides)) {}
+  explicit Written(std::shared_ptr<const Model> model) {
+    if (!make_scenario(std::move(model), *find_formulation("routh"), {}, prepared).ok())
       throw std::runtime_error("no start");
     scenario.emplace(prepared);
     parameters = parameter_values<long double>(*scenario->model);
@@ -20,6 +21,7 @@ struct Written {
     t = static_cast<double>(start.t);
     derived = KernelPlan::make(std::make_shared<const Program>(program(scenario->system, scenario->structure)), 14,
                                parameters, static_cast<double>(start.t), state);
+    if (!derived) throw std::runtime_error("no kernel");
     const std::size_t before = scenario->model->graph->size();
     list = representations(
         {derived, scenario->structure, {}, parameters, static_cast<double>(start.t), state, scenario->mechanics.get()},
@@ -155,6 +157,30 @@ TEST(Representation, RatesByTheReference) {
         EXPECT_NEAR(a.coefficient(j, rates.d[j] + k), b.coefficient(j, rates.d[j] + k),
                     1e-9 * (1 + std::abs(a.coefficient(j, rates.d[j] + k))))
             << name << " " << j << " " << k;
+  }
+}
+
+// A bead on a curve, an arm and a skate that inputs move.
+TEST(Representation, InputsInPositions) {
+  const std::string carried = "input.u = 't^2'\n",
+                    with_a_state = "state.z = {rate = '-z', initial = 1}\ninput.u = 'z*t'\n";
+  const std::string bead =
+      "particle = [{name = 'b', mass = '1', position = 'u*ex + sin(q)*ey'}]\ncoordinates = ['q']\n";
+  const std::string arm = "frame.A = 'rotz(u)'\nparticle = [{name = 'b', mass = '1', position = 'q*A.x'}]\n"
+                          "coordinates = ['q']\ninitial = {q = 1}\n";
+  const std::string skate = R"toml(coordinates = ["x", "y", "q"]
+particle = [
+  {name = "b", mass = "1", position = "x*ex + y*ey + u*(cos(q)*ex + sin(q)*ey)"},
+  {name = "c", mass = "2", position = "x*ex + y*ey + 0.3*(cos(q)*ex + sin(q)*ey)"},
+]
+constraint = [{name = "blade", equation = "y'*cos(q) - x'*sin(q) = 0"}]
+initial = {q = 0.4, "x'" = 1, "q'" = 0.5}
+)toml";
+  for (const auto& [text, writing] :
+       {std::pair(carried + bead, Writing::rates), std::pair(with_a_state + bead, Writing::rates),
+        std::pair(carried + arm, Writing::rates), std::pair(carried + skate, Writing::quasi)}) {
+    const Written w(test::model_of(text));
+    EXPECT_NE(w.by(writing), nullptr) << text;  // its expansion agrees with that of the derived equations
   }
 }
 
