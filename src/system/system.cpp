@@ -52,12 +52,16 @@ static void equations_of_motion(System& s, const Mechanics& m, const Elimination
   }
 }
 
-// True if equations of motion may have to be differentiated: for constraints of order 3 and more, and for those that an
-// input enforces.
-static bool differentiates_motion(const Mechanics& m) {
-  const std::vector<Constraint>& list = m.model->constraints;
+// True if derivatives of states beyond their rates may come up: equations of motion hold them, or are differentiated for
+// constraints of order 3 and more and for those that an input enforces.
+static bool goes_beyond_rates(const System& s, const Mechanics& m) {
+  const Graph& g = *s.model->graph;
+  const std::vector<Constraint>& list = s.model->constraints;
+  const std::vector<NodeId> met = symbols(s.equations);
   return std::any_of(m.order.begin(), m.order.end(), [](int order) { return order > 2; }) ||
-         std::any_of(list.begin(), list.end(), [](const Constraint& c) { return c.by.has_value(); });
+         std::any_of(list.begin(), list.end(), [](const Constraint& c) { return c.by.has_value(); }) ||
+         std::any_of(met.begin(), met.end(),
+                     [&](NodeId id) { return g.node(id).kind == Kind::state && g.node(id).order > 1; });
 }
 
 System implicit_system(std::shared_ptr<const Model> model, const Mechanics& m, const Formulation& form,
@@ -69,8 +73,8 @@ System implicit_system(std::shared_ptr<const Model> model, const Mechanics& m, c
   s.coordinates = model->coordinates.size();
   s.constraints = constraints;
   equations_of_motion(s, m, elimination);
-  // A state has no derivative beyond its rate: the formula of its rate takes the place of the rate.
-  if (differentiates_motion(m))
+  // The start and the motion hold no derivative of a state beyond its rate: the formula of the rate takes its place.
+  if (goes_beyond_rates(s, m))
     for (Expr& e : s.equations) e = put_state_rates(*model, e, 1);
   for (const Coordinate& c : model->coordinates) s.variable_names.push_back(c.name);
   for (std::size_t r : constraints) {

@@ -103,6 +103,29 @@ TEST(RateInForce, HasItsMultiplierInClosedForm) {
   EXPECT_NEAR(std::stod(m.rows.rows().back().at(at)), 0.025 * (std::exp(-0.05) - 1), 1e-16);
 }
 
+// A point is moved by an input that holds a state, beside a blade: the equations hold the second derivative of the state.
+TEST(StateInPlace, IsTheFunctionThatItBecomes) {
+  const std::string rest =
+      "coordinates = [\"x\", \"y\", \"q\"]\nparticle = [{name = \"b\", mass = \"1\", position = \"x*ex + y*ey + "
+      "u*(cos(q)*ex + sin(q)*ey)\"}, {name = \"c\", mass = \"2\", position = \"x*ex + y*ey + 0.3*(cos(q)*ex + "
+      "sin(q)*ey)\"}]\nconstraint = [{name = \"blade\", equation = \"y'*cos(q) - x'*sin(q) = 0\"}]\ninitial = {q = "
+      "0.4, "
+      "\"x'\" = 1, \"q'\" = 0.5}\n";
+  const auto with = [&](const std::string& first) {
+    Motion m = run(test::model_of(first + rest), *find_formulation("routh"), Rational(1));
+    EXPECT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+    return m;
+  };
+  const Motion state = with("state.z = {rate = \"-z\", initial = 1}\ninput.u = \"z*t\"\n");
+  const Motion function = with("input.u = \"exp(-t)*t\"\n");
+  ASSERT_EQ(state.rows.rows().size(), function.rows.rows().size());
+  for (std::size_t i = 0; i < state.rows.rows().size(); ++i) {
+    for (std::size_t k = 0; k <= 9; ++k) {  // t, coordinates, velocities, accelerations
+      EXPECT_NEAR(std::stod(state.rows.rows()[i][k]), std::stod(function.rows.rows()[i][k]), kSame) << k;
+    }
+  }
+}
+
 std::string on_the_other_branch(const std::string& name) {
   std::string text = test::shipped_text("zoo/" + name);
   const std::size_t at = text.find("lambda > 0\"");
