@@ -120,7 +120,7 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
     const auto known = contacts.find(e.name);
     if (known == contacts.end() && e.stop) goes_on = false;
     if (known != contacts.end()) {
-      if (known->second.of_direction()) continue;
+      if (!known->second.is_told()) continue;
       e.stop = false;
       while (!e.name.empty() && e.name.back() == '\'') e.name.pop_back();
       // A change has two events where its forces may be zero at the start, and they may fall together.
@@ -150,6 +150,16 @@ void JoinedReport::set(double t, const std::vector<EventReport::Change>& changes
 }
 
 void JoinedReport::event(const std::string& name, double t) { all_.events.push_back({name, {t, ""}, {}}); }
+
+bool JoinedReport::has(const std::string& name, double t) const {
+  const auto last =
+      std::find_if(all_.events.rbegin(), all_.events.rend(), [&](const EventReport& e) { return e.name == name; });
+  return last != all_.events.rend() && last->t.value == t;
+}
+
+void JoinedReport::event_once(const std::string& name, double t) {
+  if (!has(name, t)) event(name, t);
+}
 
 void JoinedReport::take_back(const std::string& name) {
   const auto last =

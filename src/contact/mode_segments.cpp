@@ -89,6 +89,7 @@ bool ModeSegments::note(const std::vector<EventReport>& events, const std::map<s
     if (at == known.end()) continue;
     changed = true;
     const auto [contact, change] = at->second;
+    if (change == ModeChange::passes) bodies_.borders.reached(contact);
     if (change == ModeChange::hits) bodies_.near.reached(contact);
     if (change == ModeChange::turns) bodies_.turned[contact] = true;
     if (change == ModeChange::leaves) bodies_.excluded[contact].touch = true;
@@ -99,6 +100,7 @@ bool ModeSegments::note(const std::vector<EventReport>& events, const std::map<s
 }
 
 void ModeSegments::nothing_has_changed() {
+  bodies_.borders.segment_has_ended();
   bodies_.excluded.assign(bodies_.contacts.size(), {});
   bodies_.turned.assign(bodies_.contacts.size(), false);
 }
