@@ -16,6 +16,7 @@
 #include "integrate/step_control.h"
 #include "numeric/number.h"
 #include "observe/angles.h"
+#include "observe/supports.h"
 
 namespace anholon {
 
@@ -70,6 +71,7 @@ class HybridMotion {
     if (outcome.ok()) outcome = not_inside(when(), kPassed);
     bodies_.look();
     if (outcome.ok()) outcome = as_its_modes();
+    if (outcome.ok()) name_last_slips();
     if (!outcome.ok())
       if (Outcome flat = not_flat(kNearlyFlat); !flat.ok()) outcome = flat;
     return joined_.report(std::move(outcome), bodies_.at.t.get_d(), segments_->rows());
@@ -133,6 +135,21 @@ class HybridMotion {
     }
   }
 
+  // A slip that has passed zero where an event has ended the motion goes on or not by the modes that would follow.
+  void name_last_slips() {
+    if (!bodies_.dynamics.has_values() || !is_regular().ok() || bodies_.shrinks()) return;
+    if (std::none_of(bodies_.excluded.begin(), bodies_.excluded.end(), [](const auto& e) { return e.slips; })) return;
+    const std::vector<ContactSolution> list = consistent_modes(bodies_.with_touching());
+    if (list.size() == 1) name_reversals(list[0].modes);
+  }
+
+  // A slip that passes zero and goes on reverses.
+  void name_reversals(const ContactModes& modes) {
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
+      if (bodies_.excluded[c].slips && modes[c].touch == Touch::slips)
+        joined_.rename(event_name(c, ModeChange::sticks), event_name(c, ModeChange::reverses));
+  }
+
   // An outcome if a contact has not done what its mode says.
   Outcome as_its_modes() const {
     if (const auto how = bodies_.contradiction())
@@ -172,9 +189,7 @@ class HybridMotion {
     bodies_.modes = list[0].modes;
     if (over_border) tell_changes(before);
     if (Outcome o = not_flat(kFlat); !o.ok()) return o;
-    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
-      if (bodies_.excluded[c].slips && bodies_.modes[c].touch == Touch::slips)
-        joined_.rename(event_name(c, ModeChange::sticks), event_name(c, ModeChange::reverses));
+    name_reversals(bodies_.modes);
     const auto open = of_modes(p, ContactModes(bodies_.contacts.size()));
     if (open) {
       bodies_.before = 0;
@@ -423,6 +438,8 @@ SimulationReport simulate_with_contacts(Workspace& s, const std::vector<Contact>
   const auto start = std::chrono::steady_clock::now();
   SimulationReport r =
       held > 0 ? simulate_with_switches(s, contacts, options, sink) : HybridMotion(s, contacts, options, sink).go();
+  for (const std::string& note : r.notes)
+    if (options.note && is_of_support(note)) options.note(note);
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return r;
 }

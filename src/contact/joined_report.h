@@ -31,6 +31,7 @@ class JoinedReport {
  private:
   SimulationReport all_;
   std::vector<std::string> contacts_;
+  std::vector<std::string> floors_;  // what segments note of constraints that pull
   std::size_t segments_ = 0;
   double power_miss_ = 0;  // the largest of a segment, in units of energy
 };
