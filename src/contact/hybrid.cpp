@@ -140,13 +140,30 @@ class HybridMotion {
     if (!bodies_.dynamics.has_values() || !is_regular().ok() || bodies_.shrinks()) return;
     if (std::none_of(bodies_.excluded.begin(), bodies_.excluded.end(), [](const auto& e) { return e.slips; })) return;
     const std::vector<ContactSolution> list = consistent_modes(bodies_.with_touching());
-    if (list.size() == 1) name_reversals(list[0].modes);
+    if (list.size() != 1) return;
+    bodies_.modes = list[0].modes;
+    note_rests(bodies_.with_touching(), list[0]);
+    name_reversals(bodies_.modes);
+  }
+
+  // A contact that is not pressed may slip and stick alike: it sticks where nothing moves it.
+  void note_rests(const ContactProblem& p, const ContactSolution& now) {
+    constexpr long double kNothing = 1e-12L;
+    const long double least = kNothing * size_of_forces(p, now);
+    const auto free = of_modes(p, ContactModes(bodies_.contacts.size()));
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+      const bool moves = p.contacts[c].moves || bodies_.excluded[c].stick ||
+                         (free && bodies_.dynamics.slip_acceleration(c, now.x) >
+                                      kNothing * bodies_.dynamics.slip_acceleration(c, free->x));
+      bodies_.modes[c].rests = free && bodies_.contacts[c].rough() && bodies_.modes[c].touch == Touch::slips &&
+                               now.normal[c] <= least && !moves;
+    }
   }
 
   // A slip that passes zero and goes on reverses.
   void name_reversals(const ContactModes& modes) {
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
-      if (bodies_.excluded[c].slips && modes[c].touch == Touch::slips)
+      if (bodies_.excluded[c].slips && modes[c].touch == Touch::slips && !modes[c].rests)
         joined_.rename(event_name(c, ModeChange::sticks), event_name(c, ModeChange::reverses));
   }
 
@@ -189,6 +206,7 @@ class HybridMotion {
     bodies_.modes = list[0].modes;
     if (over_border) tell_changes(before);
     if (Outcome o = not_flat(kFlat); !o.ok()) return o;
+    note_rests(p, list[0]);
     name_reversals(bodies_.modes);
     const auto open = of_modes(p, ContactModes(bodies_.contacts.size()));
     if (open) {

@@ -82,7 +82,7 @@ class ModeBuilder {
       if (const auto unit = units.find(c.name + what); unit != units.end())
         model_->outputs.push_back({c.name + what, unit->second, {}, {}, false, c.span});
     };
-    const bool slips = mode.touch == Touch::slips || (mode.touch == Touch::sticks && mode.begins);
+    const bool slips = (mode.touch == Touch::slips && !mode.rests) || (mode.touch == Touch::sticks && mode.begins);
     record(".mode", g_.number(mode.touch == Touch::open ? 0 : slips ? 1 : 2));
     if (c.under) {
       record(".moment", friction);
@@ -395,7 +395,7 @@ std::vector<int> mode_shape(const std::vector<Contact>& contacts, const ContactM
     const bool sticks = m.touch == Touch::sticks;
     shape.insert(shape.end(),
                  {static_cast<int>(m.touch), m.touch != Touch::open && m.load.shared, sticks && m.shares[0].shared,
-                  sticks && m.shares[1].shared, m.held, m.begins, m.at_bound, m.fast.has_value(), backwards});
+                  sticks && m.shares[1].shared, m.held, m.begins, m.at_bound, m.fast.has_value(), backwards, m.rests});
   }
   return shape;
 }

@@ -532,5 +532,26 @@ initial = {z = "h"}
   EXPECT_TRUE(contact_motion(text, Rational(1, 2)).report.notes.empty());
 }
 
+// A wheel that spins in the corner of a floor and a wall stops in both contacts, of which one bears no load then.
+TEST(ClosedForms, WheelInACornerSticksAtFloorAndWall) {
+  const auto m = contact_motion(R"toml(coordinates = ["x", "z", "p"]
+parameters = {m = 2, R = 0.2, g = 9.81, mu1 = 0.25, mu2 = 0.4, w0 = -60}
+gravity.field = "-g*ez"
+body = [{name = "wheel", mass = "m", shape = "cylinder(R, 0.1)", center = "x*ex + z*ez", orientation = "roty(p)*rotx(pi/2)"}]
+contact = [{name = "floor", gap = "z - R", slip = "x' - R*p'", friction = "mu1"}, {name = "wall", gap = "x - R", slip = "z' + R*p'", friction = "mu2"}]
+initial = {x = "R", z = "R", "p'" = "w0"}
+)toml",
+                                3);
+  // Floor and wall bear N1 + mu2 N2 = m g and N2 = mu1 N1, and the moment R (mu1 N1 + mu2 N2) stops m R^2/2 w.
+  const double n1 = 2 * 9.81 / (1 + 0.25 * 0.4), stop = 0.2 * 60 / ((0.25 + 0.4 * 0.25) * n1);
+  for (const char* name : {"floor.sticks", "wall.sticks"}) {
+    ASSERT_EQ(times(m, name).size(), 1U) << name;
+    EXPECT_NEAR(times(m, name)[0], stop, 1e-13);
+  }
+  EXPECT_TRUE(times(m, "wall.reverses").empty());
+  EXPECT_EQ(m.last("wall.mode"), 2);
+  EXPECT_EQ(m.last("floor.mode"), 2);
+}
+
 }  // namespace closed_forms_test
 }  // namespace anholon
