@@ -11,6 +11,20 @@ namespace {
 
 bool is(const Node& n, Function f) { return n.kind == Kind::function && static_cast<Function>(n.index) == f; }
 
+// Whether it is a table that jumps at its knots, of which each is a border.
+bool jumps(const StepFunction& f) {
+  constexpr std::size_t kMost = 64;
+  return f.smooth < 0 && f.power == 0 && f.knots.size() <= kMost;
+}
+
+// The values of a table as the first one and the steps at the knots below the argument.
+Expr sum_of_steps(Graph& g, const StepFunction& f, Expr argument, const std::function<Expr(Expr)>& side) {
+  Expr value = g.number(f.values[0]);
+  for (std::size_t k = 0; k < f.knots.size(); ++k)
+    value = value + g.select(side(argument - g.number(f.knots[k])), g.number(f.values[k + 1] - f.values[k]), g.zero());
+  return value;
+}
+
 Column surfaces(const std::vector<Contact>& contacts) {
   Column list;
   for (const Contact& c : contacts) {
@@ -51,22 +65,30 @@ std::vector<Contact> with_borders(Workspace& s, std::vector<Contact> contacts) {
   }
   const Column before = surfaces(contacts);
   const auto borders = std::make_shared<Column>();
-  std::unordered_map<NodeId, Expr> image, side;
+  std::unordered_map<NodeId, Expr> image, sides;
+  const auto side = [&](Expr border) {
+    const auto [at, fresh] = sides.try_emplace(border.id);
+    if (fresh) {
+      at->second = g.parameter(static_cast<std::uint32_t>(s.model->parameters.size() + borders->size()));
+      borders->push_back(border);
+    }
+    return at->second;
+  };
   for (const NodeId id : reachable(before)) {
     const Node n = g.node(id);
-    if (n.kind != Kind::select && !is(n, Function::sign) && !is(n, Function::abs)) continue;
+    const bool steps = n.kind == Kind::lookup && jumps(g.step_function(n.index));
+    if (n.kind != Kind::select && !is(n, Function::sign) && !is(n, Function::abs) && !steps) continue;
     Column operands;
     for (const Term& t : g.terms(id)) operands.push_back({&g, t.node});
     operands = replace_nodes(operands, image);
-    const auto [at, fresh] = side.try_emplace(operands[0].id);
-    if (fresh) {
-      at->second = g.parameter(static_cast<std::uint32_t>(s.model->parameters.size() + borders->size()));
-      borders->push_back(operands[0]);
+    if (steps) {
+      image[id] = sum_of_steps(g, g.step_function(n.index), operands[0], side);
+      continue;
     }
     if (n.kind == Kind::function)
       operands = is(n, Function::sign) ? Column{operands[0], g.one(), g.number(-1)}
                                        : Column{operands[0], operands[0], -operands[0]};
-    image[id] = g.select(at->second, operands[1], operands[2]);
+    image[id] = g.select(side(operands[0]), operands[1], operands[2]);
   }
   if (borders->empty()) return contacts;
   const Column after = replace_nodes(before, image);

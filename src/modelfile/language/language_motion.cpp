@@ -133,7 +133,7 @@ initial = {z = 1, "phi'" = 9}
 - The gap is a length, and a slip velocity a velocity: friction is that of the force along the gap, so that `gap = "5*z"` has a fifth of it. A gap may be an angle, too, as that of a door and its stop: the
   force along it is a moment then, and in a file with units a coefficient has the unit of the gap by that of the slip velocity and of time; gaps and slip velocities with other units, such as `R^2 - norm2(P)`, are
   errors there. A slip velocity is linear in the velocities and tangential: where the normal is known, as that of a plane by the velocity of a point with `along`, a direction with a part along it is refused.
-- A gap passes zero where a body would pass the surface: `z^2`, `abs(z)` and `norm(P)`, which only touch zero, are refused. Where max, min, abs, sign or piecewise choose another branch of a gap or a slip
+- A gap passes zero where a body would pass the surface: `z^2`, `abs(z)` and `norm(P)`, which only touch zero, are refused. Where max, min, abs, sign, piecewise or a table of steps (`fit = "hold"`) change a gap or a slip
   velocity, its kink or jump is an event of the contact, which strikes there, leaves, or slips. A surface that jumps into a body, and an edge in which a body comes to rest, end the motion with an outcome.
 - A contact pushes and does not pull: it is open, sticks or slips. The normal force N acts along the gradient of the gap, friction against the slip velocity:
   μN while it slips, at most the static coefficient times N while it sticks. Without `slip` there is no friction.

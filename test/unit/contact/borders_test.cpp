@@ -69,6 +69,18 @@ TEST(Borders, BlockSlipsWhereItsBeltJumpsToAnotherSpeed) {
   EXPECT_NEAR(m.last("x'"), 3, 1e-14);
 }
 
+TEST(Borders, TableOfStepsIsABeltThatJumps) {
+  const std::string contact = R"toml(contact = [{name = "belt", gap = "z", slip = "x' - speed(t)", friction = "mu"}]
+[[table]]
+name = "speed"
+x = [0, 1]
+y = [1, 3]
+fit = "hold")toml";
+  const auto m = ok_motion(puck(contact), Rational(5, 2));
+  EXPECT_EQ(times(m, "belt.slips"), std::vector<double>{1});
+  EXPECT_NEAR(m.last("x"), 4.25, 1e-13);
+}
+
 TEST(Borders, FrictionTurnsRoundWithTheBelt) {
   const std::string contact =
       R"toml(contact = [{name = "belt", gap = "z", slip = "x' - piecewise(t < 0.2, 1, -3)", friction = "mu"}])toml";
