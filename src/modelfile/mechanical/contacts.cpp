@@ -450,8 +450,10 @@ void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact
     for (Expr& e : o.values) e = at_start(e);
   const auto refuse = [&](Expr& e, Span span, const char* what) {
     if (!holds_force(e)) return;
-    diagnostics.error(span, std::string(what) + " holds the force of a contact",
-                      "such a formula stands in monitors, outputs and the 'when' of events");
+    diagnostics.error(
+        span, std::string(what) + " holds the force of a contact",
+        "such a formula stands in monitors, outputs and the 'when' of events; an [output] with the energy tells the "
+        "work of friction between two impacts, by what it loses");
     e = at_start(e);
   };
   for (StateVariable& z : model.states) refuse(z.rate, z.span, "a rate");
