@@ -11,10 +11,12 @@
 #include "contact/mode_segments.h"
 #include "contact/refused_options.h"
 #include "contact/slip_start.h"
+#include "contact/surface/gap_roots.h"
 #include "contact/switched_motion.h"
 #include "integrate/step_control.h"
 #include "numeric/number.h"
 #include "observe/angles.h"
+#include "observe/supports.h"
 
 namespace anholon {
 
@@ -23,8 +25,8 @@ namespace {
 class HybridMotion {
  public:
   HybridMotion(Workspace& s, const std::vector<Contact>& contacts, const SimulationOptions& o, RowSink& sink)
-      : s_(s), bodies_(s, contacts, start_of(s, o)), joined_(*s.model, contacts), accumulation_(contacts.size()),
-        o_(o) {
+      : s_(s), contacts_(with_borders(s, contacts)), bodies_(s, contacts_, start_of(s, o)), roots_(s, contacts_),
+        joined_(*s.model, contacts), accumulation_(contacts.size()), o_(o) {
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
     if (end_ < bodies_.at.t) throw Failure({}, "a motion with contacts goes forwards only", "an end after the start");
     std::vector<Rational> times = o.at;
@@ -69,6 +71,9 @@ class HybridMotion {
     if (outcome.ok()) outcome = not_inside(when(), kPassed);
     bodies_.look();
     if (outcome.ok()) outcome = as_its_modes();
+    if (outcome.ok()) name_last_slips();
+    if (!outcome.ok())
+      if (Outcome flat = not_flat(kNearlyFlat); !flat.ok()) outcome = flat;
     if (bodies_.at.t < end_) segments_->end_early();
     return joined_.report(std::move(outcome), bodies_.at.t.get_d(), segments_->rows());
   }
@@ -78,8 +83,13 @@ class HybridMotion {
   static constexpr long double kRest = 1e-12L;
   // Impacts at one instant; others follow after a segment.
   static constexpr std::size_t kMostImpacts = 16;
+  // A disc lies flat at this part of the sine of its tilt; and so does one whose motion fails at this other part.
+  static constexpr long double kFlat = 1e-5L, kNearlyFlat = 1e-4L;
   static constexpr const char* kPassed =
       "the contact is deeper than the round-off of its event: take a smaller --tolerance, or end the motion before";
+  static constexpr const char* kJumped = "a jump of a surface has no velocity with which it strikes: let the surface "
+                                         "move there within a short time, or write "
+                                         "a contact for each of its parts";
   static ContactState start_of(const Workspace& s, const SimulationOptions& o) {
     return {o.state.t ? *o.state.t : Rational(s.state.t), s.state.q, s.state.qd, s.state.states};
   }
@@ -126,6 +136,38 @@ class HybridMotion {
     }
   }
 
+  // A slip that has passed zero where an event has ended the motion goes on or not by the modes that would follow.
+  void name_last_slips() {
+    if (!bodies_.dynamics.has_values() || !is_regular().ok() || bodies_.shrinks()) return;
+    if (std::none_of(bodies_.excluded.begin(), bodies_.excluded.end(), [](const auto& e) { return e.slips; })) return;
+    const std::vector<ContactSolution> list = consistent_modes(bodies_.with_touching());
+    if (list.size() != 1) return;
+    bodies_.modes = list[0].modes;
+    note_rests(bodies_.with_touching(), list[0]);
+    name_reversals(bodies_.modes);
+  }
+
+  // A contact that is not pressed may slip and stick alike: it sticks where nothing moves it.
+  void note_rests(const ContactProblem& p, const ContactSolution& now) {
+    constexpr long double kNothing = 1e-12L;
+    const long double least = kNothing * size_of_forces(p, now);
+    const auto free = of_modes(p, ContactModes(bodies_.contacts.size()));
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+      const bool moves = p.contacts[c].moves || bodies_.excluded[c].stick ||
+                         (free && bodies_.dynamics.slip_acceleration(c, now.x) >
+                                      kNothing * bodies_.dynamics.slip_acceleration(c, free->x));
+      bodies_.modes[c].rests = free && bodies_.contacts[c].rough() && bodies_.modes[c].touch == Touch::slips &&
+                               now.normal[c] <= least && !moves;
+    }
+  }
+
+  // A slip that passes zero and goes on reverses.
+  void name_reversals(const ContactModes& modes) {
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
+      if (bodies_.excluded[c].slips && modes[c].touch == Touch::slips && !modes[c].rests)
+        joined_.rename(event_name(c, ModeChange::sticks), event_name(c, ModeChange::reverses));
+  }
+
   // An outcome if a contact has not done what its mode says.
   Outcome as_its_modes() const {
     if (const auto how = bodies_.contradiction())
@@ -150,14 +192,12 @@ class HybridMotion {
     bodies_.look();
     if (Outcome o = as_its_modes(); !o.ok()) return o;
     if (!bodies_.dynamics.has_values()) return what_has_no_value();
-    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
-      if (!bodies_.near.closed(c) && bodies_.dynamics.place(c).gap > 0) continue;
-      if (!bodies_.dynamics.has_derivatives(c)) return without_derivatives(bodies_.contacts[c].name, when());
-      if (!bodies_.dynamics.has_slip(c)) return without_slip(bodies_.contacts[c].name, when());
-    }
-    for (std::size_t k = 0; bodies_.shrinks() && k < kMostImpacts; ++k)
-      if (Outcome o = impact(); !o.ok()) return o;
+    const ContactModes before = bodies_.modes;
+    bool over_border = false, struck = false;
+    if (Outcome o = strike(over_border, struck); !o.ok()) return o;
     land();
+    if (struck)
+      if (const auto c = bodies_.on_edge()) return on_edge(bodies_.contacts[*c].name, when());
     bodies_.stop_ended_slips();
     ContactProblem p = bodies_.with_touching();
     slips_->guess_directions(p);
@@ -165,9 +205,10 @@ class HybridMotion {
     if (list.size() != 1) return undecided(list.size());
     slips_->tell_who_slips_too(list[0].modes);
     bodies_.modes = list[0].modes;
-    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
-      if (bodies_.excluded[c].slips && bodies_.modes[c].touch == Touch::slips)
-        joined_.rename(event_name(c, ModeChange::sticks), event_name(c, ModeChange::reverses));
+    if (over_border) tell_changes(before);
+    if (Outcome o = not_flat(kFlat); !o.ok()) return o;
+    note_rests(p, list[0]);
+    name_reversals(bodies_.modes);
     const auto open = of_modes(p, ContactModes(bodies_.contacts.size()));
     if (open) {
       bodies_.before = 0;
@@ -189,7 +230,67 @@ class HybridMotion {
     bodies_.stop(bodies_.modes);
     bodies_.drop_left_over();
     bodies_.bound_rest();
+    // Coordinates that are round-off have been set to zero.
+    return is_regular();
+  }
+
+  // An outcome if what touches has no derivatives.
+  Outcome is_regular() const {
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
+      if (!bodies_.near.closed(c) && bodies_.dynamics.place(c).gap > 0) continue;
+      if (!bodies_.dynamics.has_derivatives(c)) return without_derivatives(bodies_.contacts[c].name, when());
+      if (!bodies_.dynamics.has_slip(c)) return without_slip(bodies_.contacts[c].name, when());
+    }
     return {};
+  }
+
+  // An outcome if what touches lies flat.
+  Outcome not_flat(long double part) {
+    roots_.see(bodies_.at);
+    for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
+      if (bodies_.near.closed(c) && roots_.least_part(c) < part)
+        return lies_flat(bodies_.contacts[c].name, roots_.least_part(c), when());
+    return {};
+  }
+
+  // Impacts where a closed gap shrinks: at a border of a surface, those on the side from which the bodies come, then those on the
+  // other side, if the velocities lead there.
+  Outcome strike(bool& over_border, bool& struck) {
+    for (std::size_t k = 0; k < kMostImpacts; ++k) {
+      if (Outcome o = is_regular(); !o.ok()) return o;
+      if (bodies_.shrinks()) {
+        struck = true;
+        if (Outcome o = impact(); !o.ok()) return o;
+      } else if (bodies_.pass_borders()) {
+        over_border = true;
+        if (Outcome o = not_inside(when() + " where its surface jumps", kJumped); !o.ok()) return o;
+      } else {
+        return {};
+      }
+    }
+    for (std::size_t c = 0; over_border && c < bodies_.contacts.size(); ++c)
+      if (bodies_.near.closed(c) && bodies_.near.gap_rate(c) < 0) return on_edge(bodies_.contacts[c].name, when());
+    return {};
+  }
+
+  // Tells how a border of a surface, at which the modes end, has changed them.
+  void tell_changes(const ContactModes& before) {
+    for (std::size_t c = 0; c < before.size(); ++c) {
+      const ContactMode& now = bodies_.modes[c];
+      const bool touched = before[c].touch != Touch::open && now.touch != Touch::open;
+      std::optional<ModeChange> change;
+      if (now.touch == Touch::open && before[c].touch != Touch::open && !bodies_.contacts[c].under)
+        change = ModeChange::leaves;
+      else if (touched && bodies_.contacts[c].rough() && now.touch != before[c].touch)
+        change = now.touch == Touch::sticks ? ModeChange::sticks : ModeChange::slips;
+      else if (touched && now.touch == Touch::slips && now.direction[0] * before[c].direction[0] < 0 &&
+               bodies_.contacts[c].slip.size() == 1)
+        change = ModeChange::reverses;
+      // An impact tells that its bodies part.
+      if (change &&
+          !(change == ModeChange::leaves && joined_.has(event_name(c, ModeChange::hits), bodies_.at.t.get_d())))
+        joined_.event_once(event_name(c, *change), bodies_.at.t.get_d());
+    }
   }
 
   // The motion with all contacts open tells which formula has no value.
@@ -330,7 +431,9 @@ class HybridMotion {
   }
 
   Workspace& s_;
+  const std::vector<Contact> contacts_;
   TouchingBodies bodies_;
+  GapRoots roots_;
   JoinedReport joined_;
   Rational end_;
   Accumulation accumulation_;
@@ -354,6 +457,8 @@ SimulationReport simulate_with_contacts(Workspace& s, const std::vector<Contact>
   const auto start = std::chrono::steady_clock::now();
   SimulationReport r =
       held > 0 ? simulate_with_switches(s, contacts, options, sink) : HybridMotion(s, contacts, options, sink).go();
+  for (const std::string& note : r.notes)
+    if (options.note && is_of_support(note)) options.note(note);
   r.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return r;
 }

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "motion/stiff_method.h"
+#include "observe/supports.h"
 
 namespace anholon {
 
@@ -81,6 +82,13 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
     return std::any_of(all_.warnings.begin(), all_.warnings.end(),
                        [&](const Warning& o) { return same_but_time(o, w); });
   };
+  for (const std::string& note : r.notes) {
+    // A constraint is told once, from when it first pulls.
+    const std::string text = without_size_of_pull(note), name = text.substr(0, text.find(" from t = "));
+    if (is_of_support(note) && std::none_of(floors_.begin(), floors_.end(),
+                                            [&](const std::string& known) { return known.rfind(name, 0) == 0; }))
+      floors_.push_back(text);
+  }
   if (segments_++ == 0) {
     const SimulationReport first = all_;
     all_ = r;
@@ -88,6 +96,7 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
     all_.events = first.events, all_.constraints_each.clear(), all_.monitors.clear();
     all_.conserved.clear();
     std::erase_if(all_.warnings, of_its_own);
+    std::erase_if(all_.notes, is_of_support);
   } else {
     all_.steps += r.steps;
     all_.rows_looked_at += r.rows_looked_at;
@@ -120,7 +129,7 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
     const auto known = contacts.find(e.name);
     if (known == contacts.end() && e.stop) goes_on = false;
     if (known != contacts.end()) {
-      if (known->second.of_direction()) continue;
+      if (!known->second.is_told()) continue;
       e.stop = false;
       while (!e.name.empty() && e.name.back() == '\'') e.name.pop_back();
       // A change has two events where its forces may be zero at the start, and they may fall together.
@@ -151,6 +160,16 @@ void JoinedReport::set(double t, const std::vector<EventReport::Change>& changes
 
 void JoinedReport::event(const std::string& name, double t) { all_.events.push_back({name, {t, ""}, {}}); }
 
+bool JoinedReport::has(const std::string& name, double t) const {
+  const auto last =
+      std::find_if(all_.events.rbegin(), all_.events.rend(), [&](const EventReport& e) { return e.name == name; });
+  return last != all_.events.rend() && last->t.value == t;
+}
+
+void JoinedReport::event_once(const std::string& name, double t) {
+  if (!has(name, t)) event(name, t);
+}
+
 void JoinedReport::take_back(const std::string& name) {
   const auto last =
       std::find_if(all_.events.rbegin(), all_.events.rend(), [&](const EventReport& e) { return e.name == name; });
@@ -171,6 +190,7 @@ SimulationReport JoinedReport::report(Outcome outcome, double t, std::size_t row
   }
   all_.t = t;
   all_.rows = rows;
+  all_.notes.insert(all_.notes.end(), floors_.begin(), floors_.end());
   all_.power = power_miss_ / (all_.turned_over > 0 ? all_.turned_over : 1);
   for (const WatchedReport& w : all_.conserved)
     if (!(w.largest_change <= kConserved)) all_.warnings.push_back(not_conserved(w.name, w.largest_change));

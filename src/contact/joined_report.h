@@ -16,6 +16,9 @@ class JoinedReport {
   // of this name.
   void set(double t, const std::vector<EventReport::Change>& changes, const std::string& without_event);
   void event(const std::string& name, double t);
+  // Whether the last event of this name is at that time; and one that is told unless it is.
+  bool has(const std::string& name, double t) const;
+  void event_once(const std::string& name, double t);
   // The last event of this name has changed nothing.
   void take_back(const std::string& name);
   // Gives the last event of this name another one.
@@ -28,6 +31,7 @@ class JoinedReport {
  private:
   SimulationReport all_;
   std::vector<std::string> contacts_;
+  std::vector<std::string> floors_;  // what segments note of constraints that pull
   std::size_t segments_ = 0;
   double power_miss_ = 0;  // the largest of a segment, in units of energy
 };

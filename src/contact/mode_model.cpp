@@ -43,7 +43,7 @@ class ModeBuilder {
  public:
   ModeBuilder(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes, ModeEnds ends)
       : model_(clone(model)), g_(*model_->graph), ends_(ends) {
-    begin();
+    begin(contacts);
     if (!shares_friction(modes)) return;
     for (std::size_t c = 0; c < contacts.size(); ++c)
       for (std::size_t a = 0; modes[c].touch == Touch::sticks && a < contacts[c].slip.size(); ++a)
@@ -82,7 +82,7 @@ class ModeBuilder {
       if (const auto unit = units.find(c.name + what); unit != units.end())
         model_->outputs.push_back({c.name + what, unit->second, {}, {}, false, c.span});
     };
-    const bool slips = mode.touch == Touch::slips || (mode.touch == Touch::sticks && mode.begins);
+    const bool slips = (mode.touch == Touch::slips && !mode.rests) || (mode.touch == Touch::sticks && mode.begins);
     record(".mode", g_.number(mode.touch == Touch::open ? 0 : slips ? 1 : 2));
     if (c.under) {
       record(".moment", friction);
@@ -100,9 +100,11 @@ class ModeBuilder {
   ModeModel take() { return {std::move(model_), std::move(events_), std::move(conditions_), std::move(stopped_)}; }
 
  private:
-  void begin() {
+  void begin(const std::vector<Contact>& contacts) {
     InitialData& initial = model_->initial;
     initial = {};
+    // The sides come first: the formulas of the surfaces know them by their numbers.
+    if (!contacts.empty() && contacts[0].borders) pass_borders(*contacts[0].borders);
     initial.t = parameter("begin.t");
     stopped_.assign(model_->coordinates.size(), false);
     for (const std::uint32_t order : {0U, 1U})
@@ -112,6 +114,19 @@ class ModeBuilder {
                                  parameter("begin." + q.name + (order == 0 ? "" : "'")), q.span});
       }
     for (auto& state : model_->states) state.initial = parameter("begin." + state.name);
+  }
+
+  void pass_borders(const std::vector<Expr>& borders) {
+    Column sides, near;
+    for (std::size_t k = 0; k < borders.size(); ++k) sides.push_back(parameter("side" + std::to_string(k + 1)));
+    for (std::size_t k = 0; k < borders.size(); ++k) near.push_back(parameter("near" + std::to_string(k + 1)));
+    for (std::size_t k = 0; k < borders.size(); ++k) {
+      contact_ = k;
+      Contact surface;
+      surface.name = "surface" + std::to_string(k + 1);
+      ends(surface, ModeChange::passes, sides[k] * g_.own(borders[k]), -1, near[k]);
+    }
+    contact_ = 0;
   }
 
   Expr parameter(const std::string& name) {
@@ -311,6 +326,8 @@ std::string word(const Contact& c, ModeChange change) {
     return "reverses";
   case ModeChange::turns:
     return "turns";
+  case ModeChange::passes:
+    return "passes";
   }
   return {};
 }
@@ -354,12 +371,19 @@ ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, c
   return builder.take();
 }
 
-std::vector<Rational> mode_numbers(const ContactModes& modes, const ContactState& at) {
-  std::vector<Rational> values = {at.t};
+std::vector<double> mode_values(const ContactModes& modes, const ContactState& at) {
+  std::vector<double> values = at.borders;
   for (const std::vector<double>* list : {&at.q, &at.qd, &at.states})
-    for (const double x : *list) values.emplace_back(x);
+    values.insert(values.end(), list->begin(), list->end());
   for (const ContactMode& m : modes)
-    for (const long double x : numbers_of(m)) values.emplace_back(static_cast<double>(x));
+    for (const long double x : numbers_of(m)) values.push_back(static_cast<double>(x));
+  return values;
+}
+
+std::vector<Rational> mode_numbers(const ContactModes& modes, const ContactState& at) {
+  std::vector<Rational> values;
+  for (const double x : mode_values(modes, at)) values.emplace_back(x);
+  values.insert(values.begin() + static_cast<std::ptrdiff_t>(at.borders.size()), at.t);
   return values;
 }
 
@@ -371,7 +395,7 @@ std::vector<int> mode_shape(const std::vector<Contact>& contacts, const ContactM
     const bool sticks = m.touch == Touch::sticks;
     shape.insert(shape.end(),
                  {static_cast<int>(m.touch), m.touch != Touch::open && m.load.shared, sticks && m.shares[0].shared,
-                  sticks && m.shares[1].shared, m.held, m.begins, m.at_bound, m.fast.has_value(), backwards});
+                  sticks && m.shares[1].shared, m.held, m.begins, m.at_bound, m.fast.has_value(), backwards, m.rests});
   }
   return shape;
 }

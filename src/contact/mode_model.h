@@ -10,12 +10,14 @@
 namespace anholon {
 
 // Why a mode ends. A slip that passes zero sticks, or reverses if it goes on; `slows` and `turns` change how the direction of a
-// slip is written, and nothing of the motion.
-enum class ModeChange : std::uint8_t { hits, leaves, slips, sticks, reverses, slows, turns };
+// slip is written, and nothing of the motion; `passes` leads over a border of the surfaces.
+enum class ModeChange : std::uint8_t { hits, leaves, slips, sticks, reverses, slows, turns, passes };
 struct ModeEvent {
-  std::size_t contact = 0;
+  std::size_t contact = 0;  // the number of the border if one is passed
   ModeChange change = ModeChange::hits;
-  bool of_direction() const { return change == ModeChange::slows || change == ModeChange::turns; }
+  bool is_told() const {
+    return change != ModeChange::slows && change != ModeChange::turns && change != ModeChange::passes;
+  }
 };
 
 // What ends a mode: events of its model, or, for methods that look for none, conditions. These are monitors whose names begin
@@ -48,7 +50,8 @@ void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
 // (the direction to which a slip refers, and what is taken for zero), is a parameter each, after those of the model.
 ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes,
                      ModeEnds ends = ModeEnds::events);
-// The values of these parameters.
+// The values of these parameters, of which all but the time are doubles.
+std::vector<double> mode_values(const ContactModes& modes, const ContactState& at);
 std::vector<Rational> mode_numbers(const ContactModes& modes, const ContactState& at);
 // Two modes have the same model, but for these values, if they are equal here.
 std::vector<int> mode_shape(const std::vector<Contact>& contacts, const ContactModes& modes);

@@ -5,6 +5,7 @@
 
 #include "contact/slow_slips.h"
 #include "motion/stiff_method.h"
+#include "observe/supports.h"
 #include "simulation/near_singular.h"
 #include "simulation/simulate.h"
 
@@ -13,9 +14,9 @@ namespace anholon {
 ModeSegments::ModeSegments(const Workspace& s, const SimulationOptions& options, TouchingBodies& bodies,
                            JoinedReport& joined, RowSink& rows, std::vector<Rational> times, Rational end,
                            std::function<void(std::size_t)> slips)
-    : o_(options), looks_for_events_(!s.model->events.empty()), bodies_(bodies), joined_(joined),
-      ready_(s, bodies.contacts), rows_(rows, bodies.contacts), times_(std::move(times)), end_(std::move(end)),
-      slips_(std::move(slips)) {
+    : o_(options), looks_for_events_(!s.model->events.empty()), has_supports_(!supports(s).empty()), bodies_(bodies),
+      joined_(joined), ready_(s, bodies.contacts), rows_(rows, bodies.contacts), times_(std::move(times)),
+      end_(std::move(end)), slips_(std::move(slips)) {
   rows_.only_at(times_);
 }
 
@@ -89,6 +90,7 @@ bool ModeSegments::note(const std::vector<EventReport>& events, const std::map<s
     if (at == known.end()) continue;
     changed = true;
     const auto [contact, change] = at->second;
+    if (change == ModeChange::passes) bodies_.borders.reached(contact);
     if (change == ModeChange::hits) bodies_.near.reached(contact);
     if (change == ModeChange::turns) bodies_.turned[contact] = true;
     if (change == ModeChange::leaves) bodies_.excluded[contact].touch = true;
@@ -99,6 +101,7 @@ bool ModeSegments::note(const std::vector<EventReport>& events, const std::map<s
 }
 
 void ModeSegments::nothing_has_changed() {
+  bodies_.borders.segment_has_ended();
   bodies_.excluded.assign(bodies_.contacts.size(), {});
   bodies_.turned.assign(bodies_.contacts.size(), false);
 }
@@ -135,6 +138,7 @@ bool ModeSegments::last_until(const Rational& to, ContactState& at) {
   o.at = {to};
   o.dense = nullptr;
   o.followed.clear();
+  o.watches_floors = false;
   const SimulationReport r = simulate_in(*mode->own, o, last, &mode->plans);
   at = bodies_.at;
   last.last_state(at);
@@ -158,7 +162,7 @@ SimulationOptions ModeSegments::asked(const Rational& to) const {
   if (!o.at.empty() && o.at.back() < to) o.at.push_back(to);
   o.estimate = ErrorEstimate::never;
   o.conserved.clear();
-  o.watches_floors = false;  // nobody reads the notes of a segment
+  o.watches_floors = o_.watches_floors && has_supports_;
   o.note = nullptr;
   o.state.t = bodies_.at.t;
   return o;

@@ -56,6 +56,7 @@ class ModeSegments {
 
   const SimulationOptions& o_;
   bool looks_for_events_;  // those of the model itself
+  bool has_supports_;      // constraints that look like floors, which may pull
   TouchingBodies& bodies_;
   JoinedReport& joined_;
   ReadyModes ready_;

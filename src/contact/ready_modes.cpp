@@ -1,9 +1,29 @@
 #include "contact/ready_modes.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "numeric/number.h"
+
 namespace anholon {
 
+// An outcome if a number with which the mode begins is not finite, as a direction of a slip is where forces have no bound.
+static std::optional<Outcome> without_numbers(const ContactModes& modes, const ContactState& at) {
+  const std::vector<double> numbers = mode_values(modes, at);
+  if (std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); })) return std::nullopt;
+  return Outcome{OutcomeKind::not_a_number,
+                 "the forces of the contacts have no finite values at t = " + number_text(at.t.get_d(), 12),
+                 "end the motion before, or take coordinates that are regular there"};
+}
+
 ReadyMode& ReadyModes::begin(const ContactModes& modes, const ContactState& at, Outcome& outcome, ModeEnds ends) {
-  ReadyMode& mode = known_[{ends, mode_shape(contacts_, modes)}];
+  if (const std::optional<Outcome> none = without_numbers(modes, at)) {
+    outcome = *none;
+    return nothing_;
+  }
+  std::vector<int> shape = mode_shape(contacts_, modes);
+  for (std::size_t k = 0; k < at.borders.size() / 2; ++k) shape.push_back(at.borders[k] < 0 ? 1 : 0);
+  ReadyMode& mode = known_[{ends, std::move(shape)}];
   const std::vector<Rational> numbers = mode_numbers(modes, at);
   if (mode.own) {
     const std::size_t first = mode.own->model->parameters.size() - numbers.size();

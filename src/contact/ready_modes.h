@@ -26,9 +26,10 @@ class ReadyModes {
  private:
   Outcome derive(const ContactModes& modes, ModeEnds ends, const std::vector<Rational>& numbers, ReadyMode& mode) const;
 
+  ReadyMode nothing_;  // where a mode does not begin
   const Workspace& s_;
   const std::vector<Contact>& contacts_;
-  std::map<std::pair<ModeEnds, std::vector<int>>, ReadyMode> known_;  // by their shapes
+  std::map<std::pair<ModeEnds, std::vector<int>>, ReadyMode> known_;  // by their shapes and the sides of borders
 };
 
 }  // namespace anholon

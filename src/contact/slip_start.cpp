@@ -175,7 +175,7 @@ long double SlipStart::time_to_reverse(const std::vector<long double>& accelerat
 }
 
 bool SlipStart::share_anew(Outcome& outcome) {
-  constexpr long double kSpared = 1e-9L, kTrial = 1e-6L, kLonger = 4;
+  constexpr long double kSpared = 1e-12L, kTrial = 1e-6L, kLonger = 4;
   std::vector<std::size_t> limited;
   for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
     if (bodies_.excluded[c].stick && bodies_.modes[c].touch == Touch::sticks) limited.push_back(c);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "contact/law/rows.h"
 #include "contact/law/shared_forces.h"
 #include "numeric/number.h"
 
@@ -13,8 +14,10 @@ namespace anholon {
 static constexpr long double kLeftOver = 1e-16L;
 
 TouchingBodies::TouchingBodies(Workspace& s, const std::vector<Contact>& of, ContactState start)
-    : contacts(of), dynamics(s, of), at(std::move(start)), near(of, dynamics, at), excluded(of.size()),
-      turned(of.size(), false) {}
+    : contacts(of), dynamics(s, of), at(std::move(start)), borders(s, of), near(of, dynamics, at), excluded(of.size()),
+      turned(of.size(), false) {
+  borders.begin(at);
+}
 
 void TouchingBodies::look() {
   dynamics.go(at);
@@ -140,6 +143,53 @@ std::optional<long double> TouchingBodies::fast(std::size_t c) const {
   const long double far = kFar * place.slip_scale, v = std::hypot(place.slip[0], place.slip[1]);
   if (v < far && !turned[c]) return std::nullopt;
   return kPart * std::min(v, far);
+}
+
+bool TouchingBodies::pass_borders() {
+  std::vector<bool> closed;
+  for (std::size_t c = 0; c < contacts.size(); ++c) closed.push_back(near.closed(c));
+  if (!borders.pass(at)) return false;
+  look();
+  ContactModes held(contacts.size());
+  bool any = false;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    // The border is located as well as an event is.
+    if (closed[c] && near.missed(c)) near.reached(c);
+    if (c >= modes.size() || modes[c].touch == Touch::open || !near.closed(c) || near.gap_rate(c) != 0) continue;
+    held[c].touch = Touch::slips;
+    if (modes[c].touch != Touch::sticks) continue;
+    if (slips_fast(c))
+      modes[c].touch = Touch::slips;
+    else
+      held[c].touch = Touch::sticks, any = true;
+  }
+  if (any) stop(held);
+  return true;
+}
+
+std::optional<std::size_t> TouchingBodies::on_edge() {
+  std::optional<std::size_t> edge;
+  const auto most = [this](std::size_t a) { return dynamics.most(a); };
+  const ContactProblem here = dynamics.accelerations();
+  for (const std::size_t k : borders.at_rest(at, most)) {
+    ContactState beyond = at;
+    beyond.borders[k] = -beyond.borders[k];
+    dynamics.go(beyond);
+    for (std::size_t c = 0; c < contacts.size() && !edge; ++c) {
+      long double other = 0;
+      for (std::size_t a = 0; a < at.q.size(); ++a)
+        other = std::max(other, std::abs(dynamics.accelerations().contacts[c].normal[a] - here.contacts[c].normal[a]));
+      if (near.closed(c) && other > kSame * largest(here.contacts[c].normal)) edge = c;
+    }
+  }
+  dynamics.go(at);
+  return edge;
+}
+
+bool TouchingBodies::slips_fast(std::size_t c) const {
+  constexpr long double kMoves = 1e-8L;
+  const ContactDynamics::Place& place = dynamics.place(c);
+  return std::hypot(place.slip[0], place.slip[1]) > kMoves * place.slip_reach;
 }
 
 bool TouchingBodies::shrinks() const {

@@ -2,6 +2,7 @@
 #pragma once
 #include "contact/law/contact_dynamics.h"
 #include "contact/law/round_off.h"
+#include "contact/surface/borders.h"
 
 namespace anholon {
 
@@ -33,6 +34,13 @@ struct TouchingBodies {
   // From which slip velocity on a contact that slips has the direction v/|v|: nullopt where v is small, unless it has turned
   // since, so that it passes no zero.
   std::optional<long double> fast(std::size_t c) const;
+  // Passes the borders of surfaces at which the bodies are, and that their velocities lead them over; returns whether there is one.
+  // The formulas of gaps and slip velocities are then those of the other side, and what is round-off there is removed.
+  bool pass_borders();
+  // The closed contact whose surface has an edge, with another normal on its other side, at which the bodies have come to rest.
+  std::optional<std::size_t> on_edge();
+  // Whether a slip velocity is more than what is left of one that has stopped.
+  bool slips_fast(std::size_t c) const;
   // Whether a closed gap shrinks.
   bool shrinks() const;
   // Impacts within round-off of one instant for which no mode is consistent follow each other: the least gap comes first.
@@ -69,6 +77,7 @@ struct TouchingBodies {
   const std::vector<Contact>& contacts;
   ContactDynamics dynamics;
   ContactState at;
+  SurfaceBorders borders;
   RoundOff near;
   ContactModes modes;  // of the last segment, or of the next one
   std::vector<Excluded> excluded;

@@ -27,6 +27,16 @@ std::vector<Support> supports(const Scenario& s) {
   return list;
 }
 
+static const std::string kPulls = "' looks like a floor and pulls down from t = ", kAtMost = ", at most with ";
+
+bool is_of_support(const std::string& note) { return note.find(kPulls) != std::string::npos; }
+
+std::string without_size_of_pull(std::string note) {
+  const std::size_t at = note.find(kAtMost), end = note.find(": ", at);
+  if (at != std::string::npos && end != std::string::npos) note.erase(at, end - at);
+  return note;
+}
+
 void SupportWatch::Load::see(double t, double force) {
   if (!any || force < least) least = force, least_t = t;
   if (!any || force > largest) largest = force;
@@ -41,9 +51,8 @@ std::vector<std::string> SupportWatch::notes() const {
   for (const Load& l : loads_) {
     if (!l.pulls) continue;
     list.push_back(
-        "constraint '" + s_.model->constraints[l.support.constraint].name +
-        "' looks like a floor and pulls down from t = " + number_text(*l.pulls, 6) + " on, at most with " +
-        number_text(-l.least, 3) + " at t = " + number_text(l.least_t, 6) +
+        "constraint '" + s_.model->constraints[l.support.constraint].name + kPulls + number_text(*l.pulls, 6) + " on" +
+        kAtMost + number_text(-l.least, 3) + " at t = " + number_text(l.least_t, 6) +
         ": a body that may lift would leave it; one_sided = true in the constraint lets it open, with the equation " +
         s_.model->constraints[l.support.constraint].equation +
         (l.support.upwards > 0 ? "" : " turned round, the larger side on the left"));

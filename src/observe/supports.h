@@ -20,6 +20,10 @@ struct Support {
 };
 std::vector<Support> supports(const Scenario& s);
 
+// Whether a note tells that a support pulls; and the note without the size of the pull, which is that of one part of a motion.
+bool is_of_support(const std::string& note);
+std::string without_size_of_pull(std::string note);
+
 // What the supports bear along a run, at its rows.
 class SupportWatch {
  public:

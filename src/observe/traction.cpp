@@ -67,8 +67,7 @@ std::optional<std::vector<std::string>> rolling_constraints(const Workspace& s, 
 }
 
 // The force of the floor.
-Column force_of_floor(const Workspace& s) {
-  const Model& m = *s.model;
+Column force_of_floor(const Model& m) {
   Graph& g = *m.graph;
   Column sum(3, g.zero());
   const auto add = [&](Expr factor, const Vector& v) {
@@ -86,7 +85,7 @@ Column force_of_floor(const Workspace& s) {
 
 }  // namespace
 
-TractionWatch::TractionWatch(const Scenario& s) : s_(s) {
+TractionWatch::TractionWatch(const Scenario& s) : s_(s), start_(to_double(s.state.t)) {
   const auto found = translations(s);
   if (!found || found->sideways.empty() || events_set_numbers(*s.model) || largest_order(s, s.structure.d) < 2) return;
   Workspace own(s);
@@ -94,7 +93,7 @@ TractionWatch::TractionWatch(const Scenario& s) : s_(s) {
   if (!names || names->empty() || !outside_is_known(own, *found)) return;
   names_ = *names;
   has_floor_ = !supports(s).empty();
-  Column outputs = force_of_floor(own);
+  Column outputs = force_of_floor(*own.model);
   const Vector& gravity = own.model->bodies[0].gravity;
   for (const Expr e : put_masses(*own.model, Column{gravity.x, gravity.y, gravity.z})) outputs.push_back(e);
   Tape tape = compile(outputs);
@@ -129,6 +128,21 @@ void TractionWatch::look(double t) {
     if (!above_) above_ = t;
     if (sideways > need_ * load) need_ = sideways / load, need_t_ = t;
   }
+}
+
+Expr load_of_floor(const Model& m) {
+  const Column force = force_of_floor(m);
+  const Vector& g = m.bodies[0].gravity;
+  const Column down = put_masses(m, Column{g.x, g.y, g.z});
+  return -(force[0] * down[0] + force[1] * down[1] + force[2] * down[2]);
+}
+
+Expr friction_above_load(const Model& m) {
+  const Column f = force_of_floor(m);
+  const Vector& g = m.bodies[0].gravity;
+  const Column down = put_masses(m, Column{g.x, g.y, g.z});
+  const Expr load = load_of_floor(m), square = down[0] * down[0] + down[1] * down[1] + down[2] * down[2];
+  return (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) * square - 2 * load * load;
 }
 
 std::string TractionWatch::rolling() const {

@@ -19,6 +19,10 @@
 
 namespace anholon {
 
+// Formulas of a model that has a watch, as factors of positive numbers: the load of the floor, and |F sideways|^2 - load^2.
+Expr load_of_floor(const Model& model);
+Expr friction_above_load(const Model& model);
+
 class TractionWatch {
  public:
   explicit TractionWatch(const Scenario& s);
@@ -30,6 +34,15 @@ class TractionWatch {
     if (!any() || (++rows_ > kAllRows && rows_ % kOneOf != 0)) return;
     for (std::size_t i = 0; i < numbers_.size(); ++i) numbers_[i] = to_double(numbers[i]);
     look(t);
+  }
+  // Locates between two rows when the floor first pulls, and when the friction needed first passes 1. first(formula, direction, t): when
+  // the formula of a model first passes zero in this direction, before the row at t; the start if it has passed zero there.
+  template <class F>
+  void locate(F first) {
+    if (pulls_ && *pulls_ != start_)
+      if (const std::optional<double> t = first(load_of_floor, -1, *pulls_)) pulls_ = t;
+    if (above_ && *above_ != start_)
+      if (const std::optional<double> t = first(friction_above_load, 1, *above_)) above_ = t;
   }
   // A sentence if the friction needed passes 1, or if the floor would have to pull.
   std::vector<std::string> notes() const;
@@ -45,6 +58,7 @@ class TractionWatch {
   std::optional<Tape> tape_;
   std::optional<Machine<double>> machine_;
   std::vector<double> numbers_;
+  double start_;
   std::size_t rows_ = 0;
   double largest_ = 0;  // load
   double need_ = 0, need_t_ = 0, least_ = 0, least_t_ = 0;

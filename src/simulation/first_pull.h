@@ -1,4 +1,4 @@
-// When a support begins to pull, located on the Taylor polynomials.
+// When a floor begins to pull or rolling to need much friction, located on the Taylor polynomials.
 #pragma once
 #include <functional>
 #include <optional>
@@ -16,5 +16,10 @@ namespace anholon {
 using Follow = std::function<SimulationReport(const Scenario&, const SimulationOptions&, RowSink&)>;
 std::optional<double> first_pull(const Scenario& s, const SimulationOptions& o, const Support& support, double until,
                                  const Follow& simulate);
+
+// The same for a formula of the model that passes zero in this direction. It has passed zero at `until`: the start of the motion if it does
+// not do so on the way.
+std::optional<double> first_passing(const Scenario& s, const SimulationOptions& o, Expr (*formula)(const Model&),
+                                    int direction, double until, const Follow& simulate);
 
 }  // namespace anholon

@@ -399,12 +399,16 @@ class Run {
   }
 
   void report_floors() {
-    if (!o_.resume)
-      floors_->supports.locate([&](const Support& support, double t) {
-        return first_pull(s_, o_, support, t, [](const Scenario& own, const SimulationOptions& o, RowSink& rows) {
-          return simulate(own, o, rows);
-        });
+    const Follow follow = [](const Scenario& own, const SimulationOptions& o, RowSink& rows) {
+      return simulate(own, o, rows);
+    };
+    if (!o_.resume) {
+      floors_->supports.locate(
+          [&](const Support& support, double t) { return first_pull(s_, o_, support, t, follow); });
+      floors_->traction.locate([&](Expr (*formula)(const Model&), int direction, double t) {
+        return first_passing(s_, o_, formula, direction, t, follow);
       });
+    }
     for (const std::string& text : floors_->notes()) note(text);
   }
 

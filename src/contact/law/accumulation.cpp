@@ -1,17 +1,18 @@
 #include "contact/law/accumulation.h"
 
 #include <cmath>
+#include <limits>
 
 namespace anholon {
 
 void Accumulation::impact(std::size_t contact, double t) {
-  constexpr double kRatio = 1e-3, kNoise = 0.1;
+  constexpr double kRatio = 1e-3, kNoise = 0.1, kDigits = 1e-5, kTime = 16 * std::numeric_limits<double>::epsilon();
   Impacts& i = impacts_[contact];
   const double interval = i.count > 0 ? t - i.last : 0, ratio = i.count > 1 ? interval / i.interval : 0;
-  // Near the limit an interval has few digits, and the ratio stays that of before.
+  // Near the limit an interval has few digits, and the ratio stays that of before. It changes where gravity does.
   const bool known = i.alike >= kAlike, alike = std::abs(ratio - i.ratio) < (known ? kNoise : kRatio);
   i.alike = i.count > 2 && ratio < 1 && alike ? i.alike + 1 : 0;
-  i.ratio = known && alike ? i.ratio : ratio;
+  i.ratio = known && alike && !(kTime * std::abs(t) < kDigits * interval) ? i.ratio : ratio;
   if (i.count == 0) i.first = t;
   i.last = t, i.interval = interval, ++i.count;
 }

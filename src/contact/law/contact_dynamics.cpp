@@ -63,9 +63,23 @@ std::vector<Contact> owned(Workspace& s, std::vector<Contact> contacts) {
 
 ContactDynamics::ContactDynamics(Workspace& s, const std::vector<Contact>& contacts)
     : n_(s.mechanics->q.size()), independent_(s.independent), contacts_(owned(s, contacts)), graph_(s.graph()),
-      tape_(compile(formulas(s, contacts_))), machine_(tape_, 0, parameter_values<long double>(*s.model)) {}
+      tape_(compile(formulas(s, contacts_))), parameters_(parameter_values<long double>(*s.model)),
+      borders_(sides(contacts)), machine_(tape_, 0, with_sides(parameters_, borders_)) {}
+
+std::vector<double> sides(const std::vector<Contact>& contacts) {
+  return std::vector<double>(contacts.empty() || !contacts[0].borders ? 0 : 2 * contacts[0].borders->size(), 1);
+}
+
+std::vector<long double> with_sides(std::vector<long double> parameters, const std::vector<double>& borders) {
+  parameters.insert(parameters.end(), borders.begin(), borders.end());
+  return parameters;
+}
 
 void ContactDynamics::go(const ContactState& at) {
+  if (at.borders != borders_) {
+    borders_ = at.borders;
+    machine_.set_parameters(with_sides(parameters_, borders_));
+  }
   bind(machine_, graph_, [&](const Node& n, NodeId) -> long double {
     if (n.kind == Kind::time) return at.t.get_d();
     if (n.kind == Kind::jet) return n.order == 0 ? at.q[n.index] : n.order == 1 ? at.qd[n.index] : 0;

@@ -10,7 +10,14 @@ namespace anholon {
 struct ContactState {
   Rational t;
   std::vector<double> q, qd, states;
+  // The side of each border of surfaces, 1 or -1, then how near to each is at it (contact/surface/borders.h).
+  std::vector<double> borders = {};
 };
+
+// Some values for what a state knows of the borders of these contacts.
+std::vector<double> sides(const std::vector<Contact>& contacts);
+// The parameters of a model, and after them what a state knows of borders.
+std::vector<long double> with_sides(std::vector<long double> parameters, const std::vector<double>& borders);
 
 // Whether the gap of a contact holds t.
 bool walls_move(const std::vector<Contact>& contacts);
@@ -68,6 +75,8 @@ class ContactDynamics {
   std::vector<Contact> contacts_;
   Graph& graph_;
   Tape tape_;
+  std::vector<long double> parameters_;
+  std::vector<double> borders_;  // those for which the machine has its parameters
   Machine<long double> machine_;
   ContactProblem problem_;
   std::vector<long double> constraint_rates_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "contact/law/consistent_modes.h"
+#include "numeric/number.h"
 
 namespace anholon {
 
@@ -68,15 +69,33 @@ Outcome rank_lost(const std::string& contact, const std::string& when) {
           "flat"};
 }
 
+static constexpr const char* kFlat = "end the motion before, or start a little beside: a disc that lies flat touches "
+                                     "with its whole rim, and no point of it is "
+                                     "the one that is pushed";
+
 Outcome without_derivatives(const std::string& contact, const std::string& when) {
-  return {OutcomeKind::singular, "the gap of contact '" + contact + "' has no derivatives" + when,
-          "end the motion before, or start a little beside: a disc that lies flat touches with its whole rim, and no "
-          "point of it is the one that is pushed"};
+  return {OutcomeKind::singular, "the gap of contact '" + contact + "' has no derivatives" + when, kFlat};
+}
+
+Outcome lies_flat(const std::string& contact, long double part, const std::string& when) {
+  return {OutcomeKind::singular,
+          "the gap of contact '" + contact + "' loses its derivatives" + when +
+              ", as where a disc lies flat: a root in it "
+              "has fallen to " +
+              number_text(static_cast<double>(part), 2) + " of what it was",
+          kFlat};
 }
 
 Outcome without_slip(const std::string& contact, const std::string& when) {
   return {OutcomeKind::singular, "the slip velocity of contact '" + contact + "' has no value or no derivatives" + when,
           "start or stop the motion elsewhere, or change the formula so that it is smooth here"};
+}
+
+Outcome on_edge(const std::string& contact, const std::string& when) {
+  return {OutcomeKind::inconsistent,
+          "a body is held by an edge of the surface of contact '" + contact + "'" + when +
+              ", where the gap has no derivatives",
+          "write a contact for each side of the edge in place of one gap with min, max, abs or piecewise"};
 }
 
 std::vector<Jump> impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,

@@ -18,6 +18,11 @@ Outcome rank_lost(const std::string& contact, const std::string& when);
 // value or no derivatives (ContactDynamics::has_slip).
 Outcome without_derivatives(const std::string& contact, const std::string& when);
 Outcome without_slip(const std::string& contact, const std::string& when);
+// The outcome where the gap of a closed contact loses its derivatives, as a root in it has fallen to this part of what it was.
+Outcome lies_flat(const std::string& contact, long double part, const std::string& when);
+
+// The outcome where a body comes to rest at an edge of the surface of a contact, or strikes its sides without end.
+Outcome on_edge(const std::string& contact, const std::string& when);
 
 // The consistent jumps, of which there is one unless bodies jam (Painlevé's paradox). touches: the contacts that take part;
 // all contacts that strike have one law.

@@ -37,6 +37,7 @@ struct ContactMode {
   // Its slip begins in `direction`, which does not change for the moment. Rows of one that is held meanwhile show that it slips.
   bool begins = false;
   bool at_bound = false;  // of one that is held: its friction has come to its bound, and rows do not show more
+  bool rests = false;     // slips, but is not pressed and does not move: rows show that it sticks
   long double rest = 0;   // a slip velocity with two components is zero below it
   long double slack = 0;  // forces below it are round-off
   long double depth = 0;  // a gap is negative below minus this

@@ -19,9 +19,11 @@ bool RoundOff::closed(std::size_t c) const { return reached_[c] || dynamics_.pla
 // An event is located to this part of a unit, or of the size of the model.
 static constexpr long double kMissed = 1e-8L;
 
-bool RoundOff::negligible(std::size_t c) const {
+bool RoundOff::negligible(std::size_t c) const { return dynamics_.place(c).gap > 0 || missed(c); }
+
+bool RoundOff::missed(std::size_t c) const {
   constexpr long double kFactor = 1000;
-  return dynamics_.place(c).gap > -std::max(kMissed, kFactor * uncertainty(c));
+  return std::abs(dynamics_.place(c).gap) < std::max(kMissed, kFactor * uncertainty(c));
 }
 
 bool RoundOff::negligible_at_start(std::size_t c) const {

@@ -23,6 +23,8 @@ class RoundOff {
   bool closed(std::size_t contact) const;
   // Whether a negative gap is the error with which an event is located.
   bool negligible(std::size_t contact) const;
+  // Whether a gap of either sign is such an error.
+  bool missed(std::size_t contact) const;
   // The same of a gap with which the motion starts: the terms of the gap tell the size of the model, and no event has been located.
   bool negligible_at_start(std::size_t contact) const;
   // By how much more than by round-off accelerations may differ from those at which an event is, as it comes at a time that

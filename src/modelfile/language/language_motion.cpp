@@ -133,6 +133,8 @@ initial = {z = 1, "phi'" = 9}
 - The gap is a length, and a slip velocity a velocity: friction is that of the force along the gap, so that `gap = "5*z"` has a fifth of it. A gap may be an angle, too, as that of a door and its stop: the
   force along it is a moment then, and in a file with units a coefficient has the unit of the gap by that of the slip velocity and of time; gaps and slip velocities with other units, such as `R^2 - norm2(P)`, are
   errors there. A slip velocity is linear in the velocities and tangential: where the normal is known, as that of a plane by the velocity of a point with `along`, a direction with a part along it is refused.
+- A gap passes zero where a body would pass the surface: `z^2`, `abs(z)` and `norm(P)`, which only touch zero, are refused. Where max, min, abs, sign, piecewise or a table of steps (`fit = "hold"`) change a gap or a slip
+  velocity, its kink or jump is an event of the contact, which strikes there, leaves, or slips. A surface that jumps into a body, and an edge in which a body comes to rest, end the motion with an outcome.
 - A contact pushes and does not pull: it is open, sticks or slips. The normal force N acts along the gradient of the gap, friction against the slip velocity:
   μN while it slips, at most the static coefficient times N while it sticks. Without `slip` there is no friction.
 - Contacts of one body whose gaps or slip velocities depend on each other share their forces, each friction by its load: [two feet](contact.md#two-feet-on-a-floor).
@@ -141,11 +143,11 @@ initial = {z = 1, "phi'" = 9}
   rolls, at most δN while it does not; the same about the normal. They need a `body` with an orientation. Columns are `NAME.rolling.mode` (0 open, 1 rolls, 2 rests),
   `NAME.rolling.moment`, `NAME.drilling.mode`, `NAME.drilling.moment`; events are `NAME.rolling.starts`, `NAME.rolling.stops`, `NAME.rolling.reverses`, and the same of `NAME.drilling`.
 - Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. A gap that is 0 at the start and shrinks is an impact, `NAME.hits`, at the start. At `NAME.reverses` a slip
-  velocity passes zero and the contact slips on. `NAME.slips` ends a time of sticking, and `NAME.sticks` one of slipping: what a contact does from the start, or from an impact on, is no event, and its column `mode` tells it. Rows have the columns `NAME.mode` (0 open,
+  velocity passes zero, or jumps over it, and the contact slips on. `NAME.slips` ends a time of sticking, and `NAME.sticks` one of slipping: what a contact does from the start, or from an impact on, is no event, and its column `mode` tells it. Rows have the columns `NAME.mode` (0 open,
   1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
 - In monitors, outputs, events and the definitions they use, `lambda.NAME` is N, 0 while the contact is open, and `lambda.NAME.t1`, `lambda.NAME.t2` are the components
   of friction along those of the slip velocity, as forces on what slips; `lambda.NAME.rolling.t1` and so on are the moments of resistance. `reaction(B)` holds the forces of contacts. A force that jumps over
-  the zero of an event at a change of mode does not make it happen.
+  the zero of an event at a change of mode does not make it happen. Rates of states hold no force of a contact.
 - Coefficients are not negative, a restitution is at most 1, and `static_friction` is at least `friction`. Where the file has units, friction and restitution are numbers, and resistances lengths.
 - Impacts follow Newton's law in Moreau's form: the velocity of the gap is reversed and multiplied by the restitution e. With `impact = "poisson"` they follow
   Poisson's law: the impulse that stops the gap is followed by e times this impulse. Both agree without friction; with friction Newton's law may raise the energy, which ends the

@@ -5,6 +5,7 @@
 #include "expr/normal.h"
 #include "formula/indices.h"
 #include "modelfile/mechanical/contact_shapes.h"
+#include "modelfile/mechanical/gaps.h"
 #include "modelfile/mechanical/tangential.h"
 #include "modelfile/names/along.h"
 #include "modelfile/text/collect.h"
@@ -125,6 +126,11 @@ class ContactReader {
       throw Failure(contact.span, "the contact '" + contact.name + "' has no gap",
                     "gap = \"P.z - R\": the distance, which is not negative; or body = \"ball\", whose shape touches");
     contact.gap = formula(*gap, "a gap");
+    if (touches_zero_only(contact.gap))
+      throw Failure(gap->span, "the gap of the contact '" + contact.name + "' touches zero and does not pass it",
+                    "a distance with a sign, which a body that passes makes negative: z in place of z^2 or abs(z), "
+                    "norm(P) - R in "
+                    "place of norm(P)");
     if (jet_order(contact.gap) < 0)
       throw Failure(gap->span, "the gap of the contact '" + contact.name + "' does not depend on coordinates",
                     "gap = \"P.z - R\": the distance of a point P that moves");
@@ -444,8 +450,10 @@ void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact
     for (Expr& e : o.values) e = at_start(e);
   const auto refuse = [&](Expr& e, Span span, const char* what) {
     if (!holds_force(e)) return;
-    diagnostics.error(span, std::string(what) + " holds the force of a contact",
-                      "such a formula stands in monitors, outputs and the 'when' of events");
+    diagnostics.error(
+        span, std::string(what) + " holds the force of a contact",
+        "such a formula stands in monitors, outputs and the 'when' of events; an [output] with the energy tells the "
+        "work of friction between two impacts, by what it loses");
     e = at_start(e);
   };
   for (StateVariable& z : model.states) refuse(z.rate, z.span, "a rate");

@@ -73,6 +73,8 @@ struct Contact {
   std::optional<Switch> held;  // a constraint that holds in some modes: its left side minus its right one is `gap`
   std::shared_ptr<const ContactForces> forces;  // those of all contacts of the model; null if no formula holds any
   ContactUnits units;
+  // Where motions look at borders of surfaces (contact/surface/borders.h): those of all contacts, or null.
+  std::shared_ptr<const std::vector<Expr>> borders;
   bool rough() const;  // whether there is friction
 };
 

@@ -479,5 +479,79 @@ initial = {z = 0.5}
   EXPECT_NEAR(m.last("x'"), 2 / 3.0 + 1 / 12.0, 1e-11);
 }
 
+// Gravity that varies lets the ratio of intervals vary; the limit is that of the recursion in 40 digits.
+TEST(ClosedForms, ImpactsUnderVaryingGravityAddUpToTheirLimit) {
+  const auto m = contact_motion(R"toml(coordinates = ["z"]
+parameters = {m = 1, e = 0.8}
+gravity.field = "-10*(1 + 0.5*sin(3*t))*ez"
+particle = [{name = "ball", mass = "m", position = "z*ez"}]
+contact = [{name = "f", gap = "z", restitution = "e"}]
+initial = {z = 0.2}
+)toml",
+                                3);
+  ASSERT_EQ(times(m, "f.rests").size(), 1U);
+  // From 1e-7 of the time before the limit on, the ratio counts as constant: it varies by as much, and changes a sum of 1e-7.
+  EXPECT_NEAR(times(m, "f.rests")[0], 1.8021113327077998, 1e-12);
+}
+
+// A slip without friction that ends the motion as it passes zero goes on.
+TEST(ClosedForms, SlipWithoutFrictionReversesWhereItEndsTheMotion) {
+  const auto m = contact_motion(R"toml(coordinates = ["x", "z"]
+parameters = {m = 1, g = 10, mu = 0}
+gravity.field = "-g*ez + 2*ex"
+particle = [{name = "block", mass = "m", position = "x*ex + z*ez"}]
+contact = [{name = "floor", gap = "z", slip = "x'", friction = "mu"}]
+event = [{name = "turns", when = "x'", stop = true}]
+[initial]
+"x'" = -1
+)toml",
+                                3);
+  EXPECT_EQ(times(m, "floor.reverses"), std::vector<double>{0.5});
+  EXPECT_TRUE(times(m, "floor.sticks").empty());
+}
+
+// m g b = F t h unloads the front wheel, which a constraint holds, beside a rear wheel that is a contact.
+TEST(ClosedForms, ConstraintThatPullsIsToldBesideContacts) {
+  const std::string text = R"toml(coordinates = ["x", "z", "p"]
+parameters = {m = 90, J = 12, a = 0.6, b = 0.5, h = 1.1, g = 9.81, F = 600}
+gravity.field = "-g*ez"
+point.G = "x*ex + z*ez"
+frame.B = "roty(p)"
+point.front = "G + a*B.x - h*B.z"
+point.rear = "G - b*B.x - h*B.z"
+body = [{name = "bike", mass = "m", inertia = ["J","J","J"], center = "G", orientation = "B"}]
+constraint = [{name = "front", equation = "front.z = 0"}]
+contact = [{name = "rear", gap = "rear.z"}]
+force = [{on = {body = "bike", at = "rear"}, vector = "F*t*ex"}]
+initial = {z = "h"}
+)toml";
+  const auto m = contact_motion(text, 1);
+  ASSERT_EQ(m.report.notes.size(), 1U);
+  EXPECT_EQ(m.report.notes[0].find("constraint 'front' looks like a floor and pulls down from t = 0.668864 on:"), 0U)
+      << m.report.notes[0];
+  EXPECT_TRUE(contact_motion(text, Rational(1, 2)).report.notes.empty());
+}
+
+// A wheel that spins in the corner of a floor and a wall stops in both contacts, of which one bears no load then.
+TEST(ClosedForms, WheelInACornerSticksAtFloorAndWall) {
+  const auto m = contact_motion(R"toml(coordinates = ["x", "z", "p"]
+parameters = {m = 2, R = 0.2, g = 9.81, mu1 = 0.25, mu2 = 0.4, w0 = -60}
+gravity.field = "-g*ez"
+body = [{name = "wheel", mass = "m", shape = "cylinder(R, 0.1)", center = "x*ex + z*ez", orientation = "roty(p)*rotx(pi/2)"}]
+contact = [{name = "floor", gap = "z - R", slip = "x' - R*p'", friction = "mu1"}, {name = "wall", gap = "x - R", slip = "z' + R*p'", friction = "mu2"}]
+initial = {x = "R", z = "R", "p'" = "w0"}
+)toml",
+                                3);
+  // Floor and wall bear N1 + mu2 N2 = m g and N2 = mu1 N1, and the moment R (mu1 N1 + mu2 N2) stops m R^2/2 w.
+  const double n1 = 2 * 9.81 / (1 + 0.25 * 0.4), stop = 0.2 * 60 / ((0.25 + 0.4 * 0.25) * n1);
+  for (const char* name : {"floor.sticks", "wall.sticks"}) {
+    ASSERT_EQ(times(m, name).size(), 1U) << name;
+    EXPECT_NEAR(times(m, name)[0], stop, 1e-13);
+  }
+  EXPECT_TRUE(times(m, "wall.reverses").empty());
+  EXPECT_EQ(m.last("wall.mode"), 2);
+  EXPECT_EQ(m.last("floor.mode"), 2);
+}
+
 }  // namespace closed_forms_test
 }  // namespace anholon

@@ -230,5 +230,21 @@ TEST(SharedForces, NoFootSlipsWhereAForceTouchesTheLimit) {
   EXPECT_NEAR(m.last("x'"), kLimit / 2 / 2 * 3 * 4.0 / 9, 1e-9);
 }
 
+// The corners of a box on a plate that tilts slowly slip together where tan(w t) = mu: the time is as well known as 1e-12 of the forces.
+TEST(SharedForces, BoxOnATiltingPlateSlipsAtTheAngleOfFriction) {
+  const auto m = test::contact_motion(R"toml(coordinates = ["x", "z", "p"]
+parameters = {m = 2, a = 0.2, h = 0.3, g = 9.81, mu = 0.5, w = 0.1}
+gravity.field = "g*(sin(w*t)*ex - cos(w*t)*ez)"
+body = [{name = "box", mass = "m", shape = "box(a, a, h)", center = "x*ex + z*ez", orientation = "roty(p)"}]
+contact = [{name = "c", body = "box", friction = "mu"}]
+initial = {z = "h/2"}
+)toml",
+                                      5);
+  for (const char* name : {"c1.slips", "c2.slips"}) {
+    ASSERT_EQ(test::times(m, name).size(), 1U) << name;
+    EXPECT_NEAR(test::times(m, name)[0], 10 * std::atan(0.5), 1e-11);
+  }
+}
+
 }  // namespace shared_forces_test
 }  // namespace anholon

@@ -1,0 +1,51 @@
+#include "contact/surface/gap_roots.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "tape/bind.h"
+
+namespace anholon {
+
+static Column radicands(Workspace& s, const std::vector<Contact>& contacts, std::vector<std::size_t>& of) {
+  Graph& g = s.graph();
+  Column list;
+  for (std::size_t c = 0; c < contacts.size(); ++c)
+    for (const NodeId id : reachable({&contacts[c].gap, 1})) {
+      if (contacts[c].under || g.node(id).kind != Kind::product) continue;
+      for (const Term& t : g.terms(id))
+        if (g.rational(t.weight).has_even_denominator()) list.push_back({&g, t.node}), of.push_back(c);
+    }
+  if (list.empty()) list.push_back(g.zero());  // no tape is empty
+  return list;
+}
+
+GapRoots::GapRoots(Workspace& s, const std::vector<Contact>& contacts)
+    : parameters_(parameter_values<long double>(*s.model)), graph_(s.graph()),
+      tape_(compile(radicands(s, contacts, contacts_))), machine_(tape_, 0, with_sides(parameters_, sides(contacts))) {
+  now_.assign(contacts_.size(), 0), most_ = now_;
+}
+
+void GapRoots::see(const ContactState& at) {
+  if (contacts_.empty()) return;
+  machine_.set_parameters(with_sides(parameters_, at.borders));
+  bind(machine_, graph_, [&](const Node& n, NodeId) -> long double {
+    if (n.kind == Kind::time) return at.t.get_d();
+    if (n.kind == Kind::jet) return n.order == 0 ? at.q[n.index] : n.order == 1 ? at.qd[n.index] : 0;
+    return n.kind == Kind::state && n.order == 0 ? at.states[n.index] : 0;
+  });
+  machine_.evaluate();
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    now_[k] = std::sqrt(std::abs(machine_.value(k)));
+    most_[k] = std::max(most_[k], now_[k]);
+  }
+}
+
+long double GapRoots::least_part(std::size_t contact) const {
+  long double least = 1;
+  for (std::size_t k = 0; k < contacts_.size(); ++k)
+    if (contacts_[k] == contact && most_[k] > 0) least = std::min(least, now_[k] / most_[k]);
+  return least;
+}
+
+}  // namespace anholon
