@@ -47,7 +47,7 @@ TEST(Along, TakesComponentsOfTheEquation) {
   }
   EXPECT_GT(g.size(), 0U);
   ASSERT_EQ(frame->notes.size(), 1U);
-  EXPECT_EQ(frame->notes[0], "constraint 'hold': hold.z vanishes identically and is dropped");
+  EXPECT_EQ(frame->notes[0].text, "constraint 'hold': hold.z vanishes identically and is dropped");
 }
 
 std::string stone(const std::string& orientation, const std::string& more = "") {
