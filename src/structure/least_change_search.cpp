@@ -296,6 +296,19 @@ class Iteration {
   int in_vain_ = 0;  // searches in a row that found no improvement along their step
 };
 
+// The nearest of the solutions to which searches have come.
+template <Number N>
+struct Nearest {
+  static constexpr double kNearer = 1e-6;  // a solution that is nearer by less is not
+  std::vector<N> point;                    // empty if there is none
+  N distance{0};
+
+  void offer(const Iteration<N>& at) {
+    const N d = at.distance();
+    if (point.empty() || d < distance * N(1 - kNearer)) distance = d, point = at.point();
+  }
+};
+
 // Tells for each of these unknowns whether an equation contains it.
 template <Number N>
 std::vector<bool> held(const Stage<N>& s, const std::vector<std::size_t>& free) {
@@ -325,7 +338,6 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
                           const InitialState<double>* near, bool by_flow) {
   constexpr int kStarts = 12, kStartsInMany = 3;
   constexpr std::size_t kMany = 60;  // unknowns
-  constexpr double kNearer = 1e-6;   // a solution that is nearer by less is not
   Iteration<N> newton(s, state, free);
   if (near && !free.empty()) {
     std::vector<N> there = newton.guess();
@@ -352,19 +364,15 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
   if ((solved && (by_flow || newton.direct())) || free.empty() || s.linear()) return value;
   const InitialState<N> first = state;
   const std::vector<bool> moved = held(s, free);
-  std::vector<N> best;
-  N least(0);
-  const auto offer = [&] {
-    if (const N d = newton.distance(); best.empty() || d < least * N(1 - kNearer)) least = d, best = newton.point();
-  };
-  if (solved) offer();
-  for (int k = 0; k <= kStarts && (best.empty() || k < kStartsInMany || free.size() <= kMany); ++k) {
+  Nearest<N> nearest;
+  if (solved) nearest.offer(newton);
+  for (int k = 0; k <= kStarts && (nearest.point.empty() || k < kStartsInMany || free.size() <= kMany); ++k) {
     if (!newton.go_to(around(newton.guess(), moved, k))) continue;
     if (!newton.follow() && !(newton.run(false) && newton.solved())) continue;
     newton.descend();
-    offer();
+    nearest.offer(newton);
   }
-  if (!best.empty()) return newton.go_to(best);
+  if (!nearest.point.empty()) return newton.go_to(nearest.point);
   state = first;
   return value && s.evaluate(state);
 }

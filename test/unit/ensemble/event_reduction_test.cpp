@@ -212,10 +212,13 @@ TEST(EventReduction, AContactComesToRestOnce) {
 TEST(EventReduction, EventsStayWithoutPolynomials) {
   Sweep run(std::string(kBall) + kReset, {"max(height)", "count(bounce)", "mean(height)", "first(bounce)"});
   Reducer reducer(run.options.reductions);
-  EXPECT_TRUE(reducer.step({2, 3, [](std::size_t, int k) { return k == 0   ? 1.0
-                                                                  : k == 1 ? -0.5
-                                                                           : 0.0; },
-                            [](std::size_t, double x) { return FormulaValue{1 - 0.5 * x, 1}; }}));
+  EXPECT_TRUE(reducer.step({2,
+                            3,
+                            [](std::size_t, int k) { return k == 0   ? 1.0
+                                                            : k == 1 ? -0.5
+                                                                     : 0.0; },
+                            [](std::size_t, double x) { return FormulaValue{1 - 0.5 * x, 1}; },
+                            {}}));
   reducer.event("rises", 0.25);
   reducer.event("bounce", 0.5);
   reducer.event("bounce", 0.75);
