@@ -146,11 +146,15 @@ bool CaseWalk::reduce() {
         value_of_quadrature(*stepper_, W(stepper_->before() + W(x)), plan_->first_reduced + i, *point_);
     return FormulaValue{is, made_of};
   };
-  const auto hiding = [&](std::size_t i, double x) -> std::vector<HidingArgument> {
-    const std::vector<HidingSlot>& slots = hiding_.of(*plan_->program, plan_->first_reduced + i);
-    if (slots.empty()) return {};
-    if (!stepper_->arrived()) stepper_->leave_kernel();
-    return hiding_arguments(*stepper_, W(stepper_->before() + W(x)), slots, *point_);
+  const auto hiding = [&](std::size_t i, double x) {
+    std::vector<HidingArgument> arguments;
+    for (const EnsemblePlan::HidingFunction& f : plan_->hiding[i]) {
+      double value = 0;
+      for (int k = stepper_->order() - 1; k >= 0; --k)
+        value = value * x + stepper_->quadrature_coefficient(f.argument, k);
+      arguments.push_back({f.function, value});
+    }
+    return arguments;
   };
   const bool last = !stepper_->fired().empty() || stepper_->time() == end_;
   const bool good = reducer_->step({to_double(W(stepper_->time() - stepper_->before())), stepper_->order() - 1,

@@ -71,7 +71,6 @@ class CaseWalk {
   std::optional<Expansion<W>> point_;
   std::optional<Machine<W>> outputs_;
   std::optional<Reducer> reducer_;
-  HidingSlots hiding_;  // of the formulas of the reductions
   std::optional<EventPaces<W>> paces_;
   std::optional<TaylorWatch> watch_;
 };

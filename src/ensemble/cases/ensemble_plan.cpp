@@ -32,6 +32,14 @@ void EnsemblePlan::make() {
   first_reduced = quadratures.size();
   for (const Expr e : o.reductions.formulas) quadratures.push_back(s.graph().own(e));
   settings.known_from = 0, settings.known_to = first_reduced, settings.followed_to = quadratures.size();
+  for (std::size_t i = 0; i < o.reductions.formulas.size(); ++i) {
+    std::vector<HidingFunction>& functions = hiding.emplace_back();
+    for (const NodeId id : reachable({&quadratures[first_reduced + i], 1}))
+      if (const Node& n = g.node(id); n.kind == Kind::function && info(static_cast<Function>(n.index)).hides) {
+        functions.push_back({{static_cast<Function>(n.index), 0}, quadratures.size()});
+        quadratures.push_back({&s.graph(), g.summands(id)[0].node});
+      }
+  }
   watched = watched_series(s, quadratures.size());
   for (const Expr e : watched_formulas(model)) quadratures.push_back(e);
   for (const Event& e : model.events)

@@ -27,6 +27,13 @@ class EnsemblePlan {
   std::shared_ptr<const KernelPlan> kernel;
   mutable SweepLanes lanes;       // of the kernels of cases
   std::size_t first_reduced = 0;  // of the program's quadratures
+  // Of each formula of the reductions: the functions in it that may hide their variation, and the quadratures that are their
+  // arguments.
+  struct HidingFunction {
+    Hiding function;
+    std::size_t argument;
+  };
+  std::vector<std::vector<HidingFunction>> hiding;
   std::vector<WatchedSeries> watched;
   std::vector<std::optional<SetByEvent>> sets;       // of each event, if it sets something
   std::optional<NearestState<long double>> nearest;  // with constraints, if an event sets something
