@@ -119,7 +119,7 @@ CaseWay CaseWalk::step() {
 
 // Takes the rows that lie in the last step, and the end if it does.
 CaseWay CaseWalk::after_step() {
-  for (std::size_t i = 0; i < plan_->first_reduced; ++i)
+  for (std::size_t i = 0; i < plan_->reduced.first; ++i)
     if (!plan_->scenario.model->masses[i].weight &&
         (first_negative(*stepper_, i) || stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0)))
       return stop(CaseWay::simulation);
@@ -138,21 +138,20 @@ CaseWay CaseWalk::after_step() {
 bool CaseWalk::reduce() {
   if (stepper_->one_sided() && !plan_->options.reductions.formulas.empty()) return false;
   const auto coefficient = [&](std::size_t i, int k) {
-    return stepper_->quadrature_coefficient(plan_->first_reduced + i, k);
+    return stepper_->quadrature_coefficient(plan_->reduced.first + i, k);
   };
   const auto value = [&](std::size_t i, double x) {
     if (!stepper_->arrived()) stepper_->leave_kernel();
     const auto [is, made_of] =
-        value_of_quadrature(*stepper_, W(stepper_->before() + W(x)), plan_->first_reduced + i, *point_);
+        value_of_quadrature(*stepper_, W(stepper_->before() + W(x)), plan_->reduced.first + i, *point_);
     return FormulaValue{is, made_of};
   };
   const auto hiding = [&](std::size_t i, double x) {
     std::vector<HidingArgument> arguments;
-    for (const EnsemblePlan::HidingFunction& f : plan_->hiding[i]) {
-      double value = 0;
-      for (int k = stepper_->order() - 1; k >= 0; --k)
-        value = value * x + stepper_->quadrature_coefficient(f.argument, k);
-      arguments.push_back({f.function, value});
+    for (const EnsemblePlan::Reduced::Function& f : plan_->reduced.functions[i]) {
+      double is = 0;
+      for (int k = stepper_->order() - 1; k >= 0; --k) is = is * x + stepper_->quadrature_coefficient(f.argument, k);
+      arguments.push_back({f.hiding, is});
     }
     return arguments;
   };

@@ -29,12 +29,12 @@ void EnsemblePlan::make() {
     for (int k = 0; k < s.structure.d[j]; ++k) entries.push_back(s.system.symbol_node(j, static_cast<unsigned>(k)));
   Column quadratures;
   for (const VaryingMass& m : model.masses) quadratures.push_back(m.value);
-  first_reduced = quadratures.size();
+  reduced.first = quadratures.size();
   for (const Expr e : o.reductions.formulas) quadratures.push_back(s.graph().own(e));
-  settings.known_from = 0, settings.known_to = first_reduced, settings.followed_to = quadratures.size();
+  settings.known_from = 0, settings.known_to = reduced.first, settings.followed_to = quadratures.size();
   for (std::size_t i = 0; i < o.reductions.formulas.size(); ++i) {
-    std::vector<HidingFunction>& functions = hiding.emplace_back();
-    for (const NodeId id : reachable({&quadratures[first_reduced + i], 1}))
+    std::vector<Reduced::Function>& functions = reduced.functions.emplace_back();
+    for (const NodeId id : reachable({&quadratures[reduced.first + i], 1}))
       if (const Node& n = g.node(id); n.kind == Kind::function && info(static_cast<Function>(n.index)).hides) {
         functions.push_back({{static_cast<Function>(n.index), 0}, quadratures.size()});
         quadratures.push_back({&s.graph(), g.summands(id)[0].node});

@@ -25,15 +25,17 @@ class EnsemblePlan {
   // scenario, those of `simulate` at the start of the case: the last digits may differ. Machine code with the same bits
   // is made beside the cases when these have taken a while.
   std::shared_ptr<const KernelPlan> kernel;
-  mutable SweepLanes lanes;       // of the kernels of cases
-  std::size_t first_reduced = 0;  // of the program's quadratures
-  // Of each formula of the reductions: the functions in it that may hide their variation, and the quadratures that are their
-  // arguments.
-  struct HidingFunction {
-    Hiding function;
-    std::size_t argument;
-  };
-  std::vector<std::vector<HidingFunction>> hiding;
+  mutable SweepLanes lanes;  // of the kernels of cases
+  // The formulas of the reductions among the program's quadratures. Of each: the functions in it that may hide their variation,
+  // and the quadratures that are their arguments.
+  struct Reduced {
+    struct Function {
+      Hiding hiding;
+      std::size_t argument;
+    };
+    std::size_t first = 0;
+    std::vector<std::vector<Function>> functions;
+  } reduced;
   std::vector<WatchedSeries> watched;
   std::vector<std::optional<SetByEvent>> sets;       // of each event, if it sets something
   std::optional<NearestState<long double>> nearest;  // with constraints, if an event sets something
