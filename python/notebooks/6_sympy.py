@@ -78,10 +78,10 @@ run.plot(*[column.name for column in run.columns if column.kind == "multipliers"
 # %% [markdown]
 # ## And back
 #
-# The equations are SymPy expressions with exact numbers: nothing is rounded on the way. They are linear in the accelerations and the multipliers;
+# The equations in all coordinates are SymPy expressions with exact numbers: nothing is rounded on the way. They are linear in the accelerations and the multipliers;
 # this is the second one.
 
 # %%
-formulas = model.dynamics().formulas.sympy()
+formulas = model.dynamics(minimal=False).formulas.sympy()
 assert not formulas.matrix.atoms(sm.Float) and not formulas.right.atoms(sm.Float)
 sm.Eq((formulas.matrix * sm.Matrix(formulas.lead))[1], formulas.right[1])
