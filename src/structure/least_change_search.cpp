@@ -71,14 +71,7 @@ class Iteration {
       least_step(elimination, nearest);
       if (!search()) return false;
       if (in_vain_ > kMostInVain) return true;
-      N moved(0), size(0);
-      for (std::size_t j = 0; j < free_.size(); ++j) {
-        if (N v = abs(step_[j]); v > moved) moved = v;
-        if (N v = abs(*x_[j]); v > size) size = v;
-      }
-      const N floor = unit_roundoff<N>() * N(8) * (size > N(1) ? size : N(1));
-      settled_ = !(moved > floor) || (last_step >= N(0) && !(moved < last_step) && moved < floor * N(100));
-      last_step = moved;
+      settled_ = step_vanishes(last_step);
       if (settled_) break;
     }
     return true;
@@ -126,17 +119,10 @@ class Iteration {
       least_step(elimination, true);
       at = point();
       direction = step_;
-      N moved(0), size(0);
-      for (std::size_t j = 0; j < at.size(); ++j) {
-        if (N v = abs(direction[j]); v > moved) moved = v;
-        if (N v = abs(at[j]); v > size) size = v;
-      }
-      const N floor = unit_roundoff<N>() * N(8) * (size > N(1) ? size : N(1));
-      if (!(moved > floor) || (last_moved >= N(0) && !(moved < last_moved) && moved < floor * N(100))) {
+      if (step_vanishes(last_moved)) {
         clear_round_off();
         return true;
       }
-      last_moved = moved;
       if (!slide(at, direction, part_of_descent(at, direction, last_at, last_direction))) return false;
       last_at.swap(at);
       last_direction.swap(direction);
@@ -159,6 +145,20 @@ class Iteration {
       moved = true;
     }
     return moved;
+  }
+
+  // True if the step is round-off of the point, or falls no more and is little above. `last`: the size of the step before,
+  // negative if there is none; it becomes that of this step.
+  bool step_vanishes(N& last) const {
+    N moved(0), size(0);
+    for (std::size_t j = 0; j < x_.size(); ++j) {
+      if (N v = abs(step_[j]); v > moved) moved = v;
+      if (N v = abs(*x_[j]); v > size) size = v;
+    }
+    const N floor = unit_roundoff<N>() * N(8) * (size > N(1) ? size : N(1));
+    const bool vanishes = !(moved > floor) || (last >= N(0) && !(moved < last) && moved < floor * N(100));
+    last = moved;
+    return vanishes;
   }
 
   // Takes the guess for unknowns that differ from it by the round-off of the largest change only.

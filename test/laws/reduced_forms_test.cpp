@@ -61,30 +61,30 @@ std::optional<double> miss_on_motion(EquationsOfMotion& motion, const Column& le
 
 // The n equations of Udwadia and Kalaba hold the reactions as functions of the state, which no contraction sees: all n hold on
 // every motion of Routh's equations. With twice the reactions, whose contraction is the same, they do not.
-class UdwadiaKalaba : public testing::TestWithParam<std::string> {};
-
-TEST_P(UdwadiaKalaba, HoldsAcrossTheConstraints) {
+TEST(UdwadiaKalaba, HoldsAcrossTheConstraints) {
   constexpr double kHolds = 1e-7;  // doubles, less what a nearly singular point takes
-  const System s(test::shipped(GetParam()));
   const Formulation& form = *find_formulation("udwadia-kalaba");
-  if (!obstacle(form, s.m).empty()) return;
-  EquationsOfMotion motion(s.m, 2, {});
-  if (!motion.regular) return;
-  Equations q = form.equations(s.m, elimination_for(s.m, form.unknowns, {}, {}));
-  for (Column* side : {&q.left, &q.right})
-    for (Expr& e : *side) e = put_rates(*s.model, put_masses(*s.model, e));
-  const std::optional<double> miss = miss_on_motion(motion, q.left, q.right);
-  if (!miss) return;
-  EXPECT_LE(*miss, kHolds);
-  if (s.m.phi.empty()) return;
-  Column given = put_masses(*s.model, forces(s.m));
-  for (Expr& e : given) e = put_rates(*s.model, e);
-  const Column reactions = q.right - given;
-  EXPECT_GT(*miss_on_motion(motion, q.left, given + reactions + reactions), 100 * kHolds);
+  int judged = 0;
+  for (const std::string& name : test::shipped_models()) {
+    const System s(test::shipped(name));
+    if (s.m.phi.empty() || !obstacle(form, s.m).empty()) continue;
+    EquationsOfMotion motion(s.m, 2, {});
+    if (!motion.regular) continue;
+    const auto written_out = [&](Column es) {
+      for (Expr& e : es) e = put_rates(*s.model, put_masses(*s.model, e));
+      return es;
+    };
+    const Equations q = form.equations(s.m, elimination_for(s.m, form.unknowns, {}, {}));
+    const Column left = written_out(q.left), right = written_out(q.right), given = written_out(forces(s.m)),
+                 reactions = right - given;
+    const std::optional<double> miss = miss_on_motion(motion, left, right);
+    if (!miss) continue;
+    ++judged;
+    EXPECT_LE(*miss, kHolds) << name;
+    EXPECT_GT(*miss_on_motion(motion, left, given + reactions + reactions), 100 * kHolds) << name;
+  }
+  EXPECT_GE(judged, 20);
 }
-
-INSTANTIATE_TEST_SUITE_P(Model, UdwadiaKalaba, testing::ValuesIn(test::shipped_models()),
-                         [](const auto& p) { return test::test_name(p.param); });
 
 // As many constraints as coordinates: nothing is left to be said, by no equations. Ends in a crash as long as the
 // product of a column and a matrix without columns reads an entry of it (Boltzmann-Hamel's: in an internal fault).

@@ -75,17 +75,21 @@ std::vector<long double> with_sides(std::vector<long double> parameters, const s
   return parameters;
 }
 
+void evaluate_at(const ContactState& at, const Graph& graph, Machine<long double>& machine) {
+  bind(machine, graph, [&](const Node& n, NodeId) -> long double {
+    if (n.kind == Kind::time) return at.t.get_d();
+    if (n.kind == Kind::jet) return n.order == 0 ? at.q[n.index] : n.order == 1 ? at.qd[n.index] : 0;
+    return n.kind == Kind::state && n.order == 0 ? at.states[n.index] : 0;
+  });
+  machine.evaluate();
+}
+
 void ContactDynamics::go(const ContactState& at) {
   if (at.borders != borders_) {
     borders_ = at.borders;
     machine_.set_parameters(with_sides(parameters_, borders_));
   }
-  bind(machine_, graph_, [&](const Node& n, NodeId) -> long double {
-    if (n.kind == Kind::time) return at.t.get_d();
-    if (n.kind == Kind::jet) return n.order == 0 ? at.q[n.index] : n.order == 1 ? at.qd[n.index] : 0;
-    return n.kind == Kind::state && n.order == 0 ? at.states[n.index] : 0;
-  });
-  machine_.evaluate();
+  evaluate_at(at, graph_, machine_);
   std::size_t k = 0;
   const auto next = [&] { return machine_.value(k++); };
   const auto row = [&] {

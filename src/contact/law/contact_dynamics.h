@@ -18,6 +18,8 @@ struct ContactState {
 std::vector<double> sides(const std::vector<Contact>& contacts);
 // The parameters of a model, and after them what a state knows of borders.
 std::vector<long double> with_sides(std::vector<long double> parameters, const std::vector<double>& borders);
+// Evaluates a tape at the time, coordinates, velocities and states of a state; higher derivatives are 0.
+void evaluate_at(const ContactState& at, const Graph& graph, Machine<long double>& machine);
 
 // Whether the gap of a contact holds t.
 bool walls_move(const std::vector<Contact>& contacts);

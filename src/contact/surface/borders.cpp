@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "expr/diff.h"
-#include "tape/bind.h"
 
 namespace anholon {
 
@@ -112,12 +111,7 @@ std::vector<SurfaceBorders::Place> SurfaceBorders::places(const ContactState& at
   constexpr long double kRoundOff = 1e-12L;
   if (count_ == 0) return {};
   machine_.set_parameters(with_sides(parameters_, at.borders));
-  bind(machine_, graph_, [&](const Node& n, NodeId) -> long double {
-    if (n.kind == Kind::time) return at.t.get_d();
-    if (n.kind == Kind::jet) return n.order == 0 ? at.q[n.index] : n.order == 1 ? at.qd[n.index] : 0;
-    return n.kind == Kind::state && n.order == 0 ? at.states[n.index] : 0;
-  });
-  machine_.evaluate();
+  evaluate_at(at, graph_, machine_);
   std::size_t next = 0;
   std::vector<Place> list(count_);
   for (Place& p : list) {

@@ -1,5 +1,5 @@
-// Borders at which the surface of a contact goes on by another formula: max, min, abs, sign and piecewise choose a branch there, and tables of steps have knots, so the
-// gap or the slip velocity has a kink or a jump (theory: contact).
+// Borders at which the surface of a contact goes on by another formula: max, min, abs, sign and piecewise choose a branch
+// there, and tables of steps have knots, so the gap or the slip velocity has a kink or a jump (theory: contact).
 //
 // On one side of a border the surface has one formula, which holds beyond the border as well. A motion keeps this formula up to the
 // border and changes it there, as at an event: what touches then has an impact, or leaves, and no force follows a jump.

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tape/bind.h"
-
 namespace anholon {
 
 static Column radicands(Workspace& s, const std::vector<Contact>& contacts, std::vector<std::size_t>& of) {
@@ -29,12 +27,7 @@ GapRoots::GapRoots(Workspace& s, const std::vector<Contact>& contacts)
 void GapRoots::see(const ContactState& at) {
   if (contacts_.empty()) return;
   machine_.set_parameters(with_sides(parameters_, at.borders));
-  bind(machine_, graph_, [&](const Node& n, NodeId) -> long double {
-    if (n.kind == Kind::time) return at.t.get_d();
-    if (n.kind == Kind::jet) return n.order == 0 ? at.q[n.index] : n.order == 1 ? at.qd[n.index] : 0;
-    return n.kind == Kind::state && n.order == 0 ? at.states[n.index] : 0;
-  });
-  machine_.evaluate();
+  evaluate_at(at, graph_, machine_);
   for (std::size_t k = 0; k < contacts_.size(); ++k) {
     now_[k] = std::sqrt(std::abs(machine_.value(k)));
     most_[k] = std::max(most_[k], now_[k]);

@@ -1,5 +1,5 @@
-// Square roots in the gaps of contacts that fall towards zero, where a gap loses its derivatives: the height of the rim of a disc below
-// its centre does where the disc comes to lie flat.
+// Square roots in the gaps of contacts that fall towards zero, where a gap loses its derivatives: the height of the rim of
+// a disc below its centre does where the disc comes to lie flat.
 #pragma once
 #include "contact/law/contact_dynamics.h"
 
