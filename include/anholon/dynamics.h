@@ -75,13 +75,15 @@ class ANHOLON_API Dynamics {
   std::vector<double> inputs(double t, const std::vector<double>& x, std::span<const double> p,
                              std::span<const std::optional<double>> given) const;
 
-  // The exact derivatives of the rates, then of the outputs, of `count` states by x, u and p: number (i, j) of state k at
+  // The exact derivatives of the rates, then of the outputs, of `count` states by x, u or p: number (i, j) of state k at
   // [(i * columns + j) * count + k]. NaN where the equations have no solution. REQUIRES: the sizes fit.
+  enum class By : std::uint8_t { state, input, parameter };
   struct Jacobian {
     std::size_t rows = 0, columns = 0;
     std::vector<double> values;
   };
-  Jacobian jacobian(double t, std::span<const double> x, std::size_t count, const Given& given) const;
+  Jacobian jacobian(double t, std::span<const double> x, std::size_t count, const Given& given,
+                    By by = By::state) const;
 
   // The linear equations that are solved at `count` states for accelerations, multipliers and rates of the model's
   // states: matrix unknowns = right, the matrix row by row, with the numbers of all states one after the other as in a

@@ -325,11 +325,8 @@ class Dynamics:
             raise ValueError("by is 'x', 'u' or 'p', and of is \"x'\" or 'y'")
         time = _time(t)
         state, some, others, batch = self._states(time, x, u, p)
-        whole: Array = self._core.jacobian(time, state, some, others)
-        rows = whole[: self._count] if of == "x'" else whole[self._count :]
-        ends = [0, self._count, self._count + len(self.inputs), whole.shape[1]]
-        k = "xup".index(by)
-        chosen = rows[:, ends[k] : ends[k + 1]]
+        whole: Array = self._core.jacobian(time, state, some, others, "xup".index(by))
+        chosen = whole[: self._count] if of == "x'" else whole[self._count :]
         return chosen.reshape((*chosen.shape[:2], *batch))
 
     def jvp(self, t: float, x: npt.ArrayLike, v: npt.ArrayLike, u: Values = None, p: Values = None, *, by: str = "x", of: str = "x'") -> Array:

@@ -86,14 +86,15 @@ void bind_dynamics(nb::module_& m) {
           "t"_a, "x"_a, "u"_a, "p"_a)
       .def(
           "jacobian",
-          [](const Dynamics& f, double t, const In& x, const Some& u, const Some& p) {
+          [](const Dynamics& f, double t, const In& x, const Some& u, const Some& p, std::size_t by) {
             const std::size_t count = states_of(f, x);
             Dynamics::Jacobian made;
-            for_states(count, kManyDerivatives,
-                       [&] { made = f.jacobian(t, span_of(x), count, {span_of(u), span_of(p)}); });
+            for_states(count, kManyDerivatives, [&] {
+              made = f.jacobian(t, span_of(x), count, {span_of(u), span_of(p)}, static_cast<Dynamics::By>(by));
+            });
             return array<3>(std::move(made.values), {made.rows, made.columns, count});
           },
-          "t"_a, "x"_a, "u"_a.none(), "p"_a.none())
+          "t"_a, "x"_a, "u"_a.none(), "p"_a.none(), "by"_a)
       .def(
           "equations",
           [](const Dynamics& f, double t, const In& x, const Some& u, const Some& p) {

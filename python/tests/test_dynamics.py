@@ -366,6 +366,23 @@ def test_batches_of_derivatives_and_outputs_have_the_bits_of_one_state(minimal: 
         f.jvp(0.1, x, w[:, :5])
 
 
+@pytest.mark.parametrize("name", ["two-wheeled-pendulum", "rattleback"])
+def test_machine_code_of_derivatives_has_the_bits_of_tables(name: str) -> None:
+    """Machine code is made after ten thousand states."""
+    f = an.load(name).dynamics(inputs=False)
+    x = batch_of(f, 12_000)
+    first = [f.jac(0.1, x[:, k]) for k in (0, 5, 11_999)]
+    many = f.jac(0.1, x)
+    for k, before in zip((0, 5, 11_999), first, strict=True):
+        np.testing.assert_array_equal(many[..., k], before)
+        np.testing.assert_array_equal(f.jac(0.1, x[:, k]), before)
+    # Central differences know about ten digits.
+    scale = 1e-5 * (1 + abs(x[:, 5]))
+    step = np.diag(scale)
+    differences = np.column_stack([(f(0.1, x[:, 5] + d) - f(0.1, x[:, 5] - d)) / (2 * scale[i]) for i, d in enumerate(step)])
+    np.testing.assert_allclose(first[1], differences, rtol=1e-6, atol=1e-6 * abs(first[1]).max())
+
+
 def test_batches_of_the_equations() -> None:
     f = an.load("disc").dynamics(minimal=False)
     x = batch_of(f, 300)

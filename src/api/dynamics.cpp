@@ -45,27 +45,61 @@ struct Dynamics::Data {
     return *values_;
   }
 
-  // A point of one state: its parameters, and what the equations are solved for.
-  struct Solved {
-    std::vector<double> x, parameters, lead;
-    inner::FormulaValues::Point at;
+  // States of one call: number i of state k at i * count + k.
+  struct Batch {
+    double t;
+    std::span<const double> x;
+    std::size_t count;
+    const Dynamics::Given& given;
+    // The inputs or parameters of state k, of which there are `size`: all states have the same where only so many are given.
+    std::vector<double> of_state(std::span<const double> all, std::size_t size, std::size_t k) const {
+      if (all.size() <= size) return {all.begin(), all.end()};
+      std::vector<double> some(size);
+      for (std::size_t i = 0; i < size; ++i) some[i] = all[i * count + k];
+      return some;
+    }
   };
-  Solved solved(double t, const std::vector<double>& x, const Given& given, bool with_lead) const {
-    Solved out;
-    const std::vector<double> u = given_inputs(t, x, given);
-    const inner::InputsAndParameters numbers{u, given.p};
-    for (const long double p : function->parameters(numbers, 1, 0)) out.parameters.push_back(static_cast<double>(p));
-    if (with_lead && !function->minimal()) out.lead = function->leading(t, x, numbers);
-    out.x = x;
-    out.at = {t, out.x, out.parameters, out.lead};
+
+  // Points of some states, with their parameters and what the equations are solved for.
+  struct Points {
+    std::vector<std::vector<double>> x, parameters;
+    std::vector<double> lead;
+    std::vector<inner::FormulaPoint> at;
+  };
+  // Of the states from..to of a batch.
+  Points points(const Batch& batch, std::size_t from, std::size_t to, bool with_lead) const {
+    const std::size_t n = states.size(), some = to - from;
+    Points out;
+    std::vector<double> x_of(n * some), u_of(inputs.size() * some), p_of(batch.given.p.empty() ? 0 : p_size() * some);
+    for (std::size_t k = from; k < to; ++k) {
+      std::vector<double> x(n);
+      for (std::size_t i = 0; i < n; ++i) x_of[i * some + k - from] = x[i] = batch.x[i * batch.count + k];
+      const std::vector<double> p = batch.of_state(batch.given.p, p_size(), k);
+      const std::vector<double> u = given_inputs(batch.t, x, {batch.of_state(batch.given.u, inputs.size(), k), p});
+      for (std::size_t i = 0; i < u.size(); ++i) u_of[i * some + k - from] = u[i];
+      for (std::size_t i = 0; i < p.size(); ++i) p_of[i * some + k - from] = p[i];
+      std::vector<double> all;
+      for (const long double value : function->parameters({u, p}, 1, 0)) all.push_back(static_cast<double>(value));
+      out.x.push_back(std::move(x)), out.parameters.push_back(std::move(all));
+    }
+    std::size_t unknowns = 0;
+    if (with_lead && !function->minimal()) {
+      const bool common = batch.given.u.size() == inputs.size() && batch.given.p.size() <= p_size();
+      out.lead = function->leading(batch.t, x_of.data(), some,
+                                   common ? inner::InputsAndParameters{batch.given.u, batch.given.p}
+                                          : inner::InputsAndParameters{u_of, p_of});
+      unknowns = out.lead.size() / some;
+    }
+    for (std::size_t k = 0; k < some; ++k)
+      out.at.push_back({batch.t, out.x[k], out.parameters[k], std::span(out.lead).subspan(k * unknowns, unknowns)});
     return out;
   }
   // u, by the formulas of the model where none is given.
   std::vector<double> given_inputs(double t, const std::vector<double>& x, const Given& given) const {
     if (!given.u.empty() || inputs.empty()) return {given.u.begin(), given.u.end()};
-    inner::FormulaValues::Work work;
-    return values().inputs({t, x, parameters(given.p), {}}, work);
+    return values().inputs({t, x, parameters(given.p), {}});
   }
+  std::size_t p_size() const { return function->free_parameters().size(); }
   // All parameters of the model.
   std::vector<double> parameters(std::span<const double> p) const {
     std::vector<double> all;
@@ -75,28 +109,16 @@ struct Dynamics::Data {
 
   void rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates, const Given& given) const;
 
-  // Calls f(k, solved) with the point of each of `count` states and a Work, on several threads if they are many. A
-  // state's numbers do not depend on the others.
+  // Calls f(first, points) with the points of pieces of a batch, on several threads if they are many. A state's numbers do
+  // not depend on the others.
   template <class F>
-  void for_each_state(double t, std::span<const double> x, std::size_t count, const Given& given, bool with_lead,
-                      const F& f) const {
-    const std::size_t n = states.size(), u = inputs.size(), p = function->free_parameters().size();
+  void in_points(const Batch& batch, bool with_lead, const F& f) const {
     values();
-    inner::in_pieces(count, kStatesAtOnce, [&](const inner::NextPiece& next) {
-      inner::FormulaValues::Work own;
-      std::vector<double> state(n), some, parameters;
-      const auto of_state = [&](std::span<const double> all, std::size_t size, std::size_t k, std::vector<double>& to) {
-        if (all.size() <= size) return all;
-        to.resize(size);
-        for (std::size_t i = 0; i < size; ++i) to[i] = all[i * count + k];
-        return std::span<const double>(to);
-      };
-      while (const std::optional<std::size_t> from = next())
-        for (std::size_t k = *from; k < std::min(count, *from + kStatesAtOnce); ++k) {
-          for (std::size_t i = 0; i < n; ++i) state[i] = x[i * count + k];
-          f(k, solved(t, state, {of_state(given.u, u, k, some), of_state(given.p, p, k, parameters)}, with_lead).at,
-            own);
-        }
+    inner::in_pieces(batch.count, kStatesAtOnce, [&](const inner::NextPiece& next) {
+      while (const std::optional<std::size_t> from = next()) {
+        const Points some = points(batch, *from, std::min(batch.count, *from + kStatesAtOnce), with_lead);
+        f(*from, std::span<const inner::FormulaPoint>(some.at));
+      }
     });
   }
 
@@ -225,31 +247,34 @@ std::vector<double> Dynamics::inputs(double t, const std::vector<double>& x, std
 std::vector<double> Dynamics::inputs(double t, const std::vector<double>& x, std::span<const double> p,
                                      std::span<const std::optional<double>> given) const {
   if (inputs().empty()) return {};
-  inner::FormulaValues::Work work;
-  return data_->values().inputs({t, x, data_->parameters(p), {}}, given, work);
+  return data_->values().inputs({t, x, data_->parameters(p), {}}, given);
 }
 
 std::vector<double> Dynamics::outputs(double t, std::span<const double> x, std::size_t count,
                                       const Given& given) const {
   std::vector<double> out(outputs().size() * count);
   or_stopped(out, [&] {
-    data_->for_each_state(t, x, count, given, true, [&](std::size_t k, const auto& at, auto& work) {
-      const std::vector<double> y = data_->values().outputs(at, work);
-      for (std::size_t i = 0; i < y.size(); ++i) out[i * count + k] = y[i];
+    data_->in_points({t, x, count, given}, true, [&](std::size_t first, std::span<const inner::FormulaPoint> points) {
+      const std::vector<double> y = data_->values().outputs(points);
+      const std::size_t size = y.size() / points.size();
+      for (std::size_t k = 0; k < points.size(); ++k)
+        for (std::size_t i = 0; i < size; ++i) out[i * count + first + k] = y[k * size + i];
     });
   });
   return out;
 }
 
-Dynamics::Jacobian Dynamics::jacobian(double t, std::span<const double> x, std::size_t count,
-                                      const Given& given) const {
+Dynamics::Jacobian Dynamics::jacobian(double t, std::span<const double> x, std::size_t count, const Given& given,
+                                      By by) const {
   const inner::RateFormulas& f = data_->values().formulas();
-  Jacobian out{f.rates.size() + f.outputs.size(), f.x.size() + f.u.size() + f.p.size(), {}};
+  const std::size_t columns = by == By::state ? f.x.size() : by == By::input ? f.u.size() : f.p.size();
+  Jacobian out{f.rates.size() + f.outputs.size(), columns, {}};
   out.values.resize(out.rows * out.columns * count);
   or_stopped(out.values, [&] {
-    data_->for_each_state(t, x, count, given, true, [&](std::size_t k, const auto& at, auto& work) {
-      const std::vector<double> d = data_->values().derivatives(at, work).values;
-      for (std::size_t i = 0; i < d.size(); ++i) out.values[i * count + k] = d[i];
+    data_->in_points({t, x, count, given}, true, [&](std::size_t first, std::span<const inner::FormulaPoint> points) {
+      const auto all = data_->values().derivatives(points, static_cast<inner::FormulaValues::By>(by));
+      for (std::size_t k = 0; k < all.size(); ++k)
+        for (std::size_t i = 0; i < all[k].values.size(); ++i) out.values[i * count + first + k] = all[k].values[i];
     });
   });
   return out;
@@ -261,10 +286,13 @@ Dynamics::Equations Dynamics::equations(double t, std::span<const double> x, std
   const std::size_t n = unknowns.size();
   Equations out{unknowns, std::vector<double>(n * n * count), std::vector<double>(n * count)};
   or_stopped(out.right, [&] {
-    data_->for_each_state(t, x, count, given, false, [&](std::size_t k, const auto& at, auto& work) {
-      const auto [matrix, right] = data_->values().equations(at, work);
-      for (std::size_t i = 0; i < n * n; ++i) out.matrix[i * count + k] = matrix[i];
-      for (std::size_t i = 0; i < n; ++i) out.right[i * count + k] = right[i];
+    data_->in_points({t, x, count, given}, false, [&](std::size_t first, std::span<const inner::FormulaPoint> points) {
+      const std::vector<double> values = data_->values().equations(points);
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        const double* of_point = &values[k * n * (n + 1)];
+        for (std::size_t i = 0; i < n * n; ++i) out.matrix[i * count + first + k] = of_point[i];
+        for (std::size_t i = 0; i < n; ++i) out.right[i * count + first + k] = of_point[n * n + i];
+      }
     });
   });
   return out;
@@ -273,13 +301,13 @@ Dynamics::Equations Dynamics::equations(double t, std::span<const double> x, std
 bool Dynamics::linear() const { return data_->function->linear(); }
 
 std::vector<double> Dynamics::leading(double t, const std::vector<double>& x, const Given& given) const {
-  return data_->solved(t, x, given, true).lead;
+  return data_->points({t, x, 1, given}, 0, 1, true).lead;
 }
 
 std::string Dynamics::source(Source kind, const std::string& name) const {
-  const inner::RateFormulas& f = data_->values().formulas();
-  return kind == Source::formulas ? inner::emit_formulas(f)
-                                  : inner::emit_casadi(f, name, std::string("anholon ") + ANHOLON_VERSION);
+  const inner::FormulaValues& values = data_->values();
+  return kind == Source::formulas ? values.python_source()
+                                  : values.c_source(name, std::string("anholon ") + ANHOLON_VERSION);
 }
 
 std::vector<double> Dynamics::from_motion(double t, const std::vector<double>& q, const std::vector<double>& qdot,

@@ -200,12 +200,8 @@ bool Dynamics::Call::common(std::size_t inputs, std::size_t parameters) const {
 
 template <class F>
 void Dynamics::with_kernel(int lanes, const Call& call, const F& f) const {
-  std::vector<Worker>& pool = lanes == 1 ? alone_ : in_lanes_;
-  Worker worker;
-  {
-    const std::lock_guard lock(idle_);
-    if (!pool.empty()) worker = std::move(pool.back()), pool.pop_back();
-  }
+  Idle<Worker>& idle = lanes == 1 ? alone_ : in_lanes_;
+  Worker worker = idle.take().value_or(Worker());
   const bool fresh = !worker.kernel;
   if (fresh) worker.kernel = std::make_unique<Kernel>(plan_, lanes);
   const auto set = [&](const std::vector<long double>& parameters) {
@@ -215,8 +211,7 @@ void Dynamics::with_kernel(int lanes, const Call& call, const F& f) const {
   if (!call.of_start() && call.common(inputs_, free_.size())) set(parameters(call.given, call.count, 0));
   worker.as_given = !call.of_start();
   f(*worker.kernel);
-  const std::lock_guard lock(idle_);
-  pool.push_back(std::move(worker));
+  idle.give_back(std::move(worker));
 }
 
 // The state of the motion, unknown by unknown.
@@ -270,27 +265,18 @@ std::vector<double> Dynamics::along_branch(double t, const std::function<double(
   return {leading.begin(), leading.end()};
 }
 
-// Puts the rates of state k: what the state holds, and what leads it, solved(unknown).
-template <class Solved>
-void Dynamics::put_rates(const Call& call, std::size_t k, const Solved& solved) const {
-  for (std::size_t j = 0; j < unknowns_.size(); ++j) {
-    const std::vector<std::size_t>& places = unknowns_[j].places;
-    for (std::size_t i = 0; i < places.size(); ++i)
-      call.rates[places[i] * call.count + k] =
-          i + 1 < places.size() ? call.x[places[i + 1] * call.count + k] : solved(j);
-  }
-}
-
-void Dynamics::compute_by_reference(const Call& call, std::size_t from, std::size_t to) const {
+template <class Put>
+void Dynamics::compute_by_reference(const Call& call, std::size_t from, std::size_t to, const Put& put) const {
   for (std::size_t k = from; k < to; ++k) {
     const std::vector<double> solved = by_reference(
         call.t, [&](std::size_t i) { return call.x[i * call.count + k]; }, parameters(call.given, call.count, k));
-    put_rates(call, k, [&](std::size_t j) { return solved[j]; });
+    put(k, [&](std::size_t j) { return solved[j]; });
   }
 }
 
-// The states from..to, as many at once as the kernel has lanes; what is left over of them holds the last one.
-void Dynamics::compute(Kernel& kernel, const Call& call, std::size_t from, std::size_t to) const {
+// As many states at once as the kernel has lanes; what is left over of them holds the last one.
+template <class Put>
+void Dynamics::compute(Kernel& kernel, const Call& call, std::size_t from, std::size_t to, const Put& put) const {
   const std::size_t lanes = static_cast<std::size_t>(kernel.lanes()), count = call.count;
   const bool common = call.common(inputs_, free_.size());
   for (std::size_t first = from; first < to; first += lanes) {
@@ -310,19 +296,26 @@ void Dynamics::compute(Kernel& kernel, const Call& call, std::size_t from, std::
     for (std::size_t lane = 0; lane < some; ++lane) {
       // The pivots were chosen at the start: where they are small, the reference chooses others.
       if (kernel.pivots(static_cast<int>(lane)).health > plan_->least_health())
-        put_rates(call, first + lane,
-                  [&](std::size_t j) { return kernel.derivative(j, unknowns_[j].order(), static_cast<int>(lane)); });
+        put(first + lane,
+            [&](std::size_t j) { return kernel.derivative(j, unknowns_[j].order(), static_cast<int>(lane)); });
       else
-        compute_by_reference(call, first + lane, first + lane + 1);
+        compute_by_reference(call, first + lane, first + lane + 1, put);
     }
   }
 }
 
-void Dynamics::rates(double t, const double* x, std::size_t count, double* rates, InputsAndParameters given) const {
-  const Call call{t, x, count, rates, given};
-  if (!plan_) return rates_by_reference(call);
+template <class Put>
+void Dynamics::solve(const Call& call, const Put& put) const {
+  const std::size_t count = call.count;
+  if (!plan_) {
+    in_pieces(count, kManyLanes, [&](const NextPiece& next) {
+      while (const std::optional<std::size_t> from = next())
+        compute_by_reference(call, *from, std::min(count, *from + kManyLanes), put);
+    });
+    return;
+  }
   if (count < kManyLanes) {
-    with_kernel(1, call, [&](Kernel& k) { compute(k, call, 0, count); });
+    with_kernel(1, call, [&](Kernel& k) { compute(k, call, 0, count, put); });
     return;
   }
   int lanes = tiers().back().lanes;
@@ -333,27 +326,27 @@ void Dynamics::rates(double t, const double* x, std::size_t count, double* rates
   in_pieces(count, kManyThreads, [&](const NextPiece& next) {
     with_kernel(lanes, call, [&](Kernel& k) {
       while (const std::optional<std::size_t> from = next())
-        compute(k, call, *from, std::min(count, *from + kManyThreads));
+        compute(k, call, *from, std::min(count, *from + kManyThreads), put);
     });
   });
 }
 
-void Dynamics::rates_by_reference(const Call& call) const {
-  in_pieces(call.count, kManyLanes, [&](const NextPiece& next) {
-    while (const std::optional<std::size_t> from = next())
-      compute_by_reference(call, *from, std::min(call.count, *from + kManyLanes));
+// The rates of a state: what the state holds, and what leads it.
+void Dynamics::rates(double t, const double* x, std::size_t count, double* rates, InputsAndParameters given) const {
+  solve({t, x, count, given}, [&](std::size_t k, const auto& solved) {
+    for (std::size_t j = 0; j < unknowns_.size(); ++j) {
+      const std::vector<std::size_t>& places = unknowns_[j].places;
+      for (std::size_t i = 0; i < places.size(); ++i)
+        rates[places[i] * count + k] = i + 1 < places.size() ? x[places[i + 1] * count + k] : solved(j);
+    }
   });
 }
 
-std::vector<double> Dynamics::leading(double t, const std::vector<double>& x, InputsAndParameters given) const {
-  const auto state = [&](std::size_t i) { return x[i]; };
-  if (!plan_) return by_reference(t, state, parameters(given, 1, 0));
-  std::vector<double> list(unknowns_.size()), rates(x.size());
-  const Call call{t, x.data(), 1, rates.data(), given};
-  with_kernel(1, call, [&](Kernel& k) {
-    compute(k, call, 0, 1);
-    for (std::size_t j = 0; j < list.size(); ++j) list[j] = k.derivative(j, unknowns_[j].order());
-    if (!(k.pivots(0).health > plan_->least_health())) list = by_reference(t, state, parameters(given, 1, 0));
+std::vector<double> Dynamics::leading(double t, const double* x, std::size_t count, InputsAndParameters given) const {
+  const std::size_t n = unknowns_.size();
+  std::vector<double> list(n * count);
+  solve({t, x, count, given}, [&](std::size_t k, const auto& solved) {
+    for (std::size_t j = 0; j < n; ++j) list[k * n + j] = solved(j);
   });
   return list;
 }

@@ -9,8 +9,8 @@
 #pragma once
 #include <functional>
 #include <memory>
-#include <mutex>
 
+#include "dynamics/idle.h"
 #include "kernel/kernel.h"
 #include "setup/scenario.h"
 
@@ -56,9 +56,9 @@ class Dynamics {
   // threads; large batches are computed by several. NaN where the equations have no solution.
   void rates(double t, const double* x, std::size_t count, double* rates, InputsAndParameters given = {}) const;
 
-  // What leads one state, unknown by unknown: accelerations, multipliers, rates of the model's states. REQUIRES: not
-  // minimal.
-  std::vector<double> leading(double t, const std::vector<double>& x, InputsAndParameters given = {}) const;
+  // What leads each of `count` states, state by state and then unknown by unknown: accelerations, multipliers, rates of
+  // the model's states. REQUIRES: not minimal.
+  std::vector<double> leading(double t, const double* x, std::size_t count, InputsAndParameters given = {}) const;
   const std::vector<long double>& parameters() const { return parameters_; }
   // All parameters of the model for the state k of `count`, with u and p in their places.
   std::vector<long double> parameters(InputsAndParameters given, std::size_t count, std::size_t k) const;
@@ -91,21 +91,23 @@ class Dynamics {
     double t;
     const double* x;
     std::size_t count;
-    double* rates;
     InputsAndParameters given;
     bool of_start() const { return given.u.empty() && given.p.empty(); }
     bool common(std::size_t inputs, std::size_t parameters) const;
   };
-  void compute(Kernel& kernel, const Call& call, std::size_t from, std::size_t to) const;
-  void compute_by_reference(const Call& call, std::size_t from, std::size_t to) const;
-  template <class Solved>
-  void put_rates(const Call& call, std::size_t k, const Solved& solved) const;
+  // Solves for what leads the states from..to of the call: put(k, solved) with solved(j) of unknown j.
+  template <class Put>
+  void compute(Kernel& kernel, const Call& call, std::size_t from, std::size_t to, const Put& put) const;
+  template <class Put>
+  void compute_by_reference(const Call& call, std::size_t from, std::size_t to, const Put& put) const;
+  // compute() of all states, by as many lanes and threads as pay.
+  template <class Put>
+  void solve(const Call& call, const Put& put) const;
   std::vector<long double> entries(const std::function<double(std::size_t)>& state) const;
   std::vector<double> by_reference(double t, const std::function<double(std::size_t)>& state,
                                    const std::vector<long double>& parameters) const;
   std::vector<double> along_branch(double t, const std::function<double(std::size_t)>& state,
                                    const std::vector<long double>& parameters) const;
-  void rates_by_reference(const Call& call) const;
   void put_independent_velocities(const System& system, const Representation& mapped);
   void put_state_of_motion(const System& system, const std::vector<int>& d);
   void find_free_parameters(const Model& model, std::size_t inputs);
@@ -128,8 +130,7 @@ class Dynamics {
   std::vector<double> start_, motion_start_;  // x; the state of the motion, unknown by unknown
   std::vector<long double> start_leading_;    // the solution there
   double start_time_ = 0;
-  mutable std::mutex idle_;
-  mutable std::vector<Worker> alone_, in_lanes_;  // kernels that nobody uses now
+  mutable Idle<Worker> alone_, in_lanes_;
 };
 
 }  // namespace anholon

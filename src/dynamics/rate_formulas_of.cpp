@@ -19,8 +19,6 @@ namespace anholon {
 namespace {
 
 constexpr double kAround = 0.3;  // in coordinates and velocities
-// Numbers of formulas on both sides of a border differ by less if only the round-off of some thousand operations differs.
-constexpr double kSameSides = 4096 * std::numeric_limits<double>::epsilon();
 
 class Builder {
  public:
@@ -175,7 +173,6 @@ class Builder {
     if (n == 0 || !f_.linear) return;
     const Column entries = emit::entries(f_.matrix());
     const CompiledFormulas matrix(f_, entries);
-    CompiledFormulas::Work work;
     std::vector<double> parameters(of_.parameters().begin(), of_.parameters().end()), x = f_.start;
     std::vector<SampledEntry> sampled;
     for (std::size_t k = 0; k < entries.size(); ++k)
@@ -186,7 +183,8 @@ class Builder {
     for (std::size_t attempt = 0; attempt < 3 * kSamples && samples < kSamples; ++attempt) {
       for (std::size_t i = 0; i < x.size() && attempt > 0; ++i)
         x[i] = f_.start[i] + kAround * std::sin(static_cast<double>(64 * attempt + i));
-      const std::vector<double> values = matrix.values({f_.t, x, parameters, {}}, work);
+      const FormulaPoint at{f_.t, x, parameters, {}};
+      const std::vector<double> values = matrix.values({&at, 1});
       std::size_t next = 0;
       bool good = true;
       for (std::size_t k = 0; k < values.size(); ++k)
@@ -232,16 +230,6 @@ class Builder {
   RateFormulas f_;
 };
 
-Column gradients(const Column& es, const Column& by, std::size_t first_row, const auto& found) {
-  Column all;
-  for (std::size_t i = 0; i < es.size(); ++i) {
-    const Column d = gradient(es[i], by);
-    for (std::size_t c = 0; c < d.size(); ++c)
-      if (!is_zero(d[c])) all.push_back(d[c]), found(first_row + i, c);
-  }
-  return all;
-}
-
 }  // namespace
 
 std::optional<RateFormulas> independent_rates(const Scenario& scenario, const StateChoice& choice) {
@@ -268,163 +256,41 @@ FormulaValues::FormulaValues(RateFormulas formulas) : formulas_(std::move(formul
   const Column right = f.right();
   equations.insert(equations.end(), right.begin(), right.end());
   equations_ = {f, equations};
-  Column by;
-  for (const RateFormulas::Symbols* list : {&f.lead, &f.x, &f.u, &f.p})
-    by.insert(by.end(), list->symbols.begin(), list->symbols.end());
-  Column partials;
-  std::size_t row = 0;
-  for (const Column* es : {&f.equations, &f.rates, &f.outputs}) {
-    const Column some = gradients(*es, by, row, [&](std::size_t r, std::size_t c) { partials_.push_back({r, c}); });
-    partials.insert(partials.end(), some.begin(), some.end());
-    row += es->size();
-  }
-  derivatives_ = {f, partials};
-  Column rows = f.equations;
-  for (const Column* es : {&f.rates, &f.outputs}) rows.insert(rows.end(), es->begin(), es->end());
-  sides_ = {rows, by, f.model->names.parameters.size()};
-  if (!sides_.branches().empty()) sources_ = CompiledFormulas::sources(f);
-  columns_ = std::move(by);
 }
 
-CompiledFormulas::CompiledFormulas(const RateFormulas& f, const Column& es) {
-  if (es.empty()) return;
-  tape_ = compile(es);
-  const std::unordered_map<NodeId, Source> places = sources(f);
-  for (const Input& in : tape_.inputs) inputs_.push_back(places.at(in.symbol));
-}
-
-std::unordered_map<NodeId, CompiledFormulas::Source> CompiledFormulas::sources(const RateFormulas& f) {
-  std::unordered_map<NodeId, Source> places{{f.model->graph->time().id, {From::time, 0}}};
-  const auto add = [&](const RateFormulas::Symbols& list, From from) {
-    for (std::size_t i = 0; i < list.size(); ++i) places[list.symbols[i].id] = {from, i};
-  };
-  add(f.x, From::state);
-  add(f.lead, From::lead);
-  return places;
-}
-
-double CompiledFormulas::Source::at(const FormulaPoint& point) const {
-  switch (from) {
-  case From::time:
-    return point.t;
-  case From::state:
-    return point.x[index];
-  case From::lead:
-    return point.lead.empty() ? 0 : point.lead[index];
-  }
-  return 0;
-}
-
-std::vector<double> CompiledFormulas::values(const FormulaPoint& at, Work& work) const {
-  if (!work.machine ||
-      !std::equal(at.parameters.begin(), at.parameters.end(), work.parameters.begin(), work.parameters.end())) {
-    work.parameters.assign(at.parameters.begin(), at.parameters.end());
-    work.machine.emplace(tape_, 0, work.parameters);
-  }
-  Machine<double>& machine = *work.machine;
-  for (std::size_t i = 0; i < inputs_.size(); ++i) machine.series(tape_.inputs[i].slot)[0] = inputs_[i].at(at);
-  machine.evaluate();
-  std::vector<double> out;
-  for (std::size_t i = 0; i < tape_.roots.size(); ++i) out.push_back(machine.value(i));
-  return out;
-}
-
-std::vector<double> FormulaValues::inputs(const Point& at, Work& work) const { return inputs_.values(at, work.inputs); }
-
-std::vector<double> FormulaValues::inputs(const Point& at, std::span<const std::optional<double>> given,
-                                          Work& work) const {
+std::vector<double> FormulaValues::inputs(const Point& at, std::span<const std::optional<double>> given) const {
   std::vector<double> parameters(at.parameters.begin(), at.parameters.end());
   const std::span<double> u = std::span(parameters).last(given.size());
   const auto put = [&](const std::vector<double>& by_formulas) {
     for (std::size_t i = 0; i < given.size(); ++i) u[i] = given[i].value_or(by_formulas[i]);
   };
-  put(inputs(at, work));
+  put(inputs(at));
   // No formula holds its own input, also not through others, so each pass settles the inputs of one more depth.
-  for (std::size_t pass = 0; pass < given.size(); ++pass)
-    put(open_inputs_.values({at.t, at.x, parameters, {}}, work.open_inputs));
+  for (std::size_t pass = 0; pass < given.size(); ++pass) {
+    const Point given_here{at.t, at.x, parameters, {}};
+    put(open_inputs_.values({&given_here, 1}));
+  }
   return {u.begin(), u.end()};
 }
 
-std::vector<double> FormulaValues::outputs(const Point& at, Work& work) const {
-  return outputs_.values(at, work.outputs);
+std::vector<RateDerivatives::Of> FormulaValues::derivatives(std::span<const Point> points, By by) const {
+  const std::size_t k = static_cast<std::size_t>(by);
+  std::call_once(once_[k], [&] {
+    const std::lock_guard lock(building_);
+    const RateFormulas::Symbols* const lists[] = {&formulas_.x, &formulas_.u, &formulas_.p};
+    derivatives_[k] = std::make_unique<const RateDerivatives>(formulas_, *lists[k]);
+  });
+  return derivatives_[k]->at(points);
 }
 
-FormulaValues::Equations FormulaValues::equations(const Point& at, Work& work) const {
-  Equations out{equations_.values(at, work.equations), {}};
-  const auto middle = out.matrix.end() - static_cast<std::ptrdiff_t>(formulas_.lead.size());
-  out.right.assign(middle, out.matrix.end());
-  out.matrix.erase(middle, out.matrix.end());
-  return out;
+std::string FormulaValues::python_source() const {
+  const std::lock_guard lock(building_);
+  return emit_formulas(formulas_);
 }
 
-// d rates / dx  =  partial  -  d rates / d lead . (d equations / d lead)^-1 . d equations / dx
-FormulaValues::Derivatives FormulaValues::derivatives(const Point& at, Work& work) const {
-  Derivatives out = assembled(partials_, derivatives_.values(at, work.derivatives));
-  if (!sides_.branches().empty()) leave_out_kinks(at, out);
-  return out;
-}
-
-// The rows of the sides are equations, rates, outputs. A value that jumps with a condition has no derivative by what the
-// condition holds; what is solved for holds everything.
-void FormulaValues::leave_out_kinks(const Point& at, Derivatives& d) const {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-  const std::size_t n = formulas_.lead.size(), rows = n + d.rows;
-  const auto differ = [](double a, double b) {
-    return !(std::abs(a - b) <= kSameSides * (1 + std::abs(a) + std::abs(b))) && (std::isfinite(a) || std::isfinite(b));
-  };
-  const auto set = [&](Machine<double>& m) {
-    bind(m, *formulas_.model->graph, [&](const Node&, NodeId symbol) { return sources_.at(symbol).at(at); });
-  };
-  for (const auto& side : sides_.sides<double>({at.parameters.begin(), at.parameters.end()}, 0, set)) {
-    const std::span<const double> below(side.below), above(side.above);
-    const Derivatives a = assembled(sides_.partials(), below.subspan(rows)),
-                      b = assembled(sides_.partials(), above.subspan(rows));
-    for (std::size_t i = 0; i < d.values.size(); ++i)
-      if (differ(a.values[i], b.values[i])) d.values[i] = nan;
-    const std::vector<NodeId> held = symbols({&sides_.branches()[side.branch].condition, 1});
-    const auto holds = [&](Expr e) { return std::find(held.begin(), held.end(), e.id) != held.end(); };
-    const bool through_lead = std::any_of(formulas_.lead.symbols.begin(), formulas_.lead.symbols.end(), holds);
-    for (std::size_t r = 0; r < rows; ++r) {
-      if (!differ(below[r], above[r])) continue;
-      for (std::size_t c = 0; c < d.columns; ++c)
-        if (through_lead || holds(columns_[n + c]))
-          for (std::size_t k = r < n ? 0 : r - n; k < (r < n ? d.rows : r - n + 1); ++k)
-            d.values[k * d.columns + c] = nan;
-    }
-  }
-}
-
-FormulaValues::Derivatives FormulaValues::assembled(const std::vector<Partial>& places,
-                                                    std::span<const double> partials) const {
-  const RateFormulas& f = formulas_;
-  const std::size_t n = f.lead.size(), columns = f.x.size() + f.u.size() + f.p.size();
-  Derivatives out{f.rates.size() + f.outputs.size(), columns, {}};
-  Matrix<double> of_lead(n, n), others(n, columns), through(out.rows, n);
-  out.values.assign(out.rows * columns, 0);
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    const auto [row, column] = places[k];
-    if (row < n)
-      (column < n ? of_lead(row, column) : others(row, column - n)) = partials[k];
-    else if (column < n)
-      through(row - n, column) = partials[k];
-    else
-      out.values[(row - n) * columns + column - n] = partials[k];
-  }
-  if (n == 0) return out;
-  Lu<double> lu;
-  if (!lu.factor(of_lead)) {
-    out.values.assign(out.values.size(), std::numeric_limits<double>::quiet_NaN());
-    return out;
-  }
-  std::vector<double> b(n), change;
-  for (std::size_t c = 0; c < columns; ++c) {
-    for (std::size_t i = 0; i < n; ++i) b[i] = others(i, c);
-    lu.solve(b, change);
-    for (std::size_t r = 0; r < out.rows; ++r)
-      for (std::size_t j = 0; j < n; ++j)
-        if (through(r, j) != 0) out.values[r * columns + c] -= through(r, j) * change[j];
-  }
-  return out;
+std::string FormulaValues::c_source(const std::string& name, const std::string& made_by) const {
+  const std::lock_guard lock(building_);
+  return emit_casadi(formulas_, name, made_by);
 }
 
 }  // namespace anholon

@@ -149,42 +149,91 @@ typename JacobianGuard<N>::W JacobianGuard<N>::on_the_branch(PresentStep<N>& ste
   return h;
 }
 
+namespace {
+
+// Looks within a step for a point at which J is singular.
+template <Number N>
+class SingularPoint {
+ public:
+  using W = Wider<N>;
+  // `start`: sigma where the step begins.
+  SingularPoint(PresentStep<N>& step, std::size_t coordinates, N start)
+      : step_(step), coordinates_(coordinates), start_(start) {}
+
+  // Between two distances, of which the first has this mode. What the two ends tell is taken for granted where the weakest
+  // direction is nearly the same at both; other parts are halved, at most `halvings` times, and at least `sure` times.
+  std::optional<W> within(const W& from, const Mode<N>& low, const W& to, int sure, int halvings) const {
+    constexpr double kAlike = 0.8;
+    Expansion<N>* end = step_.prepare(to);
+    const std::optional<Mode<N>> high = mode_of(end);
+    if (!high) return std::nullopt;
+    if (passed(low, *end, *high)) {
+      if (const std::optional<W> met = located(from, low, to)) return met;
+    } else if (sure <= 0 && std::abs(cosine(low.v, high->v)) > kAlike) {
+      return std::nullopt;
+    }
+    if (halvings == 0) return std::nullopt;
+    const W middle = from + (to - from) * W(0.5);
+    const std::optional<Mode<N>> there = mode_of(step_.prepare(middle));
+    if (!there) return std::nullopt;
+    if (const std::optional<W> met = within(from, low, middle, sure - 1, halvings - 1)) return met;
+    return within(middle, *there, to, sure - 1, halvings - 1);
+  }
+
+ private:
+  bool passed(const Mode<N>& from, const Expansion<N>& there, const Mode<N>& m) const {
+    return crossed(from, m, coordinates_) || reversed(from, there);
+  }
+
+  // By bisection; nullopt if the singular value does not vanish where it ends.
+  std::optional<W> located(W from, Mode<N> low, W to) const {
+    constexpr double kVanished = 1e-6;
+    constexpr int kBisections = 60, kRoundoffs = 4096;
+    for (int k = 0; k < kBisections; ++k) {
+      const W middle = from + (to - from) * W(0.5);
+      if (middle == from || middle == to) break;
+      Expansion<N>* there = step_.prepare(middle);
+      std::optional<Mode<N>> m = mode_of(there);
+      if (!m) return middle;
+      if (passed(low, *there, *m))
+        to = middle;
+      else
+        from = middle, low = std::move(*m);
+    }
+    // A step that begins beside the singular point finds a value there that is round-off, however small it was.
+    const N roundoff = unit_roundoff<N>() * N(kRoundoffs);
+    return low.sigma < start_ * N(kVanished) || low.sigma < roundoff ? std::optional<W>(from) : std::nullopt;
+  }
+
+  PresentStep<N>& step_;
+  std::size_t coordinates_;
+  N start_;
+};
+
+}  // namespace
+
 template <Number N>
 std::optional<typename JacobianGuard<N>::W> JacobianGuard<N>::singular_within(PresentStep<N>& step, const W& h,
                                                                               const W& last_step) const {
-  constexpr double kFaster = 0.6, kLonger = 1.5, kVanished = 1e-6;
-  constexpr int kBisections = 60, kRoundoffs = 4096;
-  const bool by_kernel = step.expander.kernel() != nullptr;
+  constexpr double kFaster = 0.6;
+  // Parts of a step in which the weakest direction turns; the parts in which a long one is looked at in any case; the
+  // unknowns for which this costs little.
+  constexpr int kHalvings = 5, kSure = 3;
+  constexpr std::size_t kFewUnknowns = 64;
+  const bool by_kernel = step.expander.kernel() != nullptr, is_long = longer_than(h, last_step);
   // A singular value that vanishes within the step has fallen by more than half in one as long; what it was is not
   // known after steps by the kernel.
-  const bool suspected = by_kernel || step.expander.suspected() || last_step == W(0) ||
-                         sigma_ < step.track.now.record.sigma_before * N(kFaster) || abs(h) > last_step * W(kLonger);
+  const bool suspected =
+      by_kernel || step.expander.suspected() || is_long || sigma_ < step.track.now.record.sigma_before * N(kFaster);
   if (!suspected) return std::nullopt;
   const std::optional<Mode<N>> here =
       by_kernel ? mode_of(step.look.prepare(step.t(), step.track.now.state, {})) : weakest_mode(step.series(), sigma_);
   if (!here) return std::nullopt;
-  Mode<N> low = *here;
-  const N start = low.sigma;
-  const auto passed = [&](const Mode<N>& from, Expansion<N>* there, const std::optional<Mode<N>>& m) {
-    return crossed(from, *m, coordinates_) || reversed(from, *there);
-  };
-  Expansion<N>* end = step.prepare(h);
-  if (const std::optional<Mode<N>> m = mode_of(end); !m || !passed(low, end, m)) return std::nullopt;
-  W from(0), to = h;
-  for (int k = 0; k < kBisections; ++k) {
-    const W middle = from + (to - from) * W(0.5);
-    if (middle == from || middle == to) break;
-    Expansion<N>* there = step.prepare(middle);
-    std::optional<Mode<N>> m = mode_of(there);
-    if (!m) return middle;
-    if (passed(low, there, m))
-      to = middle;
-    else
-      from = middle, low = std::move(*m);
-  }
-  // A step that begins beside the singular point finds a value there that is round-off, however small it was.
-  const N roundoff = unit_roundoff<N>() * N(kRoundoffs);
-  return low.sigma < start * N(kVanished) || low.sigma < roundoff ? std::optional<W>(from) : std::nullopt;
+  // Without multipliers nothing but coordinates can lose its hold.
+  const std::size_t unknowns = step.series().program().unknowns();
+  const bool few = unknowns > coordinates_ && unknowns <= kFewUnknowns;
+  return SingularPoint<N>(step, coordinates_, here->sigma)
+      .within(W(0), *here, h, few && is_long ? kSure : 0, few ? kHalvings : 0);
 }
 
 template <Number N>

@@ -54,6 +54,12 @@ class JacobianGuard {
 
   // The longest of h, h/2, h/4, … that stays on the branch: J is regular on all of the way. It is noted in the record.
   W on_the_branch(PresentStep<N>& step, W h, StepRecord<N>& record) const;
+  // Whether a step is so much longer than the one before, or the first one, that J may be singular within it though it has
+  // not shown so before.
+  static bool longer_than(const W& h, const W& last_step) {
+    constexpr double kLonger = 1.5;
+    return last_step == W(0) || abs(h) > last_step * W(kLonger);
+  }
   // How far away the first singular point is that is met within h; nullopt if there is none.
   std::optional<W> singular_within(PresentStep<N>& step, const W& h, const W& last_step) const;
   // J, at two points of which the motion passed from one to the other, does not show a singular point in between.

@@ -185,7 +185,8 @@ bool Stepper<N>::aim_with_care(const W& end) {
 template <Number N>
 bool Stepper<N>::shorten_at_singular_point(W& h, const W& floor) {
   constexpr double kShortOf = 1 - 1e-7;
-  if (expander_.kernel() && !expander_.suspected()) return true;
+  if (expander_.kernel() && !expander_.suspected() && !JacobianGuard<N>::longer_than(h, record().last_step))
+    return true;
   leave_kernel();
   PresentStep<N> step = present();
   const std::optional<W> met = guard_.singular_within(step, h, record().last_step);

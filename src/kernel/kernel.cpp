@@ -22,8 +22,6 @@ constexpr double kWaiting = 5;
 // The limits of steps of a stage and of operations of the elimination: beyond them machine code is made in pieces, for
 // one lane; the compilation as a whole would take more than some five seconds.
 constexpr std::size_t kMostCompiled = 1000, kMostEliminated = 12000;
-// The same of a plan of one stage that is translated, as that of a function of states.
-constexpr std::size_t kMostTranslated = 4000;
 // The limits for code in pieces; it takes 2 (128 links) to 10 ms (512, refined) a link of a chain.
 constexpr std::size_t kMostInPieces = 100'000, kMostEliminatedInPieces = 1'000'000;
 // The inverse of J replaces an elimination if it has at most this number of entries: it has more operations, but they
@@ -284,7 +282,8 @@ double KernelPlan::cost() const {
   return company_ == Company::alone ? work() + kWaiting * waits_ * (plan_.stages + 1) : work();
 }
 
-std::string KernelPlan::compile(const std::string& cache, int lanes, CodeEffort effort) const {
+std::string KernelPlan::compile(const std::string& cache, int lanes, CodeEffort effort,
+                                std::size_t most_translated) const {
   const CompilerModule* module = compiler();
   if (!module) return "there is no compiler beside the program";
   const SparseLu& e = elimination_;
@@ -293,7 +292,7 @@ std::string KernelPlan::compile(const std::string& cache, int lanes, CodeEffort 
   const bool in_pieces = lanes == 1 && tables_.sums != 0 && plan_.after.size() <= kMostCompiled &&
                          plan_.stage.size() <= kMostInPieces && solved <= kMostEliminatedInPieces;
   const bool at_once = effort == CodeEffort::quick && translated_at_first(lanes) && plan_.stages == 1;
-  const std::size_t most = at_once ? kMostTranslated : kMostCompiled;
+  const std::size_t most = at_once ? most_translated : kMostCompiled;
   if (!in_pieces && (plan_.stage.size() + plan_.after.size() > most || e.update_list.size() + solved > kMostEliminated))
     return "it is too large to be compiled in a short time";
   Compiled& made = compiled(lanes);

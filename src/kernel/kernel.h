@@ -52,7 +52,9 @@ class KernelPlan {
   // Makes machine code for one lane, or for this number of lanes, with the same bits; kernels use it from their next
   // expansion on. Each code is made at most once for each effort, from any thread. Returns the reason if there is no
   // code, else an empty string.
-  std::string compile(const std::string& cache, int lanes = 1, CodeEffort effort = CodeEffort::full) const;
+  // `most_translated`: the limit of steps of a plan of one stage that is translated, as that of a function of states.
+  std::string compile(const std::string& cache, int lanes = 1, CodeEffort effort = CodeEffort::full,
+                      std::size_t most_translated = 4000) const;
   const Code* code(int lanes = 1) const {
     const Code* ready = compiled(lanes).ready.load(std::memory_order_acquire);
     return ready && ready->values ? ready : nullptr;

@@ -49,7 +49,7 @@ std::optional<MethodRefusal> refusal(const MethodInfo& method, const MethodDeman
   if (demands.saved && !method.resumes) return MethodRefusal{Of::saving, "cannot go on with the same bits"};
   if (demands.enclosed && !method.encloses) return MethodRefusal{Of::enclosing, "has no dense output that is enclosed"};
   if (demands.order && !method.has_order) return MethodRefusal{Of::order, "has no order to choose"};
-  if (demands.tolerance < method.least_tolerance && !method.raises_tolerance)
+  if (!method.serves(demands.tolerance) && !method.raises_tolerance)
     return MethodRefusal{Of::tolerance, "is of order 5 at most, for tolerances of " +
                                             number_text(method.least_tolerance, 3) + " and more"};
   return std::nullopt;

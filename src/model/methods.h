@@ -24,6 +24,8 @@ struct MethodInfo {
   int order;             // of its steps; 0: it follows from the tolerance
   double least_tolerance;
   bool raises_tolerance;  // to the least one; else a smaller one is refused
+  // Whether a tolerance is one of its own; a decimal that was rounded down to a double counts as itself.
+  bool serves(double tolerance) const { return tolerance >= least_tolerance * (1 - 1e-9); }
 };
 const MethodInfo& info(Method method);
 const char* name(Method method);

@@ -165,15 +165,16 @@ class SharperRun {
   Outcome settle(bool& goes_on) {
     const W within = last_step();
     std::vector<Occurrence<W>> occurrences;
-    for (; next_ < rows_.size() && run_.knows_resets && resets_before(next_) == resets_ && sets() &&
+    // All rows of a run that goes on lie behind the events before it.
+    const bool counted = !run_.since || (forward_ ? motion_.stepper().time() > convert<W>(*run_.since)
+                                                  : motion_.stepper().time() < convert<W>(*run_.since));
+    for (; counted && next_ < rows_.size() && run_.knows_resets && resets_before(next_) == resets_ && sets() &&
            from_now(next_) < within;
          ++next_)
       if (Outcome o = compare(next_); !o.ok()) return o;
     if (Outcome o = compare_waiting(); !o.ok()) return o;
     const Outcome o = motion_.settle(occurrences, goes_on);
     bool set = false;
-    const bool counted = !run_.since || (forward_ ? motion_.stepper().time() > convert<W>(*run_.since)
-                                                  : motion_.stepper().time() < convert<W>(*run_.since));
     for (const Occurrence<W>& each : occurrences) {
       if (counted) met_.push_back({each.event, each.t});
       set = set || !each.changes.empty();

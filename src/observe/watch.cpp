@@ -78,15 +78,24 @@ template <class MadeOf>
 void Track<W>::see(const W& value, const W& terms, MadeOf made_of) {
   see(value);
   size = std::max(size, terms);
+  made = std::max(made, W(made_of()));
   if (W v = relative_miss(W(value - first), size, made_of); v > missed || !is_finite(v)) missed = v;
 }
 
 template <Number W>
 void Track<W>::see_double(double value, double terms, double made_of) {
   see(W(value));
+  in_doubles = true;
   size = std::max(size, W(terms));
   const double v = relative_miss(to_double(W(W(value) - first)), to_double(size), [&] { return made_of; });
   if (W(v) > missed || !std::isfinite(v)) missed = W(v);
+}
+
+template <Number W>
+double Track<W>::relative_change() const {
+  constexpr double kNoise = kRoundoffsOfSum * std::numeric_limits<double>::epsilon();
+  if (in_doubles && made > size && is_finite(made) && change <= W(kNoise) * made) return to_double(W(change / made));
+  return to_double(missed > W(0) || change == W(0) ? missed : W(change / size));
 }
 
 template <Number W>
@@ -229,20 +238,24 @@ template <Number W>
 void Watch<W>::save(SavedRun& to) const {
   std::vector<W> tracks;
   for (const Track<W>& t : tracks_)
-    tracks.insert(tracks.end(), {W(t.any ? 1 : 0), t.first, t.last, t.least, t.greatest, t.change, t.size, t.missed});
+    tracks.insert(tracks.end(), {W(t.any ? 1 : 0), W(t.in_doubles ? 1 : 0), t.first, t.last, t.least, t.greatest,
+                                 t.change, t.size, t.missed, t.made});
   to.set_numbers("tracks", tracks);
   to.set_numbers<W>("energy", {h0_, forces_, turned_over_});
   to.set_numbers<W>("from", from_);
 }
 
+constexpr std::size_t kNumbersOfTrack = 10;  // in a saved run
+
 template <Number W>
 void Watch<W>::resume(const SavedRun& from, const std::vector<W>& parameters) {
   outputs_.set_parameters(parameters);
   redundant_.set_parameters(parameters);
-  const std::vector<W> tracks = from.numbers<W>("tracks", 8 * tracks_.size()), energy = from.numbers<W>("energy", 3);
+  const std::vector<W> tracks = from.numbers<W>("tracks", kNumbersOfTrack * tracks_.size()),
+                       energy = from.numbers<W>("energy", 3);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    const W* t = &tracks[8 * i];
-    tracks_[i] = {!(t[0] == W(0)), t[1], t[2], t[3], t[4], t[5], t[6], t[7]};
+    const W* t = &tracks[kNumbersOfTrack * i];
+    tracks_[i] = {!(t[0] == W(0)), !(t[1] == W(0)), t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9]};
   }
   h0_ = energy[0];
   forces_ = energy[1];

@@ -1,88 +1,8 @@
 #include "program/fault.h"
 
-#include "model/exponents.h"
+#include "model/formula_of_slot.h"
 
 namespace anholon {
-
-namespace {
-
-constexpr std::size_t kLongestFormula = 120;
-
-// Long formulas are cut to keep the message one sentence long.
-std::string short_text(const Program& p, std::uint32_t slot) {
-  const NodeId node = p.tape.nodes[slot];
-  if (node == Tape::kNoNode) return {};
-  const Model& model = *p.system->model;
-  const std::string text = print(Expr{model.graph.get(), node}, model.names, Format::text);
-  return text.size() <= kLongestFormula ? text : text.substr(0, kLongestFormula) + "...";
-}
-
-std::string power_text(const std::string& base, const Rational& exponent) {
-  if (exponent == Rational(1, 2)) return "sqrt(" + base + ")";
-  if (exponent == Rational(-1, 2)) return "1/sqrt(" + base + ")";
-  return "(" + base + ")^(" + exponent.get_str() + ")";
-}
-
-struct Described {
-  std::string formula;
-  std::uint32_t argument;  // the slot whose value explains the fault
-};
-
-// The power whose logarithm a slot is, as the user wrote it; empty if it is none.
-std::string power_of_log(const Program& p, std::uint32_t slot) {
-  const Instruction& in = p.tape.code[slot];
-  if (in.op != Op::function || in.index != static_cast<std::uint32_t>(Function::log)) return {};
-  const Graph& g = *p.system->model->graph;
-  for (std::uint32_t s = slot; s < p.tape.main_end; ++s) {
-    if (p.tape.nodes[s] == Tape::kNoNode) continue;
-    const std::optional<PowerParts> power = parts_of_power(g, p.tape.nodes[s]);
-    if (!power || power->base != p.tape.nodes[in.a]) continue;
-    const bool plain = power->factor == 1 && power->exponent.size() == 1 && power->exponent[0].second == 1;
-    const Expr exponent{p.system->model->graph.get(), plain ? power->exponent[0].first : 0};
-    const std::string base = short_text(p, in.a),
-                      of = plain ? print(exponent, p.system->model->names, Format::text) : std::string("...");
-    const auto atom = [](const std::string& text) {
-      return text.find_first_of(" +-*/^") == std::string::npos ? text : "(" + text + ")";
-    };
-    return atom(base) + "^" + atom(of);
-  }
-  return {};
-}
-
-// The formula of a slot, and its argument.
-Described described(const Program& p, std::uint32_t slot) {
-  const Instruction& in = p.tape.code[slot];
-  const auto name = [&](std::uint32_t of) {
-    const std::string text = short_text(p, of);
-    return text.empty() ? std::string("...") : text;
-  };
-  switch (in.op) {
-  case Op::power:
-    return {power_text(name(in.a), p.tape.rationals[in.index]), in.a};
-  case Op::divide:
-    return {"a division by " + name(in.b), in.b};
-  case Op::arctan2:
-    return {"atan2(" + name(in.a) + ", " + name(in.b) + ")", in.a};
-  case Op::function:
-    if (const std::string power = power_of_log(p, slot); !power.empty()) return {power, in.a};
-    return {short_text(p, slot).empty() ? "a function of " + name(in.a) : short_text(p, slot), in.a};
-  case Op::constant:
-  case Op::pi:
-  case Op::input:
-  case Op::parameter:
-  case Op::linear:
-  case Op::multiply:
-  case Op::scale:
-  case Op::square:
-  case Op::select:
-  case Op::lookup:
-  case Op::rate:
-    break;
-  }
-  return {short_text(p, slot).empty() ? "a formula" : short_text(p, slot), slot};
-}
-
-}  // namespace
 
 template <Number N>
 std::optional<std::uint32_t> first_fault(const Program& program, const Machine<N>& machine, int last_stage) {
@@ -102,21 +22,8 @@ Outcome fault_outcome(const Program& program, const Machine<N>& machine, int las
   if (!slot)
     return {OutcomeKind::not_a_number, "the equations have no finite solution",
             "start or stop the motion away from this point, or change the formulas"};
-  const Described d = described(program, *slot);
-  const bool value = is_finite(machine.series(*slot)[0]);
-  std::string message = d.formula + (value ? " has no derivatives" : " has no value");
-  if (d.argument != *slot) {
-    const std::string argument = short_text(program, d.argument);
-    if (!argument.empty())
-      message += ", where " + argument + " = " + number_text(to_double(machine.series(d.argument)[0]), 6);
-  }
-  if (!power_of_log(program, *slot).empty())
-    return {OutcomeKind::not_a_number, std::move(message),
-            "a power has a value at and below 0 only if its exponent is a fixed whole number: write abs(x)^n*sign(x) "
-            "for an "
-            "odd power of any sign of x, abs(x)^n for an even one"};
-  return {OutcomeKind::not_a_number, std::move(message),
-          "start or stop the motion away from this point, or change the formula so that it is smooth here"};
+  const auto value = [&](std::uint32_t of) { return to_double(machine.series(of)[0]); };
+  return without_value(program.tape, *program.system->model, *slot, value);
 }
 
 #define INSTANTIATE(N)                                                                                                 \

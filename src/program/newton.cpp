@@ -21,7 +21,8 @@ Outcome Expansion<N>::solve(const Solver& solver) {
 }
 
 // Whether no residual of the equations exceeds the rounding error of its evaluation. Terms that vanish together count
-// with the size at which they were computed: a small factor may precede a difference of large accelerations.
+// with the size at which they were computed: a small factor may precede a difference of large accelerations, and products
+// of velocities that are no terms of the equation may cancel within one of them.
 template <Number N>
 bool Expansion<N>::left_is_roundoff() const {
   const Program& p = *program_;
@@ -51,9 +52,12 @@ bool Expansion<N>::left_is_roundoff() const {
     }
     if (sum > s) s = sum;
   }
+  std::vector<N> made;
+  machine_.made_of(made);
   for (std::size_t i = 0; i < p.unknowns(); ++i) {
     const N value = abs(machine_.series(p.tape.roots[i])[p.c[i]]);
     N most = size[tape.roots[i]];
+    if (p.c[i] == 0 && made[tape.roots[i]] > most) most = made[tape.roots[i]];
     for (const N& v : {terms_of(i, 0), N(size_of_level(0, i) / x_.factorial(p.c[i]))})
       if (v > most) most = v;
     if (!(value <= unit_roundoff<N>() * N(kRoundoffsOfSum) * most)) return false;

@@ -116,7 +116,7 @@ std::string option_of(MethodRefusal::Of demand, const SimulationOptions& o, cons
 }
 
 void note_raised(const MethodInfo& method, const SimulationOptions& o, const Asker& asker) {
-  if (!(o.tolerance.get_d() < method.least_tolerance)) return;
+  if (method.serves(o.tolerance.get_d())) return;
   const std::string least = number_text(method.least_tolerance, 3);
   asker.note("a tolerance below " + least + " means " + least + " to " + method.name);
 }

@@ -134,7 +134,7 @@ std::vector<Warning> warnings(const Workspace& s, const Course<N>& course, const
     const unsigned order = j < n ? static_cast<unsigned>(course.taylor().program().d[j]) : 0;
     const std::string what =
         j < n ? derivative_name(s.system.variable_names[j], order, Format::text) + " is hardly determined"
-              : "the constraint '" + s.system.equation_names[j] + "' hardly holds";
+              : "the constraint '" + s.system.equation_names[j] + "' nearly loses its hold";
     list.push_back({std::string(kPassesNearSingular) +
                         " at t = " + number_text(to_double(course.smallest_sigma_time()), 6) + ": " + what,
                     "trust what follows less; write the constraint or the coordinates so that they are regular there"});

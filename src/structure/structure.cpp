@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "model/exponents.h"
+#include "model/formula_of_slot.h"
 #include "tape/bind.h"
 
 namespace anholon {
@@ -43,13 +43,7 @@ class Probe {
     // A distribution of the standard library has other bits in other libraries.
     const auto spread = [&] { return static_cast<double>(random()) * 0x1p-64 * (kMost - kLeast) + kLeast; };
     bind(machine_, *system_.model->graph, [&](const Node& n, NodeId) {
-      double base = 0.4;
-      if (n.kind == Kind::time)
-        base = hints.t;
-      else if (n.kind == Kind::jet && n.order < hints.derivatives.size())
-        base = hints.derivatives[n.order][n.index];
-      else if (n.kind == Kind::state && n.order == 0 && n.index < hints.states.size())
-        base = hints.states[n.index];
+      const double base = hints.at(n).value_or(0.4);
       return base + (1 + std::abs(base)) * spread();
     });
     machine_.evaluate();
@@ -291,21 +285,28 @@ std::optional<std::vector<std::vector<int>>> signature(const System& s, const Ta
   return sigma;
 }
 
-static bool any_power(const System& s) {
-  for (NodeId id : reachable(s.equations))
-    if (parts_of_power(*s.model->graph, id)) return true;
-  return false;
+// The first formula without a value at the hints themselves; where all have one, some lack it around them.
+static Outcome no_value(const System& s, const Tape& equations, const std::vector<double>& parameters,
+                        const ProbeHints& hints) {
+  Machine<double> machine(equations, 0, parameters);
+  bind(machine, *s.model->graph, [&](const Node& n, NodeId) { return hints.at(n).value_or(0); });
+  machine.evaluate();
+  const auto value = [&](std::uint32_t slot) { return machine.series(slot)[0]; };
+  for (std::uint32_t slot = 0; slot < equations.code.size(); ++slot)
+    if (!std::isfinite(value(slot))) {
+      Outcome o = without_value(equations, *s.model, slot, value);
+      o.message += " (at the start)";
+      return o;
+    }
+  return {OutcomeKind::not_a_number, "the equations have no value near the initial data",
+          "look for roots or logarithms of negative numbers and divisions by zero at the start"};
 }
 
 Outcome analyse(const System& s, const std::vector<double>& parameters, const ProbeHints& hints, Structure& out) {
   const std::size_t n = s.size();
-  const auto sigma = signature(s, compile(s.equations), parameters, hints);
-  if (!sigma)
-    return {OutcomeKind::not_a_number, "the equations have no value near the initial data",
-            std::string("look for roots or logarithms of negative numbers and divisions by zero at the start") +
-                (any_power(s) ? "; a power x^n has a value for x below 0 only if n is a fixed whole number: write "
-                                "abs(x)^n*sign(x) or abs(x)^n"
-                              : "")};
+  const Tape equations = compile(s.equations);
+  const auto sigma = signature(s, equations, parameters, hints);
+  if (!sigma) return no_value(s, equations, parameters, hints);
   out.sigma = *sigma;
   out.transversal = highest_transversal(out.sigma);
   if (out.transversal.empty()) {

@@ -39,6 +39,13 @@ struct ProbeHints {
   std::vector<std::vector<double>> derivatives;  // [order][coordinate]
   std::vector<double> states;
   double t = 0;
+  // The value of a symbol; nullopt if it is not among them.
+  std::optional<double> at(const Node& n) const {
+    if (n.kind == Kind::time) return t;
+    if (n.kind == Kind::jet && n.order < derivatives.size()) return derivatives[n.order][n.index];
+    if (n.kind == Kind::state && n.order == 0 && n.index < states.size()) return states[n.index];
+    return std::nullopt;
+  }
 };
 
 // Sigma by probing near the hints; nullopt if the equations have no value there. `equations`: compiled from those of

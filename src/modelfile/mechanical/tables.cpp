@@ -134,14 +134,14 @@ class TableReader {
   }
 
   // The text of a data file, which the source text of the model keeps.
-  const std::string& text_of(const Item& file, const std::filesystem::path& path) {
+  const std::string& text_of(const Item& file, const std::string& name, const std::filesystem::path& path) {
     std::vector<SourceText>& known = model_.source_text.tables;
-    const std::string name = file.text();
     const auto at = std::find_if(known.begin(), known.end(), [&](const SourceText& s) { return s.name == name; });
     if (at != known.end()) return at->text;
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error))
-      throw Failure(file.span, "there is no file '" + path.string() + "'", "the name is relative to the model file");
+      throw Failure(file.span, "there is no file '" + path.string() + "'",
+                    "the name is relative to the file in which it stands");
     if (std::filesystem::file_size(path, error) > kLargestFile)
       throw Failure(file.span, "the file '" + path.string() + "' is larger than 16 MiB");
     std::string text, why;
@@ -152,9 +152,13 @@ class TableReader {
 
   void from_file(const Item& file, const Item* columns, Table& table) {
     if (file.kind != Item::Kind::string) throw Failure(file.span, "a file is a name in quotes");
-    const std::filesystem::path path = std::filesystem::path(model_.source_text.name).parent_path() / file.text();
+    // Relative to the file in which it stands, which may be a base of the model file.
+    const SourceText& of = model_.source_text.of(file.span);
+    const std::filesystem::path path = std::filesystem::path(of.name).parent_path() / file.text();
+    const std::string name =
+        file.span.file == 0 ? file.text() : file.text() + " of base " + std::to_string(file.span.file);
     model_.table_files.push_back(path.string());
-    std::istringstream in(text_of(file, path));
+    std::istringstream in(text_of(file, name, path));
     lines_.clear();
     std::vector<std::string> wanted = {"1", "2"};
     if (columns) {
