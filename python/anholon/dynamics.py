@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, SupportsFloat, Union
 
@@ -463,7 +464,11 @@ class Dynamics:
         """x from values of coordinates, velocities ("x'") and states of the model by name; 0 for those left out.
 
         Higher derivatives that belong to the state ("x''") are given with the velocities. In independent velocities, those
-        that violate the constraints lose what violates them. The shape is (states,), in SI units.
+        that violate the constraints lose what violates them; `Model.initial` completes a state from the values that are
+        given. The shape is (states,), in SI units.
+
+        Warns:
+            UserWarning: a velocity that is given is not that of the state, as the values violate the constraints.
 
         Raises:
             KeyError: a name is none of the coordinates, velocities or states.
@@ -481,7 +486,14 @@ class Dynamics:
                 if name not in expected:
                     raise KeyError(f"there is no {name!r}; there are {', '.join(expected)}")
         at = self.t0 if t is None else t
-        return np.array(self._core.from_motion(at, *([_number(n, have.get(n, 0.0)) for n in expected] for have, expected in zip(given, names, strict=True))))
+        x = np.array(self._core.from_motion(at, *([_number(n, have.get(n, 0.0)) for n in expected] for have, expected in zip(given, names, strict=True))))
+        if self.minimal:
+            motion, scale = self.motion(x, at), max([1.0, *(abs(_number(n, v)) for n, v in qdot.items())])
+            lost = next((n for n, v in qdot.items() if not abs(motion[n] - _number(n, v)) < 1e-6 * scale), None)
+            if lost is not None:
+                what = f"{lost} = {qdot[lost]:g} is given, and the state has {lost} = {motion[lost]:g}: the velocities violate the constraints (those left out are 0)"
+                warnings.warn(what + "; give all of them, or take those of model.initial(…)", stacklevel=2)
+        return x
 
     def motion(self, x: npt.ArrayLike, t: float | None = None) -> dict[str, float]:
         """Coordinates, velocities (and higher derivatives of the state) and states of the model of one state x, by name.

@@ -337,6 +337,17 @@ def test_who_has_no_such_function_says_why() -> None:
         an.load("luo-zhao-example-1-symbolic").dynamics()
 
 
+def test_a_velocity_that_is_lost_is_told() -> None:
+    blade = "coordinates = ['x', 'y', 'th']\nbody = [{name = 's', mass = 1, inertia = 1, center = 'x*ex + y*ey', angle = 'th'}]\nconstraint = [{name = 'e', equation = \"y'*cos(th) = x'*sin(th)\"}]"
+    model = an.loads(blade)
+    f = model.dynamics()
+    with pytest.warns(UserWarning, match=r"is given, and the state has .*: the velocities violate the constraints"):
+        f.state(q={"th": 1.5}, qdot={"x'": 1, "y'": 0})
+    values = {v.name: v.value for v in model.initial(**{"th": 1.5, "x'": 1})}
+    x = f.state(q={n: values[n] for n in ("x", "y", "th")}, qdot={n: values[n] for n in ("x'", "y'", "th'")})
+    assert f.motion(x)["x'"] == pytest.approx(1, rel=1e-12)
+
+
 def batch_of(f: an.Dynamics, count: int) -> np.ndarray:
     return f.start[:, None] * (1 + 0.01 * np.random.default_rng(3).standard_normal((len(f.start), count)))
 

@@ -352,6 +352,11 @@ class Parser {
       return "write " + lexemes_[at_ - 2].text + before.text + "*" + at.text + " for a product";
     if (at.text == "and" || at.text == "or") return habit_of_sign(at.text == "and" ? "&" : "∨");
     if (before.token != Token::name && before.token != Token::number) return "a product is written with '*'";
+    // 12 1/s
+    const auto after = [&](std::size_t k) { return lexemes_[std::min(at_ + k, lexemes_.size() - 1)]; };
+    if (before.token == Token::number && at.token == Token::number && at.text == "1" &&
+        after(1).token == Token::over && find_unit(after(2).text))
+      return "write " + before.text + " " + after(2).text + "^-1: a unit begins with a name";
     const std::vector<std::string> functions = function_names();
     // sin^2(x)
     if (at_ > 2 && lexemes_[at_ - 2].token == Token::caret &&
