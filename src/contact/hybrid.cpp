@@ -16,7 +16,7 @@
 #include "integrate/step_control.h"
 #include "numeric/number.h"
 #include "observe/angles.h"
-#include "observe/supports.h"
+#include "observe/floors/supports.h"
 
 namespace anholon {
 
