@@ -32,7 +32,8 @@ struct FirstPassing {
 
 std::optional<FirstPassing> first_event(const Scenario& s, const SimulationOptions& o, const FormulaOf& formula,
                                         const Support* support, int direction, double until, const Follow& simulate) {
-  if (s.system.form->eliminates()) return std::nullopt;
+  // The multipliers are unknowns of the form in which the event is located; the motion is the same in all forms.
+  const Formulation& form = s.system.form->eliminates() ? *find_formulation("routh") : *s.system.form;
   const std::shared_ptr<Model> model = given_model(s);
   Graph& g = *model->graph;
   const std::string name = "begins to pull";  // no name that a user can write
@@ -42,7 +43,7 @@ std::optional<FirstPassing> first_event(const Scenario& s, const SimulationOptio
   const Span span = support ? model->constraints[support->constraint].span : Span{};
   model->events.push_back({name, when, direction, {}, true, span});
   Scenario scenario;
-  if (!make_scenario(model, *s.system.form, o.state, scenario).ok()) return std::nullopt;
+  if (!make_scenario(model, form, o.state, scenario).ok()) return std::nullopt;
   SimulationOptions own;
   own.state = o.state, own.tolerance = o.tolerance, own.order = o.order, own.most_steps = o.most_steps;
   own.cancelled = o.cancelled;

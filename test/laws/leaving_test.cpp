@@ -99,6 +99,23 @@ TEST(Leaving, OfABallThatRollsIsAtTenSeventeenths) {
   EXPECT_GT(std::abs(leaves(ball("2*m*a^2/3")).height - (10 + 7 * kW) / 17), 1e-3);
 }
 
+// A form without multipliers tells the same time, and not that of a row.
+TEST(Leaving, IsLocatedInAllForms) {
+  const auto note = [](const char* form) {
+    Scenario s;
+    EXPECT_TRUE(make_scenario(test::model_of(kParticles[0]), *find_formulation(form), {}, s).ok());
+    SimulationOptions o;
+    o.to = Rational(2);
+    o.every = Rational(1, 2);
+    test::TextRows rows;
+    const SimulationReport r = simulate(s, o, rows);
+    EXPECT_TRUE(r.outcome.ok()) << r.outcome.message;
+    return r.notes.empty() ? "" : r.notes.back();
+  };
+  EXPECT_NE(note("routh").find("is turned round from t = "), std::string::npos);
+  EXPECT_EQ(note("maggi"), note("routh"));
+}
+
 // Nothing is told of a motion that stays on the surface, nor of a pendulum that swings.
 TEST(Leaving, IsNotToldOfWhatStays) {
   const auto notes = [](const std::string& text) {
