@@ -8,6 +8,7 @@
 #include "contact/law/accumulation.h"
 #include "contact/law/consistent_modes.h"
 #include "contact/law/impact.h"
+#include "contact/law/impact_states.h"
 #include "contact/mode_segments.h"
 #include "contact/refused_options.h"
 #include "contact/slip_start.h"
@@ -16,7 +17,7 @@
 #include "integrate/step_control.h"
 #include "numeric/number.h"
 #include "observe/angles.h"
-#include "observe/supports.h"
+#include "observe/floors/supports.h"
 
 namespace anholon {
 
@@ -26,7 +27,7 @@ class HybridMotion {
  public:
   HybridMotion(Workspace& s, const std::vector<Contact>& contacts, const SimulationOptions& o, RowSink& sink)
       : s_(s), contacts_(with_borders(s, contacts)), bodies_(s, contacts_, start_of(s, o)), roots_(s, contacts_),
-        joined_(*s.model, contacts), accumulation_(contacts.size()), o_(o) {
+        joined_(*s.model, contacts), accumulation_(contacts.size()), impact_states_(s, contacts_), o_(o) {
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
     if (end_ < bodies_.at.t) throw Failure({}, "a motion with contacts goes forwards only", "an end after the start");
     std::vector<Rational> times = o.at;
@@ -370,14 +371,14 @@ class HybridMotion {
       if (bodies_.near.closed(c) && bodies_.near.gap_rate(c) < 0 && !bodies_.contacts[c].under) striking = c;
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
       touches.push_back(bodies_.near.closed(c) && bodies_.near.gap_rate(c) <= 0);
-    std::vector<std::vector<long double>> list = impact_jumps(bodies_.dynamics, bodies_.contacts, touches);
+    std::vector<ImpactJump> list = impact_jumps(bodies_.dynamics, bodies_.contacts, touches);
     if (list.size() != 1) {
       bodies_.first_alone(touches);
       list = impact_jumps(bodies_.dynamics, bodies_.contacts, touches);
     }
     if (list.size() != 1) return undecided(list.size());
     std::vector<long double> before(bodies_.at.qd.begin(), bodies_.at.qd.end()), after = before;
-    for (std::size_t a = 0; a < n; ++a) after[a] += list[0][a];
+    for (std::size_t a = 0; a < n; ++a) after[a] += list[0].velocities[a];
     constexpr long double kGrows = 1e-12L;
     // Formulas that hold t move a wall, which may give energy.
     if (!walls_move(bodies_.contacts) &&
@@ -387,12 +388,17 @@ class HybridMotion {
                   ? "Newton's law with friction does so in this direction: impact = \"poisson\" in the contacts"
                   : "take a smaller restitution"};
     std::vector<EventReport::Change> changes;
+    const std::vector<double> states = bodies_.at.states;
+    impact_states_.add(bodies_.at, after, list[0].impulses);
     for (std::size_t a = 0; a < n; ++a) {
       const auto v = static_cast<double>(after[a]);
       if (v != bodies_.at.qd[a])
         changes.push_back({s_.model->coordinates[a].name + "'", {bodies_.at.qd[a], ""}, {v, ""}});
       bodies_.at.qd[a] = v;
     }
+    for (std::size_t z = 0; z < states.size(); ++z)
+      if (states[z] != bodies_.at.states[z])
+        changes.push_back({s_.model->states[z].name, {states[z], ""}, {bodies_.at.states[z], ""}});
     joined_.set(bodies_.at.t.get_d(), changes, event_name(striking, ModeChange::hits));
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
       if (touches[c] && bodies_.near.gap_rate(c) != 0 && !bodies_.contacts[c].under)
@@ -437,6 +443,7 @@ class HybridMotion {
   JoinedReport joined_;
   Rational end_;
   Accumulation accumulation_;
+  ImpactStates impact_states_;
   SimulationOptions o_;
   int order_ = 0;  // of the Taylor polynomials
   std::optional<ModeSegments> segments_;

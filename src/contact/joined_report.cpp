@@ -4,7 +4,7 @@
 #include <cctype>
 
 #include "motion/stiff_method.h"
-#include "observe/supports.h"
+#include "observe/floors/supports.h"
 
 namespace anholon {
 

@@ -13,11 +13,18 @@ void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
   };
   for (const ContactForces::Formula& f : of.formulas) {
     const Expr value = put_masses(model, with_contact_forces(g, g.own(f.value), force));
-    if (f.of == ContactForces::Formula::Of::monitor)
+    switch (f.of) {
+    case ContactForces::Formula::Of::monitor:
       model.monitors[f.index].value = value;
-    else
+      break;
+    case ContactForces::Formula::Of::event:
       // A number passes no zero, and zero itself is no event.
       model.events[f.index].when = is_zero(value) ? g.one() : value;
+      break;
+    case ContactForces::Formula::Of::rate:
+      model.states[f.index].rate = value;
+      break;
+    }
   }
 }
 

@@ -42,7 +42,7 @@ std::vector<std::string> contact_columns(const std::vector<Contact>& contacts);
 // The names of the events that these contacts have, NAME.WORD, in the order of the contacts; none of switched constraints.
 std::vector<std::string> contact_events(const std::vector<Contact>& contacts);
 
-// Puts the forces of a mode, N and the components of friction of each contact, into the monitors and events that hold them.
+// Puts the forces of a mode, N and the components of friction of each contact, into the monitors, events and rates that hold them.
 void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
                 const std::vector<std::vector<Expr>>& components, Model& model);
 

@@ -5,7 +5,7 @@
 
 #include "contact/slow_slips.h"
 #include "motion/stiff_method.h"
-#include "observe/supports.h"
+#include "observe/floors/supports.h"
 #include "simulation/near_singular.h"
 #include "simulation/simulate.h"
 
@@ -14,9 +14,9 @@ namespace anholon {
 ModeSegments::ModeSegments(const Workspace& s, const SimulationOptions& options, TouchingBodies& bodies,
                            JoinedReport& joined, RowSink& rows, std::vector<Rational> times, Rational end,
                            std::function<void(std::size_t)> slips)
-    : o_(options), looks_for_events_(!s.model->events.empty()), has_supports_(!supports(s).empty()), bodies_(bodies),
-      joined_(joined), ready_(s, bodies.contacts), rows_(rows, bodies.contacts), times_(std::move(times)),
-      end_(std::move(end)), slips_(std::move(slips)) {
+    : o_(options), looks_for_events_(!s.model->events.empty()), has_supports_(!floors(s, translations(s)).empty()),
+      bodies_(bodies), joined_(joined), ready_(s, bodies.contacts), rows_(rows, bodies.contacts),
+      times_(std::move(times)), end_(std::move(end)), slips_(std::move(slips)) {
   rows_.only_at(times_);
 }
 
@@ -163,6 +163,7 @@ SimulationOptions ModeSegments::asked(const Rational& to) const {
   o.estimate = ErrorEstimate::never;
   o.conserved.clear();
   o.watches_floors = o_.watches_floors && has_supports_;
+  o.watches_carriers = false;  // the note tells of the start of the whole motion
   o.note = nullptr;
   o.state.t = bodies_.at.t;
   return o;

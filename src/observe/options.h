@@ -67,8 +67,9 @@ struct SimulationOptions {
   std::size_t most_steps = 50'000'000;
   bool kernel = true;  // where there is one: its pivots, chosen at the start, are seen in the last digits
   ErrorEstimate estimate = ErrorEstimate::never;
-  // Whether the notes tell of supports that pull and of friction that is needed (observe/floors.h).
+  // Whether the notes tell of supports that pull and of friction that is needed (observe/floors/floor_watch.h).
   bool watches_floors = true;
+  bool watches_carriers = true;      // of supports of one body alone, too
   std::vector<Conserved> conserved;  // to be watched: expressions of the scenario
   // Called at the end, and every few seconds: what is needed to go on.
   std::function<void(const SavedRun&)> save;

@@ -85,7 +85,6 @@ void Track<W>::see(const W& value, const W& terms, MadeOf made_of) {
 template <Number W>
 void Track<W>::see_double(double value, double terms, double made_of) {
   see(W(value));
-  in_doubles = true;
   size = std::max(size, W(terms));
   const double v = relative_miss(to_double(W(W(value) - first)), to_double(size), [&] { return made_of; });
   if (W(v) > missed || !std::isfinite(v)) missed = W(v);
@@ -93,8 +92,8 @@ void Track<W>::see_double(double value, double terms, double made_of) {
 
 template <Number W>
 double Track<W>::relative_change() const {
-  constexpr double kNoise = kRoundoffsOfSum * std::numeric_limits<double>::epsilon();
-  if (in_doubles && made > size && is_finite(made) && change <= W(kNoise) * made) return to_double(W(change / made));
+  constexpr double kNoise = 1e-6;  // of what integration leaves
+  if (made > size && is_finite(made) && change <= W(kNoise) * made) return to_double(W(change / made));
   return to_double(missed > W(0) || change == W(0) ? missed : W(change / size));
 }
 
@@ -238,14 +237,14 @@ template <Number W>
 void Watch<W>::save(SavedRun& to) const {
   std::vector<W> tracks;
   for (const Track<W>& t : tracks_)
-    tracks.insert(tracks.end(), {W(t.any ? 1 : 0), W(t.in_doubles ? 1 : 0), t.first, t.last, t.least, t.greatest,
-                                 t.change, t.size, t.missed, t.made});
+    tracks.insert(tracks.end(),
+                  {W(t.any ? 1 : 0), t.first, t.last, t.least, t.greatest, t.change, t.size, t.missed, t.made});
   to.set_numbers("tracks", tracks);
   to.set_numbers<W>("energy", {h0_, forces_, turned_over_});
   to.set_numbers<W>("from", from_);
 }
 
-constexpr std::size_t kNumbersOfTrack = 10;  // in a saved run
+constexpr std::size_t kNumbersOfTrack = 9;  // in a saved run
 
 template <Number W>
 void Watch<W>::resume(const SavedRun& from, const std::vector<W>& parameters) {
@@ -255,7 +254,7 @@ void Watch<W>::resume(const SavedRun& from, const std::vector<W>& parameters) {
                        energy = from.numbers<W>("energy", 3);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const W* t = &tracks[kNumbersOfTrack * i];
-    tracks_[i] = {!(t[0] == W(0)), !(t[1] == W(0)), t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9]};
+    tracks_[i] = {!(t[0] == W(0)), t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8]};
   }
   h0_ = energy[0];
   forces_ = energy[1];

@@ -28,7 +28,7 @@ bool declared_conserved(const Model& model, const Monitor& m);
 // A number along the motion: its range, and how far it went from its first value.
 template <Number W>
 struct Track {
-  bool any = false, in_doubles = false;  // whether numbers were seen at all, and some that were computed in doubles
+  bool any = false;
   W first{0}, last{0}, least{0}, greatest{0}, change{0}, size{0}, missed{0};
   W made{0};  // the greatest of the numbers that the terms are made of, where these are known
   void see(const W& value);
@@ -38,8 +38,8 @@ struct Track {
   void see(const W& value, const W& terms, MadeOf made_of);
   // The same of a number that was computed in doubles.
   void see_double(double value, double terms, double made_of);
-  // Of its size; or of its terms, if it ought to be constant; or of the numbers these are made of, if it is round-off of
-  // them: rows in doubles do not know them all.
+  // Of its size; or of its terms, if it ought to be constant; or of the numbers these are made of, if it is small beside
+  // them: where the terms cancel, what is left is as large as the error of the motion.
   double relative_change() const;
 };
 

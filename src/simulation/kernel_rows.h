@@ -7,7 +7,7 @@
 #include <atomic>
 
 #include "base/in_order.h"
-#include "observe/floors.h"
+#include "observe/floors/floor_watch.h"
 #include "observe/judge.h"
 #include "observe/rows/row_check.h"
 #include "observe/rows/waiting_rows.h"

@@ -60,7 +60,7 @@ class Run {
         course_(s, step_settings(*s.model, o), method(o), quadratures(s, power_, o), stages_), shown_(course_),
         watch_(s, power_, o.conserved, motion().parameters()), angles_(s, doubles(motion().parameters())), judge_(s, o),
         paces_(s.model->events), rows_({s, o, stages_, course_, shown_, watch_, judge_, floors_, report_}, sink) {
-    if (o.watches_floors) floors_.emplace(s);
+    if (o.watches_floors) floors_.emplace(s, o.watches_carriers && !o.resume);
     report_.model = s.model->title;
     report_.form = s.system.form->name;
     report_.constraints_each = constraint_reports(s);
@@ -405,7 +405,7 @@ class Run {
     if (!o_.resume) {
       floors_->supports.locate(
           [&](const Support& support, double t) { return first_pull(s_, o_, support, t, follow); });
-      floors_->traction.locate([&](Expr (*formula)(const Model&), int direction, double t) {
+      floors_->traction.locate([&](const std::function<Expr(const Model&)>& formula, int direction, double t) {
         return first_passing(s_, o_, formula, direction, t, follow);
       });
     }

@@ -11,9 +11,26 @@ namespace {
 
 using Jump = std::vector<long double>;
 
-std::vector<Jump> jumps(const std::vector<ContactSolution>& solutions) {
-  std::vector<Jump> list;
-  for (const ContactSolution& s : solutions) list.push_back(s.x);
+// The impulses of a solution; those of friction that stands under a contact of its own at the end of the list are added to it.
+Impulses impulses(const ContactProblem& p, const ContactSolution& f, std::size_t count) {
+  Impulses all;
+  all.normal.resize(count), all.friction.resize(count);
+  for (std::size_t c = 0; c < p.contacts.size(); ++c) {
+    const ContactRows& rows = p.contacts[c];
+    const ContactMode& mode = f.modes[c];
+    const std::size_t of = c < count ? c : *rows.under;
+    if (!rows.under) all.normal[of] += f.normal[c];
+    for (std::size_t k = 0; mode.touch != Touch::open && k < rows.tangential.size(); ++k)
+      all.friction[of][k] +=
+          mode.touch == Touch::sticks ? f.friction[c][k] : -rows.friction * f.normal[c] * mode.direction[k];
+  }
+  return all;
+}
+
+std::vector<ImpactJump> jumps(const ContactProblem& p, const std::vector<ContactSolution>& solutions,
+                              std::size_t count) {
+  std::vector<ImpactJump> list;
+  for (const ContactSolution& s : solutions) list.push_back({s.x, impulses(p, s, count)});
   return list;
 }
 
@@ -98,18 +115,26 @@ Outcome on_edge(const std::string& contact, const std::string& when) {
           "write a contact for each side of the edge in place of one gap with min, max, abs or piecewise"};
 }
 
-std::vector<Jump> impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
-                               const std::vector<bool>& touches) {
+std::vector<ImpactJump> impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
+                                     const std::vector<bool>& touches) {
+  const std::size_t count = contacts.size();
   const bool poisson =
       std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.law == ImpactLaw::poisson; });
-  if (!poisson) return jumps(consistent_modes(dynamics.impact(touches)));
-  ContactProblem p = dynamics.impact(touches, 0);
-  const std::vector<ContactSolution> compression = consistent_modes(p);
-  if (compression.size() != 1) return jumps(compression);
-  p = expansion(dynamics, std::move(p), compression[0]);
-  std::vector<Jump> list = jumps(consistent_modes(p));
-  for (Jump& x : list)
-    for (std::size_t a = 0; a < x.size(); ++a) x[a] += compression[0].x[a];
+  ContactProblem p = poisson ? dynamics.impact(touches, 0) : dynamics.impact(touches);
+  const std::vector<ContactSolution> first = consistent_modes(p);
+  if (!poisson || first.size() != 1) return jumps(p, first, count);
+  const Impulses compression = impulses(p, first[0], count);
+  p = expansion(dynamics, std::move(p), first[0]);
+  std::vector<ImpactJump> list = jumps(p, consistent_modes(p), count);
+  for (ImpactJump& jump : list) {
+    for (std::size_t a = 0; a < jump.velocities.size(); ++a) jump.velocities[a] += first[0].x[a];
+    for (std::size_t c = 0; c < count; ++c) {
+      // The impulse e N_c is given, and stands with the forces.
+      const long double expanding = dynamics.place(c).restitution * std::max(first[0].normal[c], 0.0L);
+      jump.impulses.normal[c] += compression.normal[c] + (contacts[c].under ? 0 : expanding);
+      for (std::size_t k = 0; k < 2; ++k) jump.impulses.friction[c][k] += compression.friction[c][k];
+    }
+  }
   return list;
 }
 

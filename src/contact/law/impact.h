@@ -24,9 +24,19 @@ Outcome lies_flat(const std::string& contact, long double part, const std::strin
 // The outcome where a body comes to rest at an edge of the surface of a contact, or strikes its sides without end.
 Outcome on_edge(const std::string& contact, const std::string& when);
 
+// The impulses of the contacts: N, and T along the components of the slip velocity.
+struct Impulses {
+  std::vector<long double> normal;
+  std::vector<std::array<long double, 2>> friction;
+};
+struct ImpactJump {
+  std::vector<long double> velocities;
+  Impulses impulses;
+};
+
 // The consistent jumps, of which there is one unless bodies jam (Painlevé's paradox). touches: the contacts that take part;
 // all contacts that strike have one law.
-std::vector<std::vector<long double>>
-impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts, const std::vector<bool>& touches);
+std::vector<ImpactJump> impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
+                                     const std::vector<bool>& touches);
 
 }  // namespace anholon

@@ -145,7 +145,7 @@ initial = {z = 1, "phi'" = 9}
 - Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. A gap that is 0 at the start and shrinks is an impact, `NAME.hits`, at the start. At `NAME.reverses` a slip
   velocity passes zero, or jumps over it, and the contact slips on. `NAME.slips` ends a time of sticking, and `NAME.sticks` one of slipping: what a contact does from the start, or from an impact on, is no event, and its column `mode` tells it. Rows have the columns `NAME.mode` (0 open,
   1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
-- In monitors, outputs, events and the definitions they use, `lambda.NAME` is N, 0 while the contact is open, and `lambda.NAME.t1`, `lambda.NAME.t2` are the components
+- In monitors, outputs, rates of states, events and the definitions they use, `lambda.NAME` is N, 0 while the contact is open, and `lambda.NAME.t1`, `lambda.NAME.t2` are the components
   of friction along those of the slip velocity, as forces on what slips; `lambda.NAME.rolling.t1` and so on are the moments of resistance. `reaction(B)` holds the forces of contacts. A force that jumps over
   the zero of an event at a change of mode does not make it happen. Rates of states hold no force of a contact.
 - Coefficients are not negative, a restitution is at most 1, and `static_friction` is at least `friction`. Where the file has units, friction and restitution are numbers, and resistances lengths.

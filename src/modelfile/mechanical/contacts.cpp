@@ -407,6 +407,17 @@ Expr with_contact_forces(Graph& g, Expr formula, const std::function<Expr(const 
   }
 }
 
+// Whether R(lambda) = R(0) + sum lambda dR/dlambda, by an exact test.
+static bool is_linear_in_forces(Graph& g, Expr rate) {
+  Column forces;
+  for (const NodeId id : symbols({&rate, 1}))
+    if (is_contact_force(g.node(id))) forces.push_back({&g, id});
+  const Column slopes = gradient(rate, forces);
+  Expr rest = rate - with_contact_forces(g, rate, [&](const Node&) { return g.zero(); });
+  for (std::size_t k = 0; k < forces.size(); ++k) rest = rest - forces[k] * slopes[k];
+  return proved_zero(rest);
+}
+
 void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact>& contacts, Diagnostics& diagnostics) {
   const auto& asked = scope.contact_forces.asked();
   if (asked.empty()) return;
@@ -450,13 +461,24 @@ void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact
     for (Expr& e : o.values) e = at_start(e);
   const auto refuse = [&](Expr& e, Span span, const char* what) {
     if (!holds_force(e)) return;
-    diagnostics.error(
-        span, std::string(what) + " holds the force of a contact",
-        "such a formula stands in monitors, outputs and the 'when' of events; an [output] with the energy tells the "
-        "work of friction between two impacts, by what it loses");
+    diagnostics.error(span, std::string(what) + " holds the force of a contact",
+                      "such a formula stands in monitors, outputs, rates of states and the 'when' of events");
     e = at_start(e);
   };
-  for (StateVariable& z : model.states) refuse(z.rate, z.span, "a rate");
+  const bool switched =
+      std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.held.has_value(); });
+  for (std::size_t k = 0; k < model.states.size(); ++k) {
+    StateVariable& z = model.states[k];
+    if (switched) {
+      refuse(z.rate, z.span, "a rate of a model with 'active'");
+      continue;
+    }
+    if (holds_force(z.rate) && !is_linear_in_forces(*model.graph, z.rate))
+      diagnostics.error(z.span, "a rate is not linear in the forces of contacts",
+                        "an impact adds to the state what its impulses give, and only a linear rate tells that: "
+                        "lambda.NAME.t1*v, without abs and powers");
+    settle(z.rate, z.open_rate, ContactForces::Formula::Of::rate, k);
+  }
   for (Condition& c : model.initial.conditions) refuse(c.residual, c.span, "a condition");
   for (Event& e : model.events)
     for (Assignment& a : e.set) refuse(a.value, a.span, "a value that an event sets");

@@ -23,8 +23,8 @@ struct ContactForces {
     std::optional<std::size_t> friction;  // this component of the friction, or of the moment of resistance; else N
   };
   struct Formula {
-    enum class Of : std::uint8_t { monitor, event } of = Of::monitor;
-    std::size_t index = 0;  // of the monitor or event; in the model it holds the value with all contacts open
+    enum class Of : std::uint8_t { monitor, event, rate } of = Of::monitor;  // rate: of a state, linear in the forces
+    std::size_t index = 0;  // of its kind; in the model it holds the value with all contacts open
     Expr value;             // multiplier kContactForces + k is force k
   };
   std::vector<Force> forces;
@@ -95,7 +95,7 @@ bool is_switched(const Item& constraint);
 // rub or rebound have one law of impacts. Errors go to the diagnostics.
 std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
 
-// Finds the forces that monitors, outputs and events hold, and puts zeros in their places in the model. Errors, also those
+// Finds the forces that monitors, outputs, rates of states and events hold, and puts zeros in their places in the model. Errors, also those
 // of conditions, rates and values that hold a force, go to the diagnostics.
 void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact>& contacts, Diagnostics& diagnostics);
 

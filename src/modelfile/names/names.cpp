@@ -96,7 +96,7 @@ void Scope::unknown(const std::string& name, Span span) const {
   if (contact_forces.declares(name))
     throw Failure(span, "'" + name + "' is a contact, and its gap has no name in formulas",
                   "write the gap with points and coordinates, as P.z - R; lambda." + name +
-                      " is the normal force, in monitors, outputs and events");
+                      " is the normal force, in monitors, outputs, rates and events");
   const std::string near = did_you_mean(name, known);
   throw Failure(span,
                 "unknown name '" + name.substr(0, 60) + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"),

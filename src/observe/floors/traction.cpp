@@ -1,4 +1,4 @@
-#include "observe/traction.h"
+#include "observe/floors/traction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 #include "expr/diff.h"
 #include "expr/normal.h"
 #include "numeric/number.h"
-#include "observe/supports.h"
 #include "tape/bind.h"
 
 namespace anholon {
@@ -14,8 +13,7 @@ namespace anholon {
 namespace {
 
 bool held_by_motion(const Translations& t, std::size_t coordinate) {
-  const auto is = [&](const Translation& x) { return x.coordinate == coordinate; };
-  return (t.up && is(*t.up)) || std::any_of(t.sideways.begin(), t.sideways.end(), is);
+  return std::any_of(t.all.begin(), t.all.end(), [&](const Translation& x) { return x.coordinate == coordinate; });
 }
 
 // Whether an expression changes with a translation, in positions (order 0) or velocities (order 1).
@@ -45,11 +43,6 @@ bool outside_is_known(const Workspace& s, const Translations& t) {
   return m.observer.inertial && m.masses.empty();
 }
 
-// Whether parameters may change on the way.
-bool events_set_numbers(const Model& m) {
-  return std::any_of(m.events.begin(), m.events.end(), [](const Event& e) { return !e.set.empty(); });
-}
-
 // The names of the constraints of velocities that hold the system sideways. Returns nullopt if the floor is not a plane,
 // or a constraint is of another kind, as one of the speed is.
 std::optional<std::vector<std::string>> rolling_constraints(const Workspace& s, const Translations& t) {
@@ -60,7 +53,7 @@ std::optional<std::vector<std::string>> rolling_constraints(const Workspace& s, 
     if (c.order == 0) continue;
     const Expr phi = put_masses(*s.model, s.mechanics->phi[r]);
     if (!feels(s, t, phi, 1)) continue;
-    if (s.classes[r].kind == "nonlinear" || (t.up && feels(s, t, phi, 0))) return std::nullopt;
+    if (s.classes[r].kind == "nonlinear" || (t.across && feels(s, t, phi, 0))) return std::nullopt;
     names.push_back(c.name);
   }
   return names;
@@ -85,17 +78,21 @@ Column force_of_floor(const Model& m) {
 
 }  // namespace
 
-TractionWatch::TractionWatch(const Scenario& s) : s_(s), start_(to_double(s.state.t)) {
-  const auto found = translations(s);
-  if (!found || found->sideways.empty() || events_set_numbers(*s.model) || largest_order(s, s.structure.d) < 2) return;
+TractionWatch::TractionWatch(const Scenario& s, const std::optional<Translations>& found, bool has_floor)
+    : s_(s), has_floor_(has_floor), start_(to_double(s.state.t)) {
+  if (!found || !found->normal || found->all.empty() || events_set_numbers(*s.model) ||
+      largest_order(s, s.structure.d) < 2)
+    return;
+  normal_ = *found->normal;
+  level_ = found->level();
+  if (std::all_of(found->all.begin(), found->all.end(),
+                  [&](const Translation& t) { return norm(cross(t.along, normal_)) <= kSameRate * norm(t.along); }))
+    return;  // it is not free sideways
   Workspace own(s);
   const auto names = rolling_constraints(own, *found);
   if (!names || names->empty() || !outside_is_known(own, *found)) return;
   names_ = *names;
-  has_floor_ = !supports(s).empty();
-  Column outputs = force_of_floor(*own.model);
-  const Vector& gravity = own.model->bodies[0].gravity;
-  for (const Expr e : put_masses(*own.model, Column{gravity.x, gravity.y, gravity.z})) outputs.push_back(e);
+  const Column outputs = force_of_floor(*own.model);
   Tape tape = compile(outputs);
   for (const Input& in : tape.inputs) {
     const Node& n = own.model->graph->node(in.symbol);
@@ -112,12 +109,8 @@ void TractionWatch::look(double t) {
   bind(*machine_, *s_.model->graph,
        [&](const Node& node, NodeId) { return node.kind == Kind::jet ? numbers_[node.order * n + node.index] : t; });
   machine_->evaluate();
-  const auto direction = [&](std::size_t k) {
-    return Triple{machine_->value(k), machine_->value(k + 1), machine_->value(k + 2)};
-  };
-  const Triple force = direction(0), gravity = direction(3);
-  const double load = -dot(force, gravity) / norm(gravity),
-               sideways = std::sqrt(std::max(dot(force, force) - load * load, 0.0));
+  const Triple force{machine_->value(0), machine_->value(1), machine_->value(2)};
+  const double load = dot(force, normal_), sideways = std::sqrt(std::max(dot(force, force) - load * load, 0.0));
   largest_ = std::max(largest_, std::abs(load));
   // Round-off of a load that vanishes is neither.
   constexpr double kNothing = 1e-9;
@@ -130,19 +123,16 @@ void TractionWatch::look(double t) {
   }
 }
 
-Expr load_of_floor(const Model& m) {
+Expr load_of_floor(const Model& m, const Triple& normal) {
   const Column force = force_of_floor(m);
-  const Vector& g = m.bodies[0].gravity;
-  const Column down = put_masses(m, Column{g.x, g.y, g.z});
-  return -(force[0] * down[0] + force[1] * down[1] + force[2] * down[2]);
+  const auto number = [&](double x) { return m.graph->number(Rational(x)); };
+  return force[0] * number(normal.x) + force[1] * number(normal.y) + force[2] * number(normal.z);
 }
 
-Expr friction_above_load(const Model& m) {
+Expr friction_above_load(const Model& m, const Triple& normal) {
   const Column f = force_of_floor(m);
-  const Vector& g = m.bodies[0].gravity;
-  const Column down = put_masses(m, Column{g.x, g.y, g.z});
-  const Expr load = load_of_floor(m), square = down[0] * down[0] + down[1] * down[1] + down[2] * down[2];
-  return (f[0] * f[0] + f[1] * f[1] + f[2] * f[2]) * square - 2 * load * load;
+  const Expr load = load_of_floor(m, normal);
+  return f[0] * f[0] + f[1] * f[1] + f[2] * f[2] - 2 * load * load;
 }
 
 std::string TractionWatch::rolling() const {
@@ -154,8 +144,9 @@ std::string TractionWatch::rolling() const {
 std::vector<std::string> TractionWatch::notes() const {
   std::vector<std::string> list;
   if (pulls_ && !has_floor_)
-    list.push_back("the floor under " + rolling() + " pulls down from t = " + number_text(*pulls_, 6) +
-                   " on, at most with " + number_text(-least_, 3) + " at t = " + number_text(least_t_, 6) +
+    list.push_back("the floor under " + rolling() + (level_ ? " pulls down" : " pulls") +
+                   " from t = " + number_text(*pulls_, 6) + " on, at most with " + number_text(-least_, 3) +
+                   " at t = " + number_text(least_t_, 6) +
                    ": a wheel would lift off; write what touches as a [[contact]], with the height as a coordinate");
   if (above_)
     list.push_back(rolling() + (names_.size() > 1 ? " need" : " needs") +

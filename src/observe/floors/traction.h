@@ -2,30 +2,32 @@
 //
 //   F = sum m (a - g) - F_ext,   mu >= |F sideways| / F upwards
 //
-// F is the whole force of the floor by Newton's law. Contacts with the friction mu transmit at most mu times the sum of
+// F is the whole force of the floor by Newton's law, upwards means along the normal of the floor, a plane. Contacts with the friction mu transmit at most mu times the sum of
 // their loads, so the quotient is a lower bound of the friction that the worst of them needs.
 //
-// Hypotheses, without which there is no watch: gravity, coordinates that move all bodies as one sideways, no geometric
+// Hypotheses, without which there is no watch: a weight, coordinates that move all bodies as one sideways, no geometric
 // constraint that holds the system sideways, constraints of velocities that do, forces that are torques, act between
 // bodies or have a vector, an observer that is inertial, masses that do not vary.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "numeric/number.h"
-#include "observe/translations.h"
+#include "observe/floors/translations.h"
 #include "tape/tape.h"
 
 namespace anholon {
 
-// Formulas of a model that has a watch, as factors of positive numbers: the load of the floor, and |F sideways|^2 - load^2.
-Expr load_of_floor(const Model& model);
-Expr friction_above_load(const Model& model);
+// Formulas of a model that has a watch: the load of the floor with this normal, and |F sideways|^2 - load^2.
+Expr load_of_floor(const Model& model, const Triple& normal);
+Expr friction_above_load(const Model& model, const Triple& normal);
 
 class TractionWatch {
  public:
-  explicit TractionWatch(const Scenario& s);
+  // `found`: translations(s). `has_floor`: a geometric constraint is a support, whose pull its own watch tells.
+  TractionWatch(const Scenario& s, const std::optional<Translations>& found, bool has_floor);
   bool any() const { return machine_.has_value(); }
   // numbers: of a row after t, which begin with the derivatives of the coordinates of order 0, 1 and 2. Of a long run,
   // one of kOneOf rows is looked at after the first kAllRows.
@@ -40,9 +42,12 @@ class TractionWatch {
   template <class F>
   void locate(F first) {
     if (pulls_ && *pulls_ != start_)
-      if (const std::optional<double> t = first(load_of_floor, -1, *pulls_)) pulls_ = t;
+      if (const std::optional<double> t = first([&](const Model& m) { return load_of_floor(m, normal_); }, -1, *pulls_))
+        pulls_ = t;
     if (above_ && *above_ != start_)
-      if (const std::optional<double> t = first(friction_above_load, 1, *above_)) above_ = t;
+      if (const std::optional<double> t =
+              first([&](const Model& m) { return friction_above_load(m, normal_); }, 1, *above_))
+        above_ = t;
   }
   // A sentence if the friction needed passes 1, or if the floor would have to pull.
   std::vector<std::string> notes() const;
@@ -54,7 +59,8 @@ class TractionWatch {
 
   const Scenario& s_;
   std::vector<std::string> names_;
-  bool has_floor_ = false;  // a geometric constraint is a support, whose pull its own watch tells
+  bool has_floor_, level_ = true;
+  Triple normal_;
   std::optional<Tape> tape_;
   std::optional<Machine<double>> machine_;
   std::vector<double> numbers_;
