@@ -5,6 +5,8 @@
 
 #include "api/sweep_data.h"
 #include "api/sweep_request.h"
+#include "base/escape.h"
+#include "base/read_file.h"
 #include "ensemble/parts/judgement.h"
 #include "ensemble/parts/scenarios.h"
 #include "observe/rows/quantity_units.h"
@@ -128,6 +130,8 @@ Result<Sweep> computed(const PreparedSweep& p) {
   auto data = std::make_shared<Sweep::Data>();
   data->scenarios = p.scenarios;
   for (const Vary& v : p.asked.vary) data->names.push_back(v.name);
+  const std::vector<inner::Varied>& varied = p.pieces.front().options.varied;
+  for (std::size_t k = data->names.size(); k < varied.size(); ++k) data->names.push_back(varied[k].name);
   for (const inner::Rational& t : p.pieces.front().options.at) data->times.push_back(inner::from_rational<double>(t));
   std::vector<KeptColumns> columns;
   for (const PreparedPiece& piece : p.pieces) {
@@ -167,6 +171,19 @@ std::vector<Number> linspace(double from, double to, std::size_t count) {
   return list;
 }
 
+Result<std::string> case_table(const std::string& path) {
+  return guarded(inner::SourceText(), [&]() -> Result<std::string> {
+    std::string text, why;
+    if (!inner::read_file(path, text, &why))
+      throw inner::Failure({}, "cannot read " + path + ": " + why,
+                           "a CSV or Parquet file whose columns have the names of what varies");
+    std::string table = inner::text_of_case_table(std::move(text), path);
+    if (inner::hdf5_text(table) != table)
+      throw inner::Failure({}, path + " holds bytes that are not UTF-8", "a table of numbers and formulas");
+    return table;
+  });
+}
+
 Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
   const auto prepared = prepared_sweep(system, asked);
   if (!prepared) return prepared.error();
@@ -182,6 +199,7 @@ Result<Sweep> sweep(const Model& model, const SweepOptions& asked, const Prepare
 std::size_t Sweep::cases() const { return data_->t.size(); }
 std::size_t Sweep::finished() const { return data_->finished; }
 const std::vector<std::string>& Sweep::columns() const { return data_->columns; }
+const std::vector<std::string>& Sweep::varied_names() const { return data_->names; }
 const std::vector<std::string>& Sweep::scenarios() const { return data_->scenarios; }
 const std::string& Sweep::scenario(std::size_t number) const {
   static const std::string none;

@@ -77,7 +77,8 @@ std::vector<std::pair<std::string, std::string>> asked_of(const PreparedSweep& p
   for (const std::string& name : p.scenarios) names.push_back(inner::csv_cell(name));
   add("vary case", inner::joined(names, ","));
   for (const Vary& v : o.vary) add("vary " + v.name, text_of(v));
-  add("together", o.together ? "yes" : ""), add("cases", o.cases ? std::to_string(*o.cases) : "");
+  add("table of cases", o.table), add("together", o.together ? "yes" : ""),
+      add("cases", o.cases ? std::to_string(*o.cases) : "");
   add("draw", o.draw), add("seed", std::to_string(o.seed)), add("reduce", inner::joined(o.reduce, " "));
   return all;
 }
