@@ -82,6 +82,9 @@ class ANHOLON_API Sweep {
   std::size_t steps(std::size_t number) const;
   // finished, or interrupted.
   const Outcome& outcome() const;
+  // Reductions that have no value in some of the cases, and for each way in which cases stopped how many there are, the
+  // first one, its message and a hint: what `anholon sweep` says at its end.
+  const std::vector<std::string>& notes() const;
   // The units of columns and of what varies, as far as the model tells them.
   const std::map<std::string, std::string>& units() const;
   // Writes FILE.h5, FILE.csv, FILE.json or FILE.parquet, with the columns of `anholon sweep -o`: what varies and how each

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import re
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Protocol, Union
 
@@ -61,6 +62,13 @@ def table_of(cases: CaseTable) -> tuple[str, str]:
     writer.writerow(columns)
     writer.writerows(zip(*columns.values()))
     return "the table", text.getvalue()
+
+
+def names_of_table(text: str) -> set[str]:
+    """What a table varies; brackets and quotes may hold commas."""
+    heads = [line for line in text.splitlines() if line.strip(" \t")][:1]
+    found = re.findall(r'"((?:[^"]|"")*)"|((?:[^,"\[(]|\[[^\]]*\]|\([^)]*\))+)', heads[0] if heads else "")
+    return {(quoted or plain).strip(" \t").removesuffix("(0)") for quoted, plain in found}
 
 
 def lines_of(text: str) -> int:

@@ -189,7 +189,8 @@ def _fill_generation(
         if on is not None:
             _fill_by_workers(core, on, share, threads or 1, stop, tell)
             return folder
-        _, _, error, raised = core.fill(None, share[0], share[1], threads, stop, tell)
+        _, notes, error, raised = core.fill(None, share[0], share[1], threads, stop, tell)
+    folder._computed_notes = notes
     if isinstance(raised, KeyboardInterrupt):
         raise Interrupted(folder) from None
     if isinstance(raised, BaseException):

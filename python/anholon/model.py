@@ -12,6 +12,7 @@ from . import _core
 from ._analysed import Analysed
 from ._case_table import CaseTable, table_of
 from ._errors import Interrupted, ModelError, MotionError
+from ._kept_sweep import SweepAgain
 from ._names import names_of
 from ._numbers import Number, float_of, list_of, text_of, texts_of, varied_list, whole
 from ._progress import Progress, Shown
@@ -339,13 +340,10 @@ class Model(Analysed):
             raise ModelError('on, chunk, share and refine belong to a sweep in a folder\nhint: out="falls/"')
         scenarios = runs_through_scenarios(self, vary)
         count = number_of_cases(values, laws, cases, together, "case" if scenarios else None, table[1])
-        system = None if scenarios else self._system_of_sweep(form, texts_of(initial))
+        again = SweepAgain(self, form, texts_of(initial), words, scenarios)
         with Shown(progress, self.title, count, unit="cases") as tell:
-            if system is None:
-                core, raised = _core.sweep_scenarios(self._core, form, texts_of(initial), words, threads, stop, tell)
-            else:
-                core, raised = _core.sweep(system, words, threads, stop, tell)
-        sweep = Sweep(self, core, [*vary, *core.varied_names[len(vary) - scenarios :]], list(reduce))
+            core, raised = again.run(threads, stop, tell)
+        sweep = Sweep(core, [*vary, *core.varied_names[len(vary) - scenarios :]], list(reduce), again)
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted(sweep) from None
         if isinstance(raised, BaseException):

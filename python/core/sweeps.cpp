@@ -61,6 +61,7 @@ void bind_sweeps(nb::module_& m) {
       .def_prop_ro("t", [](nb::handle self) { return view(nb::cast<const Sweep&>(self).t(), self); })
       .def("outcome_of", nb::overload_cast<std::size_t>(&Sweep::outcome, nb::const_), "number"_a)
       .def_prop_ro("outcome", nb::overload_cast<>(&Sweep::outcome, nb::const_))
+      .def_prop_ro("notes", &Sweep::notes)
       .def_prop_ro("units", &Sweep::units)
       .def(
           "write",

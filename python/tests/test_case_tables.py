@@ -174,3 +174,8 @@ def test_a_folder_keeps_the_table(model, tmp_path):
     _sweep_filling._opened.clear()
     assert _sweep_filling.fill_parts(str(tmp_path / "falls"), [1], 1) == 1
     assert part.read_bytes() == before
+
+
+def test_a_folder_tells_what_a_table_varies(model, tmp_path):
+    folder = model.sweep({"m": [1, 2]}, cases=COLUMNS, to=1, out=tmp_path / "few", columns=["x"])
+    assert folder.varied == ["m", "k", "x'(0)"]

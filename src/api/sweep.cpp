@@ -159,6 +159,8 @@ Result<Sweep> computed(const PreparedSweep& p) {
     data->outcome = to_public(report.outcome);
     before += piece.options.cases;
   }
+  data->notes = inner::notes_without_value(data->report);
+  for (const auto& [kind, stopped] : data->stopped) data->notes.push_back(inner::stopped_note(kind, stopped));
   return Sweep(std::move(data));
 }
 
@@ -214,6 +216,7 @@ const std::string& Sweep::event(std::size_t number) const {
 std::size_t Sweep::steps(std::size_t number) const { return data_->steps.at(number); }
 const std::vector<double>& Sweep::times() const { return data_->times; }
 const Outcome& Sweep::outcome() const { return data_->outcome; }
+const std::vector<std::string>& Sweep::notes() const { return data_->notes; }
 const std::map<std::string, std::string>& Sweep::units() const { return data_->units; }
 
 static std::span<const double> named(const std::string& name, const std::vector<std::string>& names,
