@@ -60,3 +60,11 @@ def test_a_folder_has_units_and_shows_them(tmp_path):
     assert folder.units["x"] == "m" and folder.units["x'(0)"] == "m/s" and "outcome" not in folder.units
     ax = folder.plot("x")
     assert ax.get_xlabel() == "x'(0) [m/s]" and ax.get_ylabel() == "x [m]"
+
+
+def test_draws_on_a_grid_are_quantiles_over_the_grid():
+    pytest.importorskip("matplotlib").use("Agg")
+    sweep = an.loads(TEXT).sweep({"a": an.uniform(-1, 1), "x'": [0.1, 0.2]}, cases=12, to=1)
+    axes = sweep.plot("x")
+    assert axes.get_xlabel() == "x'(0)" and len(axes.lines) == 1 and len(axes.lines[0].get_xdata()) == 2
+    assert sweep.plot("x", x="x'(0)", y="a").get_ylabel() == "a"
