@@ -316,7 +316,7 @@ class Model(Analysed):
             raise TypeError(f"what varies is given by name, as {{'m': [1, 2]}}, not as a {type(vary).__name__}")
         if isinstance(cases, tuple) and len(cases) == 2:
             table, cases = table_of(cases[0]), cases[1]
-        elif cases is not None and not isinstance(cases, numbers.Number):
+        elif cases is not None and not isinstance(cases, (int, numbers.Number)):
             table, cases = table_of(cases), None
         if len(vary.keys()) == 0 and not table[1]:
             raise ModelError("nothing is varied\nhint: sweep({'m': [1, 2, 5], \"x'\": anholon.grid(0, 1, 11)}, to=10)")

@@ -1,6 +1,7 @@
 """Tables of cases: files of CSV and Parquet, arrays by name, tables of pandas, polars and pyarrow."""
 
 import csv
+import pathlib
 from decimal import Decimal
 
 import anholon as an
@@ -18,20 +19,20 @@ parameters.m = 9
 [case.light]
 parameters.m = 1
 """
-COLUMNS = {"k": [0.1, 2.5, 1e-3], "x'": [0, 1, -2]}
+COLUMNS: dict[str, list[float]] = {"k": [0.1, 2.5, 1e-3], "x'": [0, 1, -2]}
 
 
 @pytest.fixture(scope="module")
-def model():
+def model() -> an.Model:
     return an.loads(TEXT)
 
 
 @pytest.fixture(scope="module")
-def together(model):
+def together(model: an.Model) -> an.Sweep:
     return model.sweep(COLUMNS, together=True, to=1)
 
 
-def equal(a, b):
+def equal(a: an.Sweep, b: an.Sweep) -> None:
     assert a.cases == b.cases and a.finished == b.finished
     assert list(a.varied) == list(b.varied)
     for name in a.varied:
@@ -40,17 +41,17 @@ def equal(a, b):
         np.testing.assert_array_equal(a[name], b[name])
 
 
-def test_arrays_by_name(model, together):
+def test_arrays_by_name(model: an.Model, together: an.Sweep) -> None:
     equal(model.sweep(cases=COLUMNS, to=1), together)
     equal(model.sweep(cases={name: np.array(column, dtype=float) for name, column in COLUMNS.items()}, to=1), together)
 
 
-def test_texts_are_formulas_and_a_column_of_numbers_of_cases_varies_nothing(model):
+def test_texts_are_formulas_and_a_column_of_numbers_of_cases_varies_nothing(model: an.Model) -> None:
     sweep = model.sweep(cases={"case": [0, 1], "k": ["1/4", "pi/2"], "x(0)": ["1", "sqrt(2)"]}, to=1)
     assert sweep.varied["k"].tolist() == [0.25, np.pi / 2] and sweep.varied["x"].tolist() == [1, np.sqrt(2)]
 
 
-def test_a_csv_file(model, together, tmp_path):
+def test_a_csv_file(model: an.Model, together: an.Sweep, tmp_path: pathlib.Path) -> None:
     file = tmp_path / "cases.csv"
     file.write_text("k,x'\n0.1,0\n2.5,1\n1e-3,-2\n")
     equal(model.sweep(cases=file, to=1), together)
@@ -60,7 +61,7 @@ def test_a_csv_file(model, together, tmp_path):
 @pytest.mark.parametrize("version", ["1.0", "2.0"])
 @pytest.mark.parametrize("compression", ["none", "snappy", "zstd"])
 @pytest.mark.parametrize("dictionary", [True, False])
-def test_a_parquet_file(model, together, tmp_path, version, compression, dictionary):
+def test_a_parquet_file(model: an.Model, together: an.Sweep, tmp_path: pathlib.Path, version: str, compression: str, dictionary: bool) -> None:
     pyarrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
     table = pyarrow.table({"k": pyarrow.array(COLUMNS["k"]), "x'": pyarrow.array(COLUMNS["x'"], pyarrow.int32())})
     file = tmp_path / "cases.parquet"
@@ -68,7 +69,7 @@ def test_a_parquet_file(model, together, tmp_path, version, compression, diction
     equal(model.sweep(cases=file, to=1), together)
 
 
-def test_kinds_of_parquet_columns(tmp_path):
+def test_kinds_of_parquet_columns(tmp_path: pathlib.Path) -> None:
     pyarrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
     rng = np.random.default_rng(5)
     rows = 3000
@@ -101,7 +102,7 @@ def test_kinds_of_parquet_columns(tmp_path):
 
 
 @pytest.mark.parametrize("type_name", ["timestamp", "date32", "list_"])
-def test_other_columns_are_refused_by_name(model, tmp_path, type_name):
+def test_other_columns_are_refused_by_name(model: an.Model, tmp_path: pathlib.Path, type_name: str) -> None:
     pyarrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
     kinds = {"timestamp": lambda: pyarrow.timestamp("ns"), "date32": pyarrow.date32, "list_": lambda: pyarrow.list_(pyarrow.int64())}
     values = [[1], [2]] if type_name == "list_" else [1, 2]
@@ -110,7 +111,7 @@ def test_other_columns_are_refused_by_name(model, tmp_path, type_name):
         model.sweep(cases=tmp_path / "cases.parquet", to=1)
 
 
-def test_damaged_parquet_files_are_refused(model, tmp_path):
+def test_damaged_parquet_files_are_refused(model: an.Model, tmp_path: pathlib.Path) -> None:
     pyarrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
     file = tmp_path / "cases.parquet"
     parquet.write_table(pyarrow.table(COLUMNS), file)
@@ -128,13 +129,13 @@ def test_damaged_parquet_files_are_refused(model, tmp_path):
 
 
 @pytest.mark.parametrize("library", ["pandas", "polars", "pyarrow"])
-def test_frames(model, together, library):
+def test_frames(model: an.Model, together: an.Sweep, library: str) -> None:
     frames = pytest.importorskip(library)
     frame = frames.table(COLUMNS) if library == "pyarrow" else frames.DataFrame(COLUMNS)
     equal(model.sweep(cases=frame, to=1), together)
 
 
-def test_a_table_is_an_axis_beside_others(model):
+def test_a_table_is_an_axis_beside_others(model: an.Model) -> None:
     sweep = model.sweep({"case": ["heavy", "light"], "x": [1, 2]}, cases={"k": [1, 2, 3]}, to=1)
     assert sweep.cases == 12 and list(sweep.varied) == ["case", "x", "k"]
     assert sweep.varied["k"].tolist() == [1, 2, 3] * 4 and sweep.varied["x"].tolist() == ([1] * 3 + [2] * 3) * 2
@@ -142,7 +143,7 @@ def test_a_table_is_an_axis_beside_others(model):
     assert drawn.cases == 6 and drawn.varied["k"].tolist() == [1, 2, 3] * 2
 
 
-def test_mistakes_tell_the_place(model, tmp_path):
+def test_mistakes_tell_the_place(model: an.Model, tmp_path: pathlib.Path) -> None:
     with pytest.raises(an.ModelError, match="the table, line 3: '2 kg.' is not a number"):
         model.sweep(cases={"k": ["1", "2 kg+"]}, to=1)
     with pytest.raises(an.ModelError, match="the table, line 1: there is no parameter and no coordinate 'q'"):
@@ -154,10 +155,10 @@ def test_mistakes_tell_the_place(model, tmp_path):
     with pytest.raises(an.ModelError, match="cannot read"):
         model.sweep(cases=tmp_path / "none.csv", to=1)
     with pytest.raises(TypeError, match="cases is a number, a table, or the path of one"):
-        model.sweep(cases=object(), to=1)
+        model.sweep(cases=object(), to=1)  # type: ignore[call-overload]
 
 
-def test_a_folder_keeps_the_table(model, tmp_path):
+def test_a_folder_keeps_the_table(model: an.Model, tmp_path: pathlib.Path) -> None:
     folder = model.sweep(cases=COLUMNS, to=1, out=tmp_path / "falls", chunk=1)
     np.testing.assert_array_equal(folder["k"], COLUMNS["k"])
     again = model.sweep(cases=COLUMNS, to=1, out=tmp_path / "falls")
@@ -176,6 +177,6 @@ def test_a_folder_keeps_the_table(model, tmp_path):
     assert part.read_bytes() == before
 
 
-def test_a_folder_tells_what_a_table_varies(model, tmp_path):
+def test_a_folder_tells_what_a_table_varies(model: an.Model, tmp_path: pathlib.Path) -> None:
     folder = model.sweep({"m": [1, 2]}, cases=COLUMNS, to=1, out=tmp_path / "few", columns=["x"])
     assert folder.varied == ["m", "k", "x'(0)"]
