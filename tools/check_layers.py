@@ -30,7 +30,7 @@ FORMS = {name for name in LEVEL if name.startswith("formulation/forms/")}
 ONLY = {
     "result": {"base", "numeric"},
     "result/hdf5": {"base", "base/platform", "numeric", "result"},
-    "result/parquet": {"base", "numeric", "result"},
+    "result/parquet": {"base", "base/platform", "numeric", "result"},
     "ensemble/store": {"base", "result", "result/parquet"},
     "proof/checker": {"base", "numeric"},  # it must not trust the simplifier
     "jit": {"kernel", "kernel/plan", "jit/x86"},  # a module of its own

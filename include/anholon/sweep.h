@@ -24,6 +24,10 @@ ANHOLON_API std::vector<Number> linspace(double from, double to, std::size_t cou
 
 struct SweepOptions {
   std::vector<Vary> vary = {};  // the grid of all combinations; the last one varies fastest
+  // A table of cases: names of what varies in the first line, and numbers, formulas or numbers with units in each further
+  // one, with commas between them. Beside `vary` its lines are one more axis, which varies fastest. case_table reads a file.
+  std::string table = {};
+  std::string table_name = "the table";  // in messages
   // How many cases there are, where values are random: the cases go round the grid. Empty: all points of the grid.
   std::optional<std::size_t> cases = {};
   std::uint64_t seed = 0;  // of the random values, which depend on it and on the number of the case alone
@@ -43,6 +47,10 @@ struct SweepOptions {
   std::function<void(std::size_t done)> progress = {};  // by one thread at a time
 };
 
+// The text of a table of cases from a CSV file, or from a Parquet file with columns of numbers or words. Errors: the file
+// cannot be read, is damaged, or has other columns (diagnostics).
+ANHOLON_API Result<std::string> case_table(const std::string& path);
+
 // Cases in the order of the grid. Immutable and cheap to copy; spans live as long as any copy does.
 class ANHOLON_API Sweep {
  public:
@@ -58,7 +66,9 @@ class ANHOLON_API Sweep {
   // A column at these times, case by case: the number of a case at times()[k] is element case * times().size() + k; NaN
   // at times that the case did not reach. Empty if there are no times, no such column, or if it is a reduction.
   std::span<const double> rows(const std::string& name) const;
-  // The values that a name in SweepOptions::vary takes, one for each case. Empty if the name is not varied, or if it
+  // The names that vary: those in SweepOptions::vary, without scenarios, then those of the table.
+  const std::vector<std::string>& varied_names() const;
+  // The values that one of these names takes, one for each case. Empty if the name is not varied, or if it
   // stands for scenarios.
   std::span<const double> varied(const std::string& name) const;
   // The scenarios that vary, in their order; empty if none do.
@@ -72,6 +82,9 @@ class ANHOLON_API Sweep {
   std::size_t steps(std::size_t number) const;
   // finished, or interrupted.
   const Outcome& outcome() const;
+  // Reductions that have no value in some of the cases, and for each way in which cases stopped how many there are, the
+  // first one, its message and a hint: what `anholon sweep` says at its end.
+  const std::vector<std::string>& notes() const;
   // The units of columns and of what varies, as far as the model tells them.
   const std::map<std::string, std::string>& units() const;
   // Writes FILE.h5, FILE.csv, FILE.json or FILE.parquet, with the columns of `anholon sweep -o`: what varies and how each

@@ -20,6 +20,8 @@ struct FolderProgress {
   std::map<std::string, std::size_t> outcomes;  // cases by the name of their outcome
   double cases_per_second = 0;                  // by the times at which the last parts were written; 0: unknown
   std::vector<FolderGeneration> generations = {};
+  // Why cases stopped: for each outcome how many there are, the first one, its message and a hint.
+  std::vector<std::string> notes = {};
 };
 
 // A column over all cases of the parts that are there. `number` is a double that may be NaN.
@@ -40,8 +42,9 @@ struct FolderWork {
   std::function<void(std::size_t cases)> progress = {};  // by one thread at a time
 };
 struct FolderDone {
-  std::size_t parts = 0, cases = 0;  // computed by this call
-  bool complete = false;             // whether the folder holds all parts that were asked for
+  std::size_t parts = 0, cases = 0;     // computed by this call
+  bool complete = false;                // whether the folder holds all parts that were asked for
+  std::vector<std::string> notes = {};  // reductions that have no value in some of these cases
   std::string error;  // the reason why a part could not be written: a full disk, another part of that name
 };
 
@@ -72,6 +75,8 @@ class ANHOLON_API SweepFolder {
   // The values that the columns of grids, lists and tables take over the whole sweep, by the name of the column. A column that
   // is drawn is not among them, nor is a grid with more than 65536 values, or any column if files of the model are missing.
   std::map<std::string, std::vector<double>> points() const;
+  // The units of the columns, as far as the model that the folder keeps tells them.
+  std::map<std::string, std::string> units() const;
   // Computes parts that are missing. All calls share the equations, and the calls of several threads may overlap. Errors:
   // the folder was opened by its name alone.
   Result<FolderDone> fill(const FolderWork& work = {}) const;

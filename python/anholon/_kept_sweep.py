@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NoReturn
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from . import _core
 from ._errors import ModelError
@@ -11,18 +13,42 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from ._sweep_filling import Words
+    from .model import Model
+
     Array = npt.NDArray[np.float64]
 
 
-class KeptSweep:
-    """The numbers of a sweep without the computation that made them."""
+@dataclass(frozen=True)
+class SweepAgain:
+    """The model of a sweep with all that was asked for."""
 
-    def __init__(self, core: _core.Sweep | KeptSweep, varied: list[str]) -> None:
+    model: Model
+    form: str
+    initial: dict[str, str]
+    words: Words
+    scenarios: bool
+
+    def run(self, threads: int, stop: Callable[[], bool] | None, tell: Callable[[float, int], object] | None) -> tuple[_core.Sweep, object]:
+        """The sweep, and what was raised in the meantime."""
+        system = None if self.scenarios else self.model._system_of_sweep(self.form, self.initial)
+        if system is None:
+            return _core.sweep_scenarios(self.model._core, self.form, self.initial, self.words, threads, stop, tell)
+        return _core.sweep(system, self.words, threads, stop, tell)
+
+
+class KeptSweep:
+    """What a sweep takes to another process: its numbers and outcomes. It is computed again where a file or a figure is asked for."""
+
+    def __init__(self, core: _core.Sweep | KeptSweep, varied: list[str], again: SweepAgain) -> None:
+        self._again = again
+        self._made: _core.Sweep | None = None
         self.cases: int = core.cases
         self.finished: int = core.finished
         self.columns: list[str] = list(core.columns)
         self.scenarios: list[str] = list(core.scenarios)
         self.units: dict[str, str] = dict(core.units)
+        self.notes: list[str] = list(core.notes)
         self.outcome: _core.Outcome = core.outcome
         self.t: Array = core.t.copy()
         self.times: Array = core.times.copy()
@@ -41,6 +67,9 @@ class KeptSweep:
             self._outcome_numbers.append(number)
         self._events: list[str] = [core.event(case) for case in range(self.cases)]
         self._steps: list[int] = [core.steps(case) for case in range(self.cases)]
+
+    def __getstate__(self) -> dict[str, object]:
+        return {**self.__dict__, "_made": None}
 
     def __setstate__(self, state: dict[str, object]) -> None:
         self.__dict__.update(state)
@@ -72,10 +101,25 @@ class KeptSweep:
         """How a motion ended."""
         return self._outcomes[self._outcome_numbers[number]]
 
-    def write(self, path: str) -> NoReturn:
-        """Raises ModelError: the program writes files of sweeps where they are computed."""
-        raise ModelError(f"a sweep from another process has its numbers, and {path} is written where it was computed\nhint: sweep.save there, or sweep.to_pandas() here")
+    def made(self) -> _core.Sweep:
+        """The sweep itself, computed again: its cases have the same bits.
 
-    def figure(self, columns: list[str], x: str, y: str) -> NoReturn:
-        """Raises ModelError: the program draws sweeps where they are computed."""
-        raise ModelError("a sweep from another process has its numbers, and the program draws it where it was computed\nhint: sweep.figure there, or sweep.plot with Matplotlib here")
+        Raises:
+            ModelError: it was ended from outside.
+        """
+        if self.outcome.kind != "finished":
+            raise ModelError("a sweep that was stopped from outside takes its numbers to another process, and no more\nhint: sweep.save where it was computed, or sweep.to_pandas() here")
+        if self._made is None:
+            made, raised = self._again.run(0, None, None)
+            if isinstance(raised, BaseException):
+                raise raised
+            self._made = made
+        return self._made
+
+    def write(self, path: str) -> str:
+        """Writes a file."""
+        return self.made().write(path)
+
+    def figure(self, columns: list[str], x: str, y: str) -> str:
+        """The cases as SVG."""
+        return self.made().figure(columns, x, y)

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from . import _core
+from ._case_table import lines_of
 from ._errors import Interrupted, ModelError
 from ._progress import Progress, Shown
 from ._sweep_case import model_of, runs_through_scenarios
@@ -32,20 +33,24 @@ Words = tuple[
     list[str],
     list[str],
     list[str],
+    tuple[str, str],
 ]
-"""What is asked of a sweep: values, laws, cases, seed, draw, together, to, tolerance, at, columns, reduce."""
+"""What is asked of a sweep: values, laws, cases, seed, draw, together, to, tolerance, at, columns, reduce, the name and the text of a table."""
 
 
 def number_of_cases(
-    values: list[tuple[str, list[str]]], laws: dict[str, str], cases: int | None, together: bool, scenarios: str | None = None
+    values: list[tuple[str, list[str]]], laws: dict[str, str], cases: int | None, together: bool, scenarios: str | None = None, table: str = ""
 ) -> float | None:
     """How many cases a sweep has; None if that is not known before it begins. `scenarios` is the name that stands for scenarios, if one does."""
     named = [of for name, of in values if name == scenarios]
     if named:
-        rest = number_of_cases([(name, of) for name, of in values if name != scenarios], laws, cases, together)
+        rest = number_of_cases([(name, of) for name, of in values if name != scenarios], laws, cases, together, None, table)
         return None if rest is None else rest * len(named[0])
     if cases is not None:
         return float(cases)
+    if table:
+        rest = number_of_cases(values, laws, cases, together) if values else 1.0
+        return None if rest is None else rest * lines_of(table)
     if together:
         return float(max((len(of) for _, of in values), default=0))
     if any("(" in law for law in laws.values()):
@@ -95,7 +100,7 @@ class SweepRequest:
         model = self._model
         mode = {"mode": list(model._again.mode)} if model._again.mode else {}
         return json.dumps(
-            {"set": model._given, "case": model._cases, **mode, "form": self._form, "initial": self._initial, "words": self._words}
+            {"set": model._given, "case": model._cases, **mode, "form": self._form, "initial": self._initial, "words": self._words[:-1]}
         )
 
 
@@ -139,6 +144,8 @@ def computing(folder: str) -> _core.SweepFolder:
         model = model_of(looked_at, recipe)
         words = recipe["words"]
         words[0] = [(name, values) for name, values in words[0]]
+        # The request of the folder holds the table.
+        words.append(("the table", looked_at.asked("table of cases")))
         while len(_opened) >= 4:
             _opened.pop(next(iter(_opened)))
         _opened[key] = SweepRequest(model, recipe["form"], recipe["initial"], tuple(words)).open(looked_at.path, 0)
@@ -182,7 +189,8 @@ def _fill_generation(
         if on is not None:
             _fill_by_workers(core, on, share, threads or 1, stop, tell)
             return folder
-        _, _, error, raised = core.fill(None, share[0], share[1], threads, stop, tell)
+        _, notes, error, raised = core.fill(None, share[0], share[1], threads, stop, tell)
+    folder._computed_notes = notes
     if isinstance(raised, KeyboardInterrupt):
         raise Interrupted(folder) from None
     if isinstance(raised, BaseException):

@@ -18,6 +18,16 @@ Columns = Mapping[str, npt.NDArray[Any]]
 MOST_CURVES = 8
 
 
+def not_drawn(table: Columns, varied: Sequence[str], shown: Sequence[str]) -> list[str]:
+    """What varies, without the columns that have another value in each case beside a grid: over the grid numbers are quantiles."""
+    if any(table[name].dtype == object for name in shown):
+        return list(varied)
+    different = {name: np.unique(table[name]).size for name in varied if table[name].dtype != object}
+    cases = np.unique(table["case"]).size if "case" in table else max((table[name].size for name in varied), default=0)
+    grids = [name for name in varied if different.get(name, 0) != cases]
+    return grids if any(different.get(name, 0) > 1 for name in grids) else list(varied)
+
+
 def axes_of(varied: Sequence[str], x: str | None, y: str | None) -> list[str]:
     """The columns along the axes: those that are named, then those that vary, two at most."""
     given = [name for name in (x, y) if name is not None]
@@ -84,23 +94,24 @@ def plot_folder(folder: SweepFolder, names: list[str], x: str | None, y: str | N
     at_times = "t" in table and bool((np.diff(table["case"]) == 0).any())
     if at_times and y is None and x not in varied and all(table[name].dtype != object for name in shown):
         over = x or "t"
+        units = folder.units
         if np.unique(table["case"]).size <= MOST_CURVES:
-            cases_over(ax, table, over, shown, varied)
+            cases_over(ax, table, over, shown, varied, units)
         elif over == "t":
-            curves(ax, table, over, shown, {})
+            curves(ax, table, over, shown, units)
         else:
             raise ModelError(f"{np.unique(table['case']).size} cases are too many curves for one figure\nhint: without x their quantiles over t, or x and y for a map")
         return ax
-    axes = axes_of(varied, x, y)
+    axes = axes_of(not_drawn(table, varied, shown) if y is None else varied, x, y)
     for axis in axes:
         if table[axis].dtype == object:
             raise ModelError(f"an axis shows numbers, and {axis!r} holds words\nhint: x names a column of numbers")
     if len(axes) == 1:
-        curves(ax, table, axes[0], shown, {})
+        curves(ax, table, axes[0], shown, folder.units)
         return ax
     if len(shown) > 1:
         raise ModelError(f"a map over two variations shows one column, and there are {len(shown)}\nhint: one name, or none for the outcomes")
-    map_over(ax, table, axes, shown[0], {})
+    map_over(ax, table, axes, shown[0], folder.units)
     if missing:
         points = folder._core.points()
         for axis, limits in zip(axes, (ax.set_xlim, ax.set_ylim), strict=True):
@@ -110,7 +121,7 @@ def plot_folder(folder: SweepFolder, names: list[str], x: str | None, y: str | N
     return ax
 
 
-def cases_over(ax: Any, table: Columns, x: str, names: Sequence[str], varied: Sequence[str]) -> None:
+def cases_over(ax: Any, table: Columns, x: str, names: Sequence[str], varied: Sequence[str], units: Mapping[str, str]) -> None:
     """A curve of each case and column over x."""
     numbers = table["case"]
     for case in np.unique(numbers):
@@ -120,9 +131,9 @@ def cases_over(ax: Any, table: Columns, x: str, names: Sequence[str], varied: Se
         parts += [f"{name} = {table[name][first]:.6g}" for name in varied]
         for name in names:
             ax.plot(table[x][rows], table[name][rows], label=", ".join(([name] if len(names) > 1 else []) + (parts or [f"case {case}"])).replace("$", r"\$"))
-    ax.set_xlabel(label(x, {}))
+    ax.set_xlabel(label(x, units))
     if len(names) == 1:
-        ax.set_ylabel(label(names[0], {}))
+        ax.set_ylabel(label(names[0], units))
     ax.legend()
 
 

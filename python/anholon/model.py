@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numbers
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -9,7 +10,9 @@ from typing import TYPE_CHECKING, Any, overload
 
 from . import _core
 from ._analysed import Analysed
+from ._case_table import CaseTable, table_of
 from ._errors import Interrupted, ModelError, MotionError
+from ._kept_sweep import SweepAgain
 from ._names import names_of
 from ._numbers import Number, float_of, list_of, text_of, texts_of, varied_list, whole
 from ._progress import Progress, Shown
@@ -189,13 +192,13 @@ class Model(Analysed):
     @overload
     def sweep(
         self,
-        vary: Mapping[str, Number | Iterable[Number] | Law],
+        vary: Mapping[str, Number | Iterable[Number] | Law] | None = None,
         *,
         to: Number | None = None,
         at: Number | Iterable[Number] = (),
         columns: Iterable[str] = (),
         reduce: Iterable[str] = (),
-        cases: int | None = None,
+        cases: int | CaseTable | tuple[CaseTable, int] | None = None,
         together: bool = False,
         draw: str = "random",
         seed: int = 0,
@@ -211,13 +214,13 @@ class Model(Analysed):
     @overload
     def sweep(
         self,
-        vary: Mapping[str, Number | Iterable[Number] | Law],
+        vary: Mapping[str, Number | Iterable[Number] | Law] | None = None,
         *,
         to: Number | None = None,
         at: Number | Iterable[Number] = (),
         columns: Iterable[str] = (),
         reduce: Iterable[str] = (),
-        cases: int | None = None,
+        cases: int | CaseTable | tuple[CaseTable, int] | None = None,
         together: bool = False,
         draw: str = "random",
         seed: int = 0,
@@ -237,13 +240,13 @@ class Model(Analysed):
 
     def sweep(
         self,
-        vary: Mapping[str, Number | Iterable[Number] | Law],
+        vary: Mapping[str, Number | Iterable[Number] | Law] | None = None,
         *,
         to: Number | None = None,
         at: Number | Iterable[Number] = (),
         columns: Iterable[str] = (),
         reduce: Iterable[str] = (),
-        cases: int | None = None,
+        cases: int | CaseTable | tuple[CaseTable, int] | None = None,
         together: bool = False,
         draw: str = "random",
         seed: int = 0,
@@ -275,7 +278,10 @@ class Model(Analysed):
                 ``"last(...)"`` of an output or of any formula of the model. They are those of the Taylor polynomials,
                 not of some times, and the last value is that at the end. ``"count(EVENT)"`` tells how often an event of the model or of a contact fired, as in
                 ``"count(floor.hits)"``, and ``"first(EVENT)"`` its first time, NaN if it did not fire.
-            cases: how many, where values are drawn; the cases go round the combinations of the lists.
+            cases: how many, where values are drawn; the cases go round the combinations of the lists. Or a table of cases: the
+                path of a CSV or Parquet file, arrays by name, or a table of pandas, polars or pyarrow. Its columns have the
+                names of what varies, and each row is a case for each combination of ``vary``. ``(table, 1000)`` is a table
+                where values are drawn, too: the 1000 cases go round it.
             together: the lists have the same length and go together, one case for each place: ``vary`` is a table, as a
                 DataFrame is one.
             draw: ``"random"``, or ``"sobol"`` for the points of a Sobol sequence, which lie more evenly.
@@ -305,9 +311,14 @@ class Model(Analysed):
             MotionError: the initial values of the model are inconsistent.
             Interrupted: Ctrl-C; ``.result`` is the sweep as far as it came.
         """
+        vary, table = {} if vary is None else vary, ("", "")
         if not hasattr(vary, "items"):
             raise TypeError(f"what varies is given by name, as {{'m': [1, 2]}}, not as a {type(vary).__name__}")
-        if len(vary.keys()) == 0:
+        if isinstance(cases, tuple) and len(cases) == 2:
+            table, cases = table_of(cases[0]), cases[1]
+        elif cases is not None and not isinstance(cases, (int, numbers.Number)):
+            table, cases = table_of(cases), None
+        if len(vary.keys()) == 0 and not table[1]:
             raise ModelError("nothing is varied\nhint: sweep({'m': [1, 2, 5], \"x'\": anholon.grid(0, 1, 11)}, to=10)")
         laws = {name: str(of) for name, of in vary.items() if is_law(of)}
         values = [(str(name), [] if name in laws else varied_list(name, of)) for name, of in vary.items()]
@@ -320,7 +331,7 @@ class Model(Analysed):
         if isinstance(columns, str) or isinstance(reduce, str):
             raise TypeError('columns and reduce are lists of names: ["theta"]')
         end, relative = (None if number is None else text_of(number) for number in (to, tolerance))
-        words: Words = (values, laws, cases, seed, draw, together, end, relative, list_of(at), list(columns), list(reduce))
+        words: Words = (values, laws, cases, seed, draw, together, end, relative, list_of(at), list(columns), list(reduce), table)
         if out is not None:
             return SweepRequest(self, form, texts_of(initial), words).fill(
                 os.fspath(out), chunk or 0, on=on, share=share, threads=threads, stop=stop, progress=progress, refine=refine, refine_by=refine_by
@@ -328,14 +339,11 @@ class Model(Analysed):
         if on is not None or chunk is not None or share != (1, 1) or refine or refine_by is not None:
             raise ModelError('on, chunk, share and refine belong to a sweep in a folder\nhint: out="falls/"')
         scenarios = runs_through_scenarios(self, vary)
-        count = number_of_cases(values, laws, cases, together, "case" if scenarios else None)
-        system = None if scenarios else self._system_of_sweep(form, texts_of(initial))
+        count = number_of_cases(values, laws, cases, together, "case" if scenarios else None, table[1])
+        again = SweepAgain(self, form, texts_of(initial), words, scenarios)
         with Shown(progress, self.title, count, unit="cases") as tell:
-            if system is None:
-                core, raised = _core.sweep_scenarios(self._core, form, texts_of(initial), words, threads, stop, tell)
-            else:
-                core, raised = _core.sweep(system, words, threads, stop, tell)
-        sweep = Sweep(self, core, list(vary), list(reduce))
+            core, raised = again.run(threads, stop, tell)
+        sweep = Sweep(core, [*vary, *core.varied_names[len(vary) - scenarios :]], list(reduce), again)
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted(sweep) from None
         if isinstance(raised, BaseException):

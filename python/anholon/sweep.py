@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _arrow, _core, _display
 from ._errors import ModelError
-from ._kept_sweep import KeptSweep
+from ._kept_sweep import KeptSweep, SweepAgain
 from ._numbers import Number, text_of, whole
 from .run import Figure
 
@@ -102,8 +102,9 @@ class Sweep(Mapping[str, "Array"]):
         (['heavy', 'heavy', 'light', 'light'], ['case_name', "phi'(0)", 't'])
     """
 
-    def __init__(self, model: Model, core: _core.Sweep, names: list[str], reduced: list[str]) -> None:
-        self.model: Model = model
+    def __init__(self, core: _core.Sweep, names: list[str], reduced: list[str], again: SweepAgain) -> None:
+        self.model: Model = again.model
+        self._again = again
         self._core: _core.Sweep | KeptSweep = core
         self._reduced = [name for name in core.columns if name in reduced]
         #: The values that vary, one array for each name, shape (cases,). Scenarios come first, as ``case``, an array of texts.
@@ -111,9 +112,9 @@ class Sweep(Mapping[str, "Array"]):
         self.varied.update((name, core.varied(name)) for name in names if name not in self.varied)
 
     def __getstate__(self) -> dict[str, Any]:
-        """To another process go all numbers and outcomes. Files and figures by the program's own hand are made where it was computed."""
+        """To another process go all numbers and outcomes. For files and figures by the program's own hand it is computed again."""
         numbers = [name for name in self.varied if name != "case" or not self._core.scenarios]
-        return {**self.__dict__, "_core": KeptSweep(self._core, numbers)}
+        return {**self.__dict__, "_core": KeptSweep(self._core, numbers, self._again)}
 
     def __getitem__(self, name: str) -> Array:
         """A column at the end of each motion, shape (cases,), in SI units.
@@ -129,6 +130,11 @@ class Sweep(Mapping[str, "Array"]):
     def units(self) -> dict[str, str]:
         """The units of the columns and of what varies, as far as the model tells them."""
         return dict(self._core.units)
+
+    @property
+    def notes(self) -> list[str]:
+        """Reductions that have no value in some of the cases, and why cases stopped: for each outcome how many there are, the first one, its message and a hint."""
+        return list(self._core.notes)
 
     @property
     def times(self) -> Array:
@@ -344,8 +350,11 @@ class Sweep(Mapping[str, "Array"]):
         varied = self._varied_columns()
         varied.pop("case_name", None)
         table = {**varied, "outcome": np.array(self.outcomes, dtype=object), "t": self.t, "steps": self.steps, **{name: self[name] for name in self}}
-        axes = _sweep_plot.axes_of(list(varied), x, y)
         usual = [c.name for c in self.model.coordinates if c.name in self] or list(self)
+        over = list(varied)
+        if y is None and all(name in table for name in names):
+            over = _sweep_plot.not_drawn(table, over, names or ["outcome"])
+        axes = _sweep_plot.axes_of(over, x, y)
         shown = list(names) or (usual if len(axes) == 1 else ["outcome"])
         for name in (*axes, *shown):
             if name not in table:

@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 from . import _core
+from ._case_table import names_of_table
 from ._errors import ModelError
 from ._progress import Progress
 from .run import Figure
@@ -63,6 +64,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
     def __init__(self, core: _core.SweepFolder) -> None:
         self._core = core
+        self._computed_notes: list[str] = []
 
     @property
     def path(self) -> str:
@@ -107,6 +109,16 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         """How many of the cases that are there ended in which way."""
         return self._core.progress().outcomes
 
+    @property
+    def notes(self) -> list[str]:
+        """Reductions that have no value in some of the cases that this object computed, and why cases stopped: for each outcome how many there are, the first one, its message and a hint."""
+        return [*self._computed_notes, *self._core.progress().notes]
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The units of the columns, as far as the model tells them."""
+        return dict(self._core.units())
+
     def __getitem__(self, name: str) -> npt.NDArray[Any]:
         """A column, shape (cases,) or (cases * times,), in SI units: ``folder["theta"][k]`` belongs to case k without ``at``.
 
@@ -136,11 +148,8 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
     def varied(self) -> list[str]:
         """The names of the columns of what varies."""
         names = self._core.columns
-        if self._core.asked("table of cases"):
-            end = names.index("outcome") if "outcome" in names else 0
-            return [name for name in names[:end] if name not in ("case", "t", "case_name")]
         # The command line keeps the words of --vary: NAME=VALUES or NAME~LAW.
-        by_command = {re.split("[=~]", word)[0] for word in self._core.asked("vary").split()}
+        by_command = names_of_table(self._core.asked("table of cases")) | {re.split("[=~]", word)[0] for word in self._core.asked("vary").split()}
 
         def varies(name: str) -> bool:
             of = name.removesuffix("(0)")

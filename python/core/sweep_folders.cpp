@@ -45,6 +45,8 @@ void bind_sweep_folders(nb::module_& m) {
             return cases;
           },
           "The cases of each generation that is planned; the first one is what was asked for.")
+      .def_ro("notes", &FolderProgress::notes,
+              "Why cases stopped: for each outcome the first case, its message and a hint.")
       .def("__repr__", [](const FolderProgress& p) {
         return nb::cast<std::string>(
             nb::str("{} of {} parts, {} of {} cases").format(p.parts, p.all_parts, p.cases, p.all_cases));
@@ -105,6 +107,7 @@ void bind_sweep_folders(nb::module_& m) {
           },
           "names"_a)
       .def("points", [](const SweepFolder& f) { return unlocked([&] { return f.points(); }); })
+      .def("units", [](const SweepFolder& f) { return unlocked([&] { return f.units(); }); })
       .def(
           "figure",
           [](const SweepFolder& f, const std::vector<std::string>& columns, const std::string& x,
@@ -122,7 +125,7 @@ void bind_sweep_folders(nb::module_& m) {
             work.cancelled = [&] { return attendant.cancelled(); };
             work.progress = [&](std::size_t done) { attendant.tell(static_cast<double>(done), done); };
             const FolderDone done = value_of(attendant.attend([&] { return f.fill(work); }));
-            return std::tuple(done.cases, done.complete, done.error, attendant.raised());
+            return std::tuple(done.cases, done.notes, done.error, attendant.raised());
           },
           "parts"_a.none(), "share"_a, "shares"_a, "threads"_a, "stop"_a.none(), "progress"_a.none());
   m.def(

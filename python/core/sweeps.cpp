@@ -3,10 +3,11 @@
 namespace anholon::python {
 
 SweepOptions options_of(const SweepWords& words) {
-  const auto& [values, laws, cases, seed, draw, together, to, tolerance, at, columns, reduce] = words;
+  const auto& [values, laws, cases, seed, draw, together, to, tolerance, at, columns, reduce, table] = words;
   SweepOptions options;
   options.draw = draw, options.together = together, options.columns = columns, options.reduce = reduce;
   options.cases = cases, options.seed = seed;
+  options.table_name = table.first, options.table = table.second;
   for (const std::string& t : at) options.at.emplace_back(t);
   for (const auto& [name, list] : values) {
     Vary& vary = options.vary.emplace_back();
@@ -37,6 +38,7 @@ void bind_sweeps(nb::module_& m) {
       .def_prop_ro("cases", &Sweep::cases)
       .def_prop_ro("finished", &Sweep::finished)
       .def_prop_ro("columns", &Sweep::columns)
+      .def_prop_ro("varied_names", &Sweep::varied_names)
       .def(
           "column",
           [](nb::handle self, const std::string& name) {
@@ -59,6 +61,7 @@ void bind_sweeps(nb::module_& m) {
       .def_prop_ro("t", [](nb::handle self) { return view(nb::cast<const Sweep&>(self).t(), self); })
       .def("outcome_of", nb::overload_cast<std::size_t>(&Sweep::outcome, nb::const_), "number"_a)
       .def_prop_ro("outcome", nb::overload_cast<>(&Sweep::outcome, nb::const_))
+      .def_prop_ro("notes", &Sweep::notes)
       .def_prop_ro("units", &Sweep::units)
       .def(
           "write",
@@ -74,6 +77,9 @@ void bind_sweeps(nb::module_& m) {
           "columns"_a, "x"_a, "y"_a)
       .def_prop_ro("scenarios", &Sweep::scenarios)
       .def("scenario", &Sweep::scenario, "number"_a);
+  m.def(
+      "case_table", [](const std::string& path) { return value_of(unlocked([&] { return case_table(path); })); },
+      "path"_a);
   m.def(
       "sweep",
       [](const System& system, const SweepWords& words, std::size_t threads, nb::object stop, nb::object progress) {

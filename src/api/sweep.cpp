@@ -5,6 +5,8 @@
 
 #include "api/sweep_data.h"
 #include "api/sweep_request.h"
+#include "base/escape.h"
+#include "base/read_file.h"
 #include "ensemble/parts/judgement.h"
 #include "ensemble/parts/scenarios.h"
 #include "observe/rows/quantity_units.h"
@@ -128,6 +130,8 @@ Result<Sweep> computed(const PreparedSweep& p) {
   auto data = std::make_shared<Sweep::Data>();
   data->scenarios = p.scenarios;
   for (const Vary& v : p.asked.vary) data->names.push_back(v.name);
+  const std::vector<inner::Varied>& varied = p.pieces.front().options.varied;
+  for (std::size_t k = data->names.size(); k < varied.size(); ++k) data->names.push_back(varied[k].name);
   for (const inner::Rational& t : p.pieces.front().options.at) data->times.push_back(inner::from_rational<double>(t));
   std::vector<KeptColumns> columns;
   for (const PreparedPiece& piece : p.pieces) {
@@ -155,6 +159,8 @@ Result<Sweep> computed(const PreparedSweep& p) {
     data->outcome = to_public(report.outcome);
     before += piece.options.cases;
   }
+  data->notes = inner::notes_without_value(data->report);
+  for (const auto& [kind, stopped] : data->stopped) data->notes.push_back(inner::stopped_note(kind, stopped));
   return Sweep(std::move(data));
 }
 
@@ -165,6 +171,19 @@ std::vector<Number> linspace(double from, double to, std::size_t count) {
   for (std::size_t k = 0; k < count; ++k)
     list.emplace_back(count == 1 ? from : from + (to - from) * static_cast<double>(k) / static_cast<double>(count - 1));
   return list;
+}
+
+Result<std::string> case_table(const std::string& path) {
+  return guarded(inner::SourceText(), [&]() -> Result<std::string> {
+    std::string text, why;
+    if (!inner::read_file(path, text, &why))
+      throw inner::Failure({}, "cannot read " + path + ": " + why,
+                           "a CSV or Parquet file whose columns have the names of what varies");
+    std::string table = inner::text_of_case_table(std::move(text), path);
+    if (inner::hdf5_text(table) != table)
+      throw inner::Failure({}, path + " holds bytes that are not UTF-8", "a table of numbers and formulas");
+    return table;
+  });
 }
 
 Result<Sweep> sweep(const System& system, const SweepOptions& asked) {
@@ -182,6 +201,7 @@ Result<Sweep> sweep(const Model& model, const SweepOptions& asked, const Prepare
 std::size_t Sweep::cases() const { return data_->t.size(); }
 std::size_t Sweep::finished() const { return data_->finished; }
 const std::vector<std::string>& Sweep::columns() const { return data_->columns; }
+const std::vector<std::string>& Sweep::varied_names() const { return data_->names; }
 const std::vector<std::string>& Sweep::scenarios() const { return data_->scenarios; }
 const std::string& Sweep::scenario(std::size_t number) const {
   static const std::string none;
@@ -196,6 +216,7 @@ const std::string& Sweep::event(std::size_t number) const {
 std::size_t Sweep::steps(std::size_t number) const { return data_->steps.at(number); }
 const std::vector<double>& Sweep::times() const { return data_->times; }
 const Outcome& Sweep::outcome() const { return data_->outcome; }
+const std::vector<std::string>& Sweep::notes() const { return data_->notes; }
 const std::map<std::string, std::string>& Sweep::units() const { return data_->units; }
 
 static std::span<const double> named(const std::string& name, const std::vector<std::string>& names,

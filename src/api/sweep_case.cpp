@@ -7,6 +7,7 @@
 #include "ensemble/variation.h"
 #include "formula/formula.h"
 #include "numeric/number.h"
+#include "observe/rows/quantity_units.h"
 #include "report/columns.h"
 #include "result/table.h"
 #include "setup/choice.h"
@@ -319,6 +320,20 @@ Result<System> system_of_words(const SweepStore& store, const std::vector<AskedW
     if (const std::string form = word(words, "form"); !form.empty()) options.form = form;
     return prepare(*model, options);
   });
+}
+
+std::map<std::string, std::string> units_of_columns(const SweepStore& store) {
+  std::map<std::string, std::string> units;
+  ReadOptions reading;
+  reading.mode = words_of(store.asked("mode"));
+  const Result<Model> model = opened(model_asked(store.request()), reading);
+  if (!model) return units;
+  const std::map<std::string, std::string> known = inner::quantity_units(*model->data().model, model->data().contacts);
+  for (const std::string& column : store.request().columns) {
+    const std::string name = column.ends_with(kInitial) ? column.substr(0, column.size() - kInitial.size()) : column;
+    if (const auto unit = known.find(name); unit != known.end()) units[column] = unit->second;
+  }
+  return units;
 }
 
 std::map<std::string, std::vector<double>> points_of_axes(const SweepStore& store) {

@@ -50,4 +50,7 @@ MotionOptions with_intervals(const System& system, MotionOptions options, int co
 // Throws Failure.
 MotionOptions drawn_case(const inner::SweepStore& store, const System& system);
 
+// The units of the columns of a sweep, as far as the model tells them.
+std::map<std::string, std::string> units_of_columns(const SweepStore& store);
+
 }  // namespace anholon::v1

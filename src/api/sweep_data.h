@@ -29,6 +29,7 @@ struct Sweep::Data {
   std::string form;
   std::map<std::string, std::string> units;  // of columns and of what is varied, as far as they are known
   inner::StoppedByKind stopped;
+  std::vector<std::string> notes;
   inner::EnsembleReport report;
 };
 

@@ -77,7 +77,8 @@ std::vector<std::pair<std::string, std::string>> asked_of(const PreparedSweep& p
   for (const std::string& name : p.scenarios) names.push_back(inner::csv_cell(name));
   add("vary case", inner::joined(names, ","));
   for (const Vary& v : o.vary) add("vary " + v.name, text_of(v));
-  add("together", o.together ? "yes" : ""), add("cases", o.cases ? std::to_string(*o.cases) : "");
+  add("table of cases", o.table), add("together", o.together ? "yes" : ""),
+      add("cases", o.cases ? std::to_string(*o.cases) : "");
   add("draw", o.draw), add("seed", std::to_string(o.seed)), add("reduce", inner::joined(o.reduce, " "));
   return all;
 }
@@ -118,6 +119,7 @@ FolderColumn empty_column(const inner::ParquetColumn& like) {
 }  // namespace
 
 std::map<std::string, std::vector<double>> SweepFolder::points() const { return points_of_axes(data_->store); }
+std::map<std::string, std::string> SweepFolder::units() const { return units_of_columns(data_->store); }
 const std::string& SweepFolder::path() const { return data_->store.folder(); }
 // A damaged plan is an error of the functions that return a Result; these tell what is there without it.
 std::size_t SweepFolder::cases() const {
@@ -159,6 +161,9 @@ Result<FolderProgress> SweepFolder::progress() const {
       const inner::Generation& of = store.generations()[g];
       all.generations.push_back({of.first_case, of.cases, p.parts_there[g], of.parts});
     }
+    inner::StoppedByKind stopped;
+    for (const std::string& note : p.stopped) inner::add_stopped(stopped, note);
+    for (const auto& [kind, cases] : stopped) all.notes.push_back(inner::stopped_note(kind, cases));
     return all;
   });
 }
@@ -224,7 +229,7 @@ Result<FolderDone> SweepFolder::fill(const FolderWork& work) const {
       if (part >= store.parts())
         return mistake("there is no part " + std::to_string(part),
                        "there are " + std::to_string(store.parts()) + " parts");
-    if (o.parts.empty()) return FolderDone{0, 0, true, {}};
+    if (o.parts.empty()) return FolderDone{0, 0, true, {}, {}};
     o.cancelled = work.cancelled, o.progress = work.progress;
     TabledPieces tabled(p);
     for (inner::EnsembleOptions& options : tabled.options) options.threads = work.threads;
@@ -233,7 +238,8 @@ Result<FolderDone> SweepFolder::fill(const FolderWork& work) const {
       tabled.options.front().numbers = numbers_of(store, grid_of(p));
     }
     const inner::Filled done = inner::fill(store, tabled.pieces, o);
-    return FolderDone{done.parts, done.report.done, done.parts == o.parts.size(), done.error};
+    return FolderDone{done.parts, done.report.done, done.parts == o.parts.size(),
+                      inner::notes_without_value(done.report), done.error};
   });
 }
 

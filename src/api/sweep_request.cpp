@@ -16,6 +16,10 @@ namespace {
 constexpr const char* kScenarios = "case";  // the name of a Vary that runs through scenarios
 
 [[noreturn]] void refuse(const inner::MistakeInWord& m, const char* option) {
+  // Of a table it tells the line.
+  if (!m.file.empty())
+    throw inner::Failure({}, m.file + ", line " + std::to_string(m.diagnostic.span.line) + ": " + m.diagnostic.message,
+                         m.diagnostic.hint);
   throw inner::Failure({}, std::string(option) + " " + m.word + ": " + m.diagnostic.message, m.diagnostic.hint);
 }
 
@@ -41,6 +45,7 @@ inner::Variation variation_of(const SweepOptions& asked, const inner::Model& mod
       for (const Number& n : each.values) values.push_back(constant(n, each.name));
       v.add(each.name, values, model);
     }
+    if (!asked.table.empty()) v.add(std::make_shared<const inner::CaseTable>(asked.table, asked.table_name), model);
   } catch (const inner::MistakeInWord& m) {
     refuse(m, "vary");
   }

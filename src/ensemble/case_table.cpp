@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "ensemble/mistake_in_word.h"
+#include "result/parquet/table_text.h"
 #include "result/table.h"
 
 namespace anholon {
@@ -18,10 +19,16 @@ std::string trimmed(const std::string& text) {
 
 }  // namespace
 
+std::string text_of_case_table(std::string bytes, const std::string& file) {
+  if (!is_parquet(bytes)) return bytes;
+  try {
+    return table_text_of_parquet(bytes);
+  } catch (const Failure& f) {
+    throw Failure({}, file + ": " + f.diagnostic.message, f.diagnostic.hint);
+  }
+}
+
 CaseTable::CaseTable(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
-  if (text_.starts_with("PAR1"))
-    throw Failure({}, file_ + " is a Parquet file, and a table of cases is CSV",
-                  "with pandas: pd.read_parquet(\"cases.parquet\").to_csv(\"cases.csv\", index=False)");
   constexpr std::string_view kMark = "\xEF\xBB\xBF";  // of UTF-8, which some programs write first
   if (text_.compare(0, kMark.size(), kMark) == 0) text_.erase(0, kMark.size());
   bool header = false;

@@ -13,7 +13,7 @@ namespace anholon {
 
 class CaseTable {
  public:
-  // CSV. `file` names the table in messages. Empty lines are passed over. Throws MistakeInWord if there is no header, no
+  // The text of a CSV file. `file` names the table in messages. Empty lines are passed over. Throws MistakeInWord if there is no header, no
   // row, or a line with another number of cells than the header.
   CaseTable(std::string text, std::string file);
 
@@ -42,5 +42,9 @@ class CaseTable {
   std::vector<std::size_t> places_;    // of the names among the cells of a line
   std::optional<std::size_t> number_;  // the place of a column "case"
 };
+
+// The text of a table from the bytes of its file, which is CSV or Parquet. Throws Failure without a place, which names
+// the file, if the table of a Parquet file cannot be read.
+std::string text_of_case_table(std::string bytes, const std::string& file);
 
 }  // namespace anholon

@@ -285,14 +285,37 @@ bool Reducer::holds(const ReducedStep& step, std::size_t formula) {
   return std::all_of(hidden_.begin(), hidden_.end(), shows);
 }
 
-// The arguments of functions that may hide their variation are smooth: polynomials through a few values tell where.
+// The points at which functions may hide their variation, by the polynomials of their arguments.
 void Reducer::find_hidden(const ReducedStep& step, std::size_t formula) {
-  if (!step.hiding) return;
+  const auto add = [&](const Hiding& function, const std::vector<double>& argument) {
+    const std::vector<double> nothing(argument.size(), std::numeric_limits<double>::quiet_NaN());
+    std::vector<double> points;
+    add_hidden_points(function, argument.data(), nothing.data(), static_cast<int>(argument.size()) - 1, 1.0, points);
+    for (const double u : points)
+      if (u > 0 && u < 1) hidden_.push_back(u * step.h);
+  };
+  if (step.hiding_polynomials) {
+    for (HidingPolynomial& p : step.hiding_polynomials(formula)) {
+      double power = 1;
+      for (double& c : p.argument) c *= power, power *= step.h;
+      if (p.argument.size() > 1 &&
+          std::all_of(p.argument.begin(), p.argument.end(), [](double c) { return std::isfinite(c); }))
+        add(p.function, p.argument);
+    }
+  } else if (step.hiding) {
+    find_by_values(step, formula, add);
+  }
+  std::sort(hidden_.begin(), hidden_.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  hidden_.erase(std::unique(hidden_.begin(), hidden_.end()), hidden_.end());
+}
+
+// The arguments are smooth: polynomials through a few values tell where.
+void Reducer::find_by_values(const ReducedStep& step, std::size_t formula,
+                             const std::function<void(const Hiding&, const std::vector<double>&)>& add) {
   const std::size_t count = step.hiding(formula, 0).size();
   if (count == 0) return;
   std::map<double, std::vector<HidingArgument>> seen;
-  const std::vector<double> nothing(Interpolation::kPoints, std::numeric_limits<double>::quiet_NaN());
-  std::vector<double> argument, points;
+  std::vector<double> argument;
   for (std::size_t k = 0; k < count; ++k) {
     std::optional<Hiding> function;
     const Interpolation of(
@@ -306,13 +329,8 @@ void Reducer::find_hidden(const ReducedStep& step, std::size_t formula) {
         0, step.h);
     if (of.without_value() > 0) continue;
     of.polynomial(argument);
-    points.clear();
-    add_hidden_points(*function, argument.data(), nothing.data(), Interpolation::kPoints - 1, 1.0, points);
-    for (const double u : points)
-      if (u > 0 && u < 1) hidden_.push_back(u * step.h);
+    add(*function, argument);
   }
-  std::sort(hidden_.begin(), hidden_.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  hidden_.erase(std::unique(hidden_.begin(), hidden_.end()), hidden_.end());
 }
 
 // polynomial_ over [0, h], in units of `scale`.

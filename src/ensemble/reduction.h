@@ -40,6 +40,11 @@ struct Reductions {
 };
 
 // A step of length h in which the reductions see the formulas.
+struct HidingPolynomial {
+  Hiding function;
+  std::vector<double> argument;  // the coefficients of x^k
+};
+
 struct ReducedStep {
   double h = 0;
   int degree = 0;                                           // of the polynomials; 0: they hold at the beginning alone
@@ -49,6 +54,8 @@ struct ReducedStep {
   std::function<std::vector<HidingArgument>(std::size_t i, double x)> hiding;
   bool look = true;       // whether the polynomials are compared with values; else the next step tells
   std::size_t kinks = 0;  // met in the motion so far, at which formulas may jump
+  // The polynomials of these arguments, where they are known; else `hiding` tells values.
+  std::function<std::vector<HidingPolynomial>(std::size_t i)> hiding_polynomials = {};
 };
 
 // Collects the values of the reductions over the steps and events of a motion.
@@ -80,6 +87,8 @@ class Reducer {
   bool agrees(double is, double foretold, double size) const;
   bool holds(const ReducedStep& step, std::size_t formula);
   void find_hidden(const ReducedStep& step, std::size_t formula);
+  void find_by_values(const ReducedStep& step, std::size_t formula,
+                      const std::function<void(const Hiding&, const std::vector<double>&)>& add);
   void see(Seen& s, double h, double scale);
   void see_by_values(const ReducedStep& step, std::size_t formula);
 

@@ -1,4 +1,5 @@
-// The hash by which certificates, pages and saved runs name a model: of its text and of the files that it refers to.
+// The hash by which certificates, pages, results and saved runs name a model: of its text, of its base files, and of the
+// data files of its tables with their names.
 #pragma once
 #include "base/diagnostic.h"
 #include "base/hash.h"
@@ -8,6 +9,7 @@ namespace anholon {
 inline std::string model_hash(const SourceText& source) {
   std::string text = source.text;
   for (const SourceText& s : source.others) text += s.text;
+  for (const SourceText& s : source.tables) text += '\0' + s.name + '\0' + s.text;
   return sha256_text(text);
 }
 

@@ -16,7 +16,7 @@ const folder = mkdtempSync(join(tmpdir(), 'anholon-sweeps-'));
 const anholon = (...words) => execFileSync(program, words, { cwd: folder, stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, ANHOLON_CACHE: '' } }).toString();
 
 anholon('sweep', 'disc', '--vary', "phi'=5:7:8", '--vary', 'theta=0.6:1.2:6', '--to', '2', '--chunk', '12', '--quiet', '-o', 'falls/');
-anholon('sweep', 'disc', '--vary', 'm=1:3:9', '--to', '1', '--quiet', '-o', 'line/');
+anholon('sweep', 'disc', '--vary', 'm=1:3:9', '--to', '1', '--reduce', 'max(tanh(theta)*exp(-1000*(theta-.3)^2)+psi^2)', '--quiet', '-o', 'line/');
 anholon('plot', 'falls/', '-o', 'plain.html');
 anholon('plot', 'falls/', 'theta', '--motions', '6', '-o', 'motions.html');
 anholon('plot', 'line/', 'theta', '--motions', '3', '-o', 'line.html');
@@ -142,7 +142,7 @@ const in_page = {
 };
 
 async function usable(browser, address, motion) {
-  for (const width of [1280, 390]) {
+  for (const width of [1280, 375]) {
     const { page, faults } = await open(browser, address, width);
     await page.getByLabel('Case:').fill('0');
     await page.keyboard.press('Enter');

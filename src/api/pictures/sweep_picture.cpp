@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "base/join.h"
 #include "plot/over_variation.h"
@@ -24,8 +25,43 @@ std::string in_legend(double v) {
   return {buffer, r.ptr};
 }
 
+// Whether the values of a column were drawn: the request of a folder says so, or each case has one of its own.
+bool drawn(const SweepCases& cases, const std::string& name, std::size_t different, std::size_t all) {
+  if (different == all) return true;
+  if (!cases.store()) return false;
+  const std::string of = name.ends_with("(0)") ? name.substr(0, name.size() - 3) : name;
+  const std::string words = ' ' + cases.store()->asked("vary");
+  return words.find(' ' + of + '~') != std::string::npos ||
+         cases.store()->asked("vary " + of).find('~') != std::string::npos;
+}
+
+// What varies, without the columns that were drawn for the points of a grid: over the grid they are quantiles.
+std::vector<std::string> axes_that_vary(const SweepCases& cases) {
+  const auto different = [&](const std::string& name) {
+    std::vector<std::string> words;
+    std::vector<double> values = cases.read({name}, words)[0].values;
+    std::erase_if(values, [](double x) { return std::isnan(x); });
+    std::sort(values.begin(), values.end());
+    return static_cast<std::size_t>(std::unique(values.begin(), values.end()) - values.begin());
+  };
+  if (cases.varied().size() < 2 || !cases.has("case")) return cases.varied();
+  const std::size_t all = different("case");
+  std::vector<std::string> grids;
+  bool drawn_ones = false, steps = false;  // a grid has several points
+  for (const std::string& name : cases.varied()) {
+    const std::size_t count = different(name);
+    if (drawn(cases, name, count, all)) {
+      drawn_ones = true;
+      continue;
+    }
+    steps = steps || count > 1;
+    grids.push_back(name);
+  }
+  return drawn_ones && steps ? grids : cases.varied();
+}
+
 std::vector<std::string> axes_of(const SweepCases& cases, const SweepPictureRequest& o,
-                                 const std::vector<std::string>& shown) {
+                                 const std::vector<std::string>& shown, bool numbers) {
   const auto is_in = [](const std::vector<std::string>& list, const std::string& name) {
     return std::find(list.begin(), list.end(), name) != list.end();
   };
@@ -33,7 +69,7 @@ std::vector<std::string> axes_of(const SweepCases& cases, const SweepPictureRequ
   std::vector<std::string> axes;
   for (const std::string& given : {o.x, one ? "" : o.y})
     if (!given.empty()) axes.push_back(given);
-  for (const std::string& name : cases.varied())
+  for (const std::string& name : numbers && (o.y.empty() || one) ? axes_that_vary(cases) : cases.varied())
     if (axes.size() < (one ? 1 : 2) && !is_in(shown, name) && !is_in(axes, name)) axes.push_back(name);
   if (axes.empty())
     throw Failure({}, "the columns of the sweep do not tell what varies",
@@ -134,14 +170,15 @@ SweepPicture picture_of_sweep(const SweepCases& cases, const SweepPictureRequest
                   "name one of its columns: " + inner::joined(cases.names(), ", "));
   const std::vector<std::string> shown = o.columns.empty() ? std::vector<std::string>{"outcome"} : o.columns;
   if (take_curves(picture, cases, o, shown)) return picture;
-  const std::vector<std::string> axes = axes_of(cases, o, shown);
+  std::vector<std::string> shown_words;
+  const std::vector<NamedColumn> of = cases.read(shown, shown_words);
+  const std::vector<std::string> axes = axes_of(cases, o, shown, shown_words.empty());
   std::vector<NamedColumn> at = cases.read(axes, words);
   if (!words.empty())
     throw Failure({}, "an axis shows numbers, and '" + inner::joined(axes, "' or '") + "' holds words",
                   o.dashes + "x names a column of numbers");
-  const std::vector<NamedColumn> of = cases.read(shown, words);
   if (at.size() == 1) {
-    if (!words.empty())
+    if (!shown_words.empty())
       throw Failure({}, "one variation shows numbers, and '" + inner::joined(shown, "' or '") + "' holds words",
                     "name a column of numbers" +
                         (o.dashes.empty() ? "" : ", or " + o.dashes + "histogram " + shown[0]));
@@ -154,7 +191,7 @@ SweepPicture picture_of_sweep(const SweepCases& cases, const SweepPictureRequest
   if (of.size() > 1)
     throw Failure({}, "a map over two variations shows one column, and there are " + std::to_string(of.size()),
                   "one name, or none for the outcomes");
-  picture.map = make_heat_map(std::move(at[0]), std::move(at[1]), of[0], std::move(words), cases.generations());
+  picture.map = make_heat_map(std::move(at[0]), std::move(at[1]), of[0], std::move(shown_words), cases.generations());
   picture.map->title = title;
   return picture;
 }

@@ -44,9 +44,10 @@ std::optional<std::size_t> count_of(const SweepCommand& o) {
 std::string text_of_table(const std::string& path) {
   std::string text, why;
   if (!read_file(path, text, &why))
-    throw UsageError{"error: --cases: cannot read " + path + ": " + why +
-                     "\nhint: a CSV file whose first line names what varies; -n 1000 is a number of cases\n"};
-  return text;
+    throw UsageError{
+        "error: --cases: cannot read " + path + ": " + why +
+        "\nhint: a CSV or Parquet file whose columns have the names of what varies; -n 1000 is a number of cases\n"};
+  return text_of_case_table(std::move(text), path);
 }
 
 // Names the cases of the file that --vary case=a,b runs through; other words are left in `words`.

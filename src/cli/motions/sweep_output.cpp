@@ -48,18 +48,11 @@ void report_sweep(const EnsembleReport& r, std::size_t cases, const SweepOutput&
 }
 
 void report_without_value(const EnsembleReport& r) {
-  for (const auto& [name, cases] : r.without_value)
-    say(stderr,
-        "note: %s has no value in %zu of the finished cases: the formula has none, or no bound, on a part of their "
-        "motions\n",
-        name.c_str(), cases);
+  for (const std::string& note : notes_without_value(r)) say(stderr, "note: %s\n", note.c_str());
 }
 
 void report_stopped(const StoppedByKind& all, std::FILE* to) {
-  for (const auto& [kind, stopped] : all)
-    say(to, "stopped (%s), %zu %s, first case %zu: %s\nhint: %s\n", name(kind), stopped.count,
-        stopped.count == 1 ? "case" : "cases", stopped.first, stopped.outcome.message.c_str(),
-        stopped.outcome.hint.c_str());
+  for (const auto& [kind, stopped] : all) say_lines(to, stopped_note(kind, stopped) + "\n");
 }
 
 }  // namespace anholon::cli

@@ -97,7 +97,7 @@ void add_sweep(CommandLine& line) {
       ->allow_extra_args(false);
   c->add_option("-n", o.case_count, "how many cases, where values are drawn")->type_name("N");
   c->add_option("--cases", o.case_table,
-                "a table of cases in CSV: a first line of names, a line of numbers for each case")
+                "a table of cases, CSV or Parquet: columns with the names of what varies, a row for each case")
       ->type_name("FILE");
   c->add_option("--draw", o.draw,
                 "random (default), or sobol: points of a Sobol sequence, which lie more evenly; -n a power of 2")

@@ -146,18 +146,18 @@ bool CaseWalk::reduce() {
         value_of_quadrature(*stepper_, W(stepper_->before() + W(x)), plan_->reduced.first + i, *point_);
     return FormulaValue{is, made_of};
   };
-  const auto hiding = [&](std::size_t i, double x) {
-    std::vector<HidingArgument> arguments;
+  const auto hiding = [&](std::size_t i) {
+    std::vector<HidingPolynomial> arguments;
     for (const EnsemblePlan::Reduced::Function& f : plan_->reduced.functions[i]) {
-      double is = 0;
-      for (int k = stepper_->order() - 1; k >= 0; --k) is = is * x + stepper_->quadrature_coefficient(f.argument, k);
-      arguments.push_back({f.hiding, is});
+      HidingPolynomial& next = arguments.emplace_back(HidingPolynomial{f.hiding, {}});
+      for (int k = 0; k < stepper_->order(); ++k)
+        next.argument.push_back(stepper_->quadrature_coefficient(f.argument, k));
     }
     return arguments;
   };
   const bool last = !stepper_->fired().empty() || stepper_->time() == end_;
-  const bool good = reducer_->step({to_double(W(stepper_->time() - stepper_->before())), stepper_->order() - 1,
-                                    coefficient, value, hiding, last, stepper_->kinks()});
+  const double h = to_double(W(stepper_->time() - stepper_->before()));
+  const bool good = reducer_->step({h, stepper_->order() - 1, coefficient, value, {}, last, stepper_->kinks(), hiding});
   for (const Fired<double>& f : stepper_->fired())
     reducer_->event(plan_->scenario.model->events[f.series].name, to_double(W(stepper_->before() + W(f.where))));
   reducer_->values(result_->reduced);

@@ -155,4 +155,12 @@ EnsembleReport judge_piece(const SweepPiece& piece, const std::function<bool()>&
   return report;
 }
 
+std::vector<std::string> notes_without_value(const EnsembleReport& r) {
+  std::vector<std::string> notes;
+  for (const auto& [name, cases] : r.without_value)
+    notes.push_back(name + " has no value in " + std::to_string(cases) +
+                    " of the finished cases: the formula has none, or no bound, on a part of their motions");
+  return notes;
+}
+
 }  // namespace anholon

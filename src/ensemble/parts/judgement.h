@@ -15,6 +15,8 @@ void add_report(EnsembleReport& all, const EnsembleReport& next);
 std::string error_json(const CasesError& error);
 std::string residuals_json(const CasesResiduals& residuals);
 
+// A sentence for each reduction that has no value in some of the finished cases.
+std::vector<std::string> notes_without_value(const EnsembleReport& report);
 // How far the cases can be trusted, in sentences.
 std::vector<std::string> judgement_lines(const EnsembleReport& report);
 // The error, the residuals and these sentences: the text that the folder keeps.

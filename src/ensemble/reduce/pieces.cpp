@@ -99,21 +99,38 @@ double greatest_on(const double* c, int degree, double h, double known) {
 
 // ---- interpolation --------------------------------------------------------------------------------------------------
 
-static double angle(int j) { return 3.14159265358979323846 * (j + 0.5) / Interpolation::kPoints; }
+namespace {
+
+constexpr auto kCount = static_cast<std::size_t>(Interpolation::kPoints);
+
+// cos(k a) at the angles a of the points, by k and point.
+const std::array<std::array<double, kCount>, kCount>& cosines() {
+  static const auto table = [] {
+    std::array<std::array<double, kCount>, kCount> all{};
+    for (int k = 0; k < Interpolation::kPoints; ++k)
+      for (int j = 0; j < Interpolation::kPoints; ++j)
+        all[static_cast<std::size_t>(k)][static_cast<std::size_t>(j)] =
+            std::cos(k * (3.14159265358979323846 * (j + 0.5) / Interpolation::kPoints));
+    return all;
+  }();
+  return table;
+}
+
+}  // namespace
 
 Interpolation::Interpolation(const std::function<FormulaValue(double)>& f, double from, double to) {
   constexpr int kNoise = 64;
   for (int j = 0; j < kPoints; ++j) {
-    const FormulaValue v = f(from + (to - from) * (1 - std::cos(angle(j))) / 2);
+    const FormulaValue v = f(from + (to - from) * (1 - cosines()[1][static_cast<std::size_t>(j)]) / 2);
     values_[static_cast<std::size_t>(j)] = v.value;
     if (!std::isfinite(v.value)) ++without_value_;
     size_ = std::max(size_, std::abs(v.value));
     noise_ = std::max(noise_, kNoise * std::numeric_limits<double>::epsilon() * v.made_of);
   }
-  for (int k = 0; k < kPoints; ++k) {
+  for (std::size_t k = 0; k < kCount; ++k) {
     double sum = 0;
-    for (int j = 0; j < kPoints; ++j) sum += values_[static_cast<std::size_t>(j)] * std::cos(k * angle(j));
-    terms_[static_cast<std::size_t>(k)] = sum * (k == 0 ? 1 : k % 2 == 0 ? 2 : -2) / kPoints;
+    for (std::size_t j = 0; j < kCount; ++j) sum += values_[j] * cosines()[k][j];
+    terms_[k] = sum * (k == 0 ? 1 : k % 2 == 0 ? 2 : -2) / kPoints;
   }
 }
 

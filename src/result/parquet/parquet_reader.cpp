@@ -10,6 +10,8 @@
 namespace anholon {
 
 using namespace parquet;
+using thrift::elements;
+using thrift::fields;
 using thrift::Reader;
 using thrift::Type;
 
@@ -31,20 +33,6 @@ struct Metadata {
   std::vector<std::pair<std::string, std::string>> notes;
   std::size_t begin = 0;  // in the file
 };
-
-// Calls f(field) for each field of a structure; f returns false for a field that is passed over.
-template <class F>
-void fields(Reader& r, const F& f) {
-  r.open();
-  for (Reader::Field field = r.next(); field.type != Type::stop && r.good(); field = r.next())
-    if (!f(field)) r.skip(field.type);
-}
-
-template <class F>
-void elements(Reader& r, const F& f) {
-  const Reader::List list = r.list();
-  for (std::size_t k = 0; k < list.size && r.good(); ++k) f(k);
-}
 
 Chunk chunk_of(Reader& r) {
   Chunk c;

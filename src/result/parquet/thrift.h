@@ -85,4 +85,19 @@ class Reader {
   int last_ = 0;
 };
 
+// Calls f(field) for each field of a structure; f returns false for a field that is passed over.
+template <class F>
+void fields(Reader& r, const F& f) {
+  r.open();
+  for (Reader::Field field = r.next(); field.type != Type::stop && r.good(); field = r.next())
+    if (!f(field)) r.skip(field.type);
+}
+
+// Calls f(k) for each element of a list, of which f reads all.
+template <class F>
+void elements(Reader& r, const F& f) {
+  const Reader::List list = r.list();
+  for (std::size_t k = 0; k < list.size && r.good(); ++k) f(k);
+}
+
 }  // namespace anholon::thrift

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "base/diagnostic.h"
+#include "result/parquet/inflate.h"
+#include "result/parquet/page_values.h"
 #include "result/parquet/parquet.h"
+#include "result/parquet/table_text.h"
 #include "result/parquet/thrift.h"
 
 namespace anholon::parquet_test {
@@ -107,6 +110,46 @@ TEST(Thrift, GivesBackWhatWasWritten) {
   EXPECT_EQ(r.next().type, thrift::Type::stop);
   EXPECT_TRUE(r.good());
   EXPECT_EQ(r.at(), w.text().size());
+}
+
+TEST(Parquet, ReadsBlocksOfSnappy) {
+  std::string bytes;
+  // A length, literals, and copies that overlap what they copy.
+  EXPECT_TRUE(parquet::read_snappy(std::string_view("\x05\x10hello", 7), 5, bytes));
+  EXPECT_EQ(bytes, "hello");
+  EXPECT_TRUE(parquet::read_snappy(std::string_view("\x0a\x00"
+                                                    "a\x15\x01",
+                                                    5),
+                                   10, bytes));
+  EXPECT_EQ(bytes, "aaaaaaaaaa");
+  EXPECT_TRUE(parquet::read_snappy(std::string_view("\x07\x04"
+                                                    "ab\x12\x02\x00",
+                                                    7),
+                                   7, bytes));
+  EXPECT_EQ(bytes, "abababa");
+  EXPECT_FALSE(parquet::read_snappy(std::string_view("\x07\x04"
+                                                     "ab\x12\x03\x00",
+                                                     7),
+                                    7, bytes))
+      << "before the begin";
+  EXPECT_FALSE(parquet::read_snappy(std::string_view("\x05\x10hello", 7), 6, bytes)) << "another length";
+  EXPECT_FALSE(parquet::read_snappy(std::string_view("\x05\x10hell", 6), 5, bytes)) << "cut off";
+}
+
+TEST(Parquet, ReadsRunsAndGroupsOfNumbers) {
+  using List = std::vector<std::uint32_t>;
+  EXPECT_EQ(parquet::run_lengths(std::string_view("\x06\x02", 2), 2, 3), (List{2, 2, 2}));
+  EXPECT_EQ(parquet::run_lengths(std::string_view("\x03\x88\xc6\xfa", 4), 3, 8), (List{0, 1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_THROW(parquet::run_lengths(std::string_view("\x06\x02", 2), 2, 4), Failure);
+}
+
+TEST(Parquet, GivesTheTextOfACsvFile) {
+  ParquetTable t;
+  Words words;
+  words.add("pi/2"), words.add("8 cm, \"about\"");
+  t.columns = {{"m", std::vector<double>{0.1, 1e-300}}, {"P[1,2]", std::vector<std::int64_t>{-3, 4}}, {"l", words}};
+  EXPECT_EQ(table_text_of_parquet(parquet_bytes(t)), "m,\"P[1,2]\",l\n0.1,-3,pi/2\n1e-300,4,\"8 cm, \"\"about\"\"\"\n");
+  EXPECT_THROW(table_text_of_parquet(parquet_bytes(t).substr(0, 200)), Failure);
 }
 
 }  // namespace anholon::parquet_test

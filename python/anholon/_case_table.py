@@ -1,0 +1,95 @@
+"""Tables of cases, as the library takes them: the text of a CSV file."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import re
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Protocol, Union
+
+from . import _core
+from ._errors import ModelError
+from ._numbers import Number, varied_list
+
+if TYPE_CHECKING:
+    from collections.abc import ItemsView
+
+
+class Frame(Protocol):
+    """What tables of pandas, and arrays by name, have in common."""
+
+    def items(self) -> Any:
+        """Names and columns."""
+
+
+class ArrowTable(Protocol):
+    """A table of pyarrow."""
+
+    def to_pydict(self) -> dict[str, list[Any]]:
+        """Names and columns."""
+
+
+class Series(Protocol):
+    """A table of polars."""
+
+    def to_dict(self, *, as_series: bool) -> Any:
+        """Names and columns."""
+
+
+CaseTable = Union[str, "os.PathLike[str]", Mapping[str, Iterable[Number]], Frame, ArrowTable, Series]
+"""A table of cases: the path of a CSV or Parquet file, arrays by name, or a table of pandas, polars or pyarrow."""
+
+
+def table_of(cases: CaseTable) -> tuple[str, str]:
+    """The name of a table in messages, and its text.
+
+    Raises:
+        ModelError: the file cannot be read; the columns have different lengths.
+        TypeError: this is no table.
+    """
+    if isinstance(cases, (str, os.PathLike)):
+        return os.fspath(cases), _core.case_table(os.fspath(cases))
+    columns = {str(name): _texts(name, values) for name, values in _items(cases)}
+    if not columns:
+        raise ModelError("the table of cases has no columns\nhint: cases={'m': [1, 2], \"x'\": [0, 0.5]}")
+    lengths = {len(values) for values in columns.values()}
+    if len(lengths) > 1:
+        raise ModelError(f"the columns of the table have between {min(lengths)} and {max(lengths)} rows\nhint: as many values of each name")
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(columns)
+    writer.writerows(zip(*columns.values()))
+    return "the table", text.getvalue()
+
+
+def names_of_table(text: str) -> set[str]:
+    """What a table varies; brackets and quotes may hold commas."""
+    heads = [line for line in text.splitlines() if line.strip(" \t")][:1]
+    found = re.findall(r'"((?:[^"]|"")*)"|((?:[^,"\[(]|\[[^\]]*\]|\([^)]*\))+)', heads[0] if heads else "")
+    return {(quoted or plain).strip(" \t").removesuffix("(0)") for quoted, plain in found}
+
+
+def lines_of(text: str) -> int:
+    """How many cases a table has."""
+    return max(sum(1 for line in text.splitlines() if line.strip(" \t")) - 1, 0)
+
+
+def _items(cases: Any) -> ItemsView[Any, Any]:
+    if hasattr(cases, "to_pydict"):
+        return cases.to_pydict().items()  # type: ignore[no-any-return]
+    if hasattr(cases, "get_columns") and hasattr(cases, "to_dict"):
+        return cases.to_dict(as_series=False).items()  # type: ignore[no-any-return]
+    if hasattr(cases, "items"):
+        return cases.items()  # type: ignore[no-any-return]
+    raise TypeError(f"cases is a number, a table, or the path of one, not a {type(cases).__name__}")
+
+
+def _texts(name: object, values: Any) -> list[str]:
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        raise TypeError(f"{name}: a column of a table is a list or an array, not {values!r:.40}")
+    texts = varied_list(name, values)
+    if any("\n" in text or "\r" in text for text in texts):
+        raise ModelError(f"{name}: a number has no line ends")
+    return texts
