@@ -27,7 +27,7 @@ class Frame(Protocol):
 class ArrowTable(Protocol):
     """A table of pyarrow."""
 
-    def to_pydict(self) -> dict[str, list[Any]]:
+    def to_pydict(self) -> Any:
         """Names and columns."""
 
 
