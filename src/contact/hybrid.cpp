@@ -370,25 +370,21 @@ class HybridMotion {
       if (bodies_.near.closed(c) && bodies_.near.gap_rate(c) < 0 && !bodies_.contacts[c].under) striking = c;
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
       touches.push_back(bodies_.near.closed(c) && bodies_.near.gap_rate(c) <= 0);
-    std::vector<std::vector<long double>> list = impact_jumps(bodies_.dynamics, bodies_.contacts, touches);
+    std::vector<Impact> list = impacts(bodies_.dynamics, bodies_.contacts, touches);
     if (list.size() != 1) {
       bodies_.first_alone(touches);
-      list = impact_jumps(bodies_.dynamics, bodies_.contacts, touches);
+      list = impacts(bodies_.dynamics, bodies_.contacts, touches);
     }
     if (list.size() != 1) return undecided(list.size());
-    std::vector<long double> before(bodies_.at.qd.begin(), bodies_.at.qd.end()), after = before;
-    for (std::size_t a = 0; a < n; ++a) after[a] += list[0][a];
     constexpr long double kGrows = 1e-12L;
-    // Formulas that hold t move a wall, which may give energy.
-    if (!walls_move(bodies_.contacts) &&
-        bodies_.dynamics.energy(after) > bodies_.dynamics.energy(before) * (1 + kGrows))
+    if (list[0].work > kGrows * list[0].terms)
       return {OutcomeKind::inconsistent, "the impact would raise the energy" + when(),
               bodies_.contacts[0].law == ImpactLaw::newton
                   ? "Newton's law with friction does so in this direction: impact = \"poisson\" in the contacts"
                   : "take a smaller restitution"};
     std::vector<EventReport::Change> changes;
     for (std::size_t a = 0; a < n; ++a) {
-      const auto v = static_cast<double>(after[a]);
+      const auto v = static_cast<double>(bodies_.at.qd[a] + list[0].jump[a]);
       if (v != bodies_.at.qd[a])
         changes.push_back({s_.model->coordinates[a].name + "'", {bodies_.at.qd[a], ""}, {v, ""}});
       bodies_.at.qd[a] = v;

@@ -1,6 +1,7 @@
 #include "contact/law/impact.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "contact/law/consistent_modes.h"
 #include "numeric/number.h"
@@ -10,12 +11,6 @@ namespace anholon {
 namespace {
 
 using Jump = std::vector<long double>;
-
-std::vector<Jump> jumps(const std::vector<ContactSolution>& solutions) {
-  std::vector<Jump> list;
-  for (const ContactSolution& s : solutions) list.push_back(s.x);
-  return list;
-}
 
 void add_rates(long double& rate, const std::vector<long double>& row, const Jump& x) {
   for (std::size_t a = 0; a < x.size(); ++a) rate += row[a] * x[a];
@@ -47,6 +42,48 @@ ContactProblem expansion(const ContactDynamics& dynamics, ContactProblem p, cons
   }
   p.contacts.insert(p.contacts.end(), friction.begin(), friction.end());
   return p;
+}
+
+// The impulses of the contacts along their gaps and slip velocities.
+struct Impulses {
+  explicit Impulses(std::size_t contacts) : normal(contacts), tangential(contacts) {}
+  std::vector<long double> normal;
+  std::vector<std::array<long double, 2>> tangential;
+};
+
+// Contacts beyond those of `sum` are the friction of the contacts that they are under.
+void add_impulses(const ContactProblem& p, const ContactSolution& of, Impulses& sum) {
+  for (std::size_t k = 0; k < p.contacts.size(); ++k) {
+    const ContactRows& rows = p.contacts[k];
+    const ContactMode& mode = of.modes[k];
+    const std::size_t c = k < sum.normal.size() ? k : *rows.under;
+    if (!rows.under) sum.normal[c] += of.normal[k];
+    for (std::size_t a = 0; a < rows.tangential.size() && mode.touch != Touch::open; ++a)
+      sum.tangential[c][a] +=
+          mode.touch == Touch::sticks ? of.friction[k][a] : -rows.friction * mode.direction[a] * of.normal[k];
+  }
+}
+
+Impact with_work(const ContactDynamics& dynamics, Jump jump, const Impulses& impulses) {
+  Impact impact;
+  const auto add = [&](long double impulse, long double before, const std::vector<long double>& row) {
+    long double change = 0, size = std::abs(before);
+    for (std::size_t a = 0; a < jump.size(); ++a) {
+      change += row[a] * jump[a];
+      size += std::abs(row[a]) * dynamics.most(a);
+    }
+    impact.work += impulse * (before + change / 2);
+    impact.terms += std::abs(impulse) * size;
+  };
+  const std::vector<ContactRows>& contacts = dynamics.accelerations().contacts;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (impulses.normal[c] != 0) add(impulses.normal[c], dynamics.place(c).gap_rate, contacts[c].normal);
+    for (std::size_t a = 0; a < contacts[c].tangential.size(); ++a)
+      if (impulses.tangential[c][a] != 0)
+        add(impulses.tangential[c][a], dynamics.place(c).slip[a], contacts[c].tangential[a]);
+  }
+  impact.jump = std::move(jump);
+  return impact;
 }
 
 }  // namespace
@@ -98,18 +135,32 @@ Outcome on_edge(const std::string& contact, const std::string& when) {
           "write a contact for each side of the edge in place of one gap with min, max, abs or piecewise"};
 }
 
-std::vector<Jump> impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
-                               const std::vector<bool>& touches) {
+std::vector<Impact> impacts(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
+                            const std::vector<bool>& touches) {
   const bool poisson =
       std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.law == ImpactLaw::poisson; });
-  if (!poisson) return jumps(consistent_modes(dynamics.impact(touches)));
-  ContactProblem p = dynamics.impact(touches, 0);
-  const std::vector<ContactSolution> compression = consistent_modes(p);
-  if (compression.size() != 1) return jumps(compression);
-  p = expansion(dynamics, std::move(p), compression[0]);
-  std::vector<Jump> list = jumps(consistent_modes(p));
-  for (Jump& x : list)
-    for (std::size_t a = 0; a < x.size(); ++a) x[a] += compression[0].x[a];
+  ContactProblem p = poisson ? dynamics.impact(touches, 0) : dynamics.impact(touches);
+  std::vector<ContactSolution> found = consistent_modes(p);
+  Impulses given(contacts.size());
+  Jump compressed(p.b.size(), 0);
+  if (poisson && found.size() == 1) {
+    const ContactSolution compression = std::move(found[0]);
+    add_impulses(p, compression, given);
+    for (std::size_t c = 0; c < contacts.size(); ++c)
+      if (!p.contacts[c].under)
+        given.normal[c] += dynamics.place(c).restitution * std::max(compression.normal[c], 0.0L);
+    p = expansion(dynamics, std::move(p), compression);
+    found = consistent_modes(p);
+    compressed = compression.x;
+  }
+  std::vector<Impact> list;
+  for (const ContactSolution& s : found) {
+    Impulses sum = given;
+    add_impulses(p, s, sum);
+    Jump jump = s.x;
+    for (std::size_t a = 0; a < jump.size(); ++a) jump[a] += compressed[a];
+    list.push_back(with_work(dynamics, std::move(jump), sum));
+  }
   return list;
 }
 
