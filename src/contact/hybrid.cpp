@@ -315,6 +315,7 @@ class HybridMotion {
         if (open) m.rest = std::max(m.rest, slip_in_last_digits_of_time(c, open->x));
       }
       m.depth = RoundOff::kPlace / 2 * bodies_.near.place_size(c) + std::max(0.0L, -place.gap);
+      m.closed = m.touch == Touch::open && bodies_.near.closed(c) && bodies_.near.gap_is_round_off(c);
       m.slack = kRest * (force > 0 ? force : 1);
       if (bodies_.contacts[c].under) m.slack *= p.contacts[c].friction;
       // Friction that is said to be at its bound is below the slack: the mode ends where friction goes on to grow.
