@@ -316,6 +316,7 @@ class HybridMotion {
         if (open) m.rest = std::max(m.rest, slip_in_last_digits_of_time(c, open->x));
       }
       m.depth = RoundOff::kPlace / 2 * bodies_.near.place_size(c) + std::max(0.0L, -place.gap);
+      m.closed = m.touch == Touch::open && bodies_.near.closed(c) && bodies_.near.gap_is_round_off(c);
       m.slack = kRest * (force > 0 ? force : 1);
       if (bodies_.contacts[c].under) m.slack *= p.contacts[c].friction;
       // Friction that is said to be at its bound is below the slack: the mode ends where friction goes on to grow.
@@ -371,18 +372,16 @@ class HybridMotion {
       if (bodies_.near.closed(c) && bodies_.near.gap_rate(c) < 0 && !bodies_.contacts[c].under) striking = c;
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
       touches.push_back(bodies_.near.closed(c) && bodies_.near.gap_rate(c) <= 0);
-    std::vector<ImpactJump> list = impact_jumps(bodies_.dynamics, bodies_.contacts, touches);
+    std::vector<Impact> list = impacts(bodies_.dynamics, bodies_.contacts, touches);
     if (list.size() != 1) {
       bodies_.first_alone(touches);
-      list = impact_jumps(bodies_.dynamics, bodies_.contacts, touches);
+      list = impacts(bodies_.dynamics, bodies_.contacts, touches);
     }
     if (list.size() != 1) return undecided(list.size());
-    std::vector<long double> before(bodies_.at.qd.begin(), bodies_.at.qd.end()), after = before;
-    for (std::size_t a = 0; a < n; ++a) after[a] += list[0].velocities[a];
+    std::vector<long double> after(bodies_.at.qd.begin(), bodies_.at.qd.end());
+    for (std::size_t a = 0; a < n; ++a) after[a] += list[0].jump[a];
     constexpr long double kGrows = 1e-12L;
-    // Formulas that hold t move a wall, which may give energy.
-    if (!walls_move(bodies_.contacts) &&
-        bodies_.dynamics.energy(after) > bodies_.dynamics.energy(before) * (1 + kGrows))
+    if (list[0].work > kGrows * list[0].terms)
       return {OutcomeKind::inconsistent, "the impact would raise the energy" + when(),
               bodies_.contacts[0].law == ImpactLaw::newton
                   ? "Newton's law with friction does so in this direction: impact = \"poisson\" in the contacts"

@@ -20,6 +20,41 @@ ModeSegments::ModeSegments(const Workspace& s, const SimulationOptions& options,
   rows_.only_at(times_);
 }
 
+// Events of a mode whose gaps begin at zero.
+static std::vector<std::size_t> from_zero(const ReadyMode& mode, const TouchingBodies& bodies) {
+  std::vector<std::size_t> list;
+  const std::vector<Event>& events = mode.own->model->events;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const auto known = mode.of.events.find(events[i].name);
+    if (known == mode.of.events.end() || known->second.change != ModeChange::hits) continue;
+    const std::size_t c = known->second.contact;
+    if (bodies.modes[c].closed &&
+        events[i].name == bodies.contacts[c].name + "." + word(bodies.contacts[c], ModeChange::hits))
+      list.push_back(i);
+  }
+  return list;
+}
+
+// The bound of friction vanishes with the load, and so does the friction of a contact that leaves without a slip.
+static void drop_slips_of_what_leaves(SimulationReport& r, const std::map<std::string, ModeEvent>& known,
+                                      const std::vector<Contact>& contacts) {
+  const auto leaves_at = [&](std::size_t contact, double t) {
+    return std::any_of(r.events.begin(), r.events.end(), [&](const EventReport& e) {
+      const auto at = known.find(e.name);
+      return at != known.end() && at->second.change == ModeChange::leaves && at->second.contact == contact &&
+             e.t.value == t;
+    });
+  };
+  std::vector<EventReport> kept;
+  for (const EventReport& e : r.events) {
+    const auto at = known.find(e.name);
+    const bool slips = at != known.end() && at->second.change == ModeChange::slips;
+    if (slips && leaves_at(contacts[at->second.contact].under.value_or(at->second.contact), e.t.value)) continue;
+    kept.push_back(e);
+  }
+  r.events = std::move(kept);
+}
+
 bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
   const ContactState from = bodies_.at;
   if (by_bdf(to)) {
@@ -47,6 +82,7 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
   // The components that hold are chosen anew.
   const bool holds_others = bodies_.at.t > from.t && may_hold_others(r);
   if (holds_others) forget_singularity(r);
+  drop_slips_of_what_leaves(r, mode->of.events, bodies_.contacts);
   const bool every_event_known = joined_.add(r, mode->of.events);
   const bool vanished = (outcome.kind == OutcomeKind::step_collapse || gave_up(r)) && slip_vanishes();
   rows_.end_segment(!vanished && !direction_vanishes(r.events, mode->of.events) &&
@@ -119,7 +155,9 @@ ReadyMode* ModeSegments::simulate_mode(const Rational& to, SimulationReport& rep
   ReadyMode* const mode = begin(ModeEnds::events, outcome);
   if (!mode) return nullptr;
   rows_.begin_segment(mode->of.stopped);
-  report = simulate_in(*mode->own, asked(to), rows_, &mode->plans);
+  SimulationOptions o = asked(to);
+  o.from_zero = from_zero(*mode, bodies_);
+  report = simulate_in(*mode->own, o, rows_, &mode->plans);
   outcome = report.outcome;
   return mode;
 }
@@ -139,6 +177,7 @@ bool ModeSegments::last_until(const Rational& to, ContactState& at) {
   o.dense = nullptr;
   o.followed.clear();
   o.watches_floors = false;
+  o.from_zero = from_zero(*mode, bodies_);
   const SimulationReport r = simulate_in(*mode->own, o, last, &mode->plans);
   at = bodies_.at;
   last.last_state(at);

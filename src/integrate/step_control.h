@@ -6,6 +6,7 @@
 #include <concepts>
 #include <functional>
 #include <span>
+#include <vector>
 
 #include "numeric/number.h"
 
@@ -27,6 +28,8 @@ struct StepSettings {
   bool coarse_times = false;    // of events: multiples of two round-offs, for a run whose roundings are to differ
   bool ordinary_steps = true;   // are not looked at closely
   bool multipliers = false;     // their series are asked for (Stepper::dense): by kernels in the motion's unknowns
+  std::vector<std::size_t> from_zero =
+      {};  // of what is watched for changes of sign: zero at the start, but for round-off
 };
 
 // ceil(-ln(tolerance)/2 + 1), and at least 4: the order of least work for the tolerance if that grows with the square

@@ -198,6 +198,7 @@ void Stepper<N>::read_events() {
   } else {
     events_.read(order_ - 1, coefficient, [&](std::size_t i) { return expander_.series().quadrature_terms(i); });
   }
+  if (record().steps == 0) events_.begin_at_zero();
 }
 
 // What decides which functions hold may change faster than the motion. Where a kernel has made the expansion, formulas are
@@ -449,6 +450,7 @@ template <Number N>
 void Stepper<N>::watch(std::vector<WatchedSeries> series) {
   std::vector<std::size_t> quadratures;
   for (const WatchedSeries& s : series) quadratures.push_back(s.quadrature);
+  for (const std::size_t i : settings_.from_zero) series[i].from_zero = true;
   look_.watch(quadratures);
   events_ = EventWatch<N>(std::move(series));
   watch_kinks();

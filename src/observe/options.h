@@ -69,8 +69,9 @@ struct SimulationOptions {
   ErrorEstimate estimate = ErrorEstimate::never;
   // Whether the notes tell of supports that pull and of friction that is needed (observe/floors/floor_watch.h).
   bool watches_floors = true;
-  bool watches_carriers = true;      // of supports of one body alone, too
-  std::vector<Conserved> conserved;  // to be watched: expressions of the scenario
+  bool watches_carriers = true;        // of supports of one body alone, too
+  std::vector<Conserved> conserved;    // to be watched: expressions of the scenario
+  std::vector<std::size_t> from_zero;  // events whose formulas are zero at the start, and have round-off as values
   // Called at the end, and every few seconds: what is needed to go on.
   std::function<void(const SavedRun&)> save;
   double save_seconds = 10;

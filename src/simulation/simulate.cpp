@@ -32,6 +32,7 @@ StepSettings step_settings(const Model& model, const SimulationOptions& o) {
   s.known_to = s.known_from + model.masses.size();
   s.followed_to = s.known_to + o.followed.size() - o.followed_at_ends;
   s.multipliers = o.rigorous.has_value();
+  s.from_zero = o.from_zero;
   return s;
 }
 

@@ -241,13 +241,6 @@ bool ContactDynamics::has_slip(std::size_t c) const {
          std::all_of(rows.tangential.begin(), rows.tangential.end(), all_finite);
 }
 
-bool walls_move(const std::vector<Contact>& contacts) {
-  return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) {
-    const std::vector<NodeId> all = symbols({&c.gap, 1});
-    return std::any_of(all.begin(), all.end(), [&](NodeId id) { return c.gap.graph->node(id).kind == Kind::time; });
-  });
-}
-
 std::optional<std::vector<double>> ContactDynamics::nearest(const std::vector<double>& qd,
                                                             const ContactState& at) const {
   ContactProblem p = stop();
@@ -259,13 +252,6 @@ std::optional<std::vector<double>> ContactDynamics::nearest(const std::vector<do
   std::vector<double> list;
   for (std::size_t a = 0; a < n_; ++a) list.push_back(static_cast<double>(qd[a] + jump->x[a]));
   return list;
-}
-
-long double ContactDynamics::energy(const std::vector<long double>& qd) const {
-  long double twice = 0;
-  for (std::size_t i = 0; i < n_; ++i)
-    for (std::size_t j = 0; j < n_; ++j) twice += problem_.A[i][j] * qd[i] * qd[j];
-  return twice / 2;
 }
 
 }  // namespace anholon

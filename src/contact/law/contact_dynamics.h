@@ -21,9 +21,6 @@ std::vector<long double> with_sides(std::vector<long double> parameters, const s
 // Evaluates a tape at the time, coordinates, velocities and states of a state; higher derivatives are 0.
 void evaluate_at(const ContactState& at, const Graph& graph, Machine<long double>& machine);
 
-// Whether the gap of a contact holds t.
-bool walls_move(const std::vector<Contact>& contacts);
-
 class ContactDynamics {
  public:
   // `s`: the model with all contacts open. Constraints of order above 1, and those kept by inputs, are refused (Failure).
@@ -68,8 +65,6 @@ class ContactDynamics {
   // The velocities nearest to `qd` in the mass norm with which the constraints hold at the state; those of the state are where
   // constraints that are not linear in them are looked at. Returns nullopt if the constraints depend on each other.
   std::optional<std::vector<double>> nearest(const std::vector<double>& qd, const ContactState& at) const;
-  // The kinetic energy of velocities, in which the mass matrix is that of the state.
-  long double energy(const std::vector<long double>& qd) const;
 
  private:
   std::size_t n_;

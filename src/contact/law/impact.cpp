@@ -1,6 +1,7 @@
 #include "contact/law/impact.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "contact/law/consistent_modes.h"
 #include "numeric/number.h"
@@ -10,29 +11,6 @@ namespace anholon {
 namespace {
 
 using Jump = std::vector<long double>;
-
-// The impulses of a solution; those of friction that stands under a contact of its own at the end of the list are added to it.
-Impulses impulses(const ContactProblem& p, const ContactSolution& f, std::size_t count) {
-  Impulses all;
-  all.normal.resize(count), all.friction.resize(count);
-  for (std::size_t c = 0; c < p.contacts.size(); ++c) {
-    const ContactRows& rows = p.contacts[c];
-    const ContactMode& mode = f.modes[c];
-    const std::size_t of = c < count ? c : *rows.under;
-    if (!rows.under) all.normal[of] += f.normal[c];
-    for (std::size_t k = 0; mode.touch != Touch::open && k < rows.tangential.size(); ++k)
-      all.friction[of][k] +=
-          mode.touch == Touch::sticks ? f.friction[c][k] : -rows.friction * f.normal[c] * mode.direction[k];
-  }
-  return all;
-}
-
-std::vector<ImpactJump> jumps(const ContactProblem& p, const std::vector<ContactSolution>& solutions,
-                              std::size_t count) {
-  std::vector<ImpactJump> list;
-  for (const ContactSolution& s : solutions) list.push_back({s.x, impulses(p, s, count)});
-  return list;
-}
 
 void add_rates(long double& rate, const std::vector<long double>& row, const Jump& x) {
   for (std::size_t a = 0; a < x.size(); ++a) rate += row[a] * x[a];
@@ -64,6 +42,42 @@ ContactProblem expansion(const ContactDynamics& dynamics, ContactProblem p, cons
   }
   p.contacts.insert(p.contacts.end(), friction.begin(), friction.end());
   return p;
+}
+
+// Contacts beyond those of `sum` are the friction of the contacts that they are under.
+void add_impulses(const ContactProblem& p, const ContactSolution& of, Impulses& sum) {
+  for (std::size_t k = 0; k < p.contacts.size(); ++k) {
+    const ContactRows& rows = p.contacts[k];
+    const ContactMode& mode = of.modes[k];
+    const std::size_t c = k < sum.normal.size() ? k : *rows.under;
+    if (!rows.under) sum.normal[c] += of.normal[k];
+    for (std::size_t a = 0; a < rows.tangential.size() && mode.touch != Touch::open; ++a)
+      sum.tangential[c][a] +=
+          mode.touch == Touch::sticks ? of.friction[k][a] : -rows.friction * mode.direction[a] * of.normal[k];
+  }
+}
+
+Impact with_work(const ContactDynamics& dynamics, Jump jump, Impulses impulses) {
+  Impact impact;
+  const auto add = [&](long double impulse, long double before, const std::vector<long double>& row) {
+    long double change = 0, size = std::abs(before);
+    for (std::size_t a = 0; a < jump.size(); ++a) {
+      change += row[a] * jump[a];
+      size += std::abs(row[a]) * dynamics.most(a);
+    }
+    impact.work += impulse * (before + change / 2);
+    impact.terms += std::abs(impulse) * size;
+  };
+  const std::vector<ContactRows>& contacts = dynamics.accelerations().contacts;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (impulses.normal[c] != 0) add(impulses.normal[c], dynamics.place(c).gap_rate, contacts[c].normal);
+    for (std::size_t a = 0; a < contacts[c].tangential.size(); ++a)
+      if (impulses.tangential[c][a] != 0)
+        add(impulses.tangential[c][a], dynamics.place(c).slip[a], contacts[c].tangential[a]);
+  }
+  impact.jump = std::move(jump);
+  impact.impulses = std::move(impulses);
+  return impact;
 }
 
 }  // namespace
@@ -115,25 +129,31 @@ Outcome on_edge(const std::string& contact, const std::string& when) {
           "write a contact for each side of the edge in place of one gap with min, max, abs or piecewise"};
 }
 
-std::vector<ImpactJump> impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
-                                     const std::vector<bool>& touches) {
-  const std::size_t count = contacts.size();
+std::vector<Impact> impacts(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
+                            const std::vector<bool>& touches) {
   const bool poisson =
       std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.law == ImpactLaw::poisson; });
   ContactProblem p = poisson ? dynamics.impact(touches, 0) : dynamics.impact(touches);
-  const std::vector<ContactSolution> first = consistent_modes(p);
-  if (!poisson || first.size() != 1) return jumps(p, first, count);
-  const Impulses compression = impulses(p, first[0], count);
-  p = expansion(dynamics, std::move(p), first[0]);
-  std::vector<ImpactJump> list = jumps(p, consistent_modes(p), count);
-  for (ImpactJump& jump : list) {
-    for (std::size_t a = 0; a < jump.velocities.size(); ++a) jump.velocities[a] += first[0].x[a];
-    for (std::size_t c = 0; c < count; ++c) {
-      // The impulse e N_c is given, and stands with the forces.
-      const long double expanding = dynamics.place(c).restitution * std::max(first[0].normal[c], 0.0L);
-      jump.impulses.normal[c] += compression.normal[c] + (contacts[c].under ? 0 : expanding);
-      for (std::size_t k = 0; k < 2; ++k) jump.impulses.friction[c][k] += compression.friction[c][k];
-    }
+  std::vector<ContactSolution> found = consistent_modes(p);
+  Impulses given(contacts.size());
+  Jump compressed(p.b.size(), 0);
+  if (poisson && found.size() == 1) {
+    const ContactSolution compression = std::move(found[0]);
+    add_impulses(p, compression, given);
+    for (std::size_t c = 0; c < contacts.size(); ++c)
+      if (!p.contacts[c].under)
+        given.normal[c] += dynamics.place(c).restitution * std::max(compression.normal[c], 0.0L);
+    p = expansion(dynamics, std::move(p), compression);
+    found = consistent_modes(p);
+    compressed = compression.x;
+  }
+  std::vector<Impact> list;
+  for (const ContactSolution& s : found) {
+    Impulses sum = given;
+    add_impulses(p, s, sum);
+    Jump jump = s.x;
+    for (std::size_t a = 0; a < jump.size(); ++a) jump[a] += compressed[a];
+    list.push_back(with_work(dynamics, std::move(jump), std::move(sum)));
   }
   return list;
 }

@@ -2,7 +2,8 @@
 //
 // Newton: the velocity of the gap is reversed and multiplied by the restitution e. Poisson: an impact is a compression,
 // whose impulse N_c stops the gap, and an expansion with the impulse e N_c, or more where the gap would close; friction
-// obeys Coulomb's law in both.
+// obeys Coulomb's law in both. The work of the impulses p of the contacts is p (u- + u+)/2, in which u- and u+ are the velocities
+// relative to the surfaces, before and after: it is the same for all observers, and an impact that takes energy away has W <= 0.
 #pragma once
 #include "contact/law/contact_dynamics.h"
 
@@ -24,19 +25,22 @@ Outcome lies_flat(const std::string& contact, long double part, const std::strin
 // The outcome where a body comes to rest at an edge of the surface of a contact, or strikes its sides without end.
 Outcome on_edge(const std::string& contact, const std::string& when);
 
-// The impulses of the contacts: N, and T along the components of the slip velocity.
+// The impulses of the contacts: along their gaps, and along the components of their slip velocities.
 struct Impulses {
+  explicit Impulses(std::size_t contacts) : normal(contacts), tangential(contacts) {}
   std::vector<long double> normal;
-  std::vector<std::array<long double, 2>> friction;
+  std::vector<std::array<long double, 2>> tangential;
 };
-struct ImpactJump {
-  std::vector<long double> velocities;
-  Impulses impulses;
+struct Impact {
+  std::vector<long double> jump;  // of the velocities
+  Impulses impulses{0};
+  long double work = 0;   // of the impulses of the contacts, by relative velocities
+  long double terms = 0;  // the size of the terms of this work
 };
 
-// The consistent jumps, of which there is one unless bodies jam (Painlevé's paradox). touches: the contacts that take part;
+// The consistent impacts, of which there is one unless bodies jam (Painlevé's paradox). touches: the contacts that take part;
 // all contacts that strike have one law.
-std::vector<ImpactJump> impact_jumps(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
-                                     const std::vector<bool>& touches);
+std::vector<Impact> impacts(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,
+                            const std::vector<bool>& touches);
 
 }  // namespace anholon

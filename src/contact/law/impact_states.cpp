@@ -31,7 +31,7 @@ void ImpactStates::add(ContactState& at, const std::vector<long double>& after, 
   for (std::size_t k = 0; k < slopes_.size(); ++k) {
     const auto& [contact, friction] = slopes_[k].force;
     jumps[slopes_[k].state] +=
-        machine_->value(k) * (friction ? impulses.friction[contact][*friction] : impulses.normal[contact]);
+        machine_->value(k) * (friction ? impulses.tangential[contact][*friction] : impulses.normal[contact]);
   }
   for (std::size_t z = 0; z < jumps.size(); ++z) at.states[z] = static_cast<double>(at.states[z] + jumps[z]);
 }

@@ -41,6 +41,7 @@ struct ContactMode {
   long double rest = 0;   // a slip velocity with two components is zero below it
   long double slack = 0;  // forces below it are round-off
   long double depth = 0;  // a gap is negative below minus this
+  bool closed = false;    // an open contact whose gap begins at zero, and has round-off of its terms as a value
 };
 using ContactModes = std::vector<ContactMode>;
 

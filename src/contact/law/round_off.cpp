@@ -26,7 +26,11 @@ bool RoundOff::missed(std::size_t c) const {
   return std::abs(dynamics_.place(c).gap) < std::max(kMissed, kFactor * uncertainty(c));
 }
 
-bool RoundOff::negligible_at_start(std::size_t c) const {
+bool RoundOff::gap_is_round_off(std::size_t c) const {
+  return largest_term(c) > std::abs(dynamics_.place(c).gap_rate * at_.t.get_d());
+}
+
+long double RoundOff::largest_term(std::size_t c) const {
   const std::vector<long double>& normal = dynamics_.accelerations().contacts[c].normal;
   long double largest = 0, rest = dynamics_.place(c).gap;
   for (std::size_t a = 0; a < normal.size(); ++a) {
@@ -34,7 +38,11 @@ bool RoundOff::negligible_at_start(std::size_t c) const {
     rest -= term;
     largest = std::max(largest, std::abs(term));
   }
-  largest = std::max(largest, std::abs(rest));
+  return std::max(largest, std::abs(rest));
+}
+
+bool RoundOff::negligible_at_start(std::size_t c) const {
+  const long double largest = largest_term(c);
   return negligible(c) && dynamics_.place(c).gap >= -std::max(kMissed * largest, uncertainty(c));
 }
 

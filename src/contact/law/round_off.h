@@ -27,6 +27,9 @@ class RoundOff {
   bool missed(std::size_t contact) const;
   // The same of a gap with which the motion starts: the terms of the gap tell the size of the model, and no event has been located.
   bool negligible_at_start(std::size_t contact) const;
+  // Whether the value of a closed gap is round-off of its terms: one whose terms are smaller is known, and is the way in the
+  // round-off of the time at which an event has closed it.
+  bool gap_is_round_off(std::size_t contact) const;
   // By how much more than by round-off accelerations may differ from those at which an event is, as it comes at a time that
   // is rounded: at least 1.
   long double late() const;
@@ -43,6 +46,7 @@ class RoundOff {
   // How well a gap is known: to round-off of its terms, of the way that its coordinates have come in the last segment, and
   // of the way in the time that a round-off of t is.
   long double uncertainty(std::size_t contact) const;
+  long double largest_term(std::size_t contact) const;  // of the gap at the place
   long double pressed(std::size_t contact) const;
   long double pressed_by_others(std::size_t contact) const;
   bool hardly_moves(std::size_t contact, long double v, long double a) const;

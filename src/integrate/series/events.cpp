@@ -40,14 +40,15 @@ std::vector<N> shifted(const N* c, int degree, const N& shift) {
 
 }  // namespace
 
-// x nearer to the zero of the formula, as long as its values fall.
+// x nearer to the zero of the formula, as long as its values fall and are above `floor`.
 template <Number N>
-static N improved(const N* c, int degree, N x, const N& h, const std::function<std::optional<N>(const N&)>& value) {
+static N improved(const N* c, int degree, N x, const N& h, const N& floor,
+                  const std::function<std::optional<N>(const N&)>& value) {
   constexpr int kSteps = 4;
   // A series this far from its formula is no series of it.
   const N range = h * N(1e-2);
   std::optional<N> v = value(x);
-  for (int k = 0; k < kSteps && v && (*v > N(0) || *v < N(0)); ++k) {
+  for (int k = 0; k < kSteps && v && (*v > floor || *v < -floor); ++k) {
     N slope(0);
     for (int j = degree; j >= 1; --j) slope = slope * x + c[j] * N(j);
     if (!(abs(slope) > N(0))) break;
@@ -143,8 +144,9 @@ bool EventWatch<N>::as_foretold(const N& where, double log_tolerance, const Valu
     const WatchedSeries& s = series_[i];
     const N* c = known_[i].c.data();
     if (!s.of_state || !has_series(known_[i])) continue;
-    const std::optional<N> is = value(s.quadrature);
+    std::optional<N> is = value(s.quadrature);
     if (!is) continue;
+    if (known_[i].begins) *is -= *known_[i].begins;
     if (!is_finite(*is)) return false;
     N terms = known_[i].terms, power(1);
     for (int k = 0; k <= degree_; ++k, power *= where) terms = std::max(terms, N(abs(N(c[k] * power))));
@@ -245,7 +247,10 @@ std::vector<Fired<N>> EventWatch<N>::look(const N& t, N& h, const std::optional<
     }
     if (s.of_state)
       for (Crossing& x : each[i])
-        x.where = improved<N>(c, degree_, x.where, h, [&](const N& where) { return values(s.quadrature, where); });
+        x.where = improved<N>(c, degree_, x.where, h, known_[i].begins ? floor : N(0), [&](const N& where) {
+          const std::optional<N> v = values(s.quadrature, where);
+          return v && known_[i].begins ? std::optional<N>(N(*v - *known_[i].begins)) : v;
+        });
     if (each[i].empty() || !s.ends_step || !s.fires(each[i].back().towards * forward)) continue;
     if (!ended || abs(each[i].back().where) < abs(end)) end = each[i].back().where, ended = true;
   }

@@ -6,8 +6,13 @@
 //
 // A series is cut off like the state's, and a formula of the state converges more slowly than the state: its zeros are
 // improved on values of the formula itself, by Newton's method. Where a formula has no series, its values tell.
+//
+// A gap that an impact has closed begins at zero. Its value there is round-off, which divided by its small velocity would be the
+// error of the time of the next impact: such a series begins at zero in the first step, and its values are differences from there.
 #pragma once
 #include <functional>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "program/expansion.h"
@@ -18,7 +23,8 @@ struct WatchedSeries {
   std::size_t quadrature = 0;  // of the program
   int direction = 0;           // 1: only upwards, -1: only downwards
   bool ends_step = false;
-  bool of_state = false;  // its value follows from the state and the leading derivatives
+  bool of_state = false;   // its value follows from the state and the leading derivatives
+  bool from_zero = false;  // zero where the motion begins, whatever round-off its value has
   // `towards` in the direction of time, whichever way the motion goes.
   bool fires(int towards) const { return direction == 0 || direction == towards; }
 };
@@ -35,6 +41,7 @@ class EventWatch {
   explicit EventWatch(std::vector<WatchedSeries> series) : series_(std::move(series)), sides_(series_.size(), 0) {}
 
   bool empty() const { return series_.empty(); }
+  const std::vector<WatchedSeries>& series() const { return series_; }
   // -1, 1; 0: not known yet; -2, 2: kept over a restart.
   const std::vector<int>& sides() const { return sides_; }
   void set_sides(std::vector<int> sides) { sides_ = std::move(sides); }
@@ -52,7 +59,13 @@ class EventWatch {
       known_[i].c.resize(static_cast<std::size_t>(degree) + 1);
       for (int k = 0; k <= degree; ++k) known_[i].c[static_cast<std::size_t>(k)] = coefficient(q, k);
       known_[i].terms = terms(q);
+      known_[i].begins.reset();
     }
+  }
+  // The expansion is that where the motion begins.
+  void begin_at_zero() {
+    for (std::size_t i = 0; i < series_.size(); ++i)
+      if (series_[i].from_zero) known_[i].begins = std::exchange(known_[i].c[0], N(0));
   }
   // Whether all coefficients are finite numbers.
   bool have_series() const;
@@ -88,6 +101,7 @@ class EventWatch {
   struct Known {
     std::vector<N> c;
     N terms{0};
+    std::optional<N> begins;  // the value that is zero, in the first step of a series that begins there
   };
   static bool has_series(const Known& known);
   double log_reach(std::size_t i, double log_tolerance) const;
