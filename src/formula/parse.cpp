@@ -354,8 +354,8 @@ class Parser {
     if (before.token != Token::name && before.token != Token::number) return "a product is written with '*'";
     // 12 1/s
     const auto after = [&](std::size_t k) { return lexemes_[std::min(at_ + k, lexemes_.size() - 1)]; };
-    if (before.token == Token::number && at.token == Token::number && at.text == "1" &&
-        after(1).token == Token::over && find_unit(after(2).text))
+    if (before.token == Token::number && at.token == Token::number && at.text == "1" && after(1).token == Token::over &&
+        find_unit(after(2).text))
       return "write " + before.text + " " + after(2).text + "^-1: a unit begins with a name";
     const std::vector<std::string> functions = function_names();
     // sin^2(x)

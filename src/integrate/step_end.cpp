@@ -43,8 +43,10 @@ StepEnd<N>::StepEnd(const Program& program, double log_tolerance, int order)
     : program_(&program), log_tolerance_(log_tolerance), order_(order), check_(log_tolerance) {}
 
 template <Number N>
-void StepEnd<N>::set_slots(std::uint32_t end) {
+void StepEnd<N>::set_slots(std::uint32_t end, std::vector<bool> others) {
   slots_ = end;
+  others_.slots = std::move(others);
+  others_.passed_over.clear();
   hiding_.clear();
   const Tape& tape = program_->tape;
   for (std::uint32_t s = 0; s < end; ++s)
@@ -52,7 +54,16 @@ void StepEnd<N>::set_slots(std::uint32_t end) {
 }
 
 template <Number N>
+void StepEnd<N>::pass_over(const std::vector<std::uint32_t>& slots) {
+  if (slots.empty() && others_.passed_over.empty()) return;
+  others_.passed_over.assign(others_.slots.size(), false);
+  for (const std::uint32_t slot : slots) others_.passed_over[slot] = true;
+}
+
+template <Number N>
 void StepEnd<N>::restart() {
+  others_.give_up = false;
+  others_.shortened = 0;
   short_kinks_ = met_again_ = 0;
   finish();
 }
@@ -149,7 +160,7 @@ bool StepEnd<N>::shows_events(PresentStep<N>& step, const EventWatch<N>& events,
 template <Number N>
 Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W& h, const W& whole) {
   const bool forward = h > W(0);
-  const W t = step.t(), last_step = step.track.now.record.last_step;
+  const W asked = h, t = step.t(), last_step = step.track.now.record.last_step;
   KernelExpansion* kernel = step.expander.kernel();
   // Where a formula that is watched has no series, its values are looked at, in a short step: then it has some, or none
   // at all.
@@ -167,7 +178,8 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
     else
       refused = false;
     if (!kernel || kernel->may_turn())
-      kink = first_kink<N>(step.series().machine(), slots_, order_ - 1, convert<N>(h), !kernel);
+      kink = first_kink<N>(step.series().machine(), slots_, order_ - 1, convert<N>(h), !kernel,
+                           others_.give_up ? others_.slots : others_.passed_over);
     where = kink.at_start ? W(0) : kink.ahead ? convert<W>(kink.where) : h;
     past = convert<W>(unit_roundoff<N>()) * W(kPastKink) * (abs(t) > abs(h) ? W(abs(t)) : W(abs(h))) +
            W(std::exp(log_tolerance_)) * abs(h);
@@ -180,11 +192,30 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
     refused = true;
   }
   at_kink_ = kink.at_start || kink.ahead;
+  if (are_too_many(kink, where, past, whole)) {
+    others_.give_up = true;
+    h = asked;
+    return shorten(step, events, h, whole);
+  }
   met_again_ = at_kink_ && !(abs(where) > past * W(4)) ? met_again_ + 1 : 0;
   if (Outcome o = note_kink(kink.at_start, where, past); !o.ok() || !at_kink_) return o;
   const W to = beyond(step, events, kink, where, length_past(step, where, past, forward), forward);
   if (abs(to) < abs(h)) h = to, ++kinks_;
   return {};
+}
+
+// Whether the motion would have to make many short steps, or end, for the sake of kinks of what only watches it.
+template <Number N>
+bool StepEnd<N>::are_too_many(const Kink<N>& kink, const W& where, const W& past, const W& whole) {
+  constexpr int kMost = 1000;
+  constexpr double kMuchShorter = 0x1p-6;
+  const auto of_others = [&](std::uint32_t slot) { return slot < others_.slots.size() && others_.slots[slot]; };
+  const bool theirs = !others_.give_up &&
+                      (kink.at_start ? std::all_of(kink.slots_at_start.begin(), kink.slots_at_start.end(), of_others)
+                                     : kink.ahead && of_others(kink.argument));
+  others_.shortened = theirs && abs(where) < whole * W(kMuchShorter) ? others_.shortened + 1 : 0;
+  return others_.shortened > kMost ||
+         (theirs && !kink.at_start && short_kinks_ >= kMostShortKinks && !(abs(where) > past * W(4)));
 }
 
 // How far a step goes beyond a kink. A motion that begins at rest at a kink leaves it with the square of the time, and is

@@ -19,8 +19,12 @@ class StepEnd {
  public:
   using W = Wider<N>;
   StepEnd(const Program& program, double log_tolerance, int order);
-  // Slots of the tape that may have kinks: those before `end`.
-  void set_slots(std::uint32_t end);
+  // Slots of the tape that may have kinks: those before `end`. `others`: those that decide for what only watches the motion,
+  // which gives up where its kinks come too often.
+  void set_slots(std::uint32_t end, std::vector<bool> others);
+  const std::vector<bool>& others() const { return others_.slots; }
+  // These decide for what only watches, and are round-off over the whole step: they have no kinks.
+  void pass_over(const std::vector<std::uint32_t>& slots);
   std::uint32_t slots() const { return slots_; }
 
   // Another motion, or another state of it: the next step is not shortened for what was seen before.
@@ -61,6 +65,11 @@ class StepEnd {
   std::size_t kinks() const { return kinks_; }  // that have cut a step short
 
  private:
+  struct Others {
+    std::vector<bool> slots, passed_over;
+    bool give_up = false;
+    int shortened = 0;  // steps in a row that their kinks have made much shorter
+  };
   struct Hidden {
     std::uint32_t slot;
     Hiding function;
@@ -70,6 +79,7 @@ class StepEnd {
   W beyond(PresentStep<N>& step, const EventWatch<N>& events, const Kink<N>& kink, const W& where, const W& past,
            bool forward) const;
   Outcome note_kink(bool at_start, const W& where, const W& past);
+  bool are_too_many(const Kink<N>& kink, const W& where, const W& past, const W& whole);
   bool may_end_at(PresentStep<N>& step, const EventWatch<N>& events, const W& h);
   bool as_foretold(PresentStep<N>& step, const EventWatch<N>& events, const N& where) const;
   bool shows_events(PresentStep<N>& step, const EventWatch<N>& events, const W& h);
@@ -83,6 +93,7 @@ class StepEnd {
   int order_;
   EndCheck<N> check_;
   std::uint32_t slots_ = 0;
+  Others others_;
   std::vector<Hidden> hiding_;  // slots whose function may do what its series do not show
   std::vector<N> hidden_;       // points within the step to be looked at
   std::vector<N> residual_, change_;

@@ -122,6 +122,9 @@ bool Stepper<N>::fail(Outcome why) {
   return false;
 }
 
+// What is followed makes a step shorter than the motion's by this part at most.
+static constexpr double kShortestFollowed = 0x1p-6;
+
 // ---- the expansion --------------------------------------------------------------------------------------------------
 
 template <Number N>
@@ -213,8 +216,21 @@ void Stepper<N>::limit_by_kinks() {
     values = &present().load_series(W(0)).machine();
     look_.evaluate_kinks();
   }
-  const double reach = kinks_log_reach<N>(kink_arguments_, series, *values, order_ - 1, settings_.log_tolerance);
-  if (const N known(std::exp(reach)); known < horizon_) horizon_ = known;
+  std::vector<std::uint32_t> needed, others, quiet;
+  for (const std::uint32_t slot : kink_arguments_)
+    (!end_.others()[slot]                                           ? needed
+     : is_round_off<N>(slot, series, *values, order_ - 1, horizon_) ? quiet
+                                                                    : others)
+        .push_back(slot);
+  end_.pass_over(quiet);
+  const auto known = [&](const std::vector<std::uint32_t>& slots) {
+    return N(std::exp(kinks_log_reach<N>(slots, series, *values, order_ - 1, settings_.log_tolerance)));
+  };
+  if (const N all = known(needed); all < horizon_) horizon_ = all;
+  if (others.empty()) return;
+  // As what is followed, they make no step much shorter.
+  const N shortest = horizon_ * N(kShortestFollowed);
+  if (const N all = known(others); all < horizon_) horizon_ = all > shortest ? all : shortest;
 }
 
 // What is watched may change faster than the motion, on which it has no influence: the density of thin air.
@@ -252,8 +268,7 @@ void Stepper<N>::limit_by_quadratures(const Series& series) {
     if (!series.constant_quadrature(i))
       horizon_ = limited_by_value(horizon_, order_, tolerance_, [&](int k) -> N { return series.quadrature(i, k); });
   // Near a point where a formula has no series they do not converge, however short the step is.
-  constexpr double kShortest = 0x1p-6;
-  const N shortest = horizon_ * N(kShortest);
+  const N shortest = horizon_ * N(kShortestFollowed);
   for (std::size_t i = settings_.known_to; i < std::min(settings_.followed_to, program_->quadratures); ++i)
     if (!series.constant_quadrature(i))
       horizon_ = limited_by_value(horizon_, order_, tolerance_, [&](int k) -> N { return series.quadrature(i, k); });
@@ -441,7 +456,16 @@ void Stepper<N>::watch_kinks() {
   const bool equations_alone =
       events_.empty() && settings_.known_from >= std::max(settings_.known_to, settings_.followed_to);
   const std::size_t end = equations_alone ? program_->tape.main_end : program_->tape.code.size();
-  end_.set_slots(static_cast<std::uint32_t>(end));
+  // What is followed shortens steps, but neither changes the motion nor ends it.
+  std::vector<std::uint32_t> needed;
+  for (std::size_t i = 0; i < std::min(settings_.known_to, program_->quadratures); ++i)
+    needed.push_back(program_->tape.roots[program_->unknowns() + i]);
+  for (const WatchedSeries& s : events_.series())
+    needed.push_back(program_->tape.roots[program_->unknowns() + s.quadrature]);
+  needed = precedents(program_->tape, needed);
+  for (std::uint32_t slot = 0; slot < program_->tape.main_end; ++slot) needed.push_back(slot);
+  const auto slots = static_cast<std::uint32_t>(end);
+  end_.set_slots(slots, deciding_for_others(program_->tape, slots, needed));
   kink_arguments_ = kink_arguments(program_->tape, end_.slots());
   look_.watch_kinks(kink_arguments_);
 }

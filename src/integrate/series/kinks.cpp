@@ -35,11 +35,19 @@ bool may_turn(const Instruction& in) {
   return !in.constant && (in.op == Op::select || in.op == Op::lookup || in.op == Op::arctan2 || turns_at_zero(in));
 }
 
+// A root touches zero.
+bool may_touch(const Tape& tape, const Instruction& in) {
+  return !in.constant && in.op == Op::power && tape.rationals[in.index].has_even_denominator();
+}
+
+std::uint32_t deciding(const Instruction& in) { return in.op == Op::select ? in.first : in.a; }
+
 template <Number N>
 class Search {
  public:
-  Search(const Machine<N>& machine, std::uint32_t end, int degree, const N& h, bool expanded)
-      : machine_(machine), end_(end), degree_(degree), h_(h), expanded_(expanded),
+  Search(const Machine<N>& machine, std::uint32_t end, int degree, const N& h, bool expanded,
+         const std::vector<bool>& passed_over)
+      : machine_(machine), end_(end), degree_(degree), h_(h), expanded_(expanded), passed_over_(passed_over),
         c_(static_cast<std::size_t>(degree) + 1) {}
 
   const Kink<N>& run() {
@@ -51,6 +59,8 @@ class Search {
  private:
   void look(const Tape& tape, const Instruction& in, std::uint32_t slot) {
     if (in.constant) return;
+    argument_ = deciding(in);
+    if (argument_ < passed_over_.size() && passed_over_[argument_]) return;
     if (turns_at_zero(in)) {
       const N* c = machine_.series(in.a);
       if (c[0] > N(0) || c[0] < N(0))
@@ -65,7 +75,7 @@ class Search {
       look_up(in, slot);
     } else if (in.op == Op::arctan2) {
       if (!tape.code[in.a].constant) passes_cut(machine_.series(in.a), machine_.series(in.b), in.a);
-    } else if (in.op == Op::power && tape.rationals[in.index].has_even_denominator()) {
+    } else if (may_touch(tape, in)) {
       touches_zero(machine_.series(in.a));
     }
   }
@@ -136,6 +146,7 @@ class Search {
     if (kink_.ahead && !(abs(x) < abs(kink_.where))) return;
     kink_.ahead = true;
     kink_.where = x;
+    kink_.argument = argument_;
     kink_.slot = by ? std::optional(by->slot) : std::nullopt;
     if (by) kink_.passes = by->passes, kink_.enters = by->enters, kink_.table = by->table;
   }
@@ -145,6 +156,8 @@ class Search {
   int degree_;
   N h_;
   bool expanded_;
+  const std::vector<bool>& passed_over_;
+  std::uint32_t argument_ = 0;  // of the slot that is looked at
   std::vector<N> c_, turned_;
   Kink<N> kink_;
 };
@@ -152,19 +165,43 @@ class Search {
 }  // namespace
 
 template <Number N>
-Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h, bool expanded) {
-  return Search<N>(machine, end, degree, h, expanded).run();
+Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h, bool expanded,
+                   const std::vector<bool>& passed_over) {
+  return Search<N>(machine, end, degree, h, expanded, passed_over).run();
+}
+
+std::vector<bool> deciding_for_others(const Tape& tape, std::uint32_t end, const std::vector<std::uint32_t>& needed) {
+  std::vector<bool> is_needed(end, false), others(end, false);
+  for (const std::uint32_t slot : needed)
+    if (slot < end) is_needed[slot] = true;
+  for (const bool of_needed : {false, true})
+    for (std::uint32_t slot = 0; slot < end; ++slot) {
+      const Instruction& in = tape.code[slot];
+      if (is_needed[slot] == of_needed && (may_turn(in) || may_touch(tape, in))) others[deciding(in)] = !of_needed;
+    }
+  return others;
 }
 
 std::vector<std::uint32_t> kink_arguments(const Tape& tape, std::uint32_t end) {
   std::vector<std::uint32_t> list;
   for (std::uint32_t slot = 0; slot < end; ++slot) {
     const Instruction& in = tape.code[slot];
-    const std::uint32_t argument = in.op == Op::select ? in.first : in.a;
+    const std::uint32_t argument = deciding(in);
     if (may_turn(in) && !tape.code[argument].constant) list.push_back(argument);
     if (in.op == Op::arctan2 && !in.constant && !tape.code[in.b].constant) list.push_back(in.b);
   }
   return list;
+}
+
+template <Number N>
+bool is_round_off(std::uint32_t slot, const Machine<N>& machine, const Machine<N>& values, int degree, const N& h) {
+  const N* c = machine.series(slot);
+  const N length = abs(h);
+  N most(0);
+  for (int k = degree; k >= 0; --k) most = most * length + abs(c[k]);
+  // The terms at the point may be smaller than those before, which have left their round-off.
+  constexpr int kOfTermsBefore = 16;
+  return most <= unit_roundoff<N>() * N(kNoise * kOfTermsBefore) * values.magnitude(slot);
 }
 
 template <Number N>
@@ -178,6 +215,11 @@ double kinks_log_reach(const std::vector<std::uint32_t>& arguments, const Machin
   return reach;
 }
 
+template bool is_round_off(std::uint32_t, const Machine<double>&, const Machine<double>&, int, const double&);
+template bool is_round_off(std::uint32_t, const Machine<long double>&, const Machine<long double>&, int,
+                           const long double&);
+template bool is_round_off(std::uint32_t, const Machine<Quad>&, const Machine<Quad>&, int, const Quad&);
+template bool is_round_off(std::uint32_t, const Machine<Multi>&, const Machine<Multi>&, int, const Multi&);
 template bool stays_positive(const double*, int, const double&);
 template bool stays_positive(const long double*, int, const long double&);
 template bool stays_positive(const Quad*, int, const Quad&);
@@ -186,10 +228,13 @@ template bool keeps_sign(const double*, int, const double&);
 template bool keeps_sign(const long double*, int, const long double&);
 template bool keeps_sign(const Quad*, int, const Quad&);
 template bool keeps_sign(const Multi*, int, const Multi&);
-template Kink<double> first_kink(const Machine<double>&, std::uint32_t, int, const double&, bool);
-template Kink<long double> first_kink(const Machine<long double>&, std::uint32_t, int, const long double&, bool);
-template Kink<Quad> first_kink(const Machine<Quad>&, std::uint32_t, int, const Quad&, bool);
-template Kink<Multi> first_kink(const Machine<Multi>&, std::uint32_t, int, const Multi&, bool);
+template Kink<double> first_kink(const Machine<double>&, std::uint32_t, int, const double&, bool,
+                                 const std::vector<bool>&);
+template Kink<long double> first_kink(const Machine<long double>&, std::uint32_t, int, const long double&, bool,
+                                      const std::vector<bool>&);
+template Kink<Quad> first_kink(const Machine<Quad>&, std::uint32_t, int, const Quad&, bool, const std::vector<bool>&);
+template Kink<Multi> first_kink(const Machine<Multi>&, std::uint32_t, int, const Multi&, bool,
+                                const std::vector<bool>&);
 template double kinks_log_reach(const std::vector<std::uint32_t>&, const Machine<double>&, const Machine<double>&, int,
                                 double);
 template double kinks_log_reach(const std::vector<std::uint32_t>&, const Machine<long double>&,

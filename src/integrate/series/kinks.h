@@ -13,6 +13,7 @@ struct Kink {
   // The slot whose value decides there, and what it passes; none for a root that touches zero. `enters`: at that value the
   // function holds that is entered.
   std::optional<std::uint32_t> slot;
+  std::uint32_t argument = 0;  // of the function that turns there
   N passes{0};
   const StepFunction* table = nullptr;  // of which that is a knot
   bool enters = false;
@@ -22,10 +23,15 @@ struct Kink {
 // The slots whose values decide which functions hold below `end`.
 std::vector<std::uint32_t> kink_arguments(const Tape& tape, std::uint32_t end);
 
+// Of each slot below `end` whether it decides for slots that are not among `needed`, and for none of those.
+std::vector<bool> deciding_for_others(const Tape& tape, std::uint32_t end, const std::vector<std::uint32_t>& needed);
+
 // In (0, h], h of either sign, by the series of orders 0..degree, of the slots below `end`.
 // `expanded`: the machine itself has made the series; else it holds those of the slots that decide alone.
+// `passed_over`: slots that decide, and whose kinks are none; may be empty.
 template <Number N>
-Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h, bool expanded);
+Kink<N> first_kink(const Machine<N>& machine, std::uint32_t end, int degree, const N& h, bool expanded,
+                   const std::vector<bool>& passed_over = {});
 
 // Whether a polynomial that is positive at 0 surely stays so over [0, h], and its root the same root: by the sizes of
 // its coefficients. Whether one that is of either sign surely keeps it.
@@ -33,6 +39,10 @@ template <Number N>
 bool stays_positive(const N* c, int degree, const N& h);
 template <Number N>
 bool keeps_sign(const N* c, int degree, const N& h);
+
+// Whether the series of a slot that decides is round-off over [0, h]. `values`: as below.
+template <Number N>
+bool is_round_off(std::uint32_t slot, const Machine<N>& machine, const Machine<N>& values, int degree, const N& h);
 
 // The logarithm of how far the series of these slots are known, which decide where kinks are (kink_arguments). `values`: a
 // machine with the values at the point of all that they are made of.

@@ -94,7 +94,8 @@ S = ["1", "0", "x"]                # components along ex, ey, ez
         {"x", numbers, "the knots, ascending, at least two"},
         {"y", numbers, "the values there"},
         {"file", text,
-         "instead of x and y: a text file of columns, relative to the file in which the name stands; lines with # are skipped"},
+         "instead of x and y: a text file of columns, relative to the file in which the name stands; lines with # are "
+         "skipped"},
         {"columns", columns, "two names of the heading, or numbers from 1; the first two without it"},
         {"fit",
          choice,

@@ -265,6 +265,37 @@ TEST(Reduction, AFormulaWithoutAValueDoesNotEndTheMotion) {
   }
 }
 
+// 3 x - y is round-off all along the motion, and passes zero wherever it likes: the motion is that without the reduction.
+TEST(Reduction, KinksOfRoundOffMakeNoStepShort) {
+  const std::string text = R"toml(
+coordinates = ["x", "y"]
+particle = [{name = "p", mass = 1, position = "x*ex + y*ey"}]
+potential.V = "(x^2 + y^2)/2 + (3*x - y)^2/2"
+initial = {x = 0.1, y = 0.3}
+)toml";
+  Sweep without(text, {}), run(text, {"max(abs(3*x - y))", "max(x + abs(y - 3*x))", "mean(sign(3*x - y)*(3*x - y))"});
+  for (const bool kernel : {true, false}) {
+    without.options.kernel = run.options.kernel = kernel;
+    const CaseResult plain = without.one(), r = run.one();
+    ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
+    EXPECT_LE(r.steps, plain.steps + 2);
+    EXPECT_NEAR(r.last[0], plain.last[0], 1e-14);
+    EXPECT_NEAR(r.reduced[0], 0, 1e-14);
+    EXPECT_NEAR(r.reduced[1], 0.1, 1e-13);
+    EXPECT_NEAR(r.reduced[2], 0, 1e-14);
+  }
+}
+
+// Kinks of a formula that come nearer and nearer to a moment neither end the motion nor take it steps without end.
+TEST(Reduction, KinksThatAddUpDoNotEndTheMotion) {
+  Sweep run(kOscillator, {"max(abs((t - 2)*sin(1/(t - 2))))"});
+  run.options.most_steps = 4000;
+  const CaseResult r = run.one();
+  ASSERT_TRUE(r.outcome.ok()) << r.outcome.message;
+  EXPECT_NEAR(r.last[0], std::cos(10), 1e-12);
+  EXPECT_NEAR(r.reduced[0], 8 * std::sin(0.125), 1e-12);
+}
+
 // The pendulum rises to the height of its start: y = -sqrt(l^2 - x^2). Between the ends of steps lie its lowest points.
 TEST(Reduction, ExtremesAreThoseOfTheMotion) {
   Sweep run(kPendulum, {"max(height)", "min(height)", "last(height)", "mean(x')", "max(abs(x))"});
