@@ -379,7 +379,7 @@ def test_batches_of_derivatives_and_outputs_have_the_bits_of_one_state(minimal: 
 
 @pytest.mark.parametrize("name", ["two-wheeled-pendulum", "rattleback"])
 def test_machine_code_of_derivatives_has_the_bits_of_tables(name: str) -> None:
-    """Machine code is made after ten thousand states."""
+    """Machine code is made after some thousand states."""
     f = an.load(name).dynamics(inputs=False)
     x = batch_of(f, 12_000)
     first = [f.jac(0.1, x[:, k]) for k in (0, 5, 11_999)]

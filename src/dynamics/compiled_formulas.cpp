@@ -13,9 +13,8 @@ namespace anholon {
 
 namespace {
 
-// After so many points machine code is made, which takes about as long as their values by tables did; it may have so many
-// steps.
-constexpr std::size_t kWorthCode = 10'000, kMostSteps = 40'000;
+// The limit of steps of a plan for machine code.
+constexpr std::size_t kMostSteps = 40'000;
 
 // A program with the system it stands on, in a graph of its own.
 struct FormulaProgram {
@@ -92,7 +91,7 @@ class CompiledFormulas::Evaluator {
     const std::size_t before = asked_.fetch_add(points.size());
     const bool many = points.size() >= static_cast<std::size_t>(lanes_at_first());
     const int lanes = many ? lanes_at_first() : 1;
-    if (before + points.size() >= kWorthCode) plan_->compile(code_cache(), lanes, CodeEffort::quick, kMostSteps);
+    if (before + points.size() >= worth_code()) plan_->compile(code_cache(), lanes, CodeEffort::quick, kMostSteps);
     Idle<Worker>& idle = many ? in_lanes_ : alone_;
     std::optional<Worker> worker = idle.take();
     if (!worker) worker.emplace(Worker{std::make_unique<Kernel>(plan_, lanes), {}});
@@ -104,6 +103,9 @@ class CompiledFormulas::Evaluator {
   }
 
  private:
+  // After so many points machine code is made, which takes about as long as their values by tables did.
+  std::size_t worth_code() const { return 1000 + plan_->plan().stage.size() / 2; }
+
   struct Worker {
     std::unique_ptr<Kernel> kernel;
     std::vector<std::vector<double>> parameters;  // of each lane, once they are set
