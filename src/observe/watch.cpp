@@ -92,8 +92,9 @@ void Track<W>::see_double(double value, double terms, double made_of) {
 
 template <Number W>
 double Track<W>::relative_change() const {
-  constexpr double kNoise = 1e-6;  // of what integration leaves
-  if (made > size && is_finite(made) && change <= W(kNoise) * made) return to_double(W(change / made));
+  // Far above what integration leaves of the terms, and of the numbers that these are made of.
+  constexpr double kNoise = 1e-6;
+  if (missed > W(kNoise) && is_finite(made) && change <= W(kNoise) * made) return to_double(W(change / made));
   return to_double(missed > W(0) || change == W(0) ? missed : W(change / size));
 }
 

@@ -38,8 +38,8 @@ struct Track {
   void see(const W& value, const W& terms, MadeOf made_of);
   // The same of a number that was computed in doubles.
   void see_double(double value, double terms, double made_of);
-  // Of its size; or of its terms, if it ought to be constant; or of the numbers these are made of, if it is small beside
-  // them: where the terms cancel, what is left is as large as the error of the motion.
+  // Of its size; or of its terms, if it ought to be constant; or of the numbers these are made of, if it is large
+  // beside the terms and small beside those: where terms cancel, what is left of them is the error of the motion.
   double relative_change() const;
 };
 

@@ -28,7 +28,7 @@ struct Rows {
     waiting = WaitingRows::make(*other, {}, 0, parameter_values<long double>(*other->model), motion->start_state(), 1);
     watch.emplace(*s, power, std::vector<Conserved>{}, motion->parameters());
     judge.emplace(*s, options);
-    floors.emplace(*s);
+    floors.emplace(*s, true);
     writer.emplace(sink, 16);
     report.constraints_each = constraint_reports(*s);
   }
