@@ -282,8 +282,8 @@ def test_ctrl_c_ends_what_keeps_nothing(name: str, call: Callable[[an.Model], ob
 
 BATCHES: dict[str, Callable[[an.Dynamics], Callable[[], object]]] = {
     "rates": lambda f: partial(f, 0, np.tile(f.start[:, None], 400_000)),
-    "derivatives": lambda f: partial(f.jac, 0, np.tile(f.start[:, None], 10_000)),
-    "outputs": lambda f: partial(f.output, 0, np.tile(f.start[:, None], 100_000)),
+    "derivatives": lambda f: partial(f.jac, 0, np.tile(f.start[:, None], 40_000)),
+    "outputs": lambda f: partial(f.output, 0, np.tile(f.start[:, None], 400_000)),
 }
 
 

@@ -343,7 +343,8 @@ def test_a_velocity_that_is_lost_is_told() -> None:
     f = model.dynamics()
     with pytest.warns(UserWarning, match=r"is given, and the state has .*: the velocities violate the constraints"):
         f.state(q={"th": 1.5}, qdot={"x'": 1, "y'": 0})
-    values = {v.name: v.value for v in model.initial(**{"th": 1.5, "x'": 1})}
+    wanted: dict[str, Any] = {"th": 1.5, "x'": 1}
+    values = {v.name: v.value for v in model.initial(**wanted)}
     x = f.state(q={n: values[n] for n in ("x", "y", "th")}, qdot={n: values[n] for n in ("x'", "y'", "th'")})
     assert f.motion(x)["x'"] == pytest.approx(1, rel=1e-12)
 

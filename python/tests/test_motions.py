@@ -278,7 +278,8 @@ def test_a_run_is_saved_under_a_path(disc: an.Model, tmp_path: pathlib.Path) -> 
 
 def test_wrong_arguments_of_a_sweep_are_named(disc: an.Model, tmp_path: pathlib.Path) -> None:
     wrong: list[tuple[dict[str, Any], str]] = [
-        ({"vary": None}, "given by name"),
+        ({"vary": None}, "nothing is varied"),
+        ({"vary": 5}, "given by name"),
         ({"vary": {}}, "nothing is varied\nhint: sweep"),
         ({"vary": {"m": [1, float("nan")]}}, "m: nan is not a finite number"),
         ({"vary": {"m": an.uniform(1, 2)}, "cases": -1}, "cases is 1 or more, not -1"),

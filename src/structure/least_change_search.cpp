@@ -16,6 +16,8 @@ constexpr int kMostInVain = 3;
 // The descent to the nearest solution in steps of Barzilai and Borwein takes some ten steps, and more where the constraints
 // are bent sharply.
 constexpr int kMostDescentSteps = 300;
+// So many iterations of Newton's method bring the steps of one descent back onto the solutions; beside folds each takes many.
+constexpr int kMostDescentIterations = 500;
 // The smallest part of a step of Newton's method along its flow, a power of 4.
 constexpr double kLeastFlowPart = 0x1p-40;
 
@@ -54,7 +56,7 @@ class Iteration {
     if (!s_.evaluate(state_)) return false;
     N last_step(-1);
     bool nudged = false;
-    for (int k = 0; k < kMostIterations && !free_.empty(); ++k) {
+    for (int k = 0; k < kMostIterations && !free_.empty(); ++k, ++iterations_) {
       typename Stage<N>::Elimination& elimination = s_.elimination(free_);
       const RowChoice<N>& rows = elimination.rows;
       if (rows.dependent.size() && !nudged && s_.worst() > rounding && k == 0) {
@@ -113,7 +115,8 @@ class Iteration {
   bool descend() {
     std::vector<N> at, direction, last_at, last_direction;
     N last_moved(-1);
-    for (int k = 0; k < kMostDescentSteps; ++k) {
+    const int begun = iterations_;
+    for (int k = 0; k < kMostDescentSteps && iterations_ - begun < kMostDescentIterations; ++k) {
       typename Stage<N>::Elimination& elimination = s_.elimination(free_);
       if (elimination.rows.independent.empty() || !elimination.possible) return false;
       least_step(elimination, true);
@@ -293,7 +296,8 @@ class Iteration {
   double flow_part_ = 1;         // the part of the last step that was made along the flow
   bool settled_ = false;         // whether the last step of run() vanished
   bool direct_ = false;
-  int in_vain_ = 0;  // searches in a row that found no improvement along their step
+  int in_vain_ = 0;     // searches in a row that found no improvement along their step
+  int iterations_ = 0;  // of run(), in all
 };
 
 // The nearest of the solutions to which searches have come.
