@@ -53,8 +53,9 @@ class KernelPlan {
   // expansion on. Each code is made at most once for each effort, from any thread. Returns the reason if there is no
   // code, else an empty string.
   // `most_translated`: the limit of steps of a plan of one stage that is translated, as that of a function of states.
+  static constexpr std::size_t kMostTranslated = 4000;
   std::string compile(const std::string& cache, int lanes = 1, CodeEffort effort = CodeEffort::full,
-                      std::size_t most_translated = 4000) const;
+                      std::size_t most_translated = kMostTranslated) const;
   const Code* code(int lanes = 1) const {
     const Code* ready = compiled(lanes).ready.load(std::memory_order_acquire);
     return ready && ready->values ? ready : nullptr;
