@@ -2,7 +2,10 @@
 
 import os
 import pathlib
+import signal
 import subprocess
+import threading
+import time
 from collections.abc import Callable
 
 import anholon as an
@@ -26,3 +29,23 @@ def program() -> Callable[..., str]:
 @pytest.fixture(scope="session")
 def disc() -> an.Model:
     return an.load("disc")
+
+
+@pytest.fixture
+def ctrl_c() -> Callable[..., Callable[[], float]]:
+    """Sends SIGINT to the main thread after some seconds.
+
+    What is returned gives the seconds that the process has worked since. A busy machine does not lengthen them.
+    """
+
+    def press_later(after: float) -> Callable[[], float]:
+        pressed: list[float] = []
+
+        def press() -> None:
+            pressed.append(time.process_time())
+            signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+
+        threading.Timer(after, press).start()
+        return lambda: time.process_time() - pressed[0]
+
+    return press_later

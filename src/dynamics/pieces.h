@@ -1,6 +1,8 @@
 // Loops over many states on several threads that end when a StopScope asks for it.
 #pragma once
+#include <algorithm>
 #include <atomic>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <thread>
@@ -13,7 +15,8 @@ namespace anholon {
 using NextPiece = std::function<std::optional<std::size_t>()>;  // the first state of a piece; none if there is no more
 
 // Calls work(next) in this thread, and in others if there are many pieces of `size` states; together they take all pieces
-// of `count` states. Throws StopRequested, once the others have ended, if a StopScope of this thread asks for an end.
+// of `count` states. If work throws in one of the threads, the others take no further piece, and the exception is thrown
+// once they have ended. StopRequested, which comes from a StopScope of this thread, is such an exception.
 template <class Work>
 void in_pieces(std::size_t count, std::size_t size, const Work& work) {
   std::atomic<std::size_t> first = 0;
@@ -21,18 +24,26 @@ void in_pieces(std::size_t count, std::size_t size, const Work& work) {
     const std::size_t from = first.fetch_add(size);
     return from < count ? std::optional(from) : std::nullopt;
   };
-  std::vector<std::jthread> others;
-  const std::size_t threads = std::min<std::size_t>(std::thread::hardware_concurrency(), count / size);
-  while (others.size() + 1 < threads) others.emplace_back([&] { work(next); });
-  work(NextPiece([&] {
+  std::vector<std::exception_ptr> failed(
+      std::max<std::size_t>(1, std::min<std::size_t>(std::thread::hardware_concurrency(), count / size)));
+  const auto guarded = [&](std::size_t thread, const NextPiece& pieces) {
     try {
-      look_for_stop();
+      work(pieces);
     } catch (...) {
+      failed[thread] = std::current_exception();
       first = count;
-      throw;
     }
-    return next();
-  }));
+  };
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t k = 1; k < failed.size(); ++k) others.emplace_back([&, k] { guarded(k, next); });
+    guarded(0, [&] {
+      look_for_stop();
+      return next();
+    });
+  }
+  for (const std::exception_ptr& e : failed)
+    if (e) std::rethrow_exception(e);
 }
 
 }  // namespace anholon
