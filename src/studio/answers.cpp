@@ -65,8 +65,23 @@ class Answers::Desk {
     if (!diagnostics_.has_errors())
       if (const auto opened = open_model(source_, diagnostics_, {}, cases_))
         model_ = opened->model, names_ = opened->names;
+    name_the_choice();
     if (model_) source_ = model_->source_text;
     known_ = true;
+  }
+
+  // A message about the option --case tells of the page's choice.
+  void name_the_choice() {
+    constexpr std::string_view kOption = "--case: ";
+    Diagnostics told;
+    for (Diagnostic d : diagnostics_.list()) {
+      if (d.message.starts_with(kOption))
+        d.message = d.message.substr(kOption.size()),
+        d.hint = "choose none or another case beside the name of the file" + (d.hint.empty() ? "" : "; " + d.hint);
+      told.add(std::move(d));
+    }
+    told.others = diagnostics_.others;
+    diagnostics_ = std::move(told);
   }
 
   void check(JsonWriter& json) {

@@ -85,6 +85,7 @@ class Session : public std::enable_shared_from_this<Session> {
     head = {text(fields.method_string()), text(fields.target()), only(fields, http::field::host),
             only(fields, http::field::origin), only(fields, "Sec-Fetch-Site")};
     request_.page = only(fields, "X-Anholon-Page"), request_.edition = only(fields, "X-Anholon-Edition");
+    request_.known = only(fields, "X-Anholon-Known");
     request_.case_name = decoded(only(fields, "X-Anholon-Case"));
     if (std::optional<HttpReply> no = service_.refuse(head)) return send(std::move(*no));
     http::async_read(stream_, buffer_, parser_,

@@ -16,6 +16,7 @@ struct HttpRequest {
   HttpHead head;
   std::string page, edition;  // X-Anholon-Page, X-Anholon-Edition
   std::string case_name;      // X-Anholon-Case, which is percent-encoded
+  std::string known;          // X-Anholon-Known, the hash of the file as the page knows it
   std::string body;
 };
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "base/hash.h"
 #include "base/read_file.h"
 #include "modelfile/text/toml.h"
 #include "result/file.h"
@@ -24,7 +25,7 @@ std::vector<NamedFile> files_named(const SourceText& source) {
   return list;
 }
 
-OpenedFile::OpenedFile(SourceText source, bool shipped) : source_(std::move(source)), on_disk_(source_.text) {
+OpenedFile::OpenedFile(SourceText source, bool shipped) : source_(std::move(source)), last_(source_.text) {
   try {
     for (const NamedFile& f : files_named(source_)) readable_.push_back(f.name);
   } catch (const Failure&) {
@@ -42,15 +43,28 @@ OpenedFile::OpenedFile(SourceText source, bool shipped) : source_(std::move(sour
     no_saving_ = obstacle_to_writing(target_);
 }
 
-OpenedFile::Saving OpenedFile::save(const std::string& text, bool anyway) {
+bool OpenedFile::read(std::string& text) const {
+  std::error_code error;
+  return std::filesystem::is_regular_file(target_, error) && read_file(target_, text);
+}
+
+OpenedFile::Text OpenedFile::text() {
   const std::lock_guard<std::mutex> turn(turn_);
-  if (!no_saving_.empty()) return {Saved::failed, no_saving_};
+  if (std::string now; read(now)) last_ = std::move(now);
+  return {last_, sha256_text(last_)};
+}
+
+OpenedFile::Saving OpenedFile::save(const std::string& text, const std::string& known, bool anyway) {
+  const std::lock_guard<std::mutex> turn(turn_);
+  if (!no_saving_.empty()) return {Saved::failed, no_saving_, {}};
   std::string now;
-  if (!anyway && read_file(target_, now) && now != on_disk_)
-    return {Saved::changed_by_others, "'" + source_.name + "' was changed by another program since it was opened"};
-  if (const std::string why = write_whole(target_, text); !why.empty()) return {Saved::failed, why};
-  on_disk_ = text;
-  return {};
+  if (!anyway && read(now) && now != text && sha256_text(now) != known)
+    return {Saved::changed_by_others,
+            "'" + source_.name + "' was changed by another page or program since this page read or saved it",
+            {}};
+  if (const std::string why = write_whole(target_, text); !why.empty()) return {Saved::failed, why, {}};
+  last_ = text;
+  return {Saved::saved, {}, sha256_text(text)};
 }
 
 }  // namespace anholon

@@ -62,7 +62,7 @@ class ModelPages final : public Pages {
       if (what == "model") return json_reply(model());
       return file(what);
     }
-    if (what == "save" || what == "save-anyway") return save(request.body, what == "save-anyway");
+    if (what == "save" || what == "save-anyway") return save(request, what == "save-anyway");
     const SourceText& s = file_.source();
     for (const Task& t : kTasks)
       if (what == t.name)
@@ -73,17 +73,18 @@ class ModelPages final : public Pages {
   void stop() override { computing_.stop(); }
 
  private:
-  std::string model() const {
-    const SourceText& s = file_.source();
+  std::string model() {
+    const OpenedFile::Text now = file_.text();
     JsonWriter json;
-    json.open_object().key("name").string(s.name).key("text").string(s.text);
+    json.open_object().key("name").string(file_.source().name).key("text").string(now.text);
+    json.key("hash").string(now.hash);
     json.key("no_saving").string(file_.no_saving()).key("version").string("anholon " ANHOLON_VERSION);
     return json.close().text();
   }
 
-  HttpReply save(const std::string& text, bool anyway) {
-    const OpenedFile::Saving s = file_.save(text, anyway);
-    if (s.how == OpenedFile::Saved::saved) return json_reply("{\"saved\": true}");
+  HttpReply save(const HttpRequest& request, bool anyway) {
+    const OpenedFile::Saving s = file_.save(request.body, request.known, anyway);
+    if (s.how == OpenedFile::Saved::saved) return json_reply("{\"saved\": true, \"hash\": \"" + s.hash + "\"}");
     return json_reply(trouble(s.why, ""), s.how == OpenedFile::Saved::failed ? 403 : 409);
   }
 

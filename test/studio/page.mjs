@@ -33,6 +33,7 @@ async function edit(page, from, to) {
     return performance.now() - began;
   }, [from, to]);
 }
+const until = async (page, what) => { for (let k = 0; k < 400 && !what(); ++k) await page.waitForTimeout(50); assert.ok(what()); };
 const tests = {
   async 'a model is shown: picture, plots, equations, proof'(s) {
     const { page, faults, draws } = await open(s);
@@ -123,6 +124,52 @@ const tests = {
     assert.match(readFileSync(file, 'utf8'), /^title = "Twice: /);
     assert.deepEqual(faults.filter((f) => !f.includes('409')), []);
     await page.close();
+  },
+  async 'a reload shows the saved text, and a second tab asks before it saves over it'(s, file) {
+    const { page, faults } = await open(s), second = await open(s);
+    await edit(page, 'title = "', 'title = "First: ');
+    await page.getByRole('button', { name: 'Save', exact: true }).click();
+    await until(page, () => readFileSync(file, 'utf8').startsWith('title = "First: '));
+    await page.waitForFunction(() => !document.querySelector('.studio-bar button.due'));
+    await page.reload();
+    await page.waitForFunction(() => document.querySelector('.cm-content')?.textContent.startsWith('title = "First: '));
+    await edit(second.page, 'title = "', 'title = "Second: ');
+    await second.page.getByRole('button', { name: 'Save', exact: true }).click();
+    const over = second.page.getByRole('button', { name: 'Save over it' });
+    await over.waitFor();
+    assert.match(readFileSync(file, 'utf8'), /^title = "First: /);
+    await over.click();
+    await until(page, () => readFileSync(file, 'utf8').startsWith('title = "Second: '));
+    assert.deepEqual([...faults, ...second.faults].filter((f) => !f.includes('409') && !/aborted|cancel/i.test(f)), []);
+    await page.close();
+    await second.page.close();
+  },
+  async 'a chosen case that the text loses is told with the way out'(s) {
+    const { page, faults } = await open(s);
+    await edit(page, 'title = "', 'case.moon.parameters.g = 1.62\ntitle = "');
+    await page.getByLabel('case').selectOption('moon');
+    await edit(page, 'case.moon.', 'case.mars.');
+    const told = page.locator('.problems li.error').first();
+    await told.waitFor();
+    assert.match(await told.innerText(), /there is no case 'moon'.*choose none or another case beside the name of the file/s);
+    await page.getByLabel('case').selectOption('');
+    await page.waitForFunction(() => document.querySelectorAll('.problems li').length === 0);
+    assert.deepEqual(faults, []);
+    await page.close();
+  },
+  async 'a text that is too long is told as one'(s) {
+    const { page } = await open(s);
+    await edit(page, 'title = "', `# ${'x'.repeat(1 << 20)}\ntitle = "`);
+    await page.waitForFunction(() => document.querySelector('.problems li')?.textContent.startsWith('the text is longer than 1024 KiB'));
+    await page.close({ runBeforeUnload: false });
+  },
+  async 'the page is as high as the window, and its parts scroll'(s) {
+    for (const width of [1280, 900]) {
+      const { page, faults } = await open(s, width);
+      assert.ok(await page.evaluate(() => document.documentElement.scrollHeight <= innerHeight), 'the page scrolls');
+      assert.deepEqual(faults, []);
+      await page.close();
+    }
   },
   async 'many edits leave one picture, and the time of the motion stays'(s) {
     const { page, faults, draws } = await open(s);

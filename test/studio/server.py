@@ -57,9 +57,9 @@ class Studio:
             self.process.wait(20)
         self.process.stdout.close()
 
-    def ask(self, what, text=None, edition=1, page="test", timeout=90, case=""):
+    def ask(self, what, text=None, edition=1, page="test", timeout=90, case="", known=""):
         origin = f"http://127.0.0.1:{self.port}"
-        headers = {"Origin": origin, "X-Anholon-Page": page, "X-Anholon-Edition": str(edition), "X-Anholon-Case": urllib.parse.quote(case)} if text is not None else {}
+        headers = {"Origin": origin, "X-Anholon-Page": page, "X-Anholon-Edition": str(edition), "X-Anholon-Case": urllib.parse.quote(case), "X-Anholon-Known": known} if text is not None else {}
         status, body = request(self.port, f"/{self.token}/{what}", text, headers, timeout)
         return status, json.loads(body) if body.startswith("{") else body
 
@@ -240,7 +240,7 @@ def cases(studio):
         found.append("a case does not change the motion")
     for case in ["stif", "../../etc/passwd", "a\r\nSet-Cookie: x", "x" * 8000, "%"]:
         status, reply = studio.ask("check", CASES, case=case)
-        if status != 200 or "there is no case" not in json.dumps(reply):
+        if status != 200 or "there is no case" not in json.dumps(reply) or "choose none" not in json.dumps(reply) or "--case" in json.dumps(reply):
             found.append(f"case {case[:20]!r}: {status} {str(reply)[:200]}")
     return found
 
@@ -313,13 +313,30 @@ def saving(program, folder):
     model.write_text(MODEL)
     beside = sorted(p.name for p in folder.iterdir())
     with Studio(program, str(model)) as s:
-        if s.ask("save", MODEL + "# one\n")[0] != 200 or model.read_text() != MODEL + "# one\n":
+        first = s.ask("model")[1]
+        status, one = s.ask("save", MODEL + "# one\n", known=first["hash"])
+        if status != 200 or model.read_text() != MODEL + "# one\n":
             found.append("a text is not saved")
+        reload = s.ask("model")[1]
+        if reload["text"] != MODEL + "# one\n" or reload["hash"] != one["hash"]:
+            found.append(f"a reload does not show the saved text: {reload['text'][-20:]!r}")
+        for name, known in {"of a second tab": first["hash"], "that does not say what it knows": "", "that knows no text of the file": "0" * 64}.items():
+            if s.ask("save", MODEL + "# two\n", known=known)[0] != 409 or model.read_text() != MODEL + "# one\n":
+                found.append(f"a save {name} overwrites the save of the first")
+        if s.ask("save", MODEL + "# one\n", known=first["hash"])[0] != 200:
+            found.append("a text that the file holds already is refused")
+        two = s.ask("save", MODEL + "# two\n", known=one["hash"])[1]
         model.write_text("# another program\n")
-        if s.ask("save", MODEL)[0] != 409 or model.read_text() != "# another program\n":
+        if s.ask("save", MODEL, known=two["hash"])[0] != 409 or model.read_text() != "# another program\n":
             found.append("the change of another program is lost")
+        if s.ask("model")[1]["text"] != "# another program\n":
+            found.append("a reload does not show the text of another program")
         if s.ask("save-anyway", MODEL)[0] != 200 or model.read_text() != MODEL:
             found.append("save-anyway does not save")
+        model.unlink()
+        last = s.ask("model")[1]
+        if last["text"] != MODEL or s.ask("save", MODEL, known=last["hash"])[0] != 200 or model.read_text() != MODEL:
+            found.append("a file that was removed is not saved again")
     if sorted(p.name for p in folder.iterdir()) != beside:
         found.append("files are left beside the model")
     with Studio(program, "disc") as s:

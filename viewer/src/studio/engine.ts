@@ -53,10 +53,11 @@ export interface Language {
 }
 
 // Where the text comes from and goes to.
-export interface Opened { name: string; text: string; no_saving: string; version: string }
+export interface Opened { name: string; text: string; hash: string; no_saving: string; version: string }
 export interface Store {
   open(): Promise<Opened>;
   language(): Promise<Language>;
   sweep(): Promise<SweepMap | Failed>;
+  // Asks first (`changed`) if the file is not the text that `open` or the last `save` gave or took.
   save(text: string, anyway: boolean): Promise<'saved' | { why: string; changed: boolean }>;
 }
