@@ -15,6 +15,8 @@ function anholon_map(root, data, host) {
   const x = column(data.axes[0].name), y = data.axes[1] && column(data.axes[1].name), count = x.values.length;
   const cases = column("case").values, has = host.has ? k => host.has(cases[k]) : () => true;
   let shown = column(data.shown), picked = -1;
+  const places = in_places();
+  let summaries = places.map(summary);
 
   const element = (tag, attributes, ...children) => {
     const e = document.createElement(tag);
@@ -32,6 +34,26 @@ function anholon_map(root, data, host) {
   root.append(
     element("p", {class: "map-bar"}, element("label", {}, "Colour: ", select), element("label", {}, "Case: ", number), legend),
     element("div", {class: "map"}, element("figure", {}, canvas), about), motion);
+
+  // The rows of the cases that lie in one cell, for each cell; points are by themselves.
+  function in_places() {
+    if (!cells) return Array.from({length: count}, (_, k) => [k]);
+    const found = new Map();
+    for (let k = 0; k < count; ++k) {
+      const corners = cells.slice(4 * k, 4 * k + 4).join(), rows = found.get(corners);
+      if (rows) rows.push(k); else found.set(corners, [k]);
+    }
+    return [...found.values()];
+  }
+  // What the colour of a cell shows: the mean of the numbers, or the most frequent word, of its cases.
+  function summary(rows) {
+    const values = rows.map(k => shown.values[k]).filter(Number.isFinite);
+    if (!values.length) return NaN;
+    if (!shown.words.length) return values.reduce((a, b) => a + b, 0) / values.length;
+    const times = new Map();
+    for (const v of values) times.set(v, (times.get(v) || 0) + 1);
+    return [...times].reduce((best, one) => one[1] > best[1] || one[1] === best[1] && one[0] < best[0] ? one : best)[0];
+  }
 
   const range = values => {
     let least = Infinity, greatest = -Infinity;
@@ -84,14 +106,14 @@ function anholon_map(root, data, host) {
   };
 
   function draw() {
-    const ratio = devicePixelRatio || 1, g = canvas.getContext("2d"), f = frame(), values = range(shown.values);
+    const ratio = devicePixelRatio || 1, g = canvas.getContext("2d"), f = frame(), values = range(summaries);
     canvas.width = canvas.clientWidth * ratio, canvas.height = canvas.clientHeight * ratio;
     g.scale(ratio, ratio);
     const ink = getComputedStyle(document.body).color;
-    for (let k = 0; k < count; ++k) {
-      const paint = colour(shown.values[k], values);
+    for (let n = 0; n < places.length; ++n) {
+      const paint = colour(summaries[n], values);
       if (!paint) continue;
-      const [a, b, c, d] = f.box(k);
+      const [a, b, c, d] = f.box(places[n][0]);
       g.fillStyle = paint;
       g.fillRect(a, b, Math.max(c - a, .5) + .3, Math.max(d - b, .5) + .3);
     }
@@ -157,6 +179,27 @@ function anholon_map(root, data, host) {
     }
     return table;
   }
+  // Of a cell that holds several cases: how many, what its colour shows, and a way to each of them.
+  const colour_told = element("p", {class: "note"});
+  function tell_colour() {
+    const n = picked < 0 ? -1 : places.findIndex(rows => rows.includes(picked));
+    const many = n >= 0 && places[n].length > 1 && Number.isFinite(summaries[n]);
+    colour_told.textContent = !many ? "" : shown.words.length ? `The colour shows the most frequent word: ${shown.words[summaries[n]] || "none"}.`
+      : `The colour shows the mean of ${shown.label}: ${brief(summaries[n])}.`;
+  }
+  function tell_place(row) {
+    const rows = places.find(list => list.includes(row)), most = 20;
+    if (rows.length < 2) return;
+    const at = rows.indexOf(row), from = Math.max(0, Math.min(at - most / 2, rows.length - most)), listed = rows.slice(from, from + most);
+    const button = (k, word, name) => {
+      const b = element("button", {type: "button", "aria-label": name, ...(k === row ? {"aria-current": "true"} : {}), ...(k === undefined ? {disabled: ""} : {})}, word);
+      b.onclick = () => { pick(k); about.querySelector("[aria-current]")?.focus(); };
+      return b;
+    };
+    about.append(element("p", {class: "place"}, `${rows.length} cases lie in this cell: `, button(rows[at - 1], "‹", "The case before"), from > 0 ? " … " : " ",
+      ...listed.flatMap(k => [button(k, String(cases[k]), `Case ${cases[k]}`), " "]), from + most < rows.length ? "… " : "", button(rows[at + 1], "›", "The case after")), colour_told);
+    tell_colour();
+  }
   function tell_command(k) {
     const line = element("pre", {class: "command"}, command(k)), button = element("button", {type: "button"}, "Copy the command of its motion");
     button.onclick = () => {
@@ -205,6 +248,7 @@ function anholon_map(root, data, host) {
       about.append(element("p", {class: "note"}, `The page holds no motion of case ${cases[wanted]}; that of case ${cases[row]} is next to it.`),
         element("details", {}, element("summary", {}, `The numbers of case ${cases[wanted]}`), table_of(wanted)));
     }
+    tell_place(row);
     about.append(table_of(row));
     if (data.command || data.folder) tell_command(row);
     host.picked(cases[row], row);
@@ -213,12 +257,16 @@ function anholon_map(root, data, host) {
 
   canvas.onclick = event => {
     const f = frame(), at = canvas.getBoundingClientRect(), px = event.clientX - at.left, py = event.clientY - at.top;
-    let found = -1;
-    for (let k = count - 1; k >= 0 && found < 0; --k) {
+    // What is drawn last lies on top. Beside small cells the nearest one within 12 pixels is meant.
+    let found = places.findLast(([k]) => {
       const [a, b, c, d] = f.box(k);
-      if (px >= a && px <= c && py >= b && py <= d) found = k;
+      return px >= a && px <= c && py >= b && py <= d;
+    });
+    for (let n = 0, least = 12, inside = found; !inside && n < places.length; ++n) {
+      const [cx, cy] = middle_of(f, places[n][0]), far = Math.hypot(px - cx, py - cy);
+      if (far <= least) least = far, found = places[n];
     }
-    if (found >= 0) pick(found);
+    if (found) pick(found.find(has) ?? found[0]);
   };
   canvas.onkeydown = event => {
     const step = {PageDown: 1, PageUp: -1}[event.key];
@@ -248,7 +296,12 @@ function anholon_map(root, data, host) {
       + `Its cases have the numbers ${cases.reduce((a, b) => Math.min(a, b))} to ${cases.reduce((a, b) => Math.max(a, b))}.`));
     if (host.unknown) host.unknown(Number(number.value));
   };
-  select.onchange = () => { shown = column(select.value); draw(); };
+  select.onchange = () => {
+    shown = column(select.value);
+    summaries = places.map(summary);
+    tell_colour();
+    draw();
+  };
   new ResizeObserver(draw).observe(canvas);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);
   new MutationObserver(draw).observe(document.documentElement, {attributes: true, attributeFilter: ["data-theme"]});

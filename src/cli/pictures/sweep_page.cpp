@@ -134,6 +134,15 @@ void write_column(JsonWriter& j, const v1::SweepCases& cases, const std::string&
   j.close().close();
 }
 
+// The title that is asked for, that of the model, or the name of its file, as on a report page.
+std::string title_of(const v1::SweepCases& cases, const PlotCommand& o) {
+  if (!o.title.empty()) return o.title;
+  if (!cases.store()) return o.run;
+  if (const std::string& title = cases.store()->asked("title"); !title.empty()) return title;
+  const std::string& name = cases.store()->request().model_name;
+  return name.empty() ? o.run : name;
+}
+
 }  // namespace
 
 SweepMap map_of_sweep(const PlotCommand& o) {
@@ -153,7 +162,7 @@ SweepMap map_of_sweep(const PlotCommand& o) {
   if (!generations.empty()) generations = chosen(generations, rows);
   for (plot::NamedColumn& a : axes) a.values = chosen(a.values, rows);
   SweepMap map;
-  map.title = o.title.empty() ? cases.store() ? cases.store()->asked("title") : o.run : o.title;
+  map.title = title_of(cases, o);
   JsonWriter j;
   j.open_object().key("title").string(map.title).key("shown").string(shown).key("command").string(cases.command());
   j.key("model").string(cases.store() ? cases.store()->asked("model") : "");
