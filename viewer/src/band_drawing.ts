@@ -1,4 +1,4 @@
-// The modes of contacts as bands of colour along the lower edge of a plot.
+// The modes of contacts as bands along the lower edge of a plot: a contact that sticks has a full band, one that slips a dashed one of another colour.
 
 import { strips } from './bands.ts';
 import type { Band } from './data.ts';
@@ -21,12 +21,14 @@ export function draw_bands(ctx: CanvasRenderingContext2D, box: { left: number; t
       const color = mode_color(s.mode);
       if (!color) continue;
       ctx.fillStyle = color;
-      ctx.fillRect(box.left + s.x * box.width, box.top + box.height - (k + 1) * height, Math.max(s.width * box.width, pixel), height - pixel);
+      const left = box.left + s.x * box.width, width = Math.max(s.width * box.width, pixel), top = box.top + box.height - (k + 1) * height;
+      const dash = s.mode === 1 ? 4 * pixel : width, gap = 3 * pixel;
+      for (let from = 0; from < width; from += dash + gap) ctx.fillRect(left + from, top, Math.min(dash, width - from), height - pixel);
     }
   });
 }
 
-// Says what the colours mean; null if there are no contacts.
+// Says what the bands mean; null if there are no contacts.
 export function bands_key(bands: Band[]): HTMLElement | null {
   if (bands.length === 0) return null;
   const key = (mode: number): HTMLElement => h('span', { class: `mode mode-${mode}` }, mode_names[mode]);

@@ -14,29 +14,37 @@ export interface Extent {
 
 export const placed = (item: Item): boolean => item.kind === 'body' || item.kind === 'point' || item.kind === 'frame';
 
+// Math.max(...) takes some ten thousand numbers at most, and a long chain has more points than that.
+function greatest<T>(list: T[], of: (element: T) => number): number {
+  let most = -Infinity;
+  for (const element of list) most = Math.max(most, of(element));
+  return most;
+}
+
 export function extent(model: SceneModel, frame: Frame): Extent {
   const items = model.items.filter((i) => placed(i) || i.kind === 'line');
   const sizes = items.map(radius);
+  const index = new Map(items.map((item, k) => [item, k]));
   const largest = Math.max(0, ...sizes);
   const points: Extent['points'] = [];
   for (const time of model.sample_times()) {
     const poses = model.pose(time);
     model.items.forEach((item, k) => {
-      const index = items.indexOf(item);
-      if (index < 0) return;
+      const at_index = index.get(item);
+      if (at_index === undefined) return;
       for (const p of poses[k].points ?? [poses[k].position]) {
         const at = model.in_frame(frame, time, p);
-        if (at.every(Number.isFinite)) points.push({ at, r: sizes[index] });
+        if (at.every(Number.isFinite)) points.push({ at, r: sizes[at_index] });
       }
     });
   }
   leave_runaways(points, largest);
   if (points.length === 0) points.push({ at: [0, 0, 0], r: largest });
   const center = [0, 1, 2].map((k) => {
-    const low = Math.min(...points.map((p) => p.at[k] - p.r)), high = Math.max(...points.map((p) => p.at[k] + p.r));
+    const low = -greatest(points, (p) => p.r - p.at[k]), high = greatest(points, (p) => p.at[k] + p.r);
     return (low + high) / 2;
   }) as Vector;
-  const reach = Math.max(...points.map((p) => Math.hypot(...p.at.map((x, k) => x - center[k])) + p.r));
+  const reach = greatest(points, (p) => Math.hypot(...p.at.map((x, k) => x - center[k])) + p.r);
   const ball = reach > 0 ? reach : 1;
   const unit = largest > 0 ? largest : 0.3 * ball;
   return { points, center, radius: ball, unit, far: largest > 0 && ball > 30 * largest };
@@ -50,8 +58,10 @@ export function leave_runaways(points: Extent['points'], least: number): void {
   const middle = [0, 1, 2].map((k) => typical(points.map((p) => p.at[k]), 0.5));
   const far = points.map((p) => Math.hypot(...p.at.map((x, k) => x - middle[k])));
   const usual = Math.max(typical(far, 0.9), least);
-  if (!(usual > 0) || !(Math.max(...far) > 1000 * usual)) return;
-  points.splice(0, points.length, ...points.filter((_, k) => far[k] <= 10 * usual));
+  if (!(usual > 0) || !(greatest(far, (x) => x) > 1000 * usual)) return;
+  let kept = 0;
+  points.forEach((p, k) => { if (far[k] <= 10 * usual) points[kept++] = p; });
+  points.length = kept;
 }
 
 // Radius about a followed item within which what moves with it stays, in bounds that keep it in sight.

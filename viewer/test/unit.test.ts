@@ -7,13 +7,13 @@ import { comfortable_rate } from '../src/clock.ts';
 import { speed_options } from '../src/controls.ts';
 import { rows_within, trace_curve, value_range } from '../src/curve.ts';
 import { decode, read_case } from '../src/data.ts';
-import { leave_runaways } from '../src/extent.ts';
+import { extent, leave_runaways } from '../src/extent.ts';
 import { exact, fixed, time_decimals } from '../src/format.ts';
 import { interpolate, interval, nearest, type Input } from '../src/interpolate.ts';
 import { chain, middle, near } from '../src/lines.ts';
 import { compile, type Entry } from '../src/program.ts';
-import { place, placement } from '../src/rotation.ts';
-import { SceneModel, type Pose } from '../src/scene.ts';
+import { place, placement, type Vector } from '../src/rotation.ts';
+import { SceneModel, type Item, type Pose } from '../src/scene.ts';
 import { beside, decades, decades_around, increments, multiples, offset_of, power_label, powers, tick_labels } from '../src/ticks.ts';
 import { car, decimated, disc, encode, range, steady, type DiscMotion } from './samples.ts';
 
@@ -330,4 +330,15 @@ test('a page of one row is at its time', () => {
   const one = read_case({ ...raw, t: at, rows: 1, shown: 1, frames: null, columns: raw.columns.slice(0, 1).map((c) => ({ ...c, data: at }))
     .concat([{ ...raw.columns[0], name: 'step', t: encode([0.1, 1]), data: encode([0.1, 0.9]) }]), scene: null });
   assert.deepEqual([one.start, one.end], [1, 1]);
+});
+
+test('a long chain has an extent', () => {
+  const items = range(1000, (k) => ({ name: `p${k}`, kind: 'point', position: [0, 0, 0] })) as Item[];
+  const model = {
+    items, sample_times: () => range(300, (k) => k), in_frame: (_frame: string, _time: number, v: Vector) => v,
+    pose: () => items.map((item, k) => ({ name: item.name, kind: item.kind, axes: null, position: [k, -k, 0] as Vector })),
+  } as unknown as SceneModel;
+  const found = extent(model, 'observer');
+  assert.equal(found.points.length, 300000);
+  assert.deepEqual(found.center, [499.5, -499.5, 0]);
 });
