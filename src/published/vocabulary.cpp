@@ -100,7 +100,7 @@ std::vector<std::string> Vocabulary::local_names() const {
 void Vocabulary::let(const std::string& name, Syntax value, Span span) {
   if (!is_identifier(name))
     throw Failure(span, "'" + name.substr(0, 40) + "' is not a name",
-                  "letters, digits and _, not starting with a digit");
+                  "letters (a-z, A-Z, Greek), digits and _, not starting with a digit");
   if (lets_.count(name)) throw Failure(span, "'" + name + "' is already defined in this file");
   if (declares(name)) throw Failure(span, "'" + name + "' is a name of the model");
   static const char* const reserved[] = {"t", "pi", "ex", "ey", "ez", "inertial", "here", "let", "derived"};

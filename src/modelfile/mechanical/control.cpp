@@ -153,7 +153,7 @@ static void read_output(const Item& i, Scope& scope, Model& model, Diagnostics& 
   out.span = i.key_span;
   if (!is_element_name(out.name))
     throw Failure(i.key_span, "'" + out.name.substr(0, 40) + "' is not a name",
-                  "letters, digits and _, not starting with a digit");
+                  "letters (a-z, A-Z, Greek), digits and _, not starting with a digit");
   const Item* value = &i;
   if (i.kind == Item::Kind::table) {
     check_keys(i, "an output", "output", diagnostics);

@@ -14,7 +14,7 @@ static void read_one(const Item& i, Scope& scope, Model& model) {
   const std::string name = normal_name(i.key);
   if (!is_element_name(name))
     throw Failure(i.key_span, "'" + name.substr(0, 40) + "' is not a name",
-                  "letters, digits and _, not starting with a digit");
+                  "letters (a-z, A-Z, Greek), digits and _, not starting with a digit");
   const auto& taken = model.names.coordinates;
   if (name == "t" || std::find(taken.begin(), taken.end(), name) != taken.end())
     throw Failure(i.key_span, "a column '" + name + "' is there already", "give the monitor a name of its own");

@@ -18,7 +18,7 @@ static constexpr std::size_t kDeepest = 200;
 void Scope::check_name(const std::string& name, Span span) const {
   if (!is_element_name(name))
     throw Failure(span, "'" + name.substr(0, 40) + "' is not a name",
-                  "letters, digits and _, not starting with a digit");
+                  "letters (a-z, A-Z, Greek), digits and _, not starting with a digit");
   if (is_reserved(name)) throw Failure(span, "the name '" + name + "' is reserved");
   if (letters_.count(name.substr(0, name.find('['))))
     throw Failure(span, "the name '" + name + "' is reserved: it is an index");

@@ -30,7 +30,7 @@ class IndexReader {
       collect(diagnostics, [&] {
         if (!is_identifier(i.key))
           throw Failure(i.key_span, "'" + i.key.substr(0, 40) + "' is not a name",
-                        "letters, digits and _, not starting with a digit");
+                        "letters (a-z, A-Z, Greek), digits and _, not starting with a digit");
         if (is_reserved(i.key)) throw Failure(i.key_span, "the name '" + i.key + "' is reserved");
         entries_.emplace(i.key, &i);
         out_.letters.insert(i.key);

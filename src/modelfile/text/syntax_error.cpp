@@ -171,6 +171,20 @@ Found list_left_open(const Place& p) {
   return {};
 }
 
+// A text of a list without its second quote, which ends at the first quote of the next one: ["x", "y, "psi"].
+Found quote_forgotten(const Place& p) {
+  const std::size_t at = p.line.size() - p.rest.size();
+  if (!p.says("in array: expected comma or closing ']'") || at < 2 || p.line[at - 1] != '"') return {};
+  const std::size_t begin = p.line.rfind('"', at - 2);
+  if (begin == std::string::npos) return {};
+  const std::size_t comma = p.line.find(',', begin);
+  if (comma >= at) return {};
+  std::string right = p.line;
+  right.insert(comma, "\"");
+  return Failure(p.span, "a quote is missing before this place, at the end of " + p.line.substr(begin, comma - begin),
+                 trimmed(right));
+}
+
 // A number with a comma, a point at its end or a zero at its start.
 Found number(const Place& p) {
   if (p.says("saw ','") && p.span.column > 1 && p.span.column - 2 < p.line.size() &&
@@ -233,8 +247,9 @@ Failure syntax_error(std::string_view description, Span span, const SourceText& 
   constexpr std::string_view kPrefix = "Error while parsing ";
   if (message.starts_with(kPrefix)) message = "in " + message.substr(kPrefix.size());
   const Place place(message, span, source);
-  for (const auto rule : {is_there_already, text_left_open, unknown_escape, declaration, other_comment, sign_missing,
-                          header_left_open, list_left_open, number, formula_without_quotes, element_without_quotes})
+  for (const auto rule :
+       {is_there_already, text_left_open, unknown_escape, declaration, other_comment, sign_missing, header_left_open,
+        list_left_open, quote_forgotten, number, formula_without_quotes, element_without_quotes})
     if (Found found = rule(place)) return *found;
   if (place.says("could not determine value type"))
     return Failure(span, "this is no number, and no text in quotes", "a formula stands in quotes: name = \"a*b\"");
