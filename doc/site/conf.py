@@ -26,6 +26,7 @@ smartquotes = False  # a prime is a derivative and -- begins an option
 html_theme = "furo"
 html_static_path = [str(Path(__file__).parent / "static")]
 html_css_files = ["site.css"]
+html_js_files = ["search.js", "print.js"]
 html_math_renderer = "mathml"
 html_copy_source = False
 html_show_sourcelink = False
