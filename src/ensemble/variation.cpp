@@ -239,6 +239,9 @@ void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) 
     try {
       quantities.push_back(name(table->names()[k], table->names()[k].size(), model));
     } catch (const MistakeInWord& m) {
+      if (table->names()[k].empty())
+        table->mistake_in_header(k, "this column has no name",
+                                 "the name of what varies in it, or leave out the column");
       const bool unit = table->names()[k].find_first_of("([") != std::string::npos;
       table->mistake_in_header(k, m.diagnostic.message,
                                unit ? "the first line holds names alone; a unit belongs to each number: 8 cm"
@@ -251,11 +254,17 @@ void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) 
   table_ = std::move(table);
   for (std::size_t row = 0; row < table_->rows(); ++row) {
     const std::vector<std::string> cells = table_->cells(row);
-    for (std::size_t k = 0; k < cells.size(); ++k) try {
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      if (cells[k].find_first_not_of(" \t") == std::string::npos)
+        table_->mistake(row, k,
+                        "case " + std::to_string(row) + " has no '" + table_->names()[k] + "': this cell is empty",
+                        "a number in it, or leave out the line; the value of the file is not taken");
+      try {
         number(cells[k], {0, cells[k]}, quantities[k]);
       } catch (const MistakeInWord& m) {
         table_->mistake(row, k, m.diagnostic.message, "a number, pi/2, or a number with a unit: 8 cm");
       }
+    }
   }
 }
 
