@@ -25,7 +25,7 @@ enum class Steadiness : std::uint8_t {
 
 struct LinearModel {
   Steadiness motion = Steadiness::unchecked;
-  std::string why;  // unsteady, unchecked: what tells so
+  std::string why;  // unsteady, unchecked: what tells so, and coordinates without which the motion is steady
   double t = 0;
   std::vector<std::string> states;     // independent coordinates and velocities z
   std::vector<std::string> dependent;  // coordinates and velocities that follow from z

@@ -36,6 +36,9 @@ LinearModel model_of(const inner::LinearModel& from, int digits) {
   LinearModel m;
   m.motion = static_cast<Steadiness>(from.motion);
   m.why = from.why;
+  std::string steady_without;
+  for (const std::string& name : from.eliminate) steady_without += (steady_without.empty() ? "" : ", ") + name;
+  if (!from.eliminate.empty()) m.why += "; the motion is steady if " + steady_without + " are eliminated";
   m.t = inner::to_double(from.t);
   m.states = from.states, m.dependent = from.dependent, m.inputs = from.inputs, m.outputs = from.outputs;
   m.notes = from.notes;

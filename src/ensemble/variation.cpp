@@ -35,7 +35,8 @@ std::vector<Part> parts(const std::string& word, std::size_t from, std::size_t t
   return list;
 }
 
-constexpr const char* kVaryHint = "--vary m=1:3:5 (from, to, how many), m=1,2,5, 'm~normal(1,0.1)' or 'm~uniform(0,2)'";
+constexpr const char* kVaryHint =
+    "--vary m=1:3:5 (from, to, how many), m=1..3:0.5 (step), m=1,2,5, 'm~normal(1,0.1)' or 'm~uniform(0,2)'";
 
 // A number, a formula of numbers and pi, or a number with a unit.
 Constant constant_in(const std::string& word, const Part& p) {
@@ -68,6 +69,31 @@ Rational number(const std::string& word, const Part& part, GivenQuantity& of) {
   const Constant c = constant_in(word, p);
   if (const auto wrong = of.misfit(c)) mistake_in(word, p.at, p.text.size(), wrong->message, wrong->hint(""));
   return c.value;
+}
+
+struct Stepped {
+  Rational from, to;
+  std::size_t points;
+};
+
+// A grid, NAME=FROM..TO:STEP; its last point is TO or the last one before it.
+Stepped stepped(const std::string& word, std::size_t sign, std::size_t dots, GivenQuantity& of) {
+  const std::string hint = "from, to, step: " + word.substr(0, sign) + "=0..10:0.1";
+  const std::size_t colon = word.find(':', dots);
+  if (colon == std::string::npos) mistake_in(word, sign + 1, word.size() - sign - 1, "this range has no step", hint);
+  const auto part = [&](std::size_t from, std::size_t to) { return Part{from, word.substr(from, to - from)}; };
+  const Part steps = part(colon + 1, word.size());
+  const Rational from = number(word, part(sign + 1, dots), of), to = number(word, part(dots + 2, colon), of),
+                 step = number(word, steps, of);
+  if (step == 0 || (to - from) / step < 0)
+    mistake_in(word, steps.at, steps.text.size(),
+               "no step of " + to_string(step) + " leads from " + to_string(from) + " to " + to_string(to), hint);
+  const Rational count = (to - from) / step;
+  if (count >= static_cast<unsigned long>(kMostPoints))
+    mistake_in(word, steps.at, steps.text.size(), "a grid has at most " + std::to_string(kMostPoints) + " points",
+               hint);
+  const mpz_class whole = count.get_num() / count.get_den();
+  return {from, from + step * Rational(whole), whole.get_ui() + 1};
 }
 
 // What a name that is none of the known ones may mean: "; did you mean …"; "" if nothing is near.
@@ -162,9 +188,14 @@ Variation::Values Variation::law(const std::string& word, std::size_t sign, Give
   return values;
 }
 
-// A grid, NAME=FROM:TO:COUNT, or a list, NAME=A,B,….
+// A grid, NAME=FROM:TO:COUNT or NAME=FROM..TO:STEP, or a list, NAME=A,B,….
 Variation::Values Variation::listed(const std::string& word, std::size_t sign, GivenQuantity& of) const {
   Values values;
+  if (const std::size_t dots = word.find("..", sign); dots != std::string::npos) {
+    const auto [from, to, points] = stepped(word, sign, dots, of);
+    values.grid = Grid{from, to, points};
+    return values;
+  }
   if (word.find(':', sign) == std::string::npos) {
     for (const Part& p : parts(word, sign + 1, word.size(), ',')) values.list.push_back(number(word, p, of));
     return values;
@@ -239,6 +270,9 @@ void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) 
     try {
       quantities.push_back(name(table->names()[k], table->names()[k].size(), model));
     } catch (const MistakeInWord& m) {
+      if (table->names()[k].empty())
+        table->mistake_in_header(k, "this column has no name",
+                                 "the name of what varies in it, or leave out the column");
       const bool unit = table->names()[k].find_first_of("([") != std::string::npos;
       table->mistake_in_header(k, m.diagnostic.message,
                                unit ? "the first line holds names alone; a unit belongs to each number: 8 cm"
@@ -251,11 +285,17 @@ void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) 
   table_ = std::move(table);
   for (std::size_t row = 0; row < table_->rows(); ++row) {
     const std::vector<std::string> cells = table_->cells(row);
-    for (std::size_t k = 0; k < cells.size(); ++k) try {
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      if (cells[k].find_first_not_of(" \t") == std::string::npos)
+        table_->mistake(row, k,
+                        "case " + std::to_string(row) + " has no '" + table_->names()[k] + "': this cell is empty",
+                        "a number in it, or leave out the line; the value of the file is not taken");
+      try {
         number(cells[k], {0, cells[k]}, quantities[k]);
       } catch (const MistakeInWord& m) {
         table_->mistake(row, k, m.diagnostic.message, "a number, pi/2, or a number with a unit: 8 cm");
       }
+    }
   }
 }
 

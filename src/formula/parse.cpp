@@ -210,11 +210,20 @@ class Parser {
     }
   }
 
-  // A name after a number and a blank is a unit; a call or a member of a family is not.
+  const Lexeme& ahead(std::size_t k) const { return lexemes_[std::min(at_ + k, lexemes_.size() - 1)]; }
+
+  // A name after a number and a blank is a unit, and so is 1/ before the name of one; a call or a member of a family is not.
   bool unit_follows(const Lexeme& number) const {
-    const Lexeme &name = peek(), &after = lexemes_[std::min(at_ + 1, lexemes_.size() - 1)];
-    return name.token == Token::name && number.offset + number.length < name.offset && after.token != Token::open &&
+    const std::size_t k = reciprocal_unit() ? 2 : 0;
+    const Lexeme &name = ahead(k), &after = ahead(k + 1);
+    return name.token == Token::name && number.offset + number.length < peek().offset && after.token != Token::open &&
            after.token != Token::left;
+  }
+
+  // 1/s; in 1/t t is the time.
+  bool reciprocal_unit() const {
+    return peek().token == Token::number && peek().text == "1" && ahead(1).token == Token::over && touches(at_ + 1) &&
+           touches(at_ + 2) && ahead(2).text != "t" && find_unit(ahead(2).text);
   }
 
   // A unit contains no blanks: "2 m/s * t" is a product with t.
@@ -222,11 +231,12 @@ class Parser {
     return k > 0 && k < lexemes_.size() && lexemes_[k - 1].offset + lexemes_[k - 1].length == lexemes_[k].offset;
   }
 
-  // The number and the unit after it: names of units with whole powers, joined by * · and /.
+  // The number and the unit after it: names of units with whole powers, joined by * · and /, and perhaps 1/ before them.
   Syntax quantity(Syntax number) {
     const std::size_t first = at_;
     constexpr std::size_t kLongestUnit = 200;
     std::string text;
+    if (reciprocal_unit()) text = "1/", at_ += 2;
     for (;;) {
       const Lexeme name = next();
       if (text.size() > kLongestUnit) fail(lexemes_[first], "this unit is out of all proportion");
@@ -352,11 +362,6 @@ class Parser {
       return "write " + lexemes_[at_ - 2].text + before.text + "*" + at.text + " for a product";
     if (at.text == "and" || at.text == "or") return habit_of_sign(at.text == "and" ? "&" : "∨");
     if (before.token != Token::name && before.token != Token::number) return "a product is written with '*'";
-    // 12 1/s
-    const auto after = [&](std::size_t k) { return lexemes_[std::min(at_ + k, lexemes_.size() - 1)]; };
-    if (before.token == Token::number && at.token == Token::number && at.text == "1" && after(1).token == Token::over &&
-        find_unit(after(2).text))
-      return "write " + before.text + " " + after(2).text + "^-1: a unit begins with a name";
     const std::vector<std::string> functions = function_names();
     // sin^2(x)
     if (at_ > 2 && lexemes_[at_ - 2].token == Token::caret &&

@@ -148,8 +148,9 @@ std::optional<Unit> read_unit(const std::string& text) {
   constexpr int kMostFactors = 20;
   Unit total;
   std::size_t i = 0;
-  int factors = 0;
-  for (int sign = 1;;) {
+  int factors = 0, sign = 1;
+  if (text.starts_with("1/")) sign = -1, i = 2;
+  for (;;) {
     if (++factors > kMostFactors) return std::nullopt;
     std::string name;
     for (; i < text.size() && std::isalpha(static_cast<unsigned char>(text[i])); ++i) name += text[i];
@@ -206,7 +207,6 @@ std::string describe(const Dimension& d) {
   if (std::all_of(d.begin(), d.end(), [](const Rational& r) { return r == 0; })) return "a pure number";
   const std::string unit = print(d);
   for (const Named& q : kQuantities) {
-    // "1/s" is not a unit of the table.
     if (unit == q.unit) return std::string(q.name) + " (" + unit + ")";
   }
   return "a quantity in " + unit;

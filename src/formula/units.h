@@ -32,7 +32,7 @@ const std::vector<UnitRow>& unit_table();
 
 // Looks up "km", "rad"; nullopt if there is no such unit.
 std::optional<Unit> find_unit(const std::string& name);
-// Reads "m^3/s^2", "kg*m^2", as written after a number; nullopt if the text is not a unit.
+// Reads "m^3/s^2", "kg*m^2", "1/s", as written after a number; nullopt if the text is not a unit.
 std::optional<Unit> read_unit(const std::string& text);
 // The names of the table and common ones with prefixes, for "did you mean".
 std::vector<std::string> unit_names();

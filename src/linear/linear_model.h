@@ -34,7 +34,8 @@ struct LinearModel {
     unchecked,  // perhaps steady; the check found no other point of the motion
   };
   Motion motion = Motion::unchecked;
-  std::string why;  // unsteady, unchecked: the reason
+  std::string why;                     // unsteady, unchecked: the reason
+  std::vector<std::string> eliminate;  // unsteady: coordinates without whose velocities the motion is steady, if any
   Multi t{0};
   std::vector<std::string> states;     // names of z: x, …, x', …
   std::vector<std::string> dependent;  // entries of the state that follow from z

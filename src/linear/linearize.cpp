@@ -1,6 +1,7 @@
 #include "linear/linearize.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -13,7 +14,7 @@ namespace {
 constexpr int kMostSteps = 300;
 constexpr int kExactDigits = 40;   // digits of a parameter value between the given ones
 constexpr int kMostHalvings = 12;  // of an interval whose crossings do not add up
-constexpr int kMostSlow = 3;       // steps that do not halve the interval
+constexpr int kMostSlow = 3;       // steps that do not halve the interval, before the first bisection
 constexpr int kMostSides = 4;      // distances at which an eigenvalue may be off the axis
 constexpr double kNarrow = 1e-20;  // relative width of the interval in which a crossing is found
 // A real part that is continuous, be it as the fourth root of the parameter, is smaller than this over such an interval,
@@ -98,7 +99,7 @@ class Values {
       }
     if (!made_ || in_exponents_ || !same_structure(made_->scenario, scenario))
       made_ = std::make_unique<Made>(scenario, choice_, signals_);
-    r.outcome = made_->linearizer.at(parameters, check, r.model);
+    r.outcome = made_->linearizer.at(parameters, scenario.state, check, r.model);
     return r;
   }
 
@@ -147,6 +148,7 @@ class Search {
   enum class Root : std::uint8_t { found, lost, jump };
 
   void between(const End& a, const End& b, int halvings, std::vector<Crossing>& out, std::vector<std::string>& notes) {
+    known_.clear();
     const int before = unstable(a.model), after = unstable(b.model);
     const int always = std::min(zeros(a.model), zeros(b.model));
     const std::string place = "between " + to_string(a.value) + " and " + to_string(b.value);
@@ -200,8 +202,8 @@ class Search {
   }
 
   // The zero of f(p), the m-th largest real part, between a and b, by false position with halving of a retained value
-  // (Illinois); by bisection if that makes no progress, or f does not change its sign but leaves 0, as for undamped
-  // systems.
+  // (Illinois); by bisection if that makes no progress, the sooner the more often it makes none, as at a jump, or if f
+  // does not change its sign but leaves 0, as for undamped systems.
   Root root(const End& from, const End& to, int m, int always, Crossing& c) {
     const Multi first(from.value), second(to.value);
     Multi a = first, b = second;
@@ -215,14 +217,14 @@ class Search {
     Complex e = a_positive ? *at_a : *at_b;
     Multi p = b;
     const Multi narrow = Multi(kNarrow) * (abs(a) + abs(b)), half = narrow / Multi(2);
+    int patience = kMostSlow;
     for (int step = 0, stayed = 0, slow = 0; step < kMostSteps && b - a > narrow; ++step) {
       const Multi width = b - a;
-      if (leaves_zero || slow == kMostSlow)
-        p = (a + b) / Multi(2), slow = 0;
+      if (leaves_zero || slow >= patience)
+        p = (a + b) / Multi(2), slow = 0, patience = std::max(0, patience - 1);
       else  // not so near to an end that the other one would stay where it is
         p = std::min(Multi(b - half), std::max(Multi(a + half), Multi((a * fb - b * fa) / (fb - fa))));
-      const Rational exact = rational_of(p);
-      const LinearResult r = values_.at(exact, false);
+      const LinearResult& r = unchecked_at(p);
       const auto found = r.outcome.ok() ? ranked(r.model, m, always) : std::nullopt;
       if (!found) return Root::lost;
       const Multi f = found->re;
@@ -255,8 +257,7 @@ class Search {
     Multi away = narrow;
     for (int k = 0; k < kMostSides; ++k, away *= Multi(1000)) {
       const Multi at = end < p ? std::max(end, Multi(p - away)) : std::min(end, Multi(p + away));
-      const Rational exact = rational_of(at);
-      const LinearResult r = values_.at(exact, false);
+      const LinearResult& r = unchecked_at(at);
       const auto found = r.outcome.ok() ? ranked(r.model, m, always) : std::nullopt;
       if (found && !(found->re == Multi(0))) return found->im == Multi(0);
     }
@@ -269,8 +270,7 @@ class Search {
     std::vector<Multi> before;
     std::vector<std::string> states;
     for (const Multi& p : {a, b}) {
-      const Rational exact = rational_of(p);
-      const LinearResult r = values_.at(exact, false);
+      const LinearResult& r = unchecked_at(p);
       const auto found = r.outcome.ok() ? ranked(r.model, m, always) : std::nullopt;
       if (!found) return Root::lost;
       if (abs(found->re) > Multi(kJump) * size) return Root::jump;
@@ -282,7 +282,16 @@ class Search {
     return Root::found;
   }
 
+  // The linear model at a value between the given ones. Eigenvalues that jump together are searched for at the same values.
+  const LinearResult& unchecked_at(const Multi& p) {
+    const Rational exact = rational_of(p);
+    const auto [place, is_new] = known_.try_emplace(to_string(exact));
+    if (is_new) place->second = values_.at(exact, false);
+    return place->second;
+  }
+
   Values& values_;
+  std::map<std::string, LinearResult> known_;  // in the present interval
 };
 
 // The order in which the values of the parameter grow.

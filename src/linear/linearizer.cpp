@@ -2,6 +2,7 @@
 
 #include "linear/linear_point.h"
 #include "linear/steadiness.h"
+#include "linear/steady_elimination.h"
 #include "numeric/more_digits.h"
 
 namespace anholon {
@@ -57,10 +58,10 @@ static void leave_out(const std::vector<std::string>& rough, LinearModel& m) {
   }
 }
 
-Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const {
+Outcome Linearizer::at(const std::vector<Multi>& parameters, const InitialState<double>& near, bool check,
+                       LinearModel& out) const {
   const InitialProblem<Multi> problem{
-      equations_.scenario.mechanics.get(), parameters, choice_.overrides, choice_.t, &mass_, nullptr,
-      &equations_.scenario.state};
+      equations_.scenario.mechanics.get(), parameters, choice_.overrides, choice_.t, &mass_, nullptr, &near};
   InitialState<Multi> state;
   if (Outcome o = consistent_state(problem, state); !o.ok()) return o;
   if (equations_.scenario.routh)
@@ -83,6 +84,10 @@ Outcome Linearizer::at(const std::vector<Multi>& parameters, bool check, LinearM
   leave_out(rough, out);
 
   look_for_steadiness(point, check, out);
+  out.eliminate.clear();
+  if (out.motion == LinearModel::Motion::unsteady)
+    for (const std::size_t a : steady_elimination(equations_, parameters, point))
+      out.eliminate.push_back(equations_.scenario.model->coordinates[a].name);
   Matrix<Multi> core(out.core.size(), out.core.size());
   for (std::size_t i = 0; i < core.rows; ++i)
     for (std::size_t k = 0; k < core.cols; ++k) core(i, k) = out.A(out.core[i], out.core[k]);

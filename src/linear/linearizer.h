@@ -10,9 +10,10 @@ class LinearPoint;
 class Linearizer {
  public:
   Linearizer(Workspace& scenario, const StateChoice& choice, Signals signals = {});
-  // With other values of the parameters; the initial data are solved anew. Only if `check` it is found out whether the
-  // motion is steady.
-  Outcome at(const std::vector<Multi>& parameters, bool check, LinearModel& out) const;
+  // With other values of the parameters; the initial data are solved anew, from `near`, their solution in double. Only if
+  // `check` it is found out whether the motion is steady.
+  Outcome at(const std::vector<Multi>& parameters, const InitialState<double>& near, bool check,
+             LinearModel& out) const;
 
  private:
   // Looks for rows that have no derivative at the point. Returns an outcome that names an equation among them, and marks

@@ -33,13 +33,33 @@ Rational number(const std::string& text, const std::string& called, GivenQuantit
 
 [[noreturn]] void wrong(const std::string& called, const std::string& name, const std::string& why) {
   throw Failure({}, called + why,
-                "a range NAME=FROM..TO:STEP such as " + name + "=0..10:1, or values " + name + "=0,1,2");
+                "a range NAME=FROM..TO:STEP such as " + name + "=0..10:1 or NAME=FROM:TO:COUNT such as " + name +
+                    "=0:10:11, or values " + name + "=0,1,2");
+}
+
+// FROM:TO:COUNT, as in sweeps.
+std::vector<Rational> counted(const std::string& text, const std::string& name, const std::string& called,
+                              GivenQuantity& of) {
+  const std::size_t first = text.find(':'), second = text.find(':', first + 1);
+  if (second == std::string::npos || text.find(':', second + 1) != std::string::npos)
+    wrong(called, name, "'" + text + "' is no range");
+  const Rational from = number(text.substr(0, first), called, of),
+                 to = number(text.substr(first + 1, second - first - 1), called, of),
+                 count = constant_of(text.substr(second + 1), called).value;
+  if (!count.is_integer() || count < 1 || count > static_cast<long>(kMostValues) || (count == 1 && from != to))
+    wrong(called, name, "a range has between 2 and " + std::to_string(kMostValues) + " values");
+  const std::size_t all = count.get_num().get_ui();
+  std::vector<Rational> values;
+  for (std::size_t k = 0; k < all; ++k)
+    values.push_back(from + (to - from) * Rational(k, std::max<std::size_t>(all - 1, 1)));
+  return values;
 }
 
 std::vector<Rational> values_of(const std::string& text, const std::string& name, const std::string& called,
                                 GivenQuantity of) {
   std::vector<Rational> values;
   const std::size_t dots = text.find("..");
+  if (dots == std::string::npos && text.find(':') != std::string::npos) return counted(text, name, called, of);
   if (dots == std::string::npos) {
     for (std::size_t at = 0; at <= text.size();) {
       const std::size_t comma = std::min(text.find(',', at), text.size());
@@ -86,7 +106,7 @@ ParameterRange read_range(const std::string& text, const Model& model, const std
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     throw Failure({}, called + "'" + text + "' is not of the form NAME=VALUES",
-                  "a range such as v=0..10:1, or values v=0,1,2");
+                  "a range such as v=0..10:1 or v=0:10:11, or values v=0,1,2");
   const std::string name = text.substr(0, equals);
   const std::size_t parameter = parameter_of(model, name, called);
   return {parameter, values_of(text.substr(equals + 1), name, called, GivenQuantity::of_parameter(model, parameter))};

@@ -126,6 +126,8 @@ class StateWriter {
               int digits, StateReport& report)
       : s_(s), e_(e), n_(s.mechanics->q.size()), point_(point), digits_(digits), out_(s, e.all, parameters),
         r_(report) {
+    out_.evaluate_moved(point, N(0));
+    moved_law_ = greatest_made_of(law()), moved_power_ = greatest_made_of(power());
     out_.evaluate(point);
   }
 
@@ -178,13 +180,12 @@ class StateWriter {
     Matrix<N> phi(s_.system.constraints.size(), n_);
     phi.data = values(e_.phi);
     const NewtonResidual<N> c = certify(values(e_.inertia.at), force, values(e_.reaction.at), phi);
-    const Block law{0, e_.reaction.at.first + n_}, power{e_.numbers.front().at.first, e_.numbers.size()};
     const auto of_law = [&](const N& miss) {
-      return relative_miss(miss, c.largest, [&] { return greatest_made_of(law); });
+      return relative_miss(miss, c.largest, [&] { return behind(miss, law(), moved_law_); });
     };
     const N dh = out_[e_.dh_dt.first], rate = out_[e_.noncons.first] + out_[e_.constraint.first];
-    const N power_miss =
-        relative_miss(N(dh - rate), std::max(N(abs(dh)), N(abs(rate))), [&] { return greatest_made_of(power); });
+    const N power_miss = relative_miss(N(dh - rate), std::max(N(abs(dh)), N(abs(rate))),
+                                       [&] { return behind(N(dh - rate), power(), moved_power_); });
     const auto small = [](const N& x) { return number_text(to_double(x), 3); };
     r_.residuals = {{"newton", small(of_law(c.newton))},
                     {"projected", small(of_law(c.projected))},
@@ -203,6 +204,13 @@ class StateWriter {
     for (const N& x : values(of)) list.push_back(text(x, digits_));
     return list;
   }
+  Block law() const { return {0, e_.reaction.at.first + n_}; }
+  Block power() const { return {e_.numbers.front().at.first, e_.numbers.size()}; }
+  // The numbers behind the terms, or those with which accelerations may be round-off, if the first do not explain the miss.
+  N behind(const N& miss, const Block& of, const N& moved) const {
+    const N made = greatest_made_of(of);
+    return abs(miss) <= unit_roundoff<N>() * N(kRoundoffsOfSum) * made || !(moved > made) ? made : moved;
+  }
   N greatest_made_of(const Block& of) const {
     N most(0);
     for (std::size_t i = of.first; i < of.first + of.count; ++i)
@@ -217,6 +225,7 @@ class StateWriter {
   int digits_;
   OutputTape<N> out_;
   StateReport& r_;
+  N moved_law_{0}, moved_power_{0};  // by OutputTape::evaluate_moved
 };
 
 // The point of the consistent state, with the orders beyond its leading derivatives if there are any.

@@ -62,6 +62,13 @@ bool declared_conserved(const Model& model, const Monitor& m) {
   });
 }
 
+// The numbers behind the terms, or those with which accelerations may be round-off, if the first do not explain the miss.
+template <Number W>
+static W size_behind(const W& miss, const W& made_of, const W& moved) {
+  const bool explained = abs(miss) <= unit_roundoff<W>() * W(kRoundoffsOfSum) * made_of;
+  return explained || !(moved > made_of) ? made_of : moved;
+}
+
 template <Number W>
 void Track<W>::see(const W& value) {
   if (!any) first = least = greatest = value;
@@ -74,12 +81,13 @@ void Track<W>::see(const W& value) {
 }
 
 template <Number W>
-template <class MadeOf>
-void Track<W>::see(const W& value, const W& terms, MadeOf made_of) {
+void Track<W>::see(const W& value, const W& terms, const W& made_of, const W& moved) {
   see(value);
   size = std::max(size, terms);
-  made = std::max(made, W(made_of()));
-  if (W v = relative_miss(W(value - first), size, made_of); v > missed || !is_finite(v)) missed = v;
+  made = std::max(made, made_of);
+  const W miss = value - first;
+  if (W v = relative_miss(miss, size, [&] { return size_behind(miss, made_of, moved); }); v > missed || !is_finite(v))
+    missed = v;
 }
 
 template <Number W>
@@ -141,6 +149,7 @@ Column Watch<W>::expressions(const Power& power, const std::vector<Conserved>& c
 
 template <Number W>
 Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report) {
+  see_moved(point);
   outputs_.evaluate(point);
   const std::size_t n = s_.system.coordinates;
   std::vector<W> inertia(n), force(n), reaction(n);
@@ -164,9 +173,22 @@ Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report) {
 template <Number W>
 void Watch<W>::newton(const NewtonResidual<W>& c, SimulationReport& report) {
   forces_ = std::max(forces_, c.largest);
-  const auto made_of = [&] { return made_of_forces(); };
-  report.newton = std::max(report.newton, to_double(relative_miss(c.newton, forces_, made_of)));
-  report.projected = std::max(report.projected, to_double(relative_miss(c.projected, forces_, made_of)));
+  const auto relative = [&](const W& miss) {
+    return to_double(relative_miss(miss, forces_, [&] { return size_behind(miss, made_of_forces(), moved_forces_); }));
+  };
+  report.newton = std::max(report.newton, relative(c.newton));
+  report.projected = std::max(report.projected, relative(c.projected));
+}
+
+template <Number W>
+void Watch<W>::see_moved(const Expansion<W>& point) {
+  outputs_.evaluate_moved(point, abs(W(point.time() - start_)));
+  moved_forces_ = made_of_forces();
+  moved_.assign(tracks_.size(), W(0));
+  std::size_t at = first_monitor_;
+  for (std::size_t i = 0; i < tracks_.size(); ++i)
+    for (std::size_t k = 0; k < terms_[i]; ++k, ++at)
+      if (constant_[i]) moved_[i] += outputs_.made_of(at);
 }
 
 // Of N, E and G.
@@ -288,8 +310,9 @@ void Watch<W>::track(bool constants_only) {
     }
     W made(0);
     for (std::size_t k = at - terms_[i]; k < at; ++k) made += outputs_.made_of(k);
-    made_of_[i] = to_double(made);
-    tracks_[i].see(value, terms, [&] { return made; });
+    const W moved = i < moved_.size() && is_finite(moved_[i]) ? std::max(made, moved_[i]) : made;
+    made_of_[i] = to_double(moved);
+    tracks_[i].see(value, terms, made, moved);
   }
 }
 

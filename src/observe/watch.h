@@ -33,9 +33,8 @@ struct Track {
   W made{0};  // the greatest of the numbers that the terms are made of, where these are known
   void see(const W& value);
   // What ought to be constant. `terms`: the sum of the magnitudes of its terms; `made_of`: of the numbers these are
-  // made of (numeric/relative.h).
-  template <class MadeOf>
-  void see(const W& value, const W& terms, MadeOf made_of);
+  // made of (numeric/relative.h); `moved`: of those with which it may change by round-off.
+  void see(const W& value, const W& terms, const W& made_of, const W& moved);
   // The same of a number that was computed in doubles.
   void see_double(double value, double terms, double made_of);
   // Of its size; or of its terms, if it ought to be constant; or of the numbers these are made of, if it is large
@@ -103,6 +102,7 @@ class Watch {
   Column expressions(const Power& power, const std::vector<Conserved>& conserved);
   void track(bool constants_only = false);
   W made_of_forces() const;
+  void see_moved(const Expansion<W>& point);
   std::vector<std::size_t> rows_at(const Expansion<W>& point) const;
   void constraints(const Expansion<W>& point, const std::vector<std::size_t>& rows, const Matrix<W>& phi,
                    SimulationReport& report) const;
@@ -124,6 +124,10 @@ class Watch {
   W h0_{0}, start_{0}, before_{0};
   // The greatest so far: of the terms of Newton's law, of energies and work.
   W forces_{0}, turned_over_{0};
+  // What Newton's law and the constants are made of if accelerations are as large as the terms of the equations, at the
+  // point seen last (OutputTape::evaluate_moved).
+  W moved_forces_{0};
+  std::vector<W> moved_;
   std::vector<W> from_;  // the coordinates at the start
 };
 

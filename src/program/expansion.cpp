@@ -223,6 +223,12 @@ N Expansion<N>::size_of_level(int level, std::size_t i) const {
   return size / N(jacobian_.balance().row[i]);
 }
 
+template <Number N>
+N Expansion<N>::size_of_leading(std::size_t j) const {
+  const N& size = balanced_size(0);
+  return size * N(jacobian_.balance().column[j]);
+}
+
 // Residuals of the equations at derivative order c_i - level, as right sides for J.
 template <Number N>
 bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {

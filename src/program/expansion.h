@@ -113,6 +113,8 @@ class Expansion {
   // may be of the size of its round-off, even if all terms of equation i vanish: the error comes from the other numbers
   // of the same solution.
   N size_of_level(int level, std::size_t i) const;
+  // How large the leading derivative of unknown j can be by the terms of all equations.
+  N size_of_leading(std::size_t j) const;
   N smallest_singular_value() { return jacobian_.smallest_singular_value(direction_); }
   // The change of the unknowns to which J is least sensitive; the next call continues its iteration.
   const std::vector<N>& weakest_direction() const { return direction_; }

@@ -39,6 +39,21 @@ class OutputTape {
     machine_.evaluate();
     sizes_.clear();
   }
+  // The same where leading derivatives are no smaller than the terms of the equations make them, and the derivatives
+  // below no smaller than what that leads to within the time: for sizes, where all accelerations are round-off.
+  void evaluate_moved(const Expansion<N>& point, const N& elapsed) {
+    evaluate(point);
+    for (const InputPlace& in : places_) {
+      if (!in.variable) continue;
+      const int below = point.program().d[*in.variable] - in.order;
+      if (below != 0 && below != 1) continue;
+      N& x = machine_.series(in.slot)[0];
+      const N leading = point.size_of_leading(*in.variable), size = below == 0 ? leading : N(leading * elapsed);
+      if (abs(x) < size) x = x < N(0) ? N(-size) : size;
+    }
+    machine_.evaluate();
+    sizes_.clear();
+  }
   // By the rule of tape/bind.h.
   template <class Rule>
   void evaluate_at(const Rule& rule) {

@@ -125,30 +125,64 @@ static std::pair<std::string, std::string> told_apart(double a, double b) {
   return {};
 }
 
+namespace {
+
+// A value or a condition that may be left out; `value` is one that fits in its place, if it is known.
+struct Given {
+  std::string name, key, value;
+  Span span;
+};
+
+// "x'", "qr' in wheel.toml".
+std::vector<std::string> with_files(const std::vector<Given>& given, const SourceText& source) {
+  std::vector<std::string> names;
+  for (const Given& g : given) names.push_back(g.name + (g.span.file > 0 ? " in " + source.of(g.span).name : ""));
+  return names;
+}
+
+// What to write instead in a file over a base: nothing of a base can be taken away, but values and the list of
+// conditions are replaced.
+std::string over_base(const std::vector<Given>& given) {
+  std::vector<std::string> replaced;
+  bool conditions = false;
+  for (const Given& g : given) {
+    if (g.span.file == 0) continue;
+    if (!g.key.empty())
+      replaced.push_back("initial.\"" + g.key + "\" = " + (g.value.empty() ? "…" : g.value));
+    else if (!std::exchange(conditions, true))
+      replaced.emplace_back("initial.conditions = […]");
+  }
+  return replaced.empty() ? ""
+                          : "; a file over this base can replace it, not leave it out: " + listed(replaced, " or ");
+}
+
+}  // namespace
+
 // A message with the given values and the equations that contradict each other.
 template <Number N>
 Outcome StateSolver<N>::clash_of(const Stage<N>& stage, const Contradiction<N>& c,
                                  const InitialState<N>& before) const {
-  std::vector<std::string> values, names, equations, conditions;
+  std::vector<std::string> values, equations;
+  std::vector<Given> names, conditions;
   std::string wanted;
   for (std::size_t j : c.given) {
     const Node& n = stage.unknown(j);
     const double value = to_double(stage.x_of(before, j));
     const auto [is, other] =
         c.wanted ? told_apart(value, to_double(*c.wanted)) : std::pair(number_text(value, 6), std::string());
-    names.push_back(entry_name(n));
-    std::string place;
+    const std::string name = entry_name(n);
+    Span span;
     for (const GivenValue& v : model_.initial.given)
-      if (&node(v.symbol) == &n && !overridden(n) && v.span.line)
-        place = " (" + line_of(v.span, model_.source_text) + ")";
-    values.push_back(names.back() + " = " + is + place);
-    if (c.wanted) wanted = names.back() + " = " + other;
+      if (&node(v.symbol) == &n && !overridden(n)) span = v.span;
+    names.push_back({name, name, other, span});
+    values.push_back(name + " = " + is + (span.line ? " (" + line_of(span, model_.source_text) + ")" : ""));
+    if (c.wanted) wanted = name + " = " + other;
   }
   const bool alone = c.equations.size() == 1;
   bool clauses = false;
   for (std::size_t i : c.equations) {
     const StageEquation& e = stage.equation(i);
-    if (e.condition) conditions.push_back(e.what);
+    if (e.condition) conditions.push_back({e.what, {}, {}, e.span});
     const std::string asks =
         wanted.empty() || !alone || !stage.linear() ? asked(stage, i, c.given) : "asks for " + wanted + " here";
     clauses = clauses || !asks.empty();
@@ -164,8 +198,8 @@ Outcome StateSolver<N>::clash_of(const Stage<N>& stage, const Contradiction<N>& 
             listed(equations, clauses ? ", and " : " and ") + ": no " + kind(stage) + " satisfy " +
                 (equations.size() == 2 ? "both" : "all of them"),
             (conditions.empty() ? "one of them has to go, or the motion starts elsewhere"
-                                : "leave out " + listed(conditions, " or ")) +
-                (stage.linear() ? "" : "; " + guess)};
+                                : "leave out " + listed(with_files(conditions, model_.source_text), " or ")) +
+                over_base(conditions) + (stage.linear() ? "" : "; " + guess)};
   std::string message = listed(values) + (values.size() == 1 ? " clashes with " : " clash with ") +
                         listed(equations, clauses ? ", and " : " and ");
   if (!wanted.empty() && !stage.linear())
@@ -174,8 +208,9 @@ Outcome StateSolver<N>::clash_of(const Stage<N>& stage, const Contradiction<N>& 
     message += "; together they ask for " + wanted + " here";
   names.insert(names.end(), conditions.begin(), conditions.end());
   return {OutcomeKind::inconsistent, message,
-          "leave out " + std::string(names.size() == 1 ? "" : "one of ") + listed(names, ", ") +
-              " (what is missing is found from the constraints)" + (stage.linear() || c.wanted ? "" : "; " + guess)};
+          "leave out " + std::string(names.size() == 1 ? "" : "one of ") +
+              listed(with_files(names, model_.source_text), ", ") + " (what is missing is found from the constraints)" +
+              over_base(names) + (stage.linear() || c.wanted ? "" : "; " + guess)};
 }
 
 template <Number N>

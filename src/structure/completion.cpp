@@ -144,8 +144,9 @@ Outcome StateSolver<N>::given_beyond_the_state(const System& s, const Structure&
   const auto add = [&](Expr x, Expr value, Span span) {
     const auto j = s.variable(x.id);
     if (static_cast<int>(node(x).order) > t.d[*j])
-      refused = {OutcomeKind::inconsistent, entry_name(node(x)) + " is given, but follows from the state",
-                 "leave it out"};
+      refused = {OutcomeKind::inconsistent,
+                 equation_text({x, "the value given for " + entry_name(node(x)), span}) + " follows from the state",
+                 "leave it out" + std::string(span.file > 0 ? ", or begin with a copy of that file" : "")};
     late.push_back({x - value, "the value given for " + entry_name(node(x)), span, !overridden(node(x))});
   };
   for (const GivenValue& v : model_.initial.given)
@@ -275,8 +276,7 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
   said.worst(&worst);
   const StageEquation& e = said.equation(worst);
   return {OutcomeKind::inconsistent,
-          e.what + (e.span.line ? " (line " + std::to_string(e.span.line) + ")" : "") +
-              " does not hold: with the other initial data it is missed by " +
+          equation_text(e) + " does not hold: with the other initial data it is missed by " +
               number_text(std::abs(to_double(said.residual[worst])), 3),
           "leave it out, or leave out velocities and positions that it could determine; a guess near the wanted motion "
           "helps: [initial] guess = {…}"};

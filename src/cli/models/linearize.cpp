@@ -21,6 +21,13 @@ std::string text(const Multi& x, int digits) {
 
 // ---- output -----------------------------------------------------------------------------------------
 
+// "; with --eliminate x,y the motion is steady", empty if no elimination makes it so.
+std::string remedy(const LinearModel& m) {
+  std::string list;
+  for (const std::string& name : m.eliminate) list += (list.empty() ? "" : ",") + name;
+  return list.empty() ? "" : "; with --eliminate " + list + " the motion is steady";
+}
+
 std::string motion_text(const LinearModel& m) {
   std::string cyclic;
   for (std::size_t i : m.cyclic) cyclic += (cyclic.empty() ? "" : ", ") + m.states[i];
@@ -31,7 +38,7 @@ std::string motion_text(const LinearModel& m) {
     return "a steady motion; without influence: " + cyclic;
   case LinearModel::Motion::unsteady:
     return "a state that is not steady: " + m.why +
-           "; A holds for this instant, and its eigenvalues say nothing about stability";
+           "; A holds for this instant, and its eigenvalues say nothing about stability" + remedy(m);
   case LinearModel::Motion::unchecked:
     return "a motion that could not be checked to be steady: " + m.why;
   }
@@ -67,6 +74,10 @@ void write_names(JsonWriter& j, const LinearModel& m, const std::vector<std::siz
 void write_model(JsonWriter& j, const LinearModel& m, int digits) {
   j.key("motion").string(name(m.motion));
   if (!m.why.empty()) j.key("why").string(m.why);
+  if (!m.eliminate.empty()) {
+    j.key("eliminate");
+    write_strings(j, m.eliminate);
+  }
   j.key("t").number(text(m.t, digits));
   j.key("states");
   write_strings(j, m.states);
@@ -295,12 +306,12 @@ void print_csv(const Scenario& s, const Linearization& l, const std::optional<Pa
   std::string line = range ? s.model->parameters[range->parameter].name : "t";
   for (std::size_t i = 1; i <= most; ++i) line += ",re." + std::to_string(i) + ",im." + std::to_string(i);
   say(stdout, "%s\n", line.c_str());
-  const bool unsteady = std::any_of(l.results.begin(), l.results.end(), [](const LinearResult& r) {
+  const auto unsteady = std::find_if(l.results.begin(), l.results.end(), [](const LinearResult& r) {
     return r.outcome.ok() && r.model.motion == LinearModel::Motion::unsteady;
   });
-  if (unsteady)
-    say(stderr, "note: %sthe state is not steady, and its eigenvalues say nothing about stability\n",
-        range ? "at some values " : "");
+  if (unsteady != l.results.end())
+    say(stderr, "note: %sthe state is not steady, and its eigenvalues say nothing about stability%s\n",
+        range ? "at some values " : "", remedy(unsteady->model).c_str());
   for (std::size_t k = 0; k < l.results.size(); ++k) {
     const LinearModel& m = l.results[k].model;
     line = text(range ? Multi(range->values[k]) : m.t, digits);

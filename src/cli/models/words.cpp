@@ -35,8 +35,10 @@ void add_linearize(CommandLine& line) {
        "keep their initial values")
       ->type_name("WHAT")
       ->check(CLI::IsMember({"state", "equilibrium"}));
-  c->add_option("--vary", o.vary,
-                "a parameter over a range, v=0..10:1 or v=0,1,2; where eigenvalues cross the imaginary axis is found")
+  c->add_option(
+       "--vary", o.vary,
+       "a parameter over a range, v=0..10:1 (step), v=0:10:11 (how many) or v=0,1,2; where eigenvalues cross the "
+       "imaginary axis is found")
       ->type_name("NAME=VALUES");
   motion_option(c, o, "digits",
                 "of the numbers printed (default 16, in matrices and modes fewer); the computation has at least 36");

@@ -101,15 +101,17 @@ void redundant(const Scenario& s) {
 
 }  // namespace
 
-void print_report(const Scenario& s, const SimulationReport& r, const Units& units) {
+void print_report(const Scenario& s, const SimulationReport& r, const Units& units, bool goes_on) {
   std::fflush(stdout);
   // `check` prints the notes that concern the model itself; here only those of the state follow.
   for (const std::string& n : s.state.notes) say(stderr, "note: %s\n", n.c_str());
   redundant(s);
   const std::string before = r.second ? "not projected" : "before projection " + small(r.constraints);
-  const std::string looked_at =
-      r.rows_looked_at < r.rows ? ", at " + std::to_string(r.rows_looked_at) + " of " + std::to_string(r.rows) + " rows"
-                                : "";
+  std::string looked_at = r.rows_looked_at < r.rows
+                              ? ", at " + std::to_string(r.rows_looked_at) + " of " + std::to_string(r.rows) + " rows"
+                              : "";
+  if (goes_on)
+    looked_at += looked_at.empty() ? ", with the part before" : " of this part, and at those of the part before";
   say(stderr,
       "residual report (relative%s): Newton's law %s, without multipliers %s, constraints %s (%s%s), power balance "
       "%s\n",

@@ -6,8 +6,9 @@
 
 namespace anholon::cli {
 
-// units: of columns and parameters by name, as far as they are known.
+// units: of columns and parameters by name, as far as they are known. `goes_on`: the motion continues a saved one, whose
+// residuals count, too.
 void print_report(const Scenario& scenario, const SimulationReport& report,
-                  const std::map<std::string, std::string>& units);
+                  const std::map<std::string, std::string>& units, bool goes_on);
 
 }  // namespace anholon::cli

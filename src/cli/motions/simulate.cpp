@@ -287,7 +287,7 @@ int simulate_motion(const SimulateCommand& asked, const SavedRun* resume, Told* 
   if (!o.quiet && w.report.rows > 0) {
     std::map<std::string, std::string> units = info.units;
     add_units(*s.model, options.conserved, units);
-    print_report(s, w.report, units);
+    print_report(s, w.report, units, resume != nullptr);
   }
   return say_end(o, w, saver.error);
 }

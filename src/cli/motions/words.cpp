@@ -73,11 +73,13 @@ static void add_sweep_folder(CommandLine& line, CLI::App* sweep) {
 void add_sweep(CommandLine& line) {
   const auto [c, o] = line.model_command(
       "sweep", "many motions with other parameters and initial values, on all cores", cli::sweep,
-      "NAME is a parameter, a coordinate x or a velocity x'. A grid is 0:10:101 (from, to, how many), a list 1,2,5; "
-      "several grids make all\n"
-      "combinations. Random values are NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO), drawn for each of -n "
-      "cases; where there are\n"
-      "grids too, the cases go round them. case=a,b runs through the sections [case.a] and [case.b] of the file.\n"
+      "NAME is a parameter, a coordinate x or a velocity x'. A grid is 0:10:101 (from, to, how many) or 0..10:0.1 "
+      "(from, to, step),\n"
+      "a list 1,2,5; several grids make all combinations. Random values are NAME~normal(MEAN,DEVIATION) or "
+      "NAME~uniform(FROM,TO),\n"
+      "drawn for each of -n cases; where there are grids too, the cases go round them. case=a,b runs through the "
+      "sections [case.a]\n"
+      "and [case.b] of the file.\n"
       "One line per case: what is varied, outcome, the event that ended the motion, t, final state, outputs, "
       "reductions; with --at one line\n"
       "per case and time.\n"
@@ -91,8 +93,9 @@ void add_sweep(CommandLine& line) {
       "          anholon sweep disc --vary \"phi'=1:7:1000000\" --to 3 -o falls/ --shard 3/8\n"
       "          anholon sweep disc --vary \"phi'=1:7:61\" --vary theta=0.2:1.4:49 --to 3 -o falls/ --refine 4");
   parameters(c, o), state(c, o), form_option(c, o), mode_of_contacts(c, o);
-  c->add_option("--vary", o.varied,
-                "NAME=FROM:TO:COUNT, NAME=A,B,…, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO)")
+  c->add_option(
+       "--vary", o.varied,
+       "NAME=FROM:TO:COUNT, NAME=FROM..TO:STEP, NAME=A,B,…, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO)")
       ->type_name("WHAT")
       ->allow_extra_args(false);
   c->add_option("-n", o.case_count, "how many cases, where values are drawn")->type_name("N");

@@ -96,7 +96,7 @@ push   = "2*(10 N + 3 kp)"
 ```
 
 - A number, a blank, a unit: converted to SI exactly. Factors stand without blanks between them, `kg*m^2`, with whole powers; `/`
-  divides by the next factor only: `m/s/s`, `J/kg/K`.
+  divides by the next factor only: `m/s/s`, `J/kg/K`. `10 1/s` is `10 s^-1`.
 - Behind a number and a blank a unit is meant also where the file has that name: with a parameter `m`, `3 m` is a length and `3*m` three times
   the parameter. A unit ends before a name that is none: `10 m/s*R` is a velocity times the parameter R; `(10 m/s)*m` keeps a parameter m apart.
 - `t` is a tonne only right after the number: `5 t`; elsewhere, as in `5 m/s*t`, it is the time.
@@ -140,6 +140,7 @@ constexpr Decision kDecisions[] = {
     {"3*m", "6", "m is a parameter"},
     {"3 m", "3", "three metres"},
     {"10 m/s*m", "10", "m is a unit within a unit"},
+    {"3 1/s^2", "3", "the unit is s^-2"},
     {"10 m/s*R", "3", "R is none"},
     {"5 t", "5000", "tonnes"},
     {"5 m/s*t", "5", "the time"},

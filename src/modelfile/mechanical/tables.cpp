@@ -150,6 +150,21 @@ class TableReader {
     return known.emplace_back(SourceText{name, std::move(text), path.string()}).text;
   }
 
+  [[noreturn]] static void no_number(const Item& file, const std::string& path, std::size_t line,
+                                     const std::vector<std::string>& row, std::size_t column,
+                                     const std::vector<std::string>& names) {
+    const std::string place = "line " + std::to_string(line) + " of '" + path + "'",
+                      which = "column " + std::to_string(column + 1) +
+                              (column < names.size() && !names[column].empty() ? ", '" + names[column] + "'" : "");
+    if (column < row.size() && row[column].empty())
+      throw Failure(file.span, place + " has an empty cell in " + which,
+                    "a number in it, or leave out the line: values between knots follow from those beside them");
+    throw Failure(file.span, place + " has no number in " + which,
+                  column < row.size()
+                      ? "'" + row[column] + "' stands there; numbers have a decimal point: 0.8"
+                      : "the line has " + std::to_string(row.size()) + (row.size() == 1 ? " column" : " columns"));
+  }
+
   void from_file(const Item& file, const Item* columns, Table& table) {
     if (file.kind != Item::Kind::string) throw Failure(file.span, "a file is a name in quotes");
     // Relative to the file in which it stands, which may be a base of the model file.
@@ -167,6 +182,7 @@ class TableReader {
       wanted = {columns->items[0].text(), columns->items[1].text()};
     }
     std::size_t at[2] = {0, 0}, number = 0;
+    std::vector<std::string> column_names;
     bool placed = false;
     for (std::string line; std::getline(in, line);) {
       if (++number == 1) drop_byte_order_mark(line);
@@ -188,16 +204,14 @@ class TableReader {
                               "'",
                           "its first line has the columns " + joined(row));
         }
-        if (heading || !parse_rational(row[0])) continue;
+        if (heading || !parse_rational(row[0])) {
+          column_names = row;
+          continue;
+        }
       }
       for (int k = 0; k < 2; ++k) {
         const auto v = at[k] < row.size() ? parse_rational(row[at[k]]) : std::nullopt;
-        if (!v)
-          throw Failure(file.span,
-                        "line " + std::to_string(number) + " of '" + path.string() + "' has no number in column " +
-                            std::to_string(at[k] + 1),
-                        at[k] < row.size() ? "'" + row[at[k]] + "' stands there; numbers have a decimal point: 0.8"
-                                           : "the line has " + std::to_string(row.size()) + " columns");
+        if (!v) no_number(file, path.string(), number, row, at[k], column_names);
         (k == 0 ? table.x : table.y).push_back(*v);
         if (k == 0)
           lines_.push_back("line " + std::to_string(number) + ", column " + std::to_string(at[0] + 1) + " of '" +

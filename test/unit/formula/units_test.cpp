@@ -30,13 +30,15 @@ TEST(Units, AreExact) {
   EXPECT_EQ(factor("kn"), factor("nmi/h"));
   EXPECT_EQ(factor("kN*m"), 1000);
   EXPECT_EQ(factor("s^-2"), 1);
+  EXPECT_EQ(factor("1/min"), Rational(1, 60));
+  EXPECT_EQ(factor("1/km^2*g"), factor("km^-2*g"));
   EXPECT_EQ(factor("min"), 60);
   EXPECT_EQ(factor("MPa"), factor("N") / factor("mm^2"));
   EXPECT_EQ(factor("mum"), Rational(1, 1000000));
   EXPECT_EQ(read_unit("deg")->pi, 1);
   EXPECT_EQ(factor("deg"), Rational(1, 180));
   EXPECT_EQ(read_unit("rpm")->pi, 1);
-  for (const char* none : {"", "kmin", "kkg", "m/", "m^", "m^x", "foo", "m^21", "ktt", "1/s"})
+  for (const char* none : {"", "kmin", "kkg", "m/", "m^", "m^x", "foo", "m^21", "ktt", "1/", "1", "2/s", "1/1/s"})
     EXPECT_FALSE(read_unit(none)) << none;
 }
 
@@ -78,9 +80,15 @@ TEST(Units, FollowANumberAndABlank) {
   EXPECT_EQ(value("5 t"), g.number(5000)) << "and the tonne behind a number";
   EXPECT_EQ(value("6 N*m / 2"), g.number(3));
   EXPECT_EQ(value("3e3 mm"), g.number(3));
+  EXPECT_EQ(value("10 1/min*x"), Rational(1, 6) * value("x")) << "x is no unit: a product";
+  EXPECT_EQ(value("3 1/s^2 + 2 s^-2 - 1 1/cm²"), g.number(5 - 10000));
+  EXPECT_EQ(value("-2 1/m"), g.number(-2));
+  for (const char* wrong : {"2 1/x", "2 1 /s", "2 1/ s", "2 3/s", "2 1/t", "2 1/m'", "21/s", "2 1/min(x, x)"})
+    EXPECT_THROW(value(wrong), Failure) << wrong;
   for (const char* wrong : {"2 foo", "2 m'", "2m", "2 m^x", "2 m^2.5", "2 3", "x m"})
     EXPECT_THROW(value(wrong), Failure) << wrong;
   EXPECT_EQ(print(parse_formula(FormulaText("(2 m)^2*3 km/h", Span{1, 1, 1}))), "(2 m)^2*3 km/h");
+  EXPECT_EQ(print(parse_formula(FormulaText("2 1/s*x", Span{1, 1, 1}))), "2 1/s*x");
 }
 
 }  // namespace

@@ -51,6 +51,31 @@ TEST(Steadiness, AnOdometerHasNoInfluence) {
   EXPECT_EQ(linear(text("(1 - x')*ex - (4 + odometer)*y*ey")).motion, LinearModel::Motion::unsteady);
 }
 
+// A disc whose radius makes the velocity of its point of contact an independent one rolls on a circle.
+const std::string kDisc = R"toml(coordinates = ["phi", "x", "psi", "y", "th"]
+parameters = {R = 3}
+gravity.field = "-9.81*ez"
+frame.f = "rotz(psi)*rotx(th)"
+point.P = "x*ex + y*ey"
+body = [{name = "disc", mass = 1, inertia = ["R^2/4", "R^2/2", "R^2/4"], center = "P + R*f.z", orientation = "f*roty(phi)"}]
+constraint = [{name = "rolls", equation = "vel(disc, P) = 0", along = ["rotz(psi).x", "rotz(psi).y"]}]
+initial.th = 0.2
+initial."phi'" = 5
+)toml";
+TEST(Steadiness, CoordinatesWithoutWhichATurnIsSteady) {
+  const std::string steady = "initial.conditions = [\"th' = 0\", \"th'' = 0\"]\n";
+  const LinearModel m = linear(kDisc + steady);
+  EXPECT_EQ(m.motion, LinearModel::Motion::unsteady);
+  EXPECT_EQ(m.eliminate, (std::vector<std::string>{"x", "y"}));
+  const LinearModel falls = linear(kDisc + "initial.conditions = [\"th' = 0\", \"psi' = 0.3\"]\n");
+  EXPECT_EQ(falls.motion, LinearModel::Motion::unsteady);
+  EXPECT_TRUE(falls.eliminate.empty());
+  // An equation holds x, and the turn is steady in no velocities.
+  const LinearModel pulled = linear(kDisc + steady + "force = [{on = \"disc\", vector = \"-x*ex/1000\"}]\n");
+  EXPECT_EQ(pulled.motion, LinearModel::Motion::unsteady);
+  EXPECT_TRUE(pulled.eliminate.empty());
+}
+
 // u = 8 (ref - x) - 4 x' and m x'' = u: what ref does, it does through u.
 TEST(Signals, AnInputActsInOtherInputs) {
   const LinearModel m = linear(R"(coordinates = ["x"]
