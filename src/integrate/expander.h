@@ -39,6 +39,7 @@ class ReferenceExpander {
   Outcome solve(MotionTrack<N>& track, const std::vector<W>& guess) {
     return reference_.solve(track.now, guess, point_);
   }
+  const MissedConstraint<N>& missed() const { return reference_.missed(); }
   Outcome extend() { return reference_.extend(); }
   void cut_to(const MotionState<N>& m, const std::vector<W>& leading) { reference_.cut_to(m, leading, point_); }
   N reach() const { return reference_.reach(shrink_); }
@@ -125,6 +126,7 @@ class GuardedExpander {
   Outcome solve(MotionTrack<double>& track, const std::vector<W>& guess) {
     return reference().solve(track.now, guess, solution());
   }
+  const MissedConstraint<double>& missed() { return reference().missed(); }
   Outcome extend() { return reference().extend(); }
   void cut_to(const MotionState<double>& m, const std::vector<W>& leading) {
     reference().cut_to(m, leading, solution());

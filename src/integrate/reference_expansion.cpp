@@ -33,6 +33,7 @@ Outcome ReferenceExpansion<N>::solve(MotionState<N>& m, const std::vector<W>& gu
   point.load(m.t, m.state, guess);
   if constexpr (std::same_as<N, W>) {
     if (Outcome o = expansion_.project(); !o.ok()) return o;
+    missed_ = {expansion_.drift(), expansion_.most_missed()};
     if (Outcome o = expansion_.solve(); !o.ok()) return o;
     const std::vector<W> unprojected = m.state;
     expansion_.state(m.state);
@@ -58,6 +59,7 @@ Outcome ReferenceExpansion<N>::solve_wide(MotionState<N>& m, Expansion<W>& point
   point.evaluate();
   point.adopt_jacobian(expansion_.system_jacobian());
   if (Outcome o = point.project(solver); !o.ok()) return o;
+  missed_ = {convert<N>(point.drift()), point.most_missed()};
   if (Outcome o = point.solve(solver); !o.ok()) {
     // The Jacobian moves with the leading derivatives: solve for them in N first.
     if (o = expansion_.solve(); !o.ok()) return o;

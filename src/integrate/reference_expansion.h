@@ -10,6 +10,13 @@
 
 namespace anholon {
 
+// A distance from the hidden constraints relative to the size of the state, and the equation that is missed by it.
+template <Number N>
+struct MissedConstraint {
+  N by{0};
+  std::size_t equation = 0;
+};
+
 // An expansion is made in three parts: prepare() -> solve() -> extend().
 template <Number N>
 class ReferenceExpansion {
@@ -22,6 +29,8 @@ class ReferenceExpansion {
   Outcome prepare(const MotionState<N>& m, const std::vector<W>& guess);
   // Projects the state on the constraints and solves for the leading derivatives. `point`: the solution in W.
   Outcome solve(MotionState<N>& m, const std::vector<W>& guess, Expansion<W>& point);
+  // How far the state was from the constraints before it was projected by solve(), which may have failed.
+  const MissedConstraint<N>& missed() const { return missed_; }
   Outcome extend() { return expansion_.extend(); }
   // In place of extend(), where formulas have no derivatives: the polynomials end with these leading derivatives.
   void cut_to(const MotionState<N>& m, const std::vector<W>& leading, Expansion<W>& point);
@@ -44,6 +53,7 @@ class ReferenceExpansion {
   const Program* program_;
   int order_;
   Expansion<N> expansion_;
+  MissedConstraint<N> missed_;
   std::vector<UnknownSeries<N>> unknowns_;
   std::vector<W> reciprocal_;  // of 1, 2, …, order
   std::vector<N> narrow_state_, narrow_leading_, narrow_r_, narrow_y_;

@@ -64,7 +64,8 @@ template <Number N>
 void StepEnd<N>::restart() {
   others_.give_up = false;
   others_.shortened = 0;
-  short_kinks_ = met_again_ = 0;
+  short_kinks_ = met_again_ = turns_ = 0;
+  at_kink_ = false;
   finish();
 }
 
@@ -275,6 +276,23 @@ Outcome StepEnd<N>::note_kink(bool at_start, const W& where, const W& past) {
   return {OutcomeKind::step_collapse, "the motion stays at the kink of an abs, sign, norm, piecewise or table",
           "a force that jumps there, as dry friction does, holds it: put a smooth function in its place, such "
           "as tanh(x/0.01) for sign(x)"};
+}
+
+// A projection onto a constraint that turns at a kink takes velocity away, as an impulse would that no equation holds. A motion
+// that the constraint sends back does not pass the kink.
+template <Number N>
+Outcome StepEnd<N>::pass_turn(const MissedConstraint<N>& missed, Outcome solved) {
+  constexpr double kTurned = 1e-6;
+  constexpr int kMost = 3;
+  const bool turned = at_kink_ && missed.by > N(kTurned);
+  turns_ = turned && met_again_ > 0 ? turns_ + 1 : 0;
+  if (!turned || (solved.ok() && turns_ < kMost)) return solved;
+  const std::string name = "constraint '" + program_->system->equation_names[missed.equation] + "'";
+  return {OutcomeKind::step_collapse,
+          "the motion stays at a kink of the " + name +
+              ": the velocities before the kink miss it after the kink, and no equation holds the impulse that changes them",
+          "let an event at the kink set the velocities, or put a smooth function in its place, such as sqrt(x^2 + "
+          "0.01^2) for abs(x)"};
 }
 
 template <Number N>

@@ -37,6 +37,9 @@ class StepEnd {
   // The length that a look at the end has left of the horizon.
   W horizon(const N& of_series) const { return limit_ > W(0) ? limit_ : convert<W>(of_series); }
 
+  // After a step the next expansion is solved, with this outcome, or is not. Not ok either where the motion stays at a kink at
+  // which a constraint turns by more than the velocities can follow.
+  Outcome pass_turn(const MissedConstraint<N>& missed, Outcome solved);
   // Shortens a step over h to what the equations hold for, and to its first kink. `whole`: what it would be without an
   // end. Not ok where the motion stays at a kink.
   Outcome shorten(PresentStep<N>& step, const EventWatch<N>& events, W& h, const W& whole);
@@ -105,6 +108,7 @@ class StepEnd {
   W sent_{0};    // how far the kernel was sent to look
   std::size_t kinks_ = 0, kinks_before_ = 0;
   int short_kinks_ = 0;  // steps in a row that were cut by a kink shortly after their start
+  int turns_ = 0;        // steps in a row that begin at a kink after which a constraint is missed
   int met_again_ = 0;    // steps in a row that were cut by a kink at their start or shortly after it
 };
 

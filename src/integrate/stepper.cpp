@@ -178,7 +178,8 @@ template <Number N>
 Outcome Stepper<N>::expand_regularly(const std::vector<W>& guess) {
   if (Outcome o = expander_.prepare(track_, guess); !o.ok()) return o;
   if (Outcome o = guard_.check(expander_.series(), time(), record()); !o.ok()) return o;
-  if (Outcome o = expander_.solve(track_, guess); !o.ok()) return o;
+  Outcome solved = expander_.solve(track_, guess);
+  if (solved = end_.pass_turn(expander_.missed(), std::move(solved)); !solved.ok()) return solved;
   if (Outcome o = expander_.extend(); !o.ok()) return o;
   horizon_ = expander_.reach();
   limit_by_kinks();

@@ -253,9 +253,9 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
 }
 
 // The distance of the state from the hidden constraints of a level, relative to its size: residuals r relative to their
-// rows of J.
+// rows of J. `equation`: the one that is missed by it.
 template <Number N>
-N Expansion<N>::displacement(int level, const std::vector<N>& r) const {
+N Expansion<N>::displacement(int level, const std::vector<N>& r, std::size_t& equation) const {
   const Program& p = *program_;
   N size(1), most(0);
   for (std::size_t j = 0; j < p.unknowns(); ++j)
@@ -265,7 +265,7 @@ N Expansion<N>::displacement(int level, const std::vector<N>& r) const {
     if (p.c[i] < level) continue;
     const N row = jacobian_.largest(i, level);
     if (!(row > N(0))) continue;
-    if (N v = abs(r[i]) / (row * size); v > most) most = v;
+    if (N v = abs(r[i]) / (row * size); v > most) most = v, equation = i;
   }
   return most;
 }
@@ -287,8 +287,9 @@ Outcome Expansion<N>::project(const Solver& solver) {
     for (int k = 0;; ++k) {
       if (changed || k > 0) sweep_known(-level);
       const bool any = residual(level, r_, worst);
+      std::size_t equation = 0;
       if (k == 0)
-        if (const N d = displacement(level, r_); d > drift_) drift_ = d;
+        if (const N d = displacement(level, r_, equation); d > drift_) drift_ = d, most_missed_ = equation;
       if (!any || !(worst > quiet)) break;
       if (!is_finite(worst)) return fault_outcome(*program_, machine_, -level);
       if (k >= kMostProjections || (before >= N(0) && !(worst < before * N(0.5)))) break;

@@ -101,8 +101,10 @@ class Expansion {
   // Worst hidden-constraint residual |E_i^(k)| (k < c_i) relative to its terms (numeric/relative.h), at the state as
   // last measured or projected.
   const N& constraint_residual() const { return constraint_residual_; }
-  // The distance of the state from the hidden constraints found by project(), relative to the size of the state.
+  // The distance of the state from the hidden constraints found by project(), relative to the size of the state, and the
+  // equation that is missed by it.
   const N& drift() const { return drift_; }
+  std::size_t most_missed() const { return most_missed_; }
   // The residual of derivative k < c_i of equation i alone.
   const N& hidden_residual(std::size_t i, int k) const { return hidden_(i, k); }
   // Residual of the equations at the computed leading derivatives, relative to their terms.
@@ -145,7 +147,7 @@ class Expansion {
   N moved_by_unknowns(std::size_t i, int level) const;
   const N& balanced_size(int level) const;
   bool left_is_roundoff() const;
-  N displacement(int level, const std::vector<N>& r) const;
+  N displacement(int level, const std::vector<N>& r, std::size_t& equation) const;
   void add_leading(int stage);
 
   const Program* program_;
@@ -157,6 +159,7 @@ class Expansion {
   SystemJacobian<N> jacobian_;
   std::vector<N> delta_x_, r_, y_, direction_;
   N constraint_residual_{0}, drift_{0}, equation_residual_{0};
+  std::size_t most_missed_ = 0;  // the equation of drift_
   HiddenResiduals<N> hidden_;
   mutable std::vector<std::optional<N>> size_;  // of each level, balanced, at the current point
   mutable std::vector<std::vector<N>> moved_;   // of each level, by a sparse J: moved_by_unknowns for all equations
