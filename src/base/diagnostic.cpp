@@ -49,36 +49,43 @@ static const char* word(Severity s) {
 // A source line of up to this many characters is shown whole; of a longer line the part around the caret is shown.
 static constexpr std::size_t kShownWidth = 160;
 
+// "file:3:9".
+static std::string place_of(Span span, const SourceText& source) {
+  return shown(source.name) +
+         (span.line > 0 ? ":" + std::to_string(span.line) + ":" + std::to_string(span.column) : std::string());
+}
+
+// The source line and a caret range.
+static std::string excerpt(Span span, const SourceText& source) {
+  if (span.line == 0) return "";
+  const std::string number = std::to_string(span.line);
+  std::size_t column = span.column > 0 ? span.column - 1 : 0;
+  std::string line = source.line(span.line);
+  // A line may be very long: only the part that is shown is read. A character has at most four bytes.
+  const std::size_t needed = 4 * (column + kShownWidth + 1);
+  if (line.size() > needed) line.resize(needed);
+  if (utf8_length(line) > kShownWidth) {
+    const std::size_t from = column > kShownWidth / 2 ? column - kShownWidth / 2 : 0;
+    line = (from > 0 ? "…" : "") + utf8_substr(line, from, kShownWidth) + "…";
+    column = column - from + (from > 0 ? 1 : 0);
+  }
+  line = shown(line);
+  const std::size_t width = utf8_length(line);
+  const std::size_t length = column < width ? std::min<std::size_t>(std::max(1U, span.length), width - column) : 1;
+  return "  " + number + " | " + line + "\n  " + std::string(number.size(), ' ') + " | " + std::string(column, ' ') +
+         "^" + std::string(length - 1, '~') + "\n";
+}
+
 std::string print(const Diagnostic& d, const SourceText& main) {
   const SourceText& source = main.of(d.span);
-  std::string out = shown(source.name);
-  if (d.span.line > 0) out += ":" + std::to_string(d.span.line) + ":" + std::to_string(d.span.column);
-  out += std::string(": ") + word(d.severity) + ": " + shown(d.message) + "\n";
-  if (d.span.line > 0) {
-    const std::string number = std::to_string(d.span.line);
-    std::size_t column = d.span.column > 0 ? d.span.column - 1 : 0;
-    std::string line = source.line(d.span.line);
-    // A line may be very long: only the part that is shown is read. A character has at most four bytes.
-    const std::size_t needed = 4 * (column + kShownWidth + 1);
-    if (line.size() > needed) line.resize(needed);
-    if (utf8_length(line) > kShownWidth) {
-      const std::size_t from = column > kShownWidth / 2 ? column - kShownWidth / 2 : 0;
-      line = (from > 0 ? "…" : "") + utf8_substr(line, from, kShownWidth) + "…";
-      column = column - from + (from > 0 ? 1 : 0);
-    }
-    line = shown(line);
-    const std::size_t width = utf8_length(line);
-    std::size_t length = std::max<std::size_t>(1, d.span.length);
-    if (column < width)
-      length = std::min(length, width - column);
-    else
-      length = 1;
-    out += "  " + number + " | " + line + "\n";
-    out += "  " + std::string(number.size(), ' ') + " | " + std::string(column, ' ') + "^" +
-           std::string(length - 1, '~') + "\n";
-  }
-  if (!d.hint.empty()) out += "hint: " + shown(d.hint) + "\n";
-  return out;
+  return place_of(d.span, source) + ": " + word(d.severity) + ": " + shown(d.message) + "\n" + excerpt(d.span, source) +
+         (d.hint.empty() ? "" : "hint: " + shown(d.hint) + "\n");
+}
+
+std::string print_place(Span span, const SourceText& main) {
+  if (span.line == 0) return "";
+  const SourceText& source = main.of(span);
+  return place_of(span, source) + ":\n" + excerpt(span, source);
 }
 
 std::string line_of(Span span, const SourceText& source) {

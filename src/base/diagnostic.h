@@ -71,6 +71,8 @@ class Diagnostics {
 };
 
 std::string print(const Diagnostic& d, const SourceText& source);
+// `file:line:col:`, the source line, a caret range; empty without a line.
+std::string print_place(Span span, const SourceText& source);
 // "line 12", and the file if it is not the main one.
 std::string line_of(Span span, const SourceText& source);
 

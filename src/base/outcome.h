@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 
+#include "base/diagnostic.h"
+
 namespace anholon {
 
 enum class OutcomeKind : std::uint8_t {
@@ -23,6 +25,7 @@ struct Outcome {
   OutcomeKind kind = OutcomeKind::finished;
   std::string message;  // what happened, where
   std::string hint;     // what to do
+  Span place = {};      // the element of the model to blame; line 0 where there is none
   bool ok() const { return kind == OutcomeKind::finished; }
 };
 

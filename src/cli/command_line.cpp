@@ -8,6 +8,7 @@
 #include "cli/completion.h"
 #include "cli/input.h"
 #include "cli/say.h"
+#include "modelfile/language/reference.h"
 #include "result/format.h"
 #include "setup/choice.h"
 
@@ -97,6 +98,7 @@ CommandLine::CommandLine() {
       "  anholon linearize whipple --vary v=0..10:1          eigenvalues over a range, weave and capsize speeds\n"
       "  anholon prove disc -o proof.json                    a proof that all forms of the equations agree\n"
       "  anholon papers L3.13                                an equation of the papers, decided\n"
+      "  anholon help contacts                               a topic of model files: contacts, events, forces, …\n"
       "Exit status: 0 ok, 1 the motion stopped early (what was computed is kept), 2 bad input, 3 internal fault.");
   for (const auto add : {add_check, add_derive,    add_evaluate, add_simulate, add_report,    add_render, add_studio,
                          add_sweep, add_linearize, add_forms,    add_prove,    add_compare,   add_papers, add_verify,
@@ -106,17 +108,21 @@ CommandLine::CommandLine() {
 }
 
 int CommandLine::run(int argc, char** argv) {
-  // `anholon help simulate` is `anholon simulate --help`.
+  std::vector<std::string> known;
+  for (const CLI::App* command : app_.get_subcommands([](const CLI::App*) { return true; }))
+    known.push_back(command->get_name());
+  // `anholon help simulate` is `anholon simulate --help`, `anholon help contacts` is `anholon reference contact`.
   if (argc > 1 && std::string_view(argv[1]) == "help") {
+    if (argc > 2 && is_topic(argv[2], known)) {
+      hand_out(reference_section(argv[2]));
+      return kOk;
+    }
     static char help[] = "--help";
     std::vector<char*> asked = {argv[0]};
     if (argc > 2) asked.push_back(argv[2]);
     asked.push_back(help);
     return run(static_cast<int>(asked.size()), asked.data());
   }
-  std::vector<std::string> known;
-  for (const CLI::App* command : app_.get_subcommands([](const CLI::App*) { return true; }))
-    known.push_back(command->get_name());
   if (argc > 1) check_command(argv[1], known);
   typed_ = command_line(argc, argv);
   try {

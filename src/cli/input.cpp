@@ -17,9 +17,10 @@ void print_diagnostic(const Diagnostic& d, const SourceText& source) {
   say_lines(stderr, print(d, source));
 }
 
-void print_outcome(const Outcome& o) {
+void print_outcome(const Outcome& o, const SourceText& source) {
   std::fflush(stdout);
   say(stderr, "stopped (%s): %s\n", name(o.kind), o.message.c_str());
+  if (!source.name.empty()) say_lines(stderr, print_place(o.place, source));
   if (!o.hint.empty()) say(stderr, "hint: %s\n", o.hint.c_str());
 }
 

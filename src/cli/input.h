@@ -64,7 +64,8 @@ std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, 
                                           unsigned order = 0);
 
 void print_diagnostic(const Diagnostic& d, const SourceText& source);
-void print_outcome(const Outcome& o);
+// source: the text in which the outcome may have a place.
+void print_outcome(const Outcome& o, const SourceText& source = {});
 
 std::vector<ShippedFile> shipped(Shipped kind);
 

@@ -5,6 +5,7 @@
 #include "base/diagnostic.h"
 #include "cli/input.h"
 #include "cli/model_options.h"
+#include "modelfile/language/reference.h"
 
 namespace anholon::cli {
 
@@ -27,6 +28,19 @@ void check_command(const std::string& word, const std::vector<std::string>& comm
   const std::string near = did_you_mean(word, commands);
   throw UsageError{"error: there is no command '" + word + "'" +
                    (near.empty() ? "" : "; did you mean '" + near + "'?") + "\nhint: anholon --help\n"};
+}
+
+bool is_topic(const std::string& word, const std::vector<std::string>& commands) {
+  if (word.starts_with('-') || std::find(commands.begin(), commands.end(), word) != commands.end()) return false;
+  if (is_in_reference(word)) return true;
+  std::vector<std::string> known = reference_words();
+  known.insert(known.end(), commands.begin(), commands.end());
+  const std::string near = did_you_mean(word, known);
+  throw UsageError{
+      "error: there is no command and no topic '" + word + "'" +
+      (near.empty() ? "" : "; did you mean '" + near + "'?") +
+      "\nhint: anholon --help lists the commands; topics are the sections of model files, contacts, events, "
+      "forces, …, and formulas\n"};
 }
 
 // The words as they could be typed again.

@@ -7,6 +7,10 @@ namespace anholon::cli {
 // Throws UsageError with a suggestion if the first word is no option and none of the commands.
 void check_command(const std::string& word, const std::vector<std::string>& commands);
 
+// Whether a word of `help` is a topic of model files. Throws UsageError with a suggestion if the word is neither that nor an
+// option nor one of the commands.
+bool is_topic(const std::string& word, const std::vector<std::string>& commands);
+
 // In --q x=1 y=2 MODEL the model slips into the list of assignments: takes a word without '=' out of these lists as the
 // model, where none is named.
 void rescue_model(SystemCommand& o);

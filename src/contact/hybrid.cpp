@@ -15,6 +15,7 @@
 #include "contact/surface/gap_roots.h"
 #include "contact/switched_motion.h"
 #include "integrate/step_control.h"
+#include "modelfile/check/coefficients.h"
 #include "numeric/number.h"
 #include "observe/angles.h"
 #include "observe/floors/supports.h"
@@ -44,12 +45,9 @@ class HybridMotion {
   SimulationReport go() {
     // A parameter that is varied may give a coefficient any value.
     if (const std::vector<Diagnostic> wrong = wrong_coefficients(bodies_.contacts, *s_.model); !wrong.empty())
-      return joined_.report({OutcomeKind::inconsistent, wrong[0].message, wrong[0].hint}, bodies_.at.t.get_d(), 0);
-    Outcome outcome = not_inside(" at the start",
-                                 "start at a position where the gap is zero or positive, or change "
-                                 "the sign of the gap: it is positive while the "
-                                 "contact is open",
-                                 true);
+      return joined_.report({OutcomeKind::inconsistent, wrong[0].message, wrong[0].hint, wrong[0].span},
+                            bodies_.at.t.get_d(), 0);
+    Outcome outcome = not_inside(" at the start", {}, true);
     constexpr std::size_t kMostSegments = 100'000;
     for (std::size_t k = 0; outcome.ok() && bodies_.at.t < end_; ++k) {
       if (k == kMostSegments)
@@ -110,8 +108,17 @@ class HybridMotion {
                     number_text(static_cast<double>(bodies_.dynamics.place(c).gap), 6) +
                     (bodies_.contacts[c].units.gap.empty() ? "" : " " + bodies_.contacts[c].units.gap) + where +
                     ", and a gap is not negative",
-                hint};
+                at_start ? how_to_start(bodies_.contacts[c]) : hint, bodies_.contacts[c].span};
     return {};
+  }
+
+  // What to do if a gap is negative at the start.
+  static std::string how_to_start(const Contact& contact) {
+    const std::string start = "start where the gap is zero or positive, by [initial] or --q";
+    return start + (contact.shape.empty()
+                        ? ", or change the sign of the gap: it is positive while the contact is open"
+                        : ", or tell where the plane, ball or bowl is by 'through', and by 'normal' on which side of a "
+                          "plane the body is");
   }
 
   // The values with which a mode begins are none that the user has given.
@@ -198,7 +205,7 @@ class HybridMotion {
     if (Outcome o = strike(over_border, struck); !o.ok()) return o;
     land();
     if (struck)
-      if (const auto c = bodies_.on_edge()) return on_edge(bodies_.contacts[*c].name, when());
+      if (const auto c = bodies_.on_edge()) return on_edge(bodies_.contacts[*c], when());
     bodies_.stop_ended_slips();
     ContactProblem p = bodies_.with_touching();
     slips_->guess_directions(p);
@@ -239,8 +246,8 @@ class HybridMotion {
   Outcome is_regular() const {
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
       if (!bodies_.near.closed(c) && bodies_.dynamics.place(c).gap > 0) continue;
-      if (!bodies_.dynamics.has_derivatives(c)) return without_derivatives(bodies_.contacts[c].name, when());
-      if (!bodies_.dynamics.has_slip(c)) return without_slip(bodies_.contacts[c].name, when());
+      if (!bodies_.dynamics.has_derivatives(c)) return without_derivatives(bodies_.contacts[c], when());
+      if (!bodies_.dynamics.has_slip(c)) return without_slip(bodies_.contacts[c], when());
     }
     return {};
   }
@@ -250,7 +257,7 @@ class HybridMotion {
     roots_.see(bodies_.at);
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
       if (bodies_.near.closed(c) && roots_.least_part(c) < part)
-        return lies_flat(bodies_.contacts[c].name, roots_.least_part(c), when());
+        return lies_flat(bodies_.contacts[c], roots_.least_part(c), when());
     return {};
   }
 
@@ -259,6 +266,8 @@ class HybridMotion {
   Outcome strike(bool& over_border, bool& struck) {
     for (std::size_t k = 0; k < kMostImpacts; ++k) {
       if (Outcome o = is_regular(); !o.ok()) return o;
+      if (k == 0 && (bodies_.shrinks() || bodies_.modes.empty()))
+        if (const auto c = bodies_.on_edge()) return meets_edge(bodies_.contacts[*c], when());
       if (bodies_.shrinks()) {
         struck = true;
         if (Outcome o = impact(); !o.ok()) return o;
@@ -270,7 +279,7 @@ class HybridMotion {
       }
     }
     for (std::size_t c = 0; over_border && c < bodies_.contacts.size(); ++c)
-      if (bodies_.near.closed(c) && bodies_.near.gap_rate(c) < 0) return on_edge(bodies_.contacts[c].name, when());
+      if (bodies_.near.closed(c) && bodies_.near.gap_rate(c) < 0) return on_edge(bodies_.contacts[c], when());
     return {};
   }
 
@@ -359,7 +368,7 @@ class HybridMotion {
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
       if (!bodies_.near.closed(c) || bodies_.contacts[c].under) continue;
       names += (names.empty() ? "'" : ", '") + bodies_.contacts[c].name + "'";
-      if (modes == 0 && bodies_.dynamics.loses_rank(c)) return rank_lost(bodies_.contacts[c].name, when());
+      if (modes == 0 && bodies_.dynamics.loses_rank(c)) return rank_lost(bodies_.contacts[c], when());
     }
     return painleve(modes, names + " ", when());
   }

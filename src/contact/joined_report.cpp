@@ -182,12 +182,37 @@ void JoinedReport::rename(const std::string& name, const std::string& other) {
   if (last != all_.events.rend()) last->name = other;
 }
 
+// The place of an event of a contact among those of one instant; nullopt for an event of the model.
+std::optional<int> JoinedReport::rank(const EventReport& e) const {
+  const std::size_t dot = e.name.rfind('.');
+  if (dot == std::string::npos ||
+      std::find(contacts_.begin(), contacts_.end(), e.name.substr(0, dot)) == contacts_.end())
+    return std::nullopt;
+  const std::string what = e.name.substr(dot + 1);
+  return what == "hits" ? 0 : what == "rests" ? 2 : 1;
+}
+
+// Events of the model keep their places.
+void JoinedReport::order_events() {
+  std::vector<EventReport>& all = all_.events;
+  for (std::size_t from = 0, to = 0; from < all.size(); from = to) {
+    std::vector<std::size_t> places;
+    std::vector<EventReport> of_contacts;
+    for (; to < all.size() && all[to].t.value == all[from].t.value; ++to)
+      if (rank(all[to])) places.push_back(to), of_contacts.push_back(all[to]);
+    std::stable_sort(of_contacts.begin(), of_contacts.end(),
+                     [&](const EventReport& a, const EventReport& b) { return *rank(a) < *rank(b); });
+    for (std::size_t k = 0; k < places.size(); ++k) all[places[k]] = of_contacts[k];
+  }
+}
+
 SimulationReport JoinedReport::report(Outcome outcome, double t, std::size_t rows) {
   all_.outcome = std::move(outcome);
   for (const std::string& contact : contacts_) {
     put_known_names(contact, all_.outcome.message);
     for (Warning& w : all_.warnings) put_known_names(contact, w.message);
   }
+  order_events();
   all_.t = t;
   all_.rows = rows;
   all_.notes.insert(all_.notes.end(), floors_.begin(), floors_.end());

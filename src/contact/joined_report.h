@@ -25,10 +25,14 @@ class JoinedReport {
   void rename(const std::string& name, const std::string& other);
   std::size_t segments() const { return segments_; }
   std::size_t steps() const { return segments_ > 0 ? all_.steps : 0; }
-  // The outcome and the warnings name what the models of modes hold as a user knows it.
+  // The events of contacts at one instant are in the order of their causes: impacts, other changes of mode, then gaps that have
+  // come to rest. The outcome and the warnings name what the models of modes hold as a user knows it.
   SimulationReport report(Outcome outcome, double t, std::size_t rows);
 
  private:
+  void order_events();
+  std::optional<int> rank(const EventReport& e) const;
+
   SimulationReport all_;
   std::vector<std::string> contacts_;
   std::vector<std::string> floors_;  // what segments note of constraints that pull

@@ -7,6 +7,7 @@
 #include "expr/normal.h"
 #include "formula/indices.h"
 #include "formula/units.h"
+#include "modelfile/check/coefficients.h"
 #include "modelfile/check/dimensions.h"
 #include "modelfile/check/doubled_gravity.h"
 #include "modelfile/check/values.h"

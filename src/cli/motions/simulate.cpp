@@ -216,12 +216,12 @@ class Writer {
 };
 
 // Says how the motion ended and where its rows are; returns the exit status.
-int say_end(const SimulateCommand& o, const Written& w, const std::string& save_error) {
+int say_end(const SimulateCommand& o, const SourceText& source, const Written& w, const std::string& save_error) {
   const SimulationReport& r = w.report;
   std::string write_error = w.error;
   // A run that is ended because its rows have no place was not interrupted by anybody.
   if (!r.outcome.ok() && (write_error.empty() || stop_requested())) {
-    print_outcome(r.outcome);
+    print_outcome(r.outcome, source);
     if (r.rows > 0 && !o.output.empty() && write_error.empty())
       say(stderr, "the %zu rows before that are in %s\n", r.rows, o.output.c_str());
   }
@@ -289,7 +289,7 @@ int simulate_motion(const SimulateCommand& asked, const SavedRun* resume, Told* 
     add_units(*s.model, options.conserved, units);
     print_report(s, w.report, units, resume != nullptr);
   }
-  return say_end(o, w, saver.error);
+  return say_end(o, in.source, w, saver.error);
 }
 
 int simulate(const SimulateCommand& o) {

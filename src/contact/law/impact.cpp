@@ -92,41 +92,63 @@ Outcome painleve(std::size_t modes, const std::string& contacts, const std::stri
           "rigid bodies with this friction have several motions here: take less friction, or end the motion before"};
 }
 
-Outcome rank_lost(const std::string& contact, const std::string& when) {
+Outcome rank_lost(const Contact& contact, const std::string& when) {
   return {OutcomeKind::singular,
-          "the gap and the slip velocities of contact '" + contact +
+          "the gap and the slip velocities of contact '" + contact.name +
               "' are no longer independent in these coordinates" + when,
           "end the motion before, or take coordinates that are regular there: Euler's angles are not where a disc lies "
-          "flat"};
+          "flat",
+          contact.span};
 }
 
-static constexpr const char* kFlat = "end the motion before, or start a little beside: a disc that lies flat touches "
-                                     "with its whole rim, and no point of it is "
-                                     "the one that is pushed";
-
-Outcome without_derivatives(const std::string& contact, const std::string& when) {
-  return {OutcomeKind::singular, "the gap of contact '" + contact + "' has no derivatives" + when, kFlat};
+// What to do where the gap of a contact has no derivatives.
+static std::string beside_or_round(const Contact& contact) {
+  if (contact.shape == "disc" || contact.shape == "torus")
+    return "end the motion before, or start a little beside: a " + contact.shape +
+           " that lies flat touches with a whole circle, and no point of it is the one that is pushed";
+  if (!contact.shape.empty()) return "end the motion before, or start a little beside";
+  return "start a little beside, or round the apex or the edge by a small length e: sqrt(x^2 + y^2 + e^2) in place of "
+         "norm([x, y, 0]) and sqrt(x^2 + e^2) in place of abs(x); the rim of a disc that lies flat is no such edge: "
+         "end the motion before";
 }
 
-Outcome lies_flat(const std::string& contact, long double part, const std::string& when) {
+Outcome without_derivatives(const Contact& contact, const std::string& when) {
+  const bool formula = contact.shape.empty();
+  return {
+      OutcomeKind::singular,
+      "the gap of contact '" + contact.name + "' has no derivatives" + when +
+          (formula ? ", as at the apex of a cone or on an edge, where the normal of a surface has no direction" : ""),
+      beside_or_round(contact), contact.span};
+}
+
+Outcome lies_flat(const Contact& contact, long double part, const std::string& when) {
+  const bool formula = contact.shape.empty();
   return {OutcomeKind::singular,
-          "the gap of contact '" + contact + "' loses its derivatives" + when +
-              ", as where a disc lies flat: a root in it "
-              "has fallen to " +
-              number_text(static_cast<double>(part), 2) + " of what it was",
-          kFlat};
+          "the gap of contact '" + contact.name + "' loses its derivatives" + when +
+              (formula ? ", as at the apex of a cone or where a disc lies flat" : ", as where a disc lies flat") +
+              ": a root in it has fallen to " + number_text(static_cast<double>(part), 2) + " of what it was",
+          beside_or_round(contact), contact.span};
 }
 
-Outcome without_slip(const std::string& contact, const std::string& when) {
-  return {OutcomeKind::singular, "the slip velocity of contact '" + contact + "' has no value or no derivatives" + when,
-          "start or stop the motion elsewhere, or change the formula so that it is smooth here"};
+Outcome without_slip(const Contact& contact, const std::string& when) {
+  return {OutcomeKind::singular,
+          "the slip velocity of contact '" + contact.name + "' has no value or no derivatives" + when,
+          "start or stop the motion elsewhere, or change the formula so that it is smooth here", contact.span};
 }
 
-Outcome on_edge(const std::string& contact, const std::string& when) {
+Outcome on_edge(const Contact& contact, const std::string& when) {
   return {OutcomeKind::inconsistent,
-          "a body is held by an edge of the surface of contact '" + contact + "'" + when +
+          "a body is held by an edge of the surface of contact '" + contact.name + "'" + when +
               ", where the gap has no derivatives",
-          "write a contact for each side of the edge in place of one gap with min, max, abs or piecewise"};
+          "write a contact for each side of the edge in place of one gap with min, max, abs or piecewise",
+          contact.span};
+}
+
+Outcome meets_edge(const Contact& contact, const std::string& when) {
+  return {OutcomeKind::inconsistent,
+          "a body meets an edge of the surface of contact '" + contact.name + "'" + when +
+              ", where the normal of the surface has no direction, and moves to none of its sides",
+          beside_or_round(contact), contact.span};
 }
 
 std::vector<Impact> impacts(const ContactDynamics& dynamics, const std::vector<Contact>& contacts,

@@ -13,17 +13,19 @@ namespace anholon {
 Outcome painleve(std::size_t modes, const std::string& contacts, const std::string& when);
 
 // The outcome where a contact alone loses rank (ContactDynamics::loses_rank), so that nothing is known of its modes.
-Outcome rank_lost(const std::string& contact, const std::string& when);
+Outcome rank_lost(const Contact& contact, const std::string& when);
 
 // The outcome where the gap of a closed contact has no derivatives (ContactDynamics::has_derivatives), or its slip velocity has no
 // value or no derivatives (ContactDynamics::has_slip).
-Outcome without_derivatives(const std::string& contact, const std::string& when);
-Outcome without_slip(const std::string& contact, const std::string& when);
+Outcome without_derivatives(const Contact& contact, const std::string& when);
+Outcome without_slip(const Contact& contact, const std::string& when);
 // The outcome where the gap of a closed contact loses its derivatives, as a root in it has fallen to this part of what it was.
-Outcome lies_flat(const std::string& contact, long double part, const std::string& when);
+Outcome lies_flat(const Contact& contact, long double part, const std::string& when);
 
 // The outcome where a body comes to rest at an edge of the surface of a contact, or strikes its sides without end.
-Outcome on_edge(const std::string& contact, const std::string& when);
+Outcome on_edge(const Contact& contact, const std::string& when);
+// The outcome where a body comes upon an edge of the surface of a contact, and moves to none of its sides.
+Outcome meets_edge(const Contact& contact, const std::string& when);
 
 // The impulses of the contacts: along their gaps, and along the components of their slip velocities.
 struct Impulses {

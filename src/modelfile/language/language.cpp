@@ -23,6 +23,25 @@ const LanguageSection& language_section(const std::string& name) {
   return language().front();
 }
 
+// body, bodies; event, events.
+static std::string plural(std::string name) {
+  if (!name.ends_with('y')) return name + "s";
+  name.pop_back();
+  return name + "ies";
+}
+
+const LanguageSection* find_subject(const std::string& word) {
+  std::string asked = word;
+  for (char& c : asked) c = 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (const LanguageSection& s : language())
+    if (s.form != LanguageSection::Form::top && (asked == s.name || word == s.name)) return &s;
+  for (const LanguageSection& s : language())
+    if (s.form != LanguageSection::Form::top && s.form != LanguageSection::Form::part &&
+        (asked == plural(s.name) || std::find(s.words.begin(), s.words.end(), asked) != s.words.end()))
+      return &s;
+  return nullptr;
+}
+
 std::vector<std::string> known_keys(const LanguageSection& section) {
   std::vector<std::string> known;
   for (const LanguageKey& k : section.keys) known.emplace_back(k.name);

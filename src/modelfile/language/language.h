@@ -51,12 +51,15 @@ struct LanguageSection {
   Form form;
   Content content;  // the content of each name of a `named` section
   std::vector<LanguageKey> keys;
-  const char* page;  // Markdown: examples first, then the rules for doubtful cases
+  const char* page;                     // Markdown: examples first, then the rules for doubtful cases
+  std::vector<std::string> words = {};  // further words for its subject, by which a reader asks for its page
 };
 
 // The sections in the order of the reference page.
 const std::vector<LanguageSection>& language();
 const LanguageSection& language_section(const std::string& name);
+// The section that has this name, the plural of it, or this word for its subject, in small or capital letters; else null.
+const LanguageSection* find_subject(const std::string& word);
 
 // The keys of a section; for the file itself also the names of the sections.
 std::vector<std::string> known_keys(const LanguageSection& section);

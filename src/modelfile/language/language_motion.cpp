@@ -73,7 +73,8 @@ set = {stage = "stage + 1"}
          "angles"},
         {"body", name, "instead of `gap` and `slip`: the body that touches, with its shape"},
         {"shape", text,
-         "what touches: `point`, `ball(R)`, `disc(R)`, `box(a, b, c)`; the shape of the body without it"},
+         "what touches: `point`, `ball(R)`, `disc(R)`, `torus(R, r)`, `box(a, b, c)`; the shape of the body without "
+         "it"},
         {"at", vector, "the place of that point, or the middle of that shape; the centre of the body without it"},
         {"normal", vector, "of the plane on which it lies; `ez` without it"},
         {"through", vector, "a point of the plane, or the centre of the ball or bowl; 0 without it"},
@@ -81,12 +82,37 @@ set = {stage = "stage + 1"}
         {"friction", number, "Coulomb's coefficient while it slips; 0 without it"},
         {"static_friction", number, "the coefficient while it sticks; `friction` without it"},
         {"rolling_resistance", number,
-         "a length: times the normal force, the largest moment against rolling; of a `body` that is a ball or a disc"},
+         "a length: times the normal force, the largest moment against rolling; of a `body` that is a ball, a disc or "
+         "a torus"},
         {"drilling_resistance", number,
-         "a length: the same about the normal, of a ball, a disc or a point of a `body`"},
+         "a length: the same about the normal, of a ball, a disc, a torus or a point of a `body`"},
         {"restitution", number, "the coefficient of impacts, 0 to 1; 0 without it"},
         {"impact", choice, "the law of impacts with that coefficient; `newton` without it", {"newton", "poisson"}}},
-       R"md(```toml
+       R"md(A contact pushes and does not pull. A ball is thrown, bounces, slips on the floor and rolls:
+
+```toml thrown.toml
+coordinates = ["x", "z", "phi"]
+parameters = {m = 2, R = 0.3, g = 9.81, mu = 0.1}
+gravity.field = "-g*ez"
+body = [{name = "ball", mass = "m", shape = "ball(R)", center = "x*ex + z*ez", orientation = "roty(phi)"}]
+contact = [{name = "floor", body = "ball", friction = "mu", restitution = 0.2}]
+initial = {z = 1, "x'" = 4}
+monitor.energy = "m*(x'^2 + z'^2)/2 + m*R^2*phi'^2/5 + m*g*z"
+```
+```console
+$ anholon simulate thrown.toml --to 2 -o thrown.csv 2>&1 | grep -E "rests|sticks"
+event floor.rests at t = 0.5666576721718262
+event floor.sticks at t = 1.164991990680064
+$ anholon simulate thrown.toml --quiet --at 0,1,2 | cut -d, -f1,5,14-18
+t,x',energy,floor.mode,floor.gap,floor.normal,floor.friction
+0,4,35.62,0,0.7,0,0
+1,3.019,17.4062635,1,0,19.62,-1.9620000000000002
+2,2.857142857142857,17.31457142857143,2,0,19.62,0
+```
+
+In place of the body and its shape, a contact may have its gap and its slip velocity as formulas:
+
+```toml
 [[contact]]
 name = "floor"
 gap  = "P.y - R"                   # the plate is a wheel of radius R on the floor y = 0
@@ -100,9 +126,11 @@ impact = "poisson"
 y = 1
 ```
 
+A shape other than that of the body, a wall, and the inside of a ball:
+
 ```toml
 [[contact]]
-body   = "plate"                   # instead of gap and slip
+body   = "plate"
 shape  = "ball(R)"                 # which lies on a plane
 normal = "ey"
 through = "-3*ey"
@@ -124,36 +152,37 @@ contact = [{body = "top", drilling_resistance = 0.02}]
 initial = {z = 1, "phi'" = 9}
 ```
 
-- With `body` the gap and the slip velocity follow from the shape of the body and the plane. A disc is turned about its axis z and touches with
-  its rim; a box touches with its corners, whose contacts are called `NAME1`, `NAME2`, …; in a plane motion these are four. `at` without `shape` is a point of the body, a position in the
+- **Shapes.** With `body` the gap and the slip velocity follow from the shape of the body and the plane. A disc is turned about its axis z and touches with
+  its rim, a torus with its tube; the rim of a ring and the ends of a cylinder are discs, and those of a rod points. A box touches with its corners, whose contacts are called `NAME1`, `NAME2`, …; in a plane motion these are four. `at` without `shape` is a point of the body, a position in the
   observer's axes as of a `[point]`: `at = "s.center + s(0.3, 0, -0.1)"` is fixed in the body s, and `[0.3, 0, -0.1]` in space. (In `force.on.at` an array is along the axes of the body.)
-- A contact has one body. The plane has no border, and the corners of a box are points: edges and faces of two boxes do not touch each other. Of two bodies one is
+- **What is touched.** A contact has one body. The plane has no border, and the corners of a box are points: edges and faces of two boxes do not touch each other. Of two bodies one is
   a point or a ball and the other a ball B, `on = "ball(R)"` with `through = "B.center"`, whose turning is not part of the slip velocity; others have `gap` and `slip` as formulas.
 - The normal of a plane does not turn; `through` may move. On a ball the directions of slip are those across `ey`.
-- The gap is a length, and a slip velocity a velocity: friction is that of the force along the gap, so that `gap = "5*z"` has a fifth of it. A gap may be an angle, too, as that of a door and its stop: the
+- **Formulas.** The gap is a length, and a slip velocity a velocity: friction is that of the force along the gap, so that `gap = "5*z"` has a fifth of it. A gap may be an angle, too, as that of a door and its stop: the
   force along it is a moment then, and in a file with units a coefficient has the unit of the gap by that of the slip velocity and of time; gaps and slip velocities with other units, such as `R^2 - norm2(P)`, are
   errors there. A slip velocity is linear in the velocities and tangential: where the normal is known, as that of a plane by the velocity of a point with `along`, a direction with a part along it is refused.
 - A gap passes zero where a body would pass the surface: `z^2`, `abs(z)` and `norm(P)`, which only touch zero, are refused. Where max, min, abs, sign, piecewise or a table of steps (`fit = "hold"`) change a gap or a slip
   velocity, its kink or jump is an event of the contact, which strikes there, leaves, or slips. A surface that jumps into a body, and an edge in which a body comes to rest, end the motion with an outcome.
-- A contact pushes and does not pull: it is open, sticks or slips. The normal force N acts along the gradient of the gap, friction against the slip velocity:
+- **Laws of force.** A contact is open, sticks or slips. The normal force N acts along the gradient of the gap, friction against the slip velocity:
   μN while it slips, at most the static coefficient times N while it sticks. Without `slip` there is no friction.
 - Contacts of one body whose gaps or slip velocities depend on each other share their forces, each friction by its load: [two feet](contact.md#two-feet-on-a-floor).
   The body slips when no distribution holds it any more.
-- `rolling_resistance` δ and `drilling_resistance` hold moments against the angular velocity of the body: δN against its part along the surface while the body
+- **Resistance.** `rolling_resistance` δ and `drilling_resistance` hold moments against the angular velocity of the body: δN against its part along the surface while the body
   rolls, at most δN while it does not; the same about the normal. They need a `body` with an orientation. Columns are `NAME.rolling.mode` (0 open, 1 rolls, 2 rests),
   `NAME.rolling.moment`, `NAME.drilling.mode`, `NAME.drilling.moment`; events are `NAME.rolling.starts`, `NAME.rolling.stops`, `NAME.rolling.reverses`, and the same of `NAME.drilling`.
-- Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. A gap that is 0 at the start and shrinks is an impact, `NAME.hits`, at the start. At `NAME.reverses` a slip
-  velocity passes zero, or jumps over it, and the contact slips on. `NAME.slips` ends a time of sticking, and `NAME.sticks` one of slipping: what a contact does from the start, or from an impact on, is no event, and its column `mode` tells it. Rows have the columns `NAME.mode` (0 open,
-  1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
-- In monitors, outputs, rates of states, events and the definitions they use, `lambda.NAME` is N, 0 while the contact is open, and `lambda.NAME.t1`, `lambda.NAME.t2` are the components
+- **Events and columns.** Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. A gap that is 0 at the start and shrinks is an impact, `NAME.hits`, at the start. At `NAME.reverses` a slip
+  velocity passes zero, or jumps over it, and the contact slips on. `NAME.slips` ends a time of sticking, and `NAME.sticks` one of slipping: what a contact does from the start, or from an impact on, is no event, and its column `mode` tells it. Events
+  of contacts at one instant are listed by cause: impacts, other changes of mode, `NAME.rests`. Rows have the columns `NAME.mode` (0 open, 1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
+- **Forces in formulas.** In monitors, outputs, rates of states, events and the definitions they use, `lambda.NAME` is N, 0 while the contact is open, and `lambda.NAME.t1`, `lambda.NAME.t2` are the components
   of friction along those of the slip velocity, as forces on what slips; `lambda.NAME.rolling.t1` and so on are the moments of resistance. `reaction(B)` holds the forces of contacts. A force that jumps over
-  the zero of an event at a change of mode does not make it happen. Rates of states hold no force of a contact.
-- Coefficients are not negative, a restitution is at most 1, and `static_friction` is at least `friction`. Where the file has units, friction and restitution are numbers, and resistances lengths.
-- Impacts follow Newton's law in Moreau's form: the velocity of the gap is reversed and multiplied by the restitution e. With `impact = "poisson"` they follow
+  the zero of an event at a change of mode does not make it happen. The rate of a `[state]` is linear in the forces: with
+  their power as the rate the state is [their work](contact.md#the-work-of-contacts).
+- **Coefficients** are numbers or formulas of parameters, and constant during a motion: a floor with [parts](contact.md#a-floor-that-is-smooth-and-rough) has a contact for each. They are not negative, a restitution is at most 1, and `static_friction` is at least `friction`. Where the file has units, friction and restitution are numbers, and resistances lengths.
+- **Laws of impact.** Impacts follow Newton's law in Moreau's form: the velocity of the gap is reversed and multiplied by the restitution e. With `impact = "poisson"` they follow
   Poisson's law: the impulse that stops the gap is followed by e times this impulse. Both agree without friction; with friction Newton's law may raise the energy, which ends the
-  motion. All contacts of a model have one law. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
+  motion. All contacts of a model have one law. Impacts at one instant are solved together; where bodies in a row strike one after the other, [small gaps](contact.md#balls-in-a-row-impacts-at-one-instant) part them. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
   That limit is found for the impacts of one contact. A box that bounces from corner to corner may instead take many impacts and stop with the outcome that a gap is negative.
-- At most eight contacts; those that touch at one time are few, as all their modes are tried. Soft contacts may be as many as you like: a `[[force]]` each,
+- **Limits.** There are at most eight contacts; those that touch at one time are few, as all their modes are tried. Soft contacts may be as many as you like: a `[[force]]` each,
   with `vector = "-k*min(P.z, 0)*ez"`. Motions, reports and sweeps know contacts, in the libraries, too; derivations, proofs and linear models are those of
   one mode, `--mode NAME=sticks`. They do not go with events that set values, nor with servo constraints. [Recipes](contact.md).
 
@@ -176,7 +205,9 @@ rolling_resistance = 0.01
 ```text
 error: a point does not roll
 ```
-)md"},
+)md",
+       {"floor", "wall", "ground", "friction", "coulomb", "impact", "impacts", "collision", "collisions", "restitution",
+        "bounce", "bouncing", "stick", "slip", "stiction", "gap", "unilateral"}},
       {"event",
        Form::elements,
        any,

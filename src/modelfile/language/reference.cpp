@@ -10,19 +10,24 @@ namespace {
 
 using Form = LanguageSection::Form;
 
-constexpr const char* kStart = R"md(# The language of model files
-
-This page is printed by `anholon reference`, from the table that the reader of model files uses; `anholon reference event` prints one section.
-Every example on it is run by a test. Those that are no whole model complete this one:
-
-```toml model.toml
+// The model that examples complete.
+constexpr const char* kModel = R"md(```toml model.toml
 coordinates = ["x", "y", "theta"]
 parameters = {m = 2, J = "1/2", R = 0.3, g = 9.81}
 frame.B = "rotz(theta)"
 point.P = "x*ex + y*ey"
 body = [{name = "plate", mass = "m", inertia = "J", center = "P", orientation = "B"}]
 ```
+)md";
 
+constexpr const char* kStart = R"md(# The language of model files
+
+This page is printed by `anholon reference`, from the table that the reader of model files uses; `anholon reference event` prints one section.
+Every example on it is run by a test. Those that are no whole model complete this one:
+
+)md";
+
+constexpr const char* kFiles = R"md(
 A model file is [TOML 1.0](https://toml.io) with formulas as strings. `anholon new pendulum -o mine.toml` writes one to start from, `anholon check
 mine.toml` says what is read, `anholon fmt mine.toml` formats it. Editors with a language server for TOML (Taplo, Even Better TOML)
 complete and check keys by [anholon.schema.json](anholon.schema.json), named in the first line of the file:
@@ -161,7 +166,7 @@ std::string rows(const std::vector<FunctionRow>& table) {
 }
 
 std::string formulas() {
-  std::string out = kStart;
+  std::string out = std::string(kStart) + kModel + kFiles;
   out += "### Functions\n\n" + rows(function_table());
   out += "\n### Decided\n\nIn the model above with x = 3, everything at rest, at t = 1:\n\n| formula | value | "
          "|\n|---|---|---|\n";
@@ -267,18 +272,33 @@ std::string reference_page() {
   return out;
 }
 
-std::string reference_section(const std::string& name) {
+bool is_in_reference(const std::string& word) { return word == "formulas" || find_subject(word); }
+
+std::vector<std::string> reference_words() {
   std::vector<std::string> known = {"formulas"};
-  if (name == "formulas") return formulas();
   for (const LanguageSection& s : language()) {
-    if (s.form != Form::part && s.form != Form::top) known.emplace_back(s.name);
-    if (name == s.name) return part(s);
+    if (s.form == Form::part || s.form == Form::top) continue;
+    known.emplace_back(s.name);
+    known.insert(known.end(), s.words.begin(), s.words.end());
   }
-  std::string list;
-  for (const std::string& k : known) list += (list.empty() ? "there is " : ", ") + k;
-  const std::string near = did_you_mean(name, known);
+  return known;
+}
+
+std::string reference_section(const std::string& word) {
+  if (word == "formulas") return formulas();
+  if (const LanguageSection* s = find_subject(word)) {
+    const std::string text = part(*s);
+    return text.find("```toml\n") == std::string::npos
+               ? text
+               : text + "\nExamples that are no whole model complete this one, by `base = \"model.toml\"`:\n\n" +
+                     kModel;
+  }
+  std::string list = "there is formulas";
+  for (const LanguageSection& s : language())
+    if (s.form != Form::part && s.form != Form::top) list += ", " + std::string(s.name);
+  const std::string near = did_you_mean(word, reference_words());
   throw Failure(Span{},
-                "there is no section '" + name.substr(0, 40) + "'" +
+                "there is no section '" + word.substr(0, 40) + "'" +
                     (near.empty() ? "" : "; did you mean '" + near + "'?"),
                 near.empty() ? list : "");
 }

@@ -86,8 +86,19 @@ class TouchingReader {
   const Body& body() const { return model_.bodies[body_]; }
   const Rotation& orientation() const { return scope_.orientation(body_, c_.find("body")->span); }
 
-  static constexpr const char* kShapes =
-      "shape = \"point\", \"ball(R)\", \"disc(R)\" or \"box(a, b, c)\", or gap and slip as formulas";
+  static constexpr const char* kShapes = "shape = \"point\", \"ball(R)\", \"disc(R)\", \"torus(R, r)\" or \"box(a, b, "
+                                         "c)\", or gap and slip as formulas";
+
+  // Contacts in place of that of a solid whose contact is not known.
+  std::string instead_of(const std::string& solid) const {
+    const std::string b = body().name;
+    if (solid == "cylinder")
+      return "a contact for each end of the cylinder: shape = \"disc(R)\" with at = \"" + b + ".center + " + b +
+             "(0, 0, h/2)\", and with -h/2";
+    if (solid == "rod")
+      return "a contact for each end of the rod: at = \"" + b + ".center + " + b + "(l/2, 0, 0)\", and with -l/2";
+    return kShapes;
+  }
 
   // Of the shapes of bodies some do not touch.
   Shape shape_that_touches(const Item& given) const {
@@ -109,10 +120,12 @@ class TouchingReader {
       shape_ = c_.find("at") || !body().shape ? Shape{"point", {}} : *body().shape;
     if (shape_.kind == "shell") shape_.kind = "ball";
     if (shape_.kind == "ring") shape_.kind = "disc";
-    static const std::vector<std::string> known = {"point", "ball", "disc", "box"};
+    static const std::vector<std::string> known = {"point", "ball", "disc", "torus", "box"};
     if (std::find(known.begin(), known.end(), shape_.kind) == known.end())
-      throw Failure((given ? given : c_.find("body"))->span, "the contact of a " + shape_.kind + " is not known",
-                    kShapes);
+      throw Failure((given ? given : c_.find("body"))->span,
+                    "what touches is a point, a ball, a disc, a torus or a box, and this is " +
+                        (shape_.kind == "ellipsoid" ? "an " : std::string("a ")) + shape_.kind,
+                    instead_of(shape_.kind));
   }
 
   void read_ground() {
@@ -178,7 +191,7 @@ class TouchingReader {
       gap = gap - shape_.sizes[0];
       q = place - shape_.sizes[0] * n;
     }
-    if (shape_.kind == "disc") {
+    if (shape_.kind == "disc" || shape_.kind == "torus") {
       // The lowest place of the rim lies against the part of the normal that is in the plane of the disc, a x (n x a). Its
       // size is |n x a|, whose digits a disc keeps that lies almost flat; 1 - (n a)^2 would cancel them.
       const Vector& a = orientation()[2];
@@ -186,6 +199,11 @@ class TouchingReader {
       const Expr size = sqrt(dot(axis, axis));
       gap = gap - shape_.sizes[0] * size;
       q = place - (shape_.sizes[0] * pow(size, Rational(-1))) * across;
+      // The tube of a torus is thick about the rim.
+      if (shape_.kind == "torus") {
+        gap = gap - shape_.sizes[1];
+        q = q - shape_.sizes[1] * n;
+      }
     }
     const Vector from_center = q - body().center;
     Vector v = total_derivative(body().center) - total_derivative(through_);
@@ -196,7 +214,9 @@ class TouchingReader {
                     "a body without one touches with its centre, as a point");
     std::optional<Vector> rate;
     if (body().orientation) rate = body().orientation->rate;
-    return {gap, v, tangents(n), n, rate, shape_.kind};
+    std::vector<Expr> sizes = shape_.sizes;
+    if (radius_) sizes.push_back(*radius_);
+    return {gap, v, tangents(n), n, rate, shape_.kind, sizes};
   }
 
   const Item& c_;

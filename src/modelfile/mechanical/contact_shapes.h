@@ -1,8 +1,9 @@
-// body = "ball" in a [[contact]]: gap and slip velocity of a point, a ball, a disc or the corners of a box on a plane, on
+// body = "ball" in a [[contact]]: gap and slip velocity of a point, a ball, a disc, a torus or the corners of a box on a plane, on
 // a ball or in a bowl.
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "modelfile/names/names.h"
 
@@ -14,10 +15,11 @@ struct Touching {
   std::vector<Vector> directions;  // two, tangential
   Vector normal;                   // of length 1, away from what it touches
   std::optional<Vector> rate;      // the angular velocity relative to what it touches, of a body with an orientation
-  std::string shape;               // point, ball, disc or box
+  std::string shape;               // point, ball, disc, torus or box
+  std::vector<Expr> sizes;         // of the shape and of the ball or bowl that is touched, which are positive
 };
 
-// One place of a point, a ball or a disc; of a box the corners, without those whose gaps are equal. Throws Failure.
+// One place of a point, a ball, a disc or a torus; of a box the corners, without those whose gaps are equal. Throws Failure.
 std::vector<Touching> read_touching(const Item& contact, Scope& scope, Model& model);
 
 }  // namespace anholon

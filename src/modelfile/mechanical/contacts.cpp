@@ -8,10 +8,9 @@
 #include "modelfile/mechanical/gaps.h"
 #include "modelfile/mechanical/tangential.h"
 #include "modelfile/names/along.h"
+#include "modelfile/names/constant.h"
 #include "modelfile/text/collect.h"
 #include "modelfile/text/keys.h"
-#include "numeric/number.h"
-#include "tape/tape.h"
 
 namespace anholon {
 
@@ -149,7 +148,10 @@ class ContactReader {
     for (const Touching& t : places) {
       Contact contact = common;
       if (places.size() > 1) contact.name += std::to_string(list.size() + 1);
+      contact.shape = t.shape;
       contact.gap = put_masses(model_, t.gap);
+      for (const Expr& size : t.sizes)
+        if (constant_value(model_, size)) contact.sizes.push_back(size);
       if (jet_order(contact.gap) != 0)
         throw Failure(c.find("body")->span,
                       "the gap of the contact '" + contact.element + "' does not depend on coordinates",
@@ -202,6 +204,7 @@ class ContactReader {
     resistance.element = resistance.name;
     resistance.span = given->span;
     resistance.given.clear();
+    resistance.sizes.clear();
     resistance.friction = resistance.static_friction = coefficient(*given, resistance);
     resistance.under = place;
     resistance.slip.clear();
@@ -222,12 +225,25 @@ class ContactReader {
     return put_masses(model_, evaluate_number(parse_formula(i.formula), scope_));
   }
 
+  // "x'", "the time": what a symbol is that a motion changes.
+  std::string changing(const Node& n) const {
+    if (n.kind == Kind::time) return "the time";
+    if (n.kind != Kind::jet) return "the motion";
+    return "'" + model_.coordinates[n.index].name + std::string(n.order, '\'') + "'";
+  }
+
   // A formula of parameters, which the contact notes.
   Expr coefficient(const Item& i, Contact& contact) const {
     const Expr e = formula(i, "a coefficient");
     for (NodeId id : symbols({&e, 1}))
       if (model_.graph->node(id).kind != Kind::parameter)
-        throw Failure(i.span, "a coefficient of a contact is a number or a formula of parameters");
+        throw Failure(i.span,
+                      "'" + i.key + "' is a number or a formula of parameters, and this one changes with " +
+                          changing(model_.graph->node(id)) + ": the laws of contacts have constant coefficients",
+                      i.key.ends_with("resistance")
+                          ? "a number, or a formula of parameters"
+                          : "a contact for each part of the surface or of the time, which is open elsewhere: gap = "
+                            "\"piecewise(x < 1, z, 1)\" in one and gap = \"piecewise(x < 1, 1, z)\" in the other");
     contact.given.push_back({i.key, e, i.span});
     return e;
   }
@@ -483,37 +499,6 @@ void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact
   for (Event& e : model.events)
     for (Assignment& a : e.set) refuse(a.value, a.span, "a value that an event sets");
   for (Contact& c : contacts) c.forces = found;
-}
-
-std::vector<Diagnostic> wrong_coefficients(const std::vector<Contact>& contacts, const Model& model) {
-  std::vector<Diagnostic> list;
-  Column values;
-  for (const Parameter& p : model.parameters) values.push_back(p.value);
-  const auto value_of = [&](const Expr& e) {
-    values.push_back(model.graph->own(e));
-    const double value = evaluate_parameters<double>(*model.graph, values).back();
-    values.pop_back();
-    return value;
-  };
-  for (const Contact& contact : contacts)
-    for (const Contact::Coefficient& c : contact.given) {
-      const double value = value_of(c.value), sliding = value_of(contact.friction);
-      const bool restitution = c.key == "restitution";
-      const bool too_weak = c.key == "static_friction" && value >= 0 && value < sliding;
-      if (value >= 0 && (value <= 1 || !restitution) && !too_weak) continue;
-      if (std::any_of(list.begin(), list.end(), [&](const Diagnostic& o) {
-            return o.span.file == c.span.file && o.span.line == c.span.line && o.span.column == c.span.column;
-          }))
-        continue;
-      list.push_back({Severity::error, c.span,
-                      "'" + c.key + "' of the contact '" + contact.element + "' is " + number_text(value, 6) +
-                          (too_weak      ? ", less than the " + number_text(sliding, 6) + " of 'friction'"
-                           : restitution ? ", and a restitution lies between 0 and 1"
-                                         : ", and it must not be negative"),
-                      too_weak ? "what sticks holds at least the friction of what slips: leave out 'static_friction'"
-                               : c.key + (restitution ? " = 0.5" : " = 0, or a positive number")});
-    }
-  return list;
 }
 
 }  // namespace anholon

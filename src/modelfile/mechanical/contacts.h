@@ -53,6 +53,7 @@ struct ContactUnits {
 struct Contact {
   std::string name;
   std::string element;     // its name in the file: of a corner of a box that of the box
+  std::string shape;       // of a body that touches: point, ball, disc, torus or box; empty if the gap is a formula
   Expr gap;                // g(q, t) >= 0
   std::vector<Expr> slip;  // components of the relative tangential velocity, at most two, linear in q'
   Expr friction;           // of the slip, mu >= 0
@@ -70,6 +71,7 @@ struct Contact {
     Span span;
   };
   std::vector<Coefficient> given;
+  std::vector<Expr> sizes;     // of the shapes that touch, as far as they are given; they are positive
   std::optional<Switch> held;  // a constraint that holds in some modes: its left side minus its right one is `gap`
   std::shared_ptr<const ContactForces> forces;  // those of all contacts of the model; null if no formula holds any
   ContactUnits units;
@@ -98,9 +100,5 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
 // Finds the forces that monitors, outputs, rates of states and events hold, and puts zeros in their places in the model. Errors, also those
 // of conditions, rates and values that hold a force, go to the diagnostics.
 void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact>& contacts, Diagnostics& diagnostics);
-
-// Coefficients that are negative, and restitutions above 1, at the values of the parameters of the model; the corners of a
-// box have theirs once. Throws Failure if a coefficient has no value.
-std::vector<Diagnostic> wrong_coefficients(const std::vector<Contact>& contacts, const Model& model);
 
 }  // namespace anholon

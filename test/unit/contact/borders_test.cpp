@@ -128,6 +128,31 @@ TEST(Borders, NoContactHoldsABodyInAnEdge) {
   EXPECT_EQ(times(m, "ground.hits").size(), 2U);
 }
 
+// On a ridge that points upwards the normal has no direction for a body that comes straight upon it, or lies on it.
+TEST(Borders, RidgeHasNoNormal) {
+  const std::string ridge =
+      R"toml(contact = [{name = "ridge", gap = "z + k*abs(x)", slip = "x'", friction = "mu"}])toml";
+  for (const char* z : {"1", "0"}) {
+    const auto m = contact_motion(puck(ridge, "z = " + std::string(z)), 1);
+    EXPECT_EQ(m.report.outcome.kind, OutcomeKind::inconsistent) << z;
+    EXPECT_NE(m.report.outcome.message.find("meets an edge of the surface of contact 'ridge'"), std::string::npos);
+    EXPECT_EQ(m.report.outcome.place.line, 5U);
+  }
+  // The mutants: beside the ridge, across it, and on a rounded one.
+  EXPECT_TRUE(contact_motion(puck(ridge, "x = 1e-3\nz = 1"), 1).report.outcome.ok());
+  EXPECT_TRUE(contact_motion(puck(ridge, "x = -1e-3\nz = 1\n\"x'\" = 1"), 1).report.outcome.ok());
+  const auto round = contact_motion(puck(R"toml(contact = [{name = "ridge", gap = "z + k*sqrt(x^2 + 1e-4)"}])toml"), 1);
+  EXPECT_TRUE(round.report.outcome.ok()) << round.report.outcome.message;
+}
+
+TEST(Borders, ApexOfAConeHasNoNormal) {
+  const auto m = contact_motion(puck(R"toml(contact = [{name = "cone", gap = "z + sqrt(x^2)"}])toml", "z = 1"), 1);
+  EXPECT_EQ(m.report.outcome.kind, OutcomeKind::singular);
+  EXPECT_NE(m.report.outcome.message.find("as at the apex of a cone"), std::string::npos) << m.report.outcome.message;
+  EXPECT_NE(m.report.outcome.hint.find("round the apex"), std::string::npos) << m.report.outcome.hint;
+  EXPECT_EQ(m.report.outcome.place.line, 5U);
+}
+
 TEST(Borders, DiscThatFallsFlatEndsByName) {
   const auto m = contact_motion(R"toml(coordinates = ["x", "y", "z", "a", "b", "c", "d"]
 parameters = {m = 0.4, R = 0.0375, g = 9.81, mu = 0.4, th0 = 0.5}

@@ -332,7 +332,7 @@ TEST(Resistance, MistakesHavePlaces) {
   says(rolls(kBall, "box(1, 1, 1)", ""), "a box does not roll");
   std::string text = rolls(kBall, "ball(R)", "");
   text.replace(text.find("\"delta\"\n"), 8, "\"x\"\n");
-  says(text, "a coefficient of a contact is a number or a formula of parameters");
+  says(text, "is a number or a formula of parameters, and this one changes with 'x'");
   says("coordinates = [\"x\", \"z\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex + z*ez\"}]\n[[contact]]\n"
        "body = \"p\"\ndrilling_resistance = 0.1\n",
        "no orientation");

@@ -237,6 +237,37 @@ e1 = "sin(tilt/2)"
   EXPECT_TRUE(falls("0.1").ok()) << falls("0.1").message;  // the mutant
 }
 
+// A wheel with a thick tyre that sticks to the road moves as one that rolls by a constraint of its lowest point.
+TEST(Shapes, TorusRollsAsByAConstraint) {
+  const auto wheel = [](const std::string& contact) {
+    return contact_motion(R"toml(coordinates = ["x", "y", "z", "psi", "theta", "phi"]
+parameters = {m = 8, R = 0.3, r = 0.05, g = 9.81}
+frame.lean = "rotz(psi)*rotx(theta)"
+point.low = "x*ex + y*ey + z*ez"
+gravity.field = "-g*ez"
+[[body]]
+name = "wheel"
+mass = "m"
+shape = "torus(0.3, 0.05)"
+center = "low + r*ez + R*lean.y"
+orientation = "lean*rotz(phi)"
+[initial]
+theta = 1.3
+"phi'" = 10
+"psi'" = 0.2
+"x'" = "-(R + r*sin(1.3))*10"
+)toml" + contact,
+                          2);
+  };
+  const std::string torus = "[[contact]]\nname = \"road\"\nbody = \"wheel\"\nfriction = 2\nshape = ";
+  const auto touching = wheel(torus + "\"torus(R, r)\"\n");
+  const auto rolling = wheel("[[constraint]]\nname = \"rolling\"\nequation = \"vel(wheel, low) = 0\"\n");
+  EXPECT_EQ(touching.last("road.mode"), 2);
+  EXPECT_TRUE(same(touching, rolling, {"x", "y", "z", "psi", "theta", "phi"}));
+  // The mutant: a disc of the same height is another wheel.
+  EXPECT_FALSE(same(wheel(torus + "\"disc(R + r)\"\nthrough = \"(r - r*sin(1.3))*ez\"\n"), rolling, {"psi"}));
+}
+
 std::string ball(const std::string& contact, const std::string& start) {
   return R"toml(coordinates = ["x", "z", "phi"]
 parameters = {m = 1, r = 0.1, g = 9.81}
@@ -291,7 +322,7 @@ TEST(Shapes, MistakesHavePlaces) {
   };
   says("body = \"bal\"\n", "did you mean 'ball'?");
   says("body = \"ball\"\ngap = \"z\"\n", "gap and slip velocity follow from the body");
-  says("body = \"ball\"\nshape = \"torus(2, 1)\"\n", "the contact of a torus is not known");
+  says("body = \"ball\"\nshape = \"rod(2)\"\n", "and this is a rod");
   says("body = \"ball\"\non = \"bowle(1)\"\n", "a contact is on a ball or in a bowl");
   says("body = \"ball\"\non = \"ball\"\n", "a body does not touch itself");
   says("body = \"ball\"\nnormal = \"sin(t)*ex + cos(t)*ez\"\n", "the normal of a plane does not turn");
