@@ -64,7 +64,7 @@ template <Number N>
 void StepEnd<N>::restart() {
   others_.give_up = false;
   others_.shortened = 0;
-  short_kinks_ = met_again_ = turns_ = 0;
+  in_a_row_ = {};
   at_kink_ = false;
   finish();
 }
@@ -198,7 +198,7 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
     h = asked;
     return shorten(step, events, h, whole);
   }
-  met_again_ = at_kink_ && !(abs(where) > past * W(4)) ? met_again_ + 1 : 0;
+  in_a_row_.met_again = at_kink_ && !(abs(where) > past * W(4)) ? in_a_row_.met_again + 1 : 0;
   if (Outcome o = note_kink(kink.at_start, where, past); !o.ok() || !at_kink_) return o;
   const W to = beyond(step, events, kink, where, length_past(step, where, past, forward), forward);
   if (abs(to) < abs(h)) h = to, ++kinks_;
@@ -216,7 +216,7 @@ bool StepEnd<N>::are_too_many(const Kink<N>& kink, const W& where, const W& past
                                      : kink.ahead && of_others(kink.argument));
   others_.shortened = theirs && abs(where) < whole * W(kMuchShorter) ? others_.shortened + 1 : 0;
   return others_.shortened > kMost ||
-         (theirs && !kink.at_start && short_kinks_ >= kMostShortKinks && !(abs(where) > past * W(4)));
+         (theirs && !kink.at_start && in_a_row_.short_kinks >= kMostShortKinks && !(abs(where) > past * W(4)));
 }
 
 // How far a step goes beyond a kink. A motion that begins at rest at a kink leaves it with the square of the time, and is
@@ -226,7 +226,7 @@ template <Number N>
 Wider<N> StepEnd<N>::length_past(PresentStep<N>& step, const W& where, const W& past, bool forward) {
   constexpr double kLonger = 4;
   if (!meets_again() || step.expander.kernel()) return past;
-  const W longer = past * W(std::pow(kLonger, met_again_ - 1)), h = where + (forward ? longer : W(-longer));
+  const W longer = past * W(std::pow(kLonger, in_a_row_.met_again - 1)), h = where + (forward ? longer : W(-longer));
   const N length = convert<N>(h);
   return check_.passes_at_once(defect(step, h), length) ? longer : past;
 }
@@ -271,8 +271,8 @@ Wider<N> StepEnd<N>::beyond(PresentStep<N>& step, const EventWatch<N>& events, c
 // At a kink functions are taken one-sided along the motion: a very short step finds the side.
 template <Number N>
 Outcome StepEnd<N>::note_kink(bool at_start, const W& where, const W& past) {
-  short_kinks_ = at_kink_ && !at_start && !(abs(where) > past * W(4)) ? short_kinks_ + 1 : 0;
-  if (short_kinks_ <= kMostShortKinks) return {};
+  in_a_row_.short_kinks = at_kink_ && !at_start && !(abs(where) > past * W(4)) ? in_a_row_.short_kinks + 1 : 0;
+  if (in_a_row_.short_kinks <= kMostShortKinks) return {};
   return {OutcomeKind::step_collapse, "the motion stays at the kink of an abs, sign, norm, piecewise or table",
           "a force that jumps there, as dry friction does, holds it: put a smooth function in its place, such "
           "as tanh(x/0.01) for sign(x)"};
@@ -285,12 +285,13 @@ Outcome StepEnd<N>::pass_turn(const MissedConstraint<N>& missed, Outcome solved)
   constexpr double kTurned = 1e-6;
   constexpr int kMost = 3;
   const bool turned = at_kink_ && missed.by > N(kTurned);
-  turns_ = turned && met_again_ > 0 ? turns_ + 1 : 0;
-  if (!turned || (solved.ok() && turns_ < kMost)) return solved;
+  in_a_row_.turns = turned && in_a_row_.met_again > 0 ? in_a_row_.turns + 1 : 0;
+  if (!turned || (solved.ok() && in_a_row_.turns < kMost)) return solved;
   const std::string name = "constraint '" + program_->system->equation_names[missed.equation] + "'";
   return {OutcomeKind::step_collapse,
           "the motion stays at a kink of the " + name +
-              ": the velocities before the kink miss it after the kink, and no equation holds the impulse that changes them",
+              ": the velocities before the kink miss it after the kink, and no equation holds the impulse that changes "
+              "them",
           "let an event at the kink set the velocities, or put a smooth function in its place, such as sqrt(x^2 + "
           "0.01^2) for abs(x)"};
 }
@@ -303,7 +304,7 @@ void StepEnd<N>::set_free(const W& h) {
 
 template <Number N>
 void StepEnd<N>::set_one_sided() {
-  short_kinks_ = met_again_ = 0;
+  in_a_row_.short_kinks = in_a_row_.met_again = 0;
   at_kink_ = true;
   ++kinks_;
 }

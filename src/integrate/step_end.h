@@ -44,13 +44,13 @@ class StepEnd {
   // end. Not ok where the motion stays at a kink.
   Outcome shorten(PresentStep<N>& step, const EventWatch<N>& events, W& h, const W& whole);
   // Whether an ordinary step may follow, which nothing cuts short.
-  bool free_of_kinks() const { return short_kinks_ == 0; }
+  bool free_of_kinks() const { return in_a_row_.short_kinks == 0; }
   // Whether the next step may be made without this class: nothing is left to be looked at of the one before.
-  bool idle() const { return short_kinks_ == 0 && limit_ == W(0); }
+  bool idle() const { return in_a_row_.short_kinks == 0 && limit_ == W(0); }
   bool passes_at_once(const N& rate, const N& h) const { return check_.passes_at_once(rate, h); }
   // Whether the step and the one before are cut by a kink at their start: the reference makes the next one, which looks at
   // the ends of such steps.
-  bool meets_again() const { return met_again_ > 1; }
+  bool meets_again() const { return in_a_row_.met_again > 1; }
   // The step has no kink; its end is looked at. Or it begins at one.
   void set_free(const W& h);
   void set_one_sided();
@@ -72,6 +72,12 @@ class StepEnd {
     std::vector<bool> slots, passed_over;
     bool give_up = false;
     int shortened = 0;  // steps in a row that their kinks have made much shorter
+  };
+  // Numbers of steps in a row.
+  struct InARow {
+    int short_kinks = 0;  // that were cut by a kink shortly after their start
+    int met_again = 0;    // that were cut by a kink at their start or shortly after it
+    int turns = 0;        // that begin at a kink after which a constraint is missed
   };
   struct Hidden {
     std::uint32_t slot;
@@ -107,9 +113,7 @@ class StepEnd {
   W looked_{0};  // how far the equations are looked at: to its end, or shortly before a kink; 0 where they are not
   W sent_{0};    // how far the kernel was sent to look
   std::size_t kinks_ = 0, kinks_before_ = 0;
-  int short_kinks_ = 0;  // steps in a row that were cut by a kink shortly after their start
-  int turns_ = 0;        // steps in a row that begin at a kink after which a constraint is missed
-  int met_again_ = 0;    // steps in a row that were cut by a kink at their start or shortly after it
+  InARow in_a_row_;
 };
 
 extern template class StepEnd<double>;

@@ -1,10 +1,10 @@
 // Loops over many states on several threads.
-#include "dynamics/pieces.h"
+#include <chrono>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <stdexcept>
+#include "dynamics/pieces.h"
 
 namespace anholon {
 namespace {
