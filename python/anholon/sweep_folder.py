@@ -31,7 +31,8 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
     ``folder["theta"]`` has one number for each case (each case and time with ``at``), in the order of the cases, NaN where the
     part of the case is missing; columns of words (``outcome``, ``event``, ``case_name``) are arrays of strings, empty there.
-    :meth:`to_dict` and the frames have the rows of the parts that are there. Each part that is read is compared with the hash in its file.
+    :meth:`to_dict` and the frames have the rows of the parts that are there. Each part that is read here is compared with the hash in
+    its file; :meth:`scan`, which hands the files to polars, compares nothing. It can be pickled: another process opens the folder again.
 
     Example:
         >>> import anholon as an, tempfile
@@ -65,6 +66,9 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
     def __init__(self, core: _core.SweepFolder) -> None:
         self._core = core
         self._computed_notes: list[str] = []
+
+    def __reduce__(self) -> tuple[Callable[[str], SweepFolder], tuple[str]]:
+        return _opened, (os.path.abspath(self.path),)
 
     @property
     def path(self) -> str:
@@ -157,7 +161,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
         return [name for name in names if name not in ("case", "case_name") and varies(name)]
 
-    def judge(self, *, stop: Callable[[], bool] | None = None) -> dict[str, Any]:
+    def judge(self, *, stop: Callable[[], object] | None = None) -> dict[str, Any]:
         """How far the cases can be trusted: digits to trust and residuals of some of them, which are computed once more.
 
         The folder keeps the answer, ``anholon sweep status`` tells it, and a second call reads it.
@@ -285,7 +289,10 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return _sweep_plot.plot_folder(self, list(names), x, y, ax)
 
     def scan(self) -> polars.LazyFrame:
-        """A lazy frame of polars over the parts that are there: it reads the columns and rows that are asked for. Needs polars."""
+        """A lazy frame of polars over the parts that are there: it reads the columns and rows that are asked for. Needs polars.
+
+        polars reads the files: a damaged one is not compared with its hash, as it is by :meth:`to_polars`.
+        """
         import polars
 
         return polars.scan_parquet([os.path.join(self.path, f"part-{part:06}.parquet") for part in self._core.present()])
@@ -334,7 +341,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         on: Client | str | None = None,
         share: tuple[int, int] = (1, 1),
         threads: int = 0,
-        stop: Callable[[], bool] | None = None,
+        stop: Callable[[], object] | None = None,
         progress: Progress = None,
         refine: int = 0,
         refine_by: tuple[str, float] | None = None,
@@ -403,3 +410,7 @@ def _array(column: Any) -> npt.NDArray[Any]:
         return np.asarray(column)
     words, rows = column
     return np.array(words, dtype=object)[rows] if words else np.array([], dtype=object)
+
+
+def _opened(path: str) -> SweepFolder:
+    return SweepFolder(_core.open_sweep(path))
