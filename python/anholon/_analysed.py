@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import numbers
 from collections.abc import Iterable, Mapping
 
 from . import _core
 from ._described import Described
 from ._errors import ModelError
 from ._names import names_of, spelled
-from ._numbers import Number, list_of, spaced, text_of, texts_of, whole
+from ._numbers import Number, list_of, spaced, text_of, texts_of
 from .analysis import Comparison, LinearModel, PublishedEquations, Stability, State, equation_text
 from .equations import Equations, Proof
+
+
+def _whole_digits(digits: object) -> int:
+    if isinstance(digits, bool) or not isinstance(digits, numbers.Integral):
+        raise ModelError(f"digits is a whole number from 1 to 2000, not {digits!r:.60}")
+    return int(digits)
 
 
 class Analysed(Described):
@@ -111,7 +118,7 @@ class Analysed(Described):
             >>> len(state.accelerations), state.residuals["newton"] < 1e-14
             (5, True)
         """
-        given, digits = texts_of(initial), whole("digits", digits, 1)
+        given, digits = texts_of(initial), _whole_digits(digits)
         if t is not None:
             given["t"] = text_of(t)
         core = _core.evaluate(self._system(form, given, eliminate), digits)
@@ -150,7 +157,7 @@ class Analysed(Described):
 
         Source: dE/dx of the equations and of their derivatives (theory: linear-models).
         """
-        digits = whole("digits", digits, 1)
+        digits = _whole_digits(digits)
         return LinearModel(_core.linearize(self._core, form, self._linear(about, initial, t), names_of(eliminate), about == "equilibrium", digits))
 
     @staticmethod
@@ -197,7 +204,7 @@ class Analysed(Described):
             >>> [c.value for c in an.load("whipple").stability("v", 0, 10, 11).crossings]
             [4.292382536341104, 6.024262015388359]
         """
-        digits = whole("digits", digits, 1)
+        digits = _whole_digits(digits)
         if isinstance(low, Iterable) and not isinstance(low, str):
             values = list_of(low)
         elif high is None:

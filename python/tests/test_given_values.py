@@ -154,7 +154,7 @@ def test_what_python_calls_otherwise_is_named(disc: an.Model) -> None:
         disc.simulate(to=1, dense="no")  # type: ignore[arg-type]
     asked: list[Callable[..., object]] = [disc.evaluate, disc.linearize]
     for ask in asked:
-        with pytest.raises(TypeError, match="digits is a whole number, not '30'"):
+        with pytest.raises(an.ModelError, match="digits is a whole number from 1 to 2000, not '30'"):
             ask(digits="30")
     for option, way in (("save", "run.save"), ("continue", "initial="), ("t", 'initial={"t": 1}')):
         with pytest.raises(an.ModelError) as refused:
