@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from . import _core
 from ._case_table import names_of_table
 from ._errors import ModelError
+from ._names import known
 from ._progress import Progress
 from .run import Figure
 
@@ -132,6 +133,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
             KeyError: there is no such column.
             ModelError: a part was changed.
         """
+        name = known(name, self._core.columns)
         columns = self._columns(["case", name])
         return _over_all(columns["case"], columns[name], self.cases) if "case" in columns else columns[name]
 
@@ -142,6 +144,10 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
                 raise KeyError(f"there is no column {name!r}; there are {', '.join(self._core.columns)}")
         wanted = [name for name in dict.fromkeys(names) if name in self._core.columns]
         return {name: _array(column) for name, column in self._core.read(wanted)}
+
+    def _read(self, columns: Iterable[str]) -> Any:
+        own = self._core.columns
+        return self._core.read([known(name, own) for name in columns])
 
     @property
     def generations(self) -> list[int]:
@@ -210,7 +216,8 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
         if not isinstance(conditions, Mapping):
             raise TypeError(f"conditions are given by column, as {{'outcome': 'finished', 'theta': (1, 2)}}, not as a {type(conditions).__name__}")
-        asked = [("case_name" if name == "case" and isinstance(wanted, str) else name, wanted) for name, wanted in conditions.items()]
+        own = self._core.columns
+        asked = [("case_name" if name == "case" and isinstance(wanted, str) else known(name, own), wanted) for name, wanted in conditions.items()]
         columns = self._columns(["case", *(name for name, _ in asked)])
         numbers = columns["case"]
         chosen = np.ones(numbers.shape, dtype=bool)
@@ -306,7 +313,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
     def to_dict(self, columns: Sequence[str] = ()) -> dict[str, npt.NDArray[Any]]:
         """Columns of the parts that are there as arrays, all of them without names; each part is read once."""
-        return {name: _array(column) for name, column in self._core.read(list(columns))}
+        return {name: _array(column) for name, column in self._read(columns)}
 
     def to_pandas(self, columns: Sequence[str] = ()) -> pandas.DataFrame:
         """A DataFrame with a row for each case; words are categories. Needs pandas."""
@@ -315,7 +322,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         def of(column: Any) -> Any:
             return pandas.Categorical.from_codes(column[1].astype("int32"), column[0]) if isinstance(column, tuple) else column
 
-        return pandas.DataFrame({name: of(column) for name, column in self._core.read(list(columns))})
+        return pandas.DataFrame({name: of(column) for name, column in self._read(columns)})
 
     def to_polars(self, columns: Sequence[str] = ()) -> polars.DataFrame:
         """The same for polars. Needs polars."""
@@ -324,7 +331,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         def of(column: Any) -> Any:
             return polars.Series(column[0], dtype=polars.String).gather(column[1]) if isinstance(column, tuple) else column
 
-        return polars.DataFrame({name: of(column) for name, column in self._core.read(list(columns))})
+        return polars.DataFrame({name: of(column) for name, column in self._read(columns)})
 
     def to_arrow(self, columns: Sequence[str] = ()) -> pyarrow.Table:
         """A table of Arrow; words are dictionaries. Needs pyarrow."""
@@ -333,7 +340,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         def of(column: Any) -> Any:
             return pyarrow.DictionaryArray.from_arrays(column[1], column[0]) if isinstance(column, tuple) else pyarrow.array(column)
 
-        return pyarrow.table({name: of(column) for name, column in self._core.read(list(columns))})
+        return pyarrow.table({name: of(column) for name, column in self._read(columns)})
 
     def fill(
         self,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pathlib
 import pickle
 
 import anholon as an
@@ -34,6 +35,13 @@ def test_columns_of_runs_and_sweeps(disc: an.Model) -> None:
     with pytest.raises(KeyError, match="one number for each motion"):
         sweep.rows("max(θ)")
     assert pickle.loads(pickle.dumps(sweep)).varied["φ'"].tolist() == [5, 6]
+
+
+def test_columns_of_folders(disc: an.Model, tmp_path: pathlib.Path) -> None:
+    folder = disc.sweep({"φ'": [5, 6]}, to=1, columns=["θ"], out=tmp_path / "falls")
+    np.testing.assert_array_equal(folder["θ"], folder["theta"])
+    assert folder["φ'(0)"].tolist() == [5, 6] and list(folder.to_dict(["θ"])) == ["theta"]
+    assert folder.where({"φ'(0)": (5.5, 7)}).tolist() == [1]
 
 
 def test_functions_parameters_and_states(disc: an.Model) -> None:
