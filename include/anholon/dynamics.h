@@ -55,9 +55,11 @@ class ANHOLON_API Dynamics {
   // states, or one for each, in the order of x.
   struct Given {
     std::span<const double> u = {}, p = {};
+    bool nan_if_stopped = true;
   };
 
-  // Under a StopRequest the functions of many states end early if it asks for it, and their numbers are NaN.
+  // Under a StopRequest the functions of many states end early if it asks for it. Their numbers are then NaN;
+  // without nan_if_stopped they are anything, as large arrays take long to fill.
 
   // The rates of `count` states at time t. Number i of state k is at [i * count + k] of both arrays, of the size
   // states() * count. NaN where the equations have no solution. A state has the same bits alone and among others.
@@ -104,13 +106,14 @@ class ANHOLON_API Dynamics {
   std::string source(Source kind, const std::string& name = "motion") const;
 
   // One state from coordinates q, velocities qdot (followed by the higher derivatives of states()) and the model's states
-  // z, and back. REQUIRES: the sizes fit.
+  // z, and back. p: the parameters, on which independent velocities may depend; empty: those of the model.
+  // REQUIRES: the sizes fit.
   std::vector<double> from_motion(double t, const std::vector<double>& q, const std::vector<double>& qdot,
-                                  const std::vector<double>& z = {}) const;
+                                  const std::vector<double>& z = {}, std::span<const double> p = {}) const;
   struct Motion {
     std::vector<double> q, qdot, z;
   };
-  Motion to_motion(double t, const std::vector<double>& x) const;
+  Motion to_motion(double t, const std::vector<double>& x, std::span<const double> p = {}) const;
 
   struct Data;
   explicit Dynamics(std::shared_ptr<const Data> data) : data_(std::move(data)) {}

@@ -99,10 +99,12 @@ class ANHOLON_API Run {
   bool has_dense() const;
   // The derivative of that order of a coordinate, or of a state of the model, at any times of the motion, by the
   // polynomials of its steps; NaN at other times, or if there are none. At an event that changes values: those before.
+  // A StopRequest ends it, and the remaining values are NaN.
   std::vector<double> at(const std::string& name, std::span<const double> times, int order = 0) const;
-  // Columns, rows and the report as `anholon simulate --json` prints them.  (doc/json.md)
+  // Columns, rows and the report as `anholon simulate --json` prints them; empty if a StopRequest ended it.  (doc/json.md)
   std::string json() const;
-  // Writes .csv, .json or .h5 by the end of the name; the file is there as a whole or stays as it was.
+  // Writes .csv, .json or .h5 by the end of the name; the file is there as a whole or stays as it was,
+  // also if a StopRequest ends it.
   Result<std::string> write(const std::string& path) const;
 
   struct Data;

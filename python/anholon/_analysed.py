@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import numbers
 from collections.abc import Iterable, Mapping
 
 from . import _core
 from ._described import Described
 from ._errors import ModelError
-from ._names import names_of
+from ._names import names_of, spelled
 from ._numbers import Number, list_of, spaced, text_of, texts_of
 from .analysis import Comparison, LinearModel, PublishedEquations, Stability, State, equation_text
 from .equations import Equations, Proof
+
+
+def _whole_digits(digits: object) -> int:
+    if isinstance(digits, bool) or not isinstance(digits, numbers.Integral):
+        raise ModelError(f"digits is a whole number from 1 to 2000, not {digits!r:.60}")
+    return int(digits)
 
 
 class Analysed(Described):
@@ -94,7 +101,8 @@ class Analysed(Described):
         """Everything about one state: forces, accelerations, multipliers, reactions, energies, residuals.
 
         Args:
-            initial: values instead of those of the file: ``{"theta": 1.3, "phi'": 6}``, SI.
+            initial: values instead of those of the file: ``{"theta": 1.3, "phi'": 6}``, SI. The initial value of a state of the
+                model is a parameter's, which :meth:`Model.with_` sets.
             t: the time, s.
             form: of the equations.
             eliminate: coordinates that forms without multipliers eliminate.
@@ -110,10 +118,12 @@ class Analysed(Described):
             >>> len(state.accelerations), state.residuals["newton"] < 1e-14
             (5, True)
         """
-        given = texts_of(initial)
+        given, digits = texts_of(initial), _whole_digits(digits)
         if t is not None:
             given["t"] = text_of(t)
-        return State(_core.evaluate(self._system(form, given, eliminate), digits), [c.name for c in self.coordinates], digits)
+        core = _core.evaluate(self._system(form, given, eliminate), digits)
+        options = {"initial": given, "form": form, "eliminate": names_of(eliminate), "digits": digits}
+        return State(core, [c.name for c in self.coordinates], digits, (self, options))
 
     def linearize(
         self,
@@ -147,6 +157,7 @@ class Analysed(Described):
 
         Source: dE/dx of the equations and of their derivatives (theory: linear-models).
         """
+        digits = _whole_digits(digits)
         return LinearModel(_core.linearize(self._core, form, self._linear(about, initial, t), names_of(eliminate), about == "equilibrium", digits))
 
     @staticmethod
@@ -193,6 +204,7 @@ class Analysed(Described):
             >>> [c.value for c in an.load("whipple").stability("v", 0, 10, 11).crossings]
             [4.292382536341104, 6.024262015388359]
         """
+        digits = _whole_digits(digits)
         if isinstance(low, Iterable) and not isinstance(low, str):
             values = list_of(low)
         elif high is None:
@@ -202,4 +214,4 @@ class Analysed(Described):
         else:
             values = spaced(low, high, n)
         given = self._linear(about, initial, t)
-        return Stability(_core.stability(self._core, parameter, values, form, given, names_of(eliminate), about == "equilibrium", digits))
+        return Stability(_core.stability(self._core, spelled(parameter), values, form, given, names_of(eliminate), about == "equilibrium", digits))

@@ -6,15 +6,12 @@ import csv
 import io
 import os
 import re
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Protocol, Union
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, Protocol, Union
 
 from . import _core
 from ._errors import ModelError
 from ._numbers import Number, varied_list
-
-if TYPE_CHECKING:
-    from collections.abc import ItemsView
 
 
 class Frame(Protocol):
@@ -51,7 +48,11 @@ def table_of(cases: CaseTable) -> tuple[str, str]:
     """
     if isinstance(cases, (str, os.PathLike)):
         return os.fspath(cases), _core.case_table(os.fspath(cases))
-    columns = {str(name): _texts(name, values) for name, values in _items(cases)}
+    columns: dict[str, list[str]] = {}
+    for name, values in _items(cases):
+        if str(name) in columns:
+            raise ModelError(f"two columns of the table have the name {str(name)!r}\nhint: one column for each name; rename or drop the other one")
+        columns[str(name)] = _texts(name, values)
     if not columns:
         raise ModelError("the table of cases has no columns\nhint: cases={'m': [1, 2], \"x'\": [0, 0.5]}")
     lengths = {len(values) for values in columns.values()}
@@ -76,14 +77,20 @@ def lines_of(text: str) -> int:
     return max(sum(1 for line in text.splitlines() if line.strip(" \t")) - 1, 0)
 
 
-def _items(cases: Any) -> ItemsView[Any, Any]:
+def _items(cases: Any) -> Iterable[tuple[Any, Any]]:
     if hasattr(cases, "to_pydict"):
-        return cases.to_pydict().items()  # type: ignore[no-any-return]
+        # A dictionary would hold one of two columns of a name.
+        return [(name, _single(column, column.type, column.to_pylist)) for name, column in zip(cases.column_names, cases.columns)]
     if hasattr(cases, "get_columns") and hasattr(cases, "to_dict"):
-        return cases.to_dict(as_series=False).items()  # type: ignore[no-any-return]
+        return [(column.name, _single(column, column.dtype, column.to_list)) for column in cases.get_columns()]
     if hasattr(cases, "items"):
         return cases.items()  # type: ignore[no-any-return]
     raise TypeError(f"cases is a number, a table, or the path of one, not a {type(cases).__name__}")
+
+
+def _single(column: Any, kind: object, values: Callable[[], Any]) -> Any:
+    """The values of a column; those of single precision as an array, whose decimals are short."""
+    return column.to_numpy() if str(kind) in ("Float32", "float", "halffloat") else values()
 
 
 def _texts(name: object, values: Any) -> list[str]:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from . import _core
-from ._names import names_of
+from ._names import ByName, names_of
 from ._source import Source
 
 _KEPT = 16  # prepared systems of a model
@@ -39,7 +39,7 @@ class Described:
     @property
     def parameters(self) -> dict[str, float]:
         """The values of the parameters by name, in SI units."""
-        return {p.name: p.value for p in self._core.parameters}
+        return ByName({p.name: p.value for p in self._core.parameters})
 
     @property
     def constraints(self) -> list[_core.Constraint]:

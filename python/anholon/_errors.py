@@ -8,6 +8,8 @@ import re
 import traceback
 from typing import TYPE_CHECKING, Any
 
+from ._names import spelled
+
 if TYPE_CHECKING:
     from ._core import Diagnostic, Outcome
     from .run import Run
@@ -66,11 +68,18 @@ class ColumnError(KeyError):
         there is no column 'thetadot'; did you mean "theta'" or "theta''"?
     """
 
+    text: str
+
     def __init__(self, name: str, columns: list[str], outcome: Outcome) -> None:
         import difflib
 
         self.name, self.columns, self._outcome = name, columns, outcome
-        near = difflib.get_close_matches(re.sub(r"_?(dot|d)$", "'", str(name)), columns, 2)
+        if columns and not isinstance(name, str):
+            there = f"the columns are {', '.join(columns)}"
+            self.text = f"run[…] takes the name of one column, such as {columns[-1]!r}, not {name!r:.60}\n{there}\nhint: run[{columns[-1]!r}][1:3] has some rows, run.to_pandas() a table"
+            super().__init__(self.text)
+            return
+        near = difflib.get_close_matches(re.sub(r"_?(dot|d)$", "'", spelled(str(name))), columns, 2)
         asked = "; did you mean " + " or ".join(repr(n) for n in near) + "?" if near else ""
         there = f"the columns are {', '.join(columns)}" if columns else f"the motion has not begun: {outcome!r}"
         self.text = f"there is no column {name!r}{asked}\n{there}"
@@ -156,6 +165,7 @@ _IN_PYTHON = [
     (r"(?m)^hint: leave out the dense output$", "hint: simulate(every=0.01), or at=[…], has rows at the times that are wanted"),
     (r"(?m)^hint: the mode (\S+?)=open, or slips, or sticks$", r'hint: model.in_mode("\1=open"), or slips, or sticks'),
     (r"(?m)^hint: the mode (\S+?)=0, or another number$", r'hint: model.in_mode("\1=0"), or another number'),
+    (r'(?m)^(hint: parameters = .* in the state; then) set (\w+)$', r"\1 model.with_(\2=0.4), or Builder.parameter"),
     (r"(?m)^hint: leave out --digits and --numbers$", "hint: leave out digits and numbers"),
     (r"(?m)^hint: leave out --(save|rigorous|integrator)\b.*$", r"hint: leave out \1"),
 ]

@@ -29,7 +29,7 @@ class SweepAgain:
     words: Words
     scenarios: bool
 
-    def run(self, threads: int, stop: Callable[[], bool] | None, tell: Callable[[float, int], object] | None) -> tuple[_core.Sweep, object]:
+    def run(self, threads: int, stop: Callable[[], object] | None, tell: Callable[[float, int], object] | None) -> tuple[_core.Sweep, object]:
         """The sweep, and what was raised in the meantime."""
         system = None if self.scenarios else self.model._system_of_sweep(self.form, self.initial)
         if system is None:

@@ -1,8 +1,67 @@
-"""Lists of names, as of coordinates, forms or outputs."""
+"""Names, and lists of names, as of coordinates, forms or outputs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable, Mapping
+from typing import TypeVar
+
+V = TypeVar("V")
+
+# A Greek letter and its spelled name are one name in the language of models, and so are the signs of a prime.
+_SPELLED = str.maketrans(
+    {
+        **dict(zip("αβγδεζηθικλμνξοπρστυφχψω", "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi omicron pi rho sigma tau upsilon phi chi psi omega".split(), strict=True)),
+        **dict(zip("ϑϕϵϱµΓΔΘΛΞΠΣΦΨΩ", "theta phi epsilon rho mu Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega".split(), strict=True)),
+        "′": "'",
+        "’": "'",
+    }
+)
+
+
+def spelled(name: str) -> str:
+    """The name with its Greek letters spelled: "theta'" for "θ'"."""
+    return name if name.isascii() else name.translate(_SPELLED)
+
+
+def known(name: str, names: Container[str]) -> str:
+    """The name as these names have it, with a Greek letter or spelled; the name itself if it is none of them."""
+    if not isinstance(name, str) or name in names:
+        return name
+    return spelled(name) if spelled(name) in names else name
+
+
+def by_spelled_names(values: Mapping[str, V], what: str) -> dict[str, V]:
+    """The values by spelled names.
+
+    Raises:
+        ModelError: two of the names are one.
+    """
+    from ._errors import ModelError
+
+    found: dict[str, V] = {}
+    for name, value in values.items():
+        own = spelled(name) if isinstance(name, str) else name
+        if own in found:
+            raise ModelError(f"{own!r} is given twice in {what}\nhint: one value for each name; a Greek letter and its spelled name are one name")
+        found[own] = value
+    return found
+
+
+class ByName(dict[str, V]):
+    """Values by name, which a Greek letter and its spelled name find alike."""
+
+    def __missing__(self, name: str) -> V:
+        own = spelled(name) if isinstance(name, str) else name
+        if own == name or not super().__contains__(own):
+            raise KeyError(name)
+        return self[own]
+
+    def __contains__(self, name: object) -> bool:
+        return super().__contains__(name) or (isinstance(name, str) and super().__contains__(spelled(name)))
+
+    def get(self, name: str, default: object = None) -> object:  # type: ignore[override]
+        """The value of a name, or the default."""
+        return self[name] if name in self else default
 
 
 def names_of(names: str | Iterable[object]) -> list[str]:

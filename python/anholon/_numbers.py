@@ -20,8 +20,14 @@ Number = Union[int, float, str, Fraction, Decimal, "np.floating[Any]", "np.integ
 
 def text_of(number: Number) -> str:
     """The text of a number, also in an array of no axes. Raises TypeError for what is none, ValueError for infinity and NaN."""
-    if type(number).__module__ == "numpy" and getattr(number, "shape", None) == () and not isinstance(number, numbers.Number):
-        number = number.item()  # type: ignore[union-attr]
+    if type(number).__module__ == "numpy" and getattr(number, "shape", None) == ():
+        kind = number.dtype  # type: ignore[union-attr]
+        if kind.kind in "mM":  # item() is a count in some of their units
+            raise TypeError(f"a number is an int, float, Fraction, Decimal or str, not a {kind.name.partition('[')[0]}: a time is given in s")
+        if kind.kind == "f" and kind.itemsize < 8 and math.isfinite(number):  # type: ignore[arg-type]
+            return str(number)  # the decimal that Python prints for a float32
+        if not isinstance(number, numbers.Number):
+            number = number.item()  # type: ignore[union-attr]
     if isinstance(number, str):
         return number
     if isinstance(number, bool):
@@ -87,7 +93,13 @@ def list_of(values: Number | Iterable[Number]) -> list[str]:
     if isinstance(values, str):
         # A comma within parentheses belongs to a function.
         return [text.strip() for text in re.split(r",(?![^(]*\))", values)]
-    return [text_of(value) for value in values] if isinstance(values, Iterable) else [text_of(values)]
+    kind: Any = getattr(values, "dtype", None)
+    if getattr(kind, "kind", "") == "f" and getattr(kind, "itemsize", 8) < 8:
+        import numpy as np
+
+        values = np.asarray(values)  # a Series of float32 hands out floats, whose decimals are longer
+    several = isinstance(values, Iterable) and getattr(values, "ndim", 1) != 0  # an array of no axes is one number
+    return [text_of(value) for value in values] if several else [text_of(values)]  # type: ignore[union-attr, arg-type]
 
 
 def varied_list(name: object, values: Number | Iterable[Number]) -> list[str]:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from . import _core
@@ -28,20 +27,31 @@ class Recipe:
     eliminate: str | list[str]
     words: dict[str, str]
     times: list[str]
-    stop: Callable[[], bool] | None = None
-    cut: bool = False  # it was ended from outside, so that it is no longer the same
+    cut: bool = False  # it was ended from outside, which is not done again
 
-    def run(self, words: dict[str, str] | None = None, *, dense: bool = False) -> _core.Run:
+    def run(self) -> _core.Run:
         """The motion, the same bits again."""
+        return self._made(self.words, self.times, dense=False)
+
+    @property
+    def start(self) -> float:
+        """The time at which the motion starts."""
+        return self.model._system(self.form, self.initial, self.eliminate).start
+
+    def polynomials(self, last: float | None) -> _core.Run:
+        """The motion with the polynomials of its steps; of one that was ended from outside as far as its last row."""
+        if last is None:
+            return self._made({**self.words, "error-estimate": "never"}, self.times, dense=True)
+        words = {name: word for name, word in self.words.items() if name not in ("to", "every")}
+        end = repr(float(last))
+        return self._made({**words, "to": end, "error-estimate": "never"}, [end], dense=True)
+
+    def _made(self, words: dict[str, str], times: list[str], *, dense: bool) -> _core.Run:
         system = self.model._system(self.form, self.initial, self.eliminate)
-        made, raised = _core.simulate(system, {**self.words, **(words or {})}, self.times, dense, self.stop, None)
+        made, raised = _core.simulate(system, words, times, dense, None, None)
         if isinstance(raised, BaseException):
             raise raised
         return made
-
-    def for_another_process(self) -> Recipe:
-        """The same without what stops it, which may belong to this process."""
-        return replace(self, stop=None)
 
 
 class KeptRun:

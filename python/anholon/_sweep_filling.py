@@ -77,7 +77,7 @@ class SweepRequest:
         on: Client | str | None,
         share: tuple[int, int],
         threads: int,
-        stop: Callable[[], bool] | None,
+        stop: Callable[[], object] | None,
         progress: Progress,
         refine: int,
         refine_by: tuple[str, float] | None,
@@ -158,7 +158,7 @@ def fill(
     on: Client | str | None,
     share: tuple[int, int],
     threads: int,
-    stop: Callable[[], bool] | None,
+    stop: Callable[[], object] | None,
     progress: Progress,
     refine: int = 0,
     refine_by: tuple[str, float] | None = None,
@@ -180,7 +180,7 @@ def fill(
 
 
 def _fill_generation(
-    core: _core.SweepFolder, *, on: Client | str | None, share: tuple[int, int], threads: int, stop: Callable[[], bool] | None, progress: Progress
+    core: _core.SweepFolder, *, on: Client | str | None, share: tuple[int, int], threads: int, stop: Callable[[], object] | None, progress: Progress
 ) -> SweepFolder:
     folder = SweepFolder(core)
     missing = [part for part in core.missing() if part % share[1] == share[0] - 1] if on is not None else None
@@ -217,7 +217,7 @@ def _fill_by_workers(
     on: Any,
     share: tuple[int, int],
     threads: int,
-    stop: Callable[[], bool] | None,
+    stop: Callable[[], object] | None,
     tell: Callable[[float, int], object] | None,
 ) -> None:
     """Gives parts to the workers of Dask until all are there. The folder says what is done, not the scheduler."""

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
 from . import _core, _display
+from ._names import ByName
 from ._numbers import exact_numbers
 
 if TYPE_CHECKING:
@@ -115,14 +116,19 @@ class State:
         ['S_r', 'T_r']
     """
 
-    def __init__(self, core: _core.StateReport, coordinates: Sequence[str], digits: int) -> None:
+    def __init__(self, core: _core.StateReport, coordinates: Sequence[str], digits: int, again: tuple[Any, dict[str, Any]]) -> None:
         self._core, self._coordinates, self._digits = core, list(coordinates), digits
+        self._again = again  # the model, and the options of Model.evaluate
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, dict[str, Any]]]:
+        """Another process evaluates it again, with the same numbers."""
+        return _evaluated, self._again
 
     def _numbers(self, texts: Sequence[str]) -> list[Any]:
         return [float(text) for text in texts] if self._digits <= _DOUBLE else exact_numbers(texts)
 
     def _named(self, pairs: Sequence[tuple[str, str]]) -> dict[str, Any]:
-        return dict(zip([name for name, _ in pairs], self._numbers([text for _, text in pairs]), strict=True))
+        return ByName(zip([name for name, _ in pairs], self._numbers([text for _, text in pairs]), strict=True))
 
     @property
     def form(self) -> str:
@@ -191,6 +197,11 @@ class State:
             if values:
                 lines += [title, *(f"  {name} = {value}" for name, value in values.items())]
         return "\n".join(lines)
+
+
+def _evaluated(model: Any, options: dict[str, Any]) -> State:
+    state: State = model.evaluate(**options)
+    return state
 
 
 class LinearModel:

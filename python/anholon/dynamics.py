@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, SupportsFloat, Union
 
 from . import _core
 from ._errors import ModelError
+from ._names import by_spelled_names, ByName
 from ._torch import torch_function
 from .formulas import NOT_LINEAR, Formulas, compile_c
 
@@ -21,20 +22,45 @@ if TYPE_CHECKING:
 
 
 Values = Union["npt.ArrayLike", Mapping[str, "npt.ArrayLike"], None]
-"""Inputs or parameters: an array in their order, values by name (the others keep theirs), or None for those of the model."""
+"""Inputs or parameters: an array in their order, values by name (the others keep theirs), or None for those of the model. A
+Series of pandas whose labels are texts has values by name."""
 
 
 def _time(t: object) -> float:
     """The time as a float. Raises TypeError if it is no number."""
     if type(t) is float:
         return t
+    _refuse_dates("t", t)
     if not isinstance(t, SupportsFloat) or getattr(t, "ndim", 0) != 0:
         raise TypeError(f"t is a number, the time in s, not a {type(t).__name__}; the states follow: f(t, x)")
     return float(t)
 
 
+def _refuse_dates(name: str, value: Any) -> None:
+    """Raises TypeError for a date or a duration of NumPy, which would count in units of its own."""
+    if getattr(getattr(value, "dtype", None), "kind", "") in ("m", "M"):
+        raise TypeError(f"{name} is a number in SI units, a time in s, not a {value.dtype.name.partition('[')[0]}")
+
+
+def _labelled(values: Any) -> dict[str, Any] | None:
+    """The values of a Series of pandas by its labels, if these are texts; None of all else, whose values have an order."""
+    index = getattr(values, "index", None)
+    if index is None or callable(index) or not hasattr(values, "iloc"):
+        return None
+    labels = list(index)
+    if not labels or not all(isinstance(label, str) for label in labels):
+        return None
+    found: dict[str, Any] = {}
+    for k, label in enumerate(labels):
+        if label in found:
+            raise ValueError(f"two values have the label {label!r}")
+        found[label] = values.iloc[k]
+    return found
+
+
 def _number(name: str, value: object) -> float:
     """A value as a float. Raises TypeError if it is no number."""
+    _refuse_dates(name, value)
     if not isinstance(value, SupportsFloat) or getattr(value, "ndim", 0) != 0:
         raise TypeError(f"{name} is a number in SI units, not {value!r:.60}")
     return float(value)
@@ -70,7 +96,7 @@ def _takes_numbers(out: Array, x: Array) -> bool:
 class Dynamics:
     """A function f(t, x, u, p) -> x' in SI units, with outputs y. Threads may share it; large batches take all cores.
 
-    Get one from :meth:`Model.dynamics`.
+    Get one from :meth:`Model.dynamics`. It can be pickled, as for the workers of an optimizer: each process derives it again.
 
     Example:
         >>> import anholon as an
@@ -80,11 +106,16 @@ class Dynamics:
         ['th', "th'"]
     """
 
-    def __init__(self, model: Model, core: _core.Dynamics) -> None:
+    def __init__(self, model: Model, core: _core.Dynamics, options: dict[str, Any]) -> None:
         self.model: Model = model
         self._core = core
+        self._options = options  # of Model.dynamics
         self._count = len(core.states)
         self._formulas: Formulas | None = None
+
+    def __reduce__(self) -> tuple[Callable[..., Dynamics], tuple[Model, dict[str, Any]]]:
+        """Another process derives the equations again."""
+        return _made, (self.model, self._options)
 
     @property
     def states(self) -> list[_core.StateName]:
@@ -100,7 +131,7 @@ class Dynamics:
     @property
     def parameters(self) -> list[str]:
         """What p holds: the parameters that do not follow from others, without those whose values decide the order of the
-        equations, such as a mass that is 0."""
+        equations, such as a mass that is 0. The number of a mode is one of them; f changes none of them, as it holds no events."""
         return self._core.parameters
 
     @property
@@ -148,7 +179,7 @@ class Dynamics:
 
     @property
     def start(self) -> Array:
-        """x at the initial state, shape (states,)."""
+        """x at the initial state with the parameters of the model, shape (states,); with others :meth:`state` makes it."""
         import numpy as np
 
         return np.array(self._core.start)
@@ -173,8 +204,10 @@ class Dynamics:
 
         if given is None:
             return None
-        if isinstance(given, Mapping):
-            for name in given:
+        labelled = given if isinstance(given, Mapping) else _labelled(given)
+        if labelled is not None:
+            labelled = by_spelled_names(labelled, what)
+            for name in labelled:
                 if what == "p" and name not in names and name in self.model.parameters:
                     raise KeyError(
                         f"{name!r} is not in p: it follows from other parameters, or its value decides the order of the equations; "
@@ -183,7 +216,10 @@ class Dynamics:
                 if name not in names:
                     raise KeyError(f"there is no {name!r} in {what}; there are {', '.join(names) or 'none'}")
             own = usual()
-            rows = [_numbers(f"{what}[{name!r}]", given[name]).reshape(np.shape(given[name])) if name in given else own[i] for i, name in enumerate(names)]
+            rows = [
+                _numbers(f"{what}[{name!r}]", labelled[name]).reshape(np.shape(labelled[name])) if name in labelled else own[i]
+                for i, name in enumerate(names)
+            ]
             given = np.stack(np.broadcast_arrays(*rows)) if rows else np.empty(0)
         array = _numbers(what, given)
         if array.shape[:1] != (len(names),) or array.shape[1:] not in ((), shape):
@@ -237,6 +273,9 @@ class Dynamics:
         those of the mapping act."""
         import numpy as np
 
+        u = _labelled(u) or u
+        if isinstance(u, Mapping):
+            u = by_spelled_names(u, "u")
         others = self._values(p, self.parameters, lambda: self.p0, "p", x.shape[1:])
 
         def by_formulas() -> Array:
@@ -346,9 +385,8 @@ class Dynamics:
 
     @staticmethod
     def _aligned(jacobian: Array, vector: npt.ArrayLike, axis: int) -> tuple[Array, Array]:
-        import numpy as np
-
-        array, batch = np.asarray(vector, dtype=np.float64), jacobian.shape[2:]
+        array: npt.NDArray[Any] = _numbers("the vector", vector)
+        batch = jacobian.shape[2:]
         if array.shape[:1] != (jacobian.shape[axis],) or array.shape[1:] not in ((), batch):
             fits = f"{(jacobian.shape[axis],)}" + (f" or {(jacobian.shape[axis], *batch)}" if batch else "")
             raise ValueError(f"the vector has the shape {array.shape}; it has to be {fits}")
@@ -460,54 +498,85 @@ class Dynamics:
         """
         return torch_function(self)
 
-    def state(self, t: float | None = None, *, q: Mapping[str, float], qdot: Mapping[str, float], z: Mapping[str, float] | None = None) -> Array:
+    def state(
+        self, t: float | None = None, *, q: Mapping[str, float], qdot: Mapping[str, float], z: Mapping[str, float] | None = None, p: Values = None
+    ) -> Array:
         """x from values of coordinates, velocities ("x'") and states of the model by name; 0 for those left out.
 
         Higher derivatives that belong to the state ("x''") are given with the velocities. In independent velocities, those
         that violate the constraints lose what violates them; `Model.initial` completes a state from the values that are
         given. The shape is (states,), in SI units.
 
+        Independent velocities may depend on parameters: their formulas in ``f.states`` hold them. The state that belongs to
+        ``f(t, x, p=p)`` is then that of the same ``p``; without it the parameters of the model are meant.
+
+        Args:
+            t: the time, s; that of the start if it is None.
+            q: coordinates.
+            qdot: velocities, and higher derivatives of the state.
+            z: states of the model.
+            p: parameters, shape (parameters,), or some by name; those of the model if it is None.
+
         Warns:
             UserWarning: a velocity that is given is not that of the state, as the values violate the constraints.
 
         Raises:
-            KeyError: a name is none of the coordinates, velocities or states.
+            KeyError: a name is none of the coordinates, velocities or states, or none of the parameters.
+            ValueError: the shape of p does not fit.
             TypeError: a value is no number, or the values are not given by name.
         """
         import numpy as np
 
         names = self._names()
-        given = (q, qdot, z or {})
-        for of, have, expected in zip(("q", "qdot", "z"), given, names, strict=True):
+        given = []
+        for of, have, expected in zip(("q", "qdot", "z"), (q, qdot, z or {}), names, strict=True):
             if not isinstance(have, Mapping):
                 kind = "None" if have is None else f"a {type(have).__name__}"
                 raise TypeError(f"{of} has values by name, as {of}={{{(expected or ['a'])[0]!r}: 0.5}}, not {kind}")
-            for name in have:
+            given.append(by_spelled_names(have, of))
+            for name in given[-1]:
                 if name not in expected:
                     raise KeyError(f"there is no {name!r}; there are {', '.join(expected)}")
-        at = self.t0 if t is None else t
-        x = np.array(self._core.from_motion(at, *([_number(n, have.get(n, 0.0)) for n in expected] for have, expected in zip(given, names, strict=True))))
+        at, others = self.t0 if t is None else _time(t), self._values(p, self.parameters, lambda: self.p0, "p")
+        q_list, qdot_list, z_list = ([_number(n, have.get(n, 0.0)) for n in expected] for have, expected in zip(given, names, strict=True))
+        x = np.array(self._core.from_motion(at, q_list, qdot_list, z_list, [] if others is None else others.tolist()))
         if self.minimal:
-            motion, scale = self.motion(x, at), max([1.0, *(abs(_number(n, v)) for n, v in qdot.items())])
-            lost = next((n for n, v in qdot.items() if not abs(motion[n] - _number(n, v)) < 1e-6 * scale), None)
+            rates = {n: _number(n, v) for n, v in given[1].items()}
+            motion, scale = self.motion(x, at, others), max([1.0, *(abs(v) for v in rates.values())])
+            lost = next((n for n, v in rates.items() if not abs(motion[n] - v) < 1e-6 * scale), None)
             if lost is not None:
-                what = f"{lost} = {qdot[lost]:g} is given, and the state has {lost} = {motion[lost]:g}: the velocities violate the constraints (those left out are 0)"
+                what = f"{lost} = {rates[lost]:g} is given, and the state has {lost} = {motion[lost]:g}: the velocities violate the constraints (those left out are 0)"
                 warnings.warn(what + "; give all of them, or take those of model.initial(…)", stacklevel=2)
         return x
 
-    def motion(self, x: npt.ArrayLike, t: float | None = None) -> dict[str, float]:
+    def motion(self, x: npt.ArrayLike, t: float | None = None, p: Values = None) -> dict[str, float]:
         """Coordinates, velocities (and higher derivatives of the state) and states of the model of one state x, by name.
 
+        Args:
+            x: a state.
+            t: the time, s; that of the start if it is None.
+            p: the parameters with which x was made, on which independent velocities may depend; those of the model if it is
+                None.
+
         Raises:
-            ValueError: x is not one state.
+            ValueError: x is not one state, or the shape of p does not fit.
+            KeyError: there is no parameter of that name.
+
+        Example:
+            >>> import anholon as an, numpy as np
+            >>> f = an.load("sleigh-with-moving-mass").dynamics()
+            >>> x = f.state(q={"th": 0.4}, qdot={"x'": np.cos(0.4), "y'": np.sin(0.4), "th'": 1}, p={"m": 3})
+            >>> round(f.motion(x, p={"m": 3})["th'"], 12)
+            1.0
         """
         import numpy as np
 
         state = _numbers("x", x)
         if state.shape != (self._count,):
             raise ValueError(f"x has the shape {state.shape}; it has to be one state, ({self._count},)")
-        parts = self._core.to_motion(self.t0 if t is None else t, state.tolist())
-        return {n: v for names, values in zip(self._names(), parts, strict=True) for n, v in zip(names, values, strict=True)}
+        others = self._values(p, self.parameters, lambda: self.p0, "p")
+        parts = self._core.to_motion(self.t0 if t is None else _time(t), state.tolist(), [] if others is None else others.tolist())
+        return ByName({n: v for names, values in zip(self._names(), parts, strict=True) for n, v in zip(names, values, strict=True)})
 
     def _names(self) -> tuple[list[str], list[str], list[str]]:
         """Names of coordinates; of velocities and higher derivatives; of the model's states."""
@@ -520,3 +589,7 @@ class Dynamics:
 
     def __repr__(self) -> str:
         return f"<f(t, x) of {self.model.title!r}: x = {', '.join(s.name for s in self.states)}>"
+
+
+def _made(model: Model, options: dict[str, Any]) -> Dynamics:
+    return model.dynamics(**options)

@@ -13,7 +13,7 @@ from ._analysed import Analysed
 from ._case_table import CaseTable, table_of
 from ._errors import Interrupted, ModelError, MotionError
 from ._kept_sweep import SweepAgain
-from ._names import names_of
+from ._names import by_spelled_names, names_of, spelled
 from ._numbers import Number, float_of, list_of, text_of, texts_of, varied_list, whole
 from ._progress import Progress, Shown
 from ._recipe import Recipe
@@ -29,6 +29,13 @@ from .sweep_folder import SweepFolder
 
 if TYPE_CHECKING:
     from distributed import Client
+
+# What the command line has and a keyword of simulate() has not, or what has another name here.
+_ELSEWHERE = {
+    "t": 'initial={"t": 1} is the time at which the motion starts',
+    "save": "run.save(\"run.h5\") writes the rows; pickle.dumps(run) keeps the run with all that it can do",
+    "continue": 'initial={"t": run.t[-1], "x": run["x"][-1], …}, with all coordinates and velocities of the last row, goes on from there; anholon simulate --continue has the same bits as one run',
+}
 
 
 class Model(Analysed):
@@ -128,7 +135,7 @@ class Model(Analysed):
         error_estimate: bool | None = None,
         most_steps: int | None = None,
         dense: bool = False,
-        stop: Callable[[], bool] | None = None,
+        stop: Callable[[], object] | None = None,
         progress: Progress = None,
         **others: Number | bool,
     ) -> Run:
@@ -139,8 +146,9 @@ class Model(Analysed):
         Args:
             to: the end, s; that of the file if it is None.
             every: a row at each multiple of it after the start, s; a row at each step if it is None.
-            at: rows at these times and at no other, s.
-            initial: values instead of those of the file: ``{"theta": 1.3, "phi'": 6}``, in SI units.
+            at: rows at these times and at no other, s. They come in the order of time, and once where a time is given twice.
+            initial: values instead of those of the file: ``{"theta": 1.3, "phi'": 6}``, in SI units; ``{"t": 1}`` is the time at
+                which the motion starts. The initial value of a state of the model is a parameter's, which :meth:`with_` sets.
             tolerance: of each step, relative; 1e-12 if neither the file nor you say otherwise.
             form: of the equations, or ``auto``: the one whose motion takes the fewest operations.
             eliminate: coordinates that forms without multipliers eliminate; chosen if there are none.
@@ -150,13 +158,14 @@ class Model(Analysed):
             error_estimate: digits to trust, by a second, sharper run; True: always, False: never, None: of short runs.
             most_steps: the motion ends after so many.
             dense: keeps the polynomials of all steps, so that ``run(t)`` has them; without, it makes the motion once more.
-            stop: asked every 20 ms; True ends the motion.
+            stop: asked every 20 ms; a value that is true ends the motion, which keeps its rows.
             progress: True shows a bar, False none; a function is told the time and the number of steps every 20 ms. By default
                 a bar appears after two seconds in a notebook and at a prompt.
             others: any option of ``anholon simulate`` that changes the motion, with _ for -: ``rigorous=64``.
 
         Raises:
             ModelError: an argument makes no sense.
+            TypeError: ``dense`` is not True or False.
             Interrupted: Ctrl-C; ``.result`` is the run as far as it came.
 
         Example:
@@ -170,7 +179,11 @@ class Model(Analysed):
         eliminate = eliminate if isinstance(eliminate, str) else list(eliminate)
         if error_estimate is not None:
             words["error-estimate"] = "always" if error_estimate else "never"
+        if dense not in (True, False):
+            raise TypeError(f"dense is True or False, not {dense!r:.60}")
         for name, value in others.items():
+            if name in _ELSEWHERE:
+                raise ModelError(f"there is no option {name!r}\nhint: {_ELSEWHERE[name]}")
             if value is not False and value is not None:
                 words[name.replace("_", "-")] = "" if value is True else text_of(value)
         try:
@@ -180,9 +193,9 @@ class Model(Analysed):
         times = list_of(at)
         end = float_of(times[-1] if times else words.get("to"))
         with Shown(progress, self.title, end, start=system.start) as tell:
-            core, raised = _core.simulate(system, words, times, dense, stop, tell)
+            core, raised = _core.simulate(system, words, times, bool(dense), stop, tell)
         cut = raised is not None or (stop is not None and core.outcome.kind == "interrupted")
-        run = Run(self, core, core.outcome, Recipe(self, form, texts_of(initial), eliminate, words, times, stop, cut))
+        run = Run(self, core, core.outcome, Recipe(self, form, texts_of(initial), eliminate, words, times, cut))
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted(run) from None
         if isinstance(raised, BaseException):
@@ -206,7 +219,7 @@ class Model(Analysed):
         initial: Mapping[str, Number] | None = None,
         form: str = "routh",
         threads: int = 0,
-        stop: Callable[[], bool] | None = None,
+        stop: Callable[[], object] | None = None,
         progress: Progress = None,
         out: None = None,
     ) -> Sweep: ...
@@ -228,7 +241,7 @@ class Model(Analysed):
         initial: Mapping[str, Number] | None = None,
         form: str = "routh",
         threads: int = 0,
-        stop: Callable[[], bool] | None = None,
+        stop: Callable[[], object] | None = None,
         progress: Progress = None,
         out: str | os.PathLike[str],
         on: Client | str | None = None,
@@ -254,7 +267,7 @@ class Model(Analysed):
         initial: Mapping[str, Number] | None = None,
         form: str = "routh",
         threads: int = 0,
-        stop: Callable[[], bool] | None = None,
+        stop: Callable[[], object] | None = None,
         progress: Progress = None,
         out: str | os.PathLike[str] | None = None,
         on: Client | str | None = None,
@@ -271,7 +284,8 @@ class Model(Analysed):
                 that of ``--vary`` is: ``"5,6,7"``, ``"1:7:100"``, ``"normal(1,0.1)"``. ``{"case": ["moon", "long"]}`` runs
                 through scenarios [case.NAME] of the file, laid over this model; they vary slowest.
             to: the end, s; that of the file if it is None, or the last of ``at``.
-            at: times, s, at which the state of each case is kept, too: ``sweep.rows("theta")`` has shape (cases, times).
+            at: times, s, at which the state of each case is kept, too: ``sweep.rows("theta")`` has shape (cases, times). They
+                come in the order of time, each once, as ``sweep.times`` has them.
             columns: names or patterns such as ``"theta*"``; all columns without it. What varies and the reductions are kept
                 in any case.
             reduce: columns over the whole motion of a case: ``"max(theta')"``, ``"min(height)"``, ``"mean(...)"``,
@@ -290,7 +304,7 @@ class Model(Analysed):
             initial: values common to all cases.
             form: of the equations.
             threads: 0: as many as the machine has. The numbers are the same for any.
-            stop: asked every 20 ms; True ends the sweep.
+            stop: asked every 20 ms; a value that is true ends the sweep.
             progress: as in :meth:`simulate`; a function is told the number of cases done, twice.
 
             out: a folder that takes the cases, part by part; what is there already is not computed again. The value is a
@@ -314,6 +328,7 @@ class Model(Analysed):
         vary, table = {} if vary is None else vary, ("", "")
         if not hasattr(vary, "items"):
             raise TypeError(f"what varies is given by name, as {{'m': [1, 2]}}, not as a {type(vary).__name__}")
+        vary = by_spelled_names(vary, "what varies")
         if isinstance(cases, tuple) and len(cases) == 2:
             table, cases = table_of(cases[0]), cases[1]
         elif cases is not None and not isinstance(cases, (int, numbers.Number)):
@@ -331,7 +346,7 @@ class Model(Analysed):
         if isinstance(columns, str) or isinstance(reduce, str):
             raise TypeError('columns and reduce are lists of names: ["theta"]')
         end, relative = (None if number is None else text_of(number) for number in (to, tolerance))
-        words: Words = (values, laws, cases, seed, draw, together, end, relative, list_of(at), list(columns), list(reduce), table)
+        words: Words = (values, laws, cases, seed, draw, together, end, relative, list_of(at), [spelled(str(name)) for name in columns], [spelled(str(formula)) for formula in reduce], table)
         if out is not None:
             return SweepRequest(self, form, texts_of(initial), words).fill(
                 os.fspath(out), chunk or 0, on=on, share=share, threads=threads, stop=stop, progress=progress, refine=refine, refine_by=refine_by
@@ -343,7 +358,7 @@ class Model(Analysed):
         again = SweepAgain(self, form, texts_of(initial), words, scenarios)
         with Shown(progress, self.title, count, unit="cases") as tell:
             core, raised = again.run(threads, stop, tell)
-        sweep = Sweep(core, [*vary, *core.varied_names[len(vary) - scenarios :]], list(reduce), again)
+        sweep = Sweep(core, [*vary, *core.varied_names[len(vary) - scenarios :]], words[10], again)
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted(sweep) from None
         if isinstance(raised, BaseException):
@@ -366,6 +381,9 @@ class Model(Analysed):
         initial: Mapping[str, Number] | None = None,
     ) -> Dynamics:
         """The equations as a compiled function f(t, x, u, p) -> x', for integrators and optimizers of others.
+
+        f is the right side between events: it holds none of them, neither what they set nor that they end a motion. An
+        integrator that is to heed them looks for their times itself; the number of a mode is an entry of p, by its name.
 
         Args:
             minimal: in independent velocities, which satisfy the constraints whatever they are, if the equations have
@@ -396,7 +414,9 @@ class Model(Analysed):
             chosen = [(name, str(formula)) for name, formula in outputs.items()]
         elif outputs is not None:
             chosen = [(name, "") for name in names_of(outputs)]
-        return Dynamics(self, _core.dynamics(self._system("routh", texts_of(initial), ()), minimal, inputs is True, names, chosen))
+        core = _core.dynamics(self._system("routh", texts_of(initial), ()), minimal, inputs is True, names, chosen)
+        given = {} if initial is None else dict(initial)
+        return Dynamics(self, core, {"minimal": minimal, "inputs": True if inputs is True else names, "outputs": None if chosen is None else dict(chosen), "initial": given})
 
     def c_code(self, *, initial: Mapping[str, Number] | None = None, form: str = "routh") -> str:
         """The motion's right side as a C program that stands by itself."""

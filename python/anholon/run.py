@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _arrow, _core, _display, _widget
 from ._errors import ColumnError, ModelError, MotionError
+from ._names import ByName, known
 from ._recipe import KeptRun, Recipe
 
 if TYPE_CHECKING:
@@ -101,24 +102,30 @@ class Run:
 
     def __getstate__(self) -> dict[str, Any]:
         """To another process go the numbers, the events and the report. It computes the rest again where it is asked for."""
-        recipe = self._recipe and self._recipe.for_another_process()
-        kept = None if self._core is None or recipe is None else KeptRun(self._core, recipe)
-        return {**self.__dict__, "_core": kept, "_dense": None, "_recipe": recipe}
+        kept = None if self._core is None or self._recipe is None else KeptRun(self._core, self._recipe)
+        return {**self.__dict__, "_core": kept, "_dense": None}
 
     # ---- arrays ----
 
     def __getitem__(self, name: str) -> Array:
         """The numbers of a column, shape (rows,), in SI units: "t", "x", "x'", "lambda.rod", "N.x", a state, a monitor.
 
+        A Greek letter and its spelled name are one name, here and wherever a name is given: ``run["θ"]`` is ``run["theta"]``.
+
         Raises:
             ColumnError: there is no such column; a KeyError that names those that there are.
         """
-        if self._core is None or name not in self._columns:
+        core, name = self._column(name)
+        return core.column(name)
+
+    def _column(self, name: str) -> tuple[_core.Run | KeptRun, str]:
+        """What has a column, and the column's own name. Raises ColumnError if there is none."""
+        if self._core is None or not isinstance(name, str) or known(name, self._columns) not in self._columns:
             raise ColumnError(name, list(self._columns), self.outcome)
-        return self._core.column(name)
+        return self._core, known(name, self._columns)
 
     def __contains__(self, name: object) -> bool:
-        return name in self._columns
+        return isinstance(name, str) and known(name, self._columns) in self._columns
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._columns)
@@ -195,9 +202,8 @@ class Run:
         Raises:
             ColumnError: there is no such column.
         """
-        if self._core is None or name not in self._columns:
-            raise ColumnError(name, list(self._columns), self.outcome)
-        texts = [self._core.text(row, name) for row in range(len(self))]
+        core, name = self._column(name)
+        texts = [core.text(row, name) for row in range(len(self))]
         try:
             import mpmath
         except ImportError:
@@ -215,7 +221,8 @@ class Run:
             order: of the derivative: 0 the coordinates, 1 their rates, 2, …
 
         Returns:
-            An array of the shape of t for each coordinate and each state of the model; NaN outside of the motion.
+            An array of the shape of t for each coordinate and each state of the model; NaN outside of the motion. One that
+            ``stop`` or Ctrl-C ended reaches to its last row.
 
         Raises:
             ModelError: `t` holds what is no time (``run["x"]`` is the column of a name), or there is no such derivative.
@@ -230,20 +237,40 @@ class Run:
         import numpy as np
 
         try:
-            times = np.asarray(t, dtype=np.float64)
+            given = np.asarray(t)
+            # What converts to numbers is no time if it is a truth value, or a date or duration in units of its own.
+            if given.dtype.kind in "bmMc" or (given.dtype.kind == "O" and any(isinstance(x, (bool, np.bool_, np.datetime64, np.timedelta64)) for x in given.flat)):
+                raise TypeError
+            times = np.asarray(given, dtype=np.float64)
         except (TypeError, ValueError):
             hint = f"run[{t!r}] is the column of that name" if isinstance(t, str) else "run(1.5), run([1, 2.5])"
             raise ModelError(f"run(t) takes times in seconds, one number or an array, not {t!r:.60}\nhint: {hint}") from None
         if self._dense is None:
             if self._recipe is None:
                 raise MotionError(repr(self.outcome), self.outcome)
-            self._dense = self._recipe.run({"error-estimate": "never"}, dense=True)
+            if self._recipe.cut and (len(self) == 0 or self.t[-1] == self._recipe.start):
+                return self._at_start(times, order)
+            self._dense = self._recipe.polynomials(self.t[-1] if self._recipe.cut else None)
         most = self._dense.report.order
         if isinstance(order, bool) or not isinstance(order, (int, np.integer)) or not 0 <= order <= most:
             raise ModelError(f"order is a whole number from 0 to {most}, the order of the polynomials of this run, not {order!r:.60}\nhint: run(t, order=1) has the rates")
-        names = [c.name for c in self.model.coordinates] + self.model.states
+        names = self._moving()
         flat = np.ascontiguousarray(times.ravel())
-        return {name: self._dense.at(name, flat, order).reshape(times.shape) for name in names}
+        return ByName({name: self._dense.at(name, flat, order).reshape(times.shape) for name in names})
+
+    def _moving(self) -> list[str]:
+        return [c.name for c in self.model.coordinates] + self.model.states
+
+    def _at_start(self, times: Array, order: int) -> dict[str, Array]:
+        """What run(t) is of a motion that was ended before its first step: it has one row, or none."""
+        import numpy as np
+
+        found: dict[str, Array] = ByName()
+        for name in self._moving():
+            column = name + "'" * order
+            value = self[column][0] if len(self) and column in self else np.nan
+            found[name] = np.where(times == self._recipe.start, value, np.nan) if self._recipe else np.full(times.shape, np.nan)
+        return found
 
     # ---- how it went ----
 
@@ -373,7 +400,7 @@ class Run:
         Raises:
             ModelError: there is no such column, or there are no rows.
         """
-        return Figure(self._required().figure(list(names), x))
+        return Figure(self._required().figure([known(name, self._columns) for name in names], known(x, self._columns)))
 
     def plot(self, *names: str, x: str = "t", ax: Any = None) -> Any:
         """Draws columns (all coordinates if none is named) over another one: Matplotlib's axes, or a :class:`Figure` without Matplotlib.
@@ -392,7 +419,7 @@ class Run:
             >>> axes = run.plot("theta", "phi'", x="t")
         """
         chosen: Sequence[str] = names or [name for name, column in self._columns.items() if column.kind == "coordinates"]
-        columns = [(self[name], self._columns[name]) for name in chosen]
+        columns = [(self[name], self._columns[known(name, self._columns)]) for name in chosen]
         if ax is None:
             try:
                 import matplotlib.pyplot as plt
@@ -402,7 +429,7 @@ class Run:
         over = self[x]
         for values, column in columns:
             ax.plot(over, values, label=_label(column))
-        ax.set_xlabel(_label(self._columns[x]))
+        ax.set_xlabel(_label(self._columns[known(x, self._columns)]))
         if len(columns) == 1:
             ax.set_ylabel(_label(columns[0][1]))
         else:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from . import _arrow, _core, _display
 from ._errors import ModelError
 from ._kept_sweep import KeptSweep, SweepAgain
+from ._names import ByName, known, spelled
 from ._numbers import Number, text_of, whole
 from .run import Figure
 
@@ -108,7 +109,7 @@ class Sweep(Mapping[str, "Array"]):
         self._core: _core.Sweep | KeptSweep = core
         self._reduced = [name for name in core.columns if name in reduced]
         #: The values that vary, one array for each name, shape (cases,). Scenarios come first, as ``case``, an array of texts.
-        self.varied: dict[str, npt.NDArray[Any]] = scenarios_of(core)
+        self.varied: dict[str, npt.NDArray[Any]] = ByName(scenarios_of(core))
         self.varied.update((name, core.varied(name)) for name in names if name not in self.varied)
 
     def __getstate__(self) -> dict[str, Any]:
@@ -122,9 +123,14 @@ class Sweep(Mapping[str, "Array"]):
         Raises:
             KeyError: there is no such column.
         """
-        if name not in self._core.columns:
-            raise KeyError(f"there is no column {name!r}; there are {', '.join(self._core.columns)}")
-        return self._core.column(name)
+        return self._core.column(self._own(name))
+
+    def _own(self, name: str) -> str:
+        """The column's own name. Raises KeyError if there is none."""
+        columns = self._core.columns
+        if not isinstance(name, str) or known(name, columns) not in columns:
+            raise KeyError(f"there is no column {name!r}; there are {', '.join(columns)}")
+        return known(name, columns)
 
     @property
     def units(self) -> dict[str, str]:
@@ -153,6 +159,7 @@ class Sweep(Mapping[str, "Array"]):
             >>> sweep.rows("theta").shape, sweep.times.tolist(), bool((sweep.steps > 5).all())
             ((2, 3), [0.0, 1.0, 2.0], True)
         """
+        name = self._own(name)
         if name in self._reduced:
             raise KeyError(f"{name!r} is one number for each motion: sweep[{name!r}]")
         column = self[name]
@@ -319,7 +326,7 @@ class Sweep(Mapping[str, "Array"]):
             >>> an.load("disc").sweep({"phi'": [5, 6, 7]}, to=1).figure("theta").svg[:4]
             '<svg'
         """
-        return Figure(self._core.figure(list(names), x or "", y or ""))
+        return Figure(self._core.figure([spelled(name) for name in names], spelled(x or ""), spelled(y or "")))
 
     def plot(self, *names: str, x: str | None = None, y: str | None = None, ax: Any = None) -> Any:
         """Draws what :meth:`figure` shows: Matplotlib's axes, or a :class:`Figure` without Matplotlib.

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from . import _core
 from ._case_table import names_of_table
 from ._errors import ModelError
+from ._names import known
 from ._progress import Progress
 from .run import Figure
 
@@ -31,7 +32,8 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
     ``folder["theta"]`` has one number for each case (each case and time with ``at``), in the order of the cases, NaN where the
     part of the case is missing; columns of words (``outcome``, ``event``, ``case_name``) are arrays of strings, empty there.
-    :meth:`to_dict` and the frames have the rows of the parts that are there. Each part that is read is compared with the hash in its file.
+    :meth:`to_dict` and the frames have the rows of the parts that are there. Each part that is read here is compared with the hash in
+    its file; :meth:`scan`, which hands the files to polars, compares nothing. It can be pickled: another process opens the folder again.
 
     Example:
         >>> import anholon as an, tempfile
@@ -65,6 +67,9 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
     def __init__(self, core: _core.SweepFolder) -> None:
         self._core = core
         self._computed_notes: list[str] = []
+
+    def __reduce__(self) -> tuple[Callable[[str], SweepFolder], tuple[str]]:
+        return _opened, (os.path.abspath(self.path),)
 
     @property
     def path(self) -> str:
@@ -128,6 +133,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
             KeyError: there is no such column.
             ModelError: a part was changed.
         """
+        name = known(name, self._core.columns)
         columns = self._columns(["case", name])
         return _over_all(columns["case"], columns[name], self.cases) if "case" in columns else columns[name]
 
@@ -138,6 +144,10 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
                 raise KeyError(f"there is no column {name!r}; there are {', '.join(self._core.columns)}")
         wanted = [name for name in dict.fromkeys(names) if name in self._core.columns]
         return {name: _array(column) for name, column in self._core.read(wanted)}
+
+    def _read(self, columns: Iterable[str]) -> Any:
+        own = self._core.columns
+        return self._core.read([known(name, own) for name in columns])
 
     @property
     def generations(self) -> list[int]:
@@ -157,7 +167,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
         return [name for name in names if name not in ("case", "case_name") and varies(name)]
 
-    def judge(self, *, stop: Callable[[], bool] | None = None) -> dict[str, Any]:
+    def judge(self, *, stop: Callable[[], object] | None = None) -> dict[str, Any]:
         """How far the cases can be trusted: digits to trust and residuals of some of them, which are computed once more.
 
         The folder keeps the answer, ``anholon sweep status`` tells it, and a second call reads it.
@@ -206,7 +216,8 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
         if not isinstance(conditions, Mapping):
             raise TypeError(f"conditions are given by column, as {{'outcome': 'finished', 'theta': (1, 2)}}, not as a {type(conditions).__name__}")
-        asked = [("case_name" if name == "case" and isinstance(wanted, str) else name, wanted) for name, wanted in conditions.items()]
+        own = self._core.columns
+        asked = [("case_name" if name == "case" and isinstance(wanted, str) else known(name, own), wanted) for name, wanted in conditions.items()]
         columns = self._columns(["case", *(name for name, _ in asked)])
         numbers = columns["case"]
         chosen = np.ones(numbers.shape, dtype=bool)
@@ -285,7 +296,10 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         return _sweep_plot.plot_folder(self, list(names), x, y, ax)
 
     def scan(self) -> polars.LazyFrame:
-        """A lazy frame of polars over the parts that are there: it reads the columns and rows that are asked for. Needs polars."""
+        """A lazy frame of polars over the parts that are there: it reads the columns and rows that are asked for. Needs polars.
+
+        polars reads the files: a damaged one is not compared with its hash, as it is by :meth:`to_polars`.
+        """
         import polars
 
         return polars.scan_parquet([os.path.join(self.path, f"part-{part:06}.parquet") for part in self._core.present()])
@@ -299,7 +313,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
     def to_dict(self, columns: Sequence[str] = ()) -> dict[str, npt.NDArray[Any]]:
         """Columns of the parts that are there as arrays, all of them without names; each part is read once."""
-        return {name: _array(column) for name, column in self._core.read(list(columns))}
+        return {name: _array(column) for name, column in self._read(columns)}
 
     def to_pandas(self, columns: Sequence[str] = ()) -> pandas.DataFrame:
         """A DataFrame with a row for each case; words are categories. Needs pandas."""
@@ -308,7 +322,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         def of(column: Any) -> Any:
             return pandas.Categorical.from_codes(column[1].astype("int32"), column[0]) if isinstance(column, tuple) else column
 
-        return pandas.DataFrame({name: of(column) for name, column in self._core.read(list(columns))})
+        return pandas.DataFrame({name: of(column) for name, column in self._read(columns)})
 
     def to_polars(self, columns: Sequence[str] = ()) -> polars.DataFrame:
         """The same for polars. Needs polars."""
@@ -317,7 +331,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         def of(column: Any) -> Any:
             return polars.Series(column[0], dtype=polars.String).gather(column[1]) if isinstance(column, tuple) else column
 
-        return polars.DataFrame({name: of(column) for name, column in self._core.read(list(columns))})
+        return polars.DataFrame({name: of(column) for name, column in self._read(columns)})
 
     def to_arrow(self, columns: Sequence[str] = ()) -> pyarrow.Table:
         """A table of Arrow; words are dictionaries. Needs pyarrow."""
@@ -326,7 +340,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         def of(column: Any) -> Any:
             return pyarrow.DictionaryArray.from_arrays(column[1], column[0]) if isinstance(column, tuple) else pyarrow.array(column)
 
-        return pyarrow.table({name: of(column) for name, column in self._core.read(list(columns))})
+        return pyarrow.table({name: of(column) for name, column in self._read(columns)})
 
     def fill(
         self,
@@ -334,7 +348,7 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
         on: Client | str | None = None,
         share: tuple[int, int] = (1, 1),
         threads: int = 0,
-        stop: Callable[[], bool] | None = None,
+        stop: Callable[[], object] | None = None,
         progress: Progress = None,
         refine: int = 0,
         refine_by: tuple[str, float] | None = None,
@@ -403,3 +417,7 @@ def _array(column: Any) -> npt.NDArray[Any]:
         return np.asarray(column)
     words, rows = column
     return np.array(words, dtype=object)[rows] if words else np.array([], dtype=object)
+
+
+def _opened(path: str) -> SweepFolder:
+    return SweepFolder(_core.open_sweep(path))

@@ -68,9 +68,9 @@ auto unlocked(const F& f) {
 }
 
 // Looks after a computation that runs in a thread of its own, while this thread waits for it with the interpreter's lock
-// released: every 20 ms it lets Python's signal handlers run, of which one raises KeyboardInterrupt, asks `stop` and
-// tells `progress` (functions of the user, or None). Any of them that raises ends the computation, and so does the end of
-// the process.
+// released: every 20 ms it lets Python's signal handlers run, of which one raises KeyboardInterrupt, asks `stop`, whose
+// value counts as in Python's `if`, and tells `progress` (functions of the user, or None). Any of them that raises ends
+// the computation, and so does the end of the process.
 class Attendant {
  public:
   Attendant(nb::object stop, nb::object progress) : stop_(std::move(stop)), progress_(std::move(progress)) {}
@@ -110,6 +110,7 @@ class Attendant {
       }
       computing.join();
     }
+    if (!failed) failed = failed_;
     if (failed) std::rethrow_exception(failed);
     return *std::move(value);
   }
@@ -122,6 +123,7 @@ class Attendant {
   bool process_ends() const { return !at_the_end_ && Ending::begun(); }
 
   nb::object stop_, progress_, raised_ = nb::none();
+  std::exception_ptr failed_;                // of look(), where it is no exception of Python
   const bool at_the_end_ = Ending::begun();  // the functions that are called there may compute
   std::atomic<bool> ends_{false};
   std::atomic<double> done_{0};

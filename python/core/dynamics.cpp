@@ -23,6 +23,9 @@ std::size_t states_of(const Dynamics& f, const In& x) {
 // So many states that their rates, or their derivatives and outputs, may take a tenth of a second.
 constexpr std::size_t kManyRates = 16'384, kManyDerivatives = 256;
 
+// An exception follows, and nobody sees the numbers.
+constexpr bool kNanIfStopped = false;
+
 // Calls f() without the interpreter's lock; if it is of `many` states or more, Ctrl-C ends it.
 template <class F>
 void for_states(std::size_t count, std::size_t many, const F& f) {
@@ -36,7 +39,7 @@ void rates(const Dynamics& f, double t, const In& x, const Out& out, const Some&
   if (x.size() != states * count || out.size() != x.size()) throw nb::value_error("the shapes of x and out do not fit");
   const std::span<const double> from(x.data(), x.size());
   const std::span<double> to(out.data(), out.size());
-  const Dynamics::Given given{span_of(u), span_of(p)};
+  const Dynamics::Given given{span_of(u), span_of(p), kNanIfStopped};
   if (count < kLong) return f.rates(t, from, count, to, given);
   for_states(count, kManyRates, [&] { f.rates(t, from, count, to, given); });
 }
@@ -67,7 +70,7 @@ void bind_dynamics(nb::module_& m) {
             const std::size_t count = states_of(f, x), rows = f.outputs().size();
             Doubles made;
             for_states(count, kManyDerivatives,
-                       [&] { made = f.outputs(t, span_of(x), count, {span_of(u), span_of(p)}); });
+                       [&] { made = f.outputs(t, span_of(x), count, {span_of(u), span_of(p), kNanIfStopped}); });
             return array<2>(std::move(made), {rows, count});
           },
           "t"_a, "x"_a, "u"_a.none(), "p"_a.none())
@@ -90,7 +93,8 @@ void bind_dynamics(nb::module_& m) {
             const std::size_t count = states_of(f, x);
             Dynamics::Jacobian made;
             for_states(count, kManyDerivatives, [&] {
-              made = f.jacobian(t, span_of(x), count, {span_of(u), span_of(p)}, static_cast<Dynamics::By>(by));
+              made = f.jacobian(t, span_of(x), count, {span_of(u), span_of(p), kNanIfStopped},
+                                static_cast<Dynamics::By>(by));
             });
             return array<3>(std::move(made.values), {made.rows, made.columns, count});
           },
@@ -101,7 +105,7 @@ void bind_dynamics(nb::module_& m) {
             const std::size_t count = states_of(f, x);
             Dynamics::Equations made;
             for_states(count, kManyDerivatives,
-                       [&] { made = f.equations(t, span_of(x), count, {span_of(u), span_of(p)}); });
+                       [&] { made = f.equations(t, span_of(x), count, {span_of(u), span_of(p), kNanIfStopped}); });
             const std::size_t n = made.unknowns.size();
             return std::tuple(made.unknowns, array<3>(std::move(made.matrix), {n, n, count}),
                               array<2>(std::move(made.right), {n, count}));
@@ -114,14 +118,19 @@ void bind_dynamics(nb::module_& m) {
                 [&] { return f.source(casadi ? Dynamics::Source::casadi : Dynamics::Source::formulas, name); });
           },
           "casadi"_a, "name"_a)
-      .def("from_motion", &Dynamics::from_motion, "t"_a, "q"_a, "qdot"_a, "z"_a)
+      .def(
+          "from_motion",
+          [](const Dynamics& f, double t, const Doubles& q, const Doubles& qdot, const Doubles& z, const Doubles& p) {
+            return f.from_motion(t, q, qdot, z, p);
+          },
+          "t"_a, "q"_a, "qdot"_a, "z"_a, "p"_a = Doubles())
       .def(
           "to_motion",
-          [](const Dynamics& f, double t, const Doubles& x) {
-            const Dynamics::Motion motion = f.to_motion(t, x);
+          [](const Dynamics& f, double t, const Doubles& x, const Doubles& p) {
+            const Dynamics::Motion motion = f.to_motion(t, x, p);
             return std::tuple(motion.q, motion.qdot, motion.z);
           },
-          "t"_a, "x"_a);
+          "t"_a, "x"_a, "p"_a = Doubles());
   m.def(
       "dynamics",
       [](const System& system, bool minimal, bool inputs, const std::vector<std::string>& names,

@@ -139,8 +139,11 @@ void bind_run(nb::module_& m) {
       .def(
           "at",
           [](const Run& run, const std::string& name, const View& times, int order) {
-            return array<1>(unlocked([&] { return run.at(name, {times.data(), times.size()}, order); }),
-                            {times.size()});
+            constexpr std::size_t kMany = 16'384;
+            std::vector<double> numbers;
+            const auto compute = [&] { numbers = run.at(name, {times.data(), times.size()}, order); };
+            times.size() < kMany ? unlocked(compute) : stoppable(compute);
+            return array<1>(std::move(numbers), {times.size()});
           },
           "name"_a, "times"_a, "order"_a)
       .def("text", &Run::text, "row"_a, "column"_a)
@@ -152,17 +155,19 @@ void bind_run(nb::module_& m) {
             return value_of(interruptible([=] { return page(run, PageOptions{forms, proof}); }));
           },
           "forms"_a, "proof"_a)
-      .def("picture_data", [](const Run& run) { return value_of(unlocked([&] { return picture_data(run); })); })
+      .def("picture_data", [](const Run& run) { return value_of(interruptible([=] { return picture_data(run); })); })
       .def(
           "figure",
           [](const Run& run, const std::vector<std::string>& columns, const std::string& x) {
             return value_of(unlocked([&] { return figure(run, FigureOptions{columns, x}); }));
           },
           "columns"_a, "x"_a)
-      .def("json", [](const Run& run) { return unlocked([&] { return run.json(); }); })
+      .def("json", [](const Run& run) { return interruptible([=] { return run.json(); }); })
       .def(
           "write",
-          [](const Run& run, const std::string& path) { return value_of(unlocked([&] { return run.write(path); })); },
+          [](const Run& run, const std::string& path) {
+            return value_of(interruptible([=] { return run.write(path); }));
+          },
           "path"_a);
   m.def(
       "simulate",

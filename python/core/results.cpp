@@ -94,9 +94,18 @@ void Attendant::look() {
   try {
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     if (!progress_.is_none() && count_ > 0) progress_(done_.load(), count_.load());
-    if (!stop_.is_none() && nb::cast<bool>(stop_())) ends_ = true;
+    if (!stop_.is_none()) {
+      const nb::object answer = stop_();
+      const int truth = PyObject_IsTrue(answer.ptr());  // a bool of NumPy, None, a number: what `if` takes for true
+      if (truth < 0) throw nb::python_error();
+      if (truth > 0) ends_ = true;
+    }
   } catch (nb::python_error& error) {
     raised_ = nb::borrow(error.value());
+    ends_ = true;
+  } catch (...) {
+    // It must not leave this function, as the thread that computes has to be waited for.
+    failed_ = std::current_exception();
     ends_ = true;
   }
 }

@@ -15,13 +15,13 @@ namespace anholon::v1 {
 
 constexpr std::size_t kStatesAtOnce = 64;  // that one thread takes, of outputs and derivatives
 
-// Calls f(), which computes these numbers; NaN if a StopRequest ended it.
+// Calls f(), which computes these numbers; NaN if a StopRequest ended it, and the caller wants that.
 template <class F>
-static void or_stopped(std::span<double> numbers, const F& f) {
+static void or_stopped(std::span<double> numbers, const Dynamics::Given& given, const F& f) {
   try {
     f();
   } catch (const inner::StopRequested&) {
-    std::fill(numbers.begin(), numbers.end(), std::numeric_limits<double>::quiet_NaN());
+    if (given.nan_if_stopped) std::fill(numbers.begin(), numbers.end(), std::numeric_limits<double>::quiet_NaN());
   }
 }
 
@@ -216,7 +216,7 @@ std::vector<double> Dynamics::start_inputs() const {
 
 void Dynamics::rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates,
                      const Given& given) const {
-  or_stopped(rates, [&] { data_->rates(t, x, count, rates, given); });
+  or_stopped(rates, given, [&] { data_->rates(t, x, count, rates, given); });
 }
 
 void Dynamics::Data::rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates,
@@ -253,7 +253,7 @@ std::vector<double> Dynamics::inputs(double t, const std::vector<double>& x, std
 std::vector<double> Dynamics::outputs(double t, std::span<const double> x, std::size_t count,
                                       const Given& given) const {
   std::vector<double> out(outputs().size() * count);
-  or_stopped(out, [&] {
+  or_stopped(out, given, [&] {
     data_->in_points({t, x, count, given}, true, [&](std::size_t first, std::span<const inner::FormulaPoint> points) {
       const std::vector<double> y = data_->values().outputs(points);
       const std::size_t size = y.size() / points.size();
@@ -270,7 +270,7 @@ Dynamics::Jacobian Dynamics::jacobian(double t, std::span<const double> x, std::
   const std::size_t columns = by == By::state ? f.x.size() : by == By::input ? f.u.size() : f.p.size();
   Jacobian out{f.rates.size() + f.outputs.size(), columns, {}};
   out.values.resize(out.rows * out.columns * count);
-  or_stopped(out.values, [&] {
+  or_stopped(out.values, given, [&] {
     data_->in_points({t, x, count, given}, true, [&](std::size_t first, std::span<const inner::FormulaPoint> points) {
       const auto all = data_->values().derivatives(points, static_cast<inner::FormulaValues::By>(by));
       for (std::size_t k = 0; k < all.size(); ++k)
@@ -285,7 +285,7 @@ Dynamics::Equations Dynamics::equations(double t, std::span<const double> x, std
   const std::vector<std::string>& unknowns = data_->values().formulas().lead.names;
   const std::size_t n = unknowns.size();
   Equations out{unknowns, std::vector<double>(n * n * count), std::vector<double>(n * count)};
-  or_stopped(out.right, [&] {
+  or_stopped(out.right, given, [&] {
     data_->in_points({t, x, count, given}, false, [&](std::size_t first, std::span<const inner::FormulaPoint> points) {
       const std::vector<double> values = data_->values().equations(points);
       for (std::size_t k = 0; k < points.size(); ++k) {
@@ -311,12 +311,12 @@ std::string Dynamics::source(Source kind, const std::string& name) const {
 }
 
 std::vector<double> Dynamics::from_motion(double t, const std::vector<double>& q, const std::vector<double>& qdot,
-                                          const std::vector<double>& z) const {
-  return data_->function->from_motion(t, q, qdot, z);
+                                          const std::vector<double>& z, std::span<const double> p) const {
+  return data_->function->from_motion(t, q, qdot, z, p);
 }
 
-Dynamics::Motion Dynamics::to_motion(double t, const std::vector<double>& x) const {
-  auto [q, qdot, z] = data_->function->to_motion(t, x);
+Dynamics::Motion Dynamics::to_motion(double t, const std::vector<double>& x, std::span<const double> p) const {
+  auto [q, qdot, z] = data_->function->to_motion(t, x, p);
   return {std::move(q), std::move(qdot), std::move(z)};
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "api/run_data.h"
+#include "base/stop.h"
 #include "contact/hybrid.h"
 #include "mechanics/conserved.h"
 #include "report/columns.h"
@@ -124,6 +125,17 @@ double derivative(const double* c, int order, int k, double h) {
   return sum;
 }
 
+constexpr std::size_t kTimesBetweenLooks = 4096;
+
+bool stop_requested() {
+  try {
+    inner::look_for_stop();
+    return false;
+  } catch (const inner::StopRequested&) {
+    return true;
+  }
+}
+
 }  // namespace
 
 Result<Run> simulate(const System& system, const MotionOptions& asked) {
@@ -183,7 +195,13 @@ std::string Run::text(std::size_t row, const std::string& column) const {
   return k < table.columns.size() && row < table.rows() ? table.text(row, k) : std::string();
 }
 
-std::string Run::json() const { return inner::json_run(data_->run); }
+std::string Run::json() const {
+  try {
+    return inner::json_run(data_->run);
+  } catch (const inner::StopRequested&) {
+    return {};
+  }
+}
 
 bool Run::has_dense() const { return !data_->dense.begin.empty(); }
 
@@ -196,6 +214,7 @@ std::vector<double> Run::at(const std::string& name, std::span<const double> tim
                     size = static_cast<std::size_t>(dense.order) + 1;
   const double direction = dense.end.front() < dense.begin.front() ? -1 : 1;
   for (std::size_t i = 0; i < times.size(); ++i) {
+    if (i % kTimesBetweenLooks == 0 && stop_requested()) return values;
     const double t = times[i];
     // The first step that ends at t or after it.
     const auto step =
@@ -211,8 +230,10 @@ std::vector<double> Run::at(const std::string& name, std::span<const double> tim
 Result<std::string> Run::write(const std::string& path) const {
   const inner::ResultFormat* format = inner::format_of(path);
   if (!format) return mistake("'" + path + "' names no format", "end it in " + inner::known_files(""));
-  if (const std::string why = format->write(path, data_->run); !why.empty()) return mistake(why);
-  return path;
+  return guarded(data_->system.data().model->source, [&]() -> Result<std::string> {
+    if (const std::string why = format->write(path, data_->run); !why.empty()) return mistake(why);
+    return path;
+  });
 }
 
 }  // namespace anholon::v1

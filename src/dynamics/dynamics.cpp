@@ -352,7 +352,7 @@ std::vector<double> Dynamics::leading(double t, const double* x, std::size_t cou
 }
 
 std::vector<double> Dynamics::from_motion(double t, const std::vector<double>& q, const std::vector<double>& qd,
-                                          const std::vector<double>& z) const {
+                                          const std::vector<double>& z, std::span<const double> p) const {
   std::vector<double> x = q;
   if (!map_) {
     x.insert(x.end(), qd.begin(), qd.end());
@@ -360,21 +360,21 @@ std::vector<double> Dynamics::from_motion(double t, const std::vector<double>& q
     std::vector<long double> state, own;
     for (std::size_t a = 0; a < coordinates_; ++a) state.insert(state.end(), {q[a], qd[a]});
     state.insert(state.end(), z.begin(), z.end());
-    StateReader(*map_, parameters_).own(t, state, own);
+    StateReader(*map_, parameters({{}, p}, 1, 0)).own(t, state, own);
     for (std::size_t i = coordinates_ + model_states_; i < own.size(); ++i) x.push_back(static_cast<double>(own[i]));
   }
   x.insert(x.end(), z.begin(), z.end());
   return x;
 }
 
-Dynamics::Full Dynamics::to_motion(double t, const std::vector<double>& x) const {
+Dynamics::Full Dynamics::to_motion(double t, const std::vector<double>& x, std::span<const double> p) const {
   const auto n = static_cast<std::ptrdiff_t>(values_), states = static_cast<std::ptrdiff_t>(model_states_);
   Full full{{x.begin(), x.begin() + n}, {x.begin() + n, x.end() - states}, {x.end() - states, x.end()}};
   if (!map_) return full;
   std::vector<long double> own(full.q.begin(), full.q.end()), state;
   own.insert(own.end(), full.z.begin(), full.z.end());
   own.insert(own.end(), full.qd.begin(), full.qd.end());
-  StateReader(*map_, parameters_).motion(t, own, state);
+  StateReader(*map_, parameters({{}, p}, 1, 0)).motion(t, own, state);
   full.qd.clear();
   for (std::size_t a = 0; a < coordinates_; ++a) full.qd.push_back(static_cast<double>(state[2 * a + 1]));
   return full;

@@ -64,13 +64,13 @@ class Dynamics {
   std::vector<long double> parameters(InputsAndParameters given, std::size_t count, std::size_t k) const;
 
   // Converts one state from coordinates, velocities q' with all higher derivatives of the state, and the model's states,
-  // and back.
+  // and back. p: as in InputsAndParameters, of one state.
   std::vector<double> from_motion(double t, const std::vector<double>& q, const std::vector<double>& qd,
-                                  const std::vector<double>& z) const;
+                                  const std::vector<double>& z, std::span<const double> p = {}) const;
   struct Full {
     std::vector<double> q, qd, z;
   };
-  Full to_motion(double t, const std::vector<double>& x) const;
+  Full to_motion(double t, const std::vector<double>& x, std::span<const double> p = {}) const;
 
   // The value of a symbol at the start, by which independent velocities are chosen.
   double at_start(const Node& symbol) const;

@@ -209,6 +209,10 @@ class Setter {
     settings_.*member = *times;
     std::stable_sort((settings_.*member).begin(), (settings_.*member).end(),
                      [](const WrittenTime& a, const WrittenTime& b) { return a.value < b.value; });
+    // A time that is given twice has one row, in a run as in a sweep.
+    const auto end = std::unique((settings_.*member).begin(), (settings_.*member).end(),
+                                 [](const WrittenTime& a, const WrittenTime& b) { return a.value == b.value; });
+    (settings_.*member).erase(end, (settings_.*member).end());
   }
 
  private:

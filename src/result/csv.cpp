@@ -6,6 +6,7 @@
 
 #include "base/diagnostic.h"
 #include "base/escape.h"
+#include "base/stop.h"
 #include "base/utf8.h"
 #include "numeric/number.h"
 #include "result/format.h"
@@ -164,6 +165,7 @@ bool write_table(std::FILE* file, const RunTable& table) {
     }
     line += '\n';
     if (line.size() < kBuffer) continue;
+    look_for_stop();
     if (std::fwrite(line.data(), 1, line.size(), file) != line.size()) return false;
     line.clear();
   }

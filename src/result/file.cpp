@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/hash.h"
+#include "base/stop.h"
 
 namespace anholon {
 
@@ -177,7 +178,13 @@ std::string write_whole_by_name(const std::string& path,
   const int fd = open_part(target, O_WRONLY);
   if (fd < 0) return cannot_write(path, errno);
   ::close(fd);
-  std::string why = write(beside);
+  std::string why;
+  try {
+    why = write(beside);
+  } catch (...) {  // StopRequested, or no memory
+    std::remove(beside.c_str());
+    throw;
+  }
   if (why.empty() && std::rename(beside.c_str(), target.c_str()) != 0) why = cannot_write(path, errno);
   if (!why.empty()) std::remove(beside.c_str());
   return why;
@@ -188,8 +195,14 @@ std::string write_whole(const std::string& path, const std::function<bool(std::F
     std::FILE* file = std::fopen(beside.c_str(), "w");
     if (!file) return cannot_write(path, errno);
     // Only a regular file has a disk to wait for.
-    const bool written =
-        write(file) && std::fflush(file) == 0 && (::fsync(::fileno(file)) == 0 || errno == EINVAL || errno == EROFS);
+    bool written = false;
+    try {
+      written = write(file);
+    } catch (...) {
+      std::fclose(file);
+      throw;
+    }
+    written = written && std::fflush(file) == 0 && (::fsync(::fileno(file)) == 0 || errno == EINVAL || errno == EROFS);
     const int why = errno;
     if (std::fclose(file) != 0 && written) return cannot_write(path, errno);
     return written ? std::string() : cannot_write(path, why);
@@ -197,8 +210,16 @@ std::string write_whole(const std::string& path, const std::function<bool(std::F
 }
 
 std::string write_whole(const std::string& path, const std::string& text) {
-  return write_whole(path,
-                     [&](std::FILE* file) { return std::fwrite(text.data(), 1, text.size(), file) == text.size(); });
+  return write_whole(path, [&](std::FILE* file) {
+    constexpr std::size_t kPiece = 1u << 20;
+    for (std::string_view rest = text; !rest.empty();) {
+      look_for_stop();
+      const std::string_view piece = rest.substr(0, kPiece);
+      if (std::fwrite(piece.data(), 1, piece.size(), file) != piece.size()) return false;
+      rest.remove_prefix(piece.size());
+    }
+    return true;
+  });
 }
 
 std::string write_stream(const std::string& path, const std::function<bool(std::FILE*)>& write) {

@@ -5,6 +5,7 @@
 
 #include "base/diagnostic.h"
 #include "base/json.h"
+#include "base/stop.h"
 #include "base/utf8.h"
 #include "numeric/number.h"
 #include "result/file.h"
@@ -273,7 +274,9 @@ void write_json_rows(const RunTable& table, F write) {
       append_json_number(piece, table, i, c);
     }
     piece += ']';
-    if (piece.size() >= kPiece) write(piece), piece.clear();
+    if (piece.size() < kPiece) continue;
+    look_for_stop();
+    write(piece), piece.clear();
   }
   write(piece += ']');
 }

@@ -180,8 +180,21 @@ Rational time_value(const Constant& value, const std::string& called) {
 }
 Rational pure_value(const Constant& value, const std::string& called) { return value_in({}, value, called); }
 
+// Throws if it is a state of the model, whose initial value is a formula of the file.
+static void must_be_no_state(const Model& model, const InitialName& of, const std::string& called) {
+  const auto& states = model.names.states;
+  const bool coordinate = std::find(model.names.coordinates.begin(), model.names.coordinates.end(), of.name) !=
+                          model.names.coordinates.end();
+  if (of.multiplier || coordinate || std::find(states.begin(), states.end(), of.name) == states.end()) return;
+  const std::string own = of.name + "0";
+  throw Failure({}, called + "'" + of.name + "' is a state of the model, whose initial value is given by a parameter",
+                "parameters = {" + own + " = 0} in the file, and initial = \"" + own + "\" in the state; then set " +
+                    own);
+}
+
 void give(StateChoice& choice, const Model& model, const InitialName& of, const Constant& value,
           const std::string& called) {
+  must_be_no_state(model, of, called);
   const unsigned determined = first_determined_order(model);
   const std::size_t index = of.multiplier ? place(model.names.multipliers, of.name, "constraint", called)
                                           : coordinate_of(model, of.name, called);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/stop.h"
 #include "numeric/number.h"
 #include "report/columns.h"
 #include "report/markup.h"
@@ -40,6 +41,7 @@ void reduce(PlotData& d, const std::vector<std::string>& groups, const std::vect
 void columns(JsonWriter& j, const PlotData& d, const Extent& extent) {
   j.key("columns").open_array();
   for (const PlotColumn& k : d.columns) {
+    look_for_stop();
     j.open_object()
         .key("name")
         .string(k.name)

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/stop.h"
+
 namespace anholon {
 
 namespace {
@@ -58,6 +60,7 @@ class Chooser {
     constexpr std::size_t kFurthest = 32;
     std::vector<std::size_t> rows = {0};
     for (std::size_t i = 0; i + 1 < t_.size() && rows.size() <= most;) {
+      look_for_stop();
       std::size_t j = i + 1;
       while (j + 1 < t_.size() && j + 1 - i <= kFurthest && t_[j] < t_[j + 1] && t_[i] < t_[i + 1] &&
              come_out(i, j + 1, tolerance))
@@ -114,6 +117,7 @@ std::size_t doubtful_intervals(std::span<const double> t, const std::vector<Movi
   const std::vector<Negligible> nothing = negligible(columns);
   std::vector<bool> doubtful(t.size());
   for (std::size_t n = 0; n < columns.size(); ++n) {
+    look_for_stop();
     const MovingColumn& c = columns[n];
     for (std::size_t k = 1; k + 1 < t.size(); ++k) {
       const double a = t[k] - t[k - 1], b = t[k + 1] - t[k], wide = std::max(a, b);

@@ -1,6 +1,7 @@
 // The row of HDF5 in the table of formats.
 #include <limits>
 
+#include "base/stop.h"
 #include "result/format.h"
 #include "result/hdf5/hdf5_sink.h"
 
@@ -19,6 +20,7 @@ std::string write_beside(const std::string& path, const std::string& beside, con
   block.steps = run.steps;
   if (!run.report.empty()) block.report = run.report;
   for (std::size_t i = 0; i == 0 || i < run.table.rows(); i += kBlockRows) {
+    look_for_stop();
     const std::size_t end = std::min(run.table.rows(), i + kBlockRows);
     block.add(run.table, i, end);
     if (const std::string why = extend_hdf5(beside, block); !why.empty()) return failed(why);

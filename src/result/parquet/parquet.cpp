@@ -6,6 +6,7 @@
 
 #include "base/assert.h"
 #include "base/hash.h"
+#include "base/stop.h"
 #include "result/parquet/format.h"
 #include "result/parquet/thrift.h"
 
@@ -143,7 +144,10 @@ std::string parquet_bytes(const ParquetTable& table) {
     const std::size_t to = std::min(rows, from + kGroupRows);
     begins.push_back(from);
     groups.emplace_back();
-    for (const ParquetColumn& c : table.columns) groups.back().push_back(add_column(out, c, from, to));
+    for (const ParquetColumn& c : table.columns) {
+      look_for_stop();
+      groups.back().push_back(add_column(out, c, from, to));
+    }
   }
   begins.push_back(rows);
 

@@ -1,6 +1,7 @@
 // The row of Parquet in the table of formats.
 #include <optional>
 
+#include "base/stop.h"
 #include "result/file.h"
 #include "result/format.h"
 #include "result/parquet/parquet_sweep.h"
@@ -20,6 +21,7 @@ ParquetTable table_of(const RunFile& run) {
   ParquetTable out;
   const RunTable& t = run.table;
   for (std::size_t c = 0; c < t.columns.size(); ++c) {
+    look_for_stop();
     if (t.texts[c].empty()) {
       out.columns.push_back({t.columns[c], std::vector<double>(t.values[c].begin(), t.values[c].end())});
       continue;
