@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 
+#include "numeric/relative.h"
 #include "setup/scenario.h"
 
 namespace anholon {
@@ -39,18 +40,23 @@ class OutputTape {
     machine_.evaluate();
     sizes_.clear();
   }
-  // The same where leading derivatives are no smaller than the terms of the equations make them, and the derivatives
-  // below no smaller than what that leads to within the time: for sizes, where all accelerations are round-off.
+  // The same with each leading derivative that is round-off of the terms of the equations as large as these terms, and with
+  // the derivative below it as large as that makes it within the time: what outputs are made of where accelerations are
+  // round-off.
   void evaluate_moved(const Expansion<N>& point, const N& elapsed) {
     evaluate(point);
+    bool moved = false;
     for (const InputPlace& in : places_) {
       if (!in.variable) continue;
-      const int below = point.program().d[*in.variable] - in.order;
+      const int d = point.program().d[*in.variable], below = d - in.order;
       if (below != 0 && below != 1) continue;
+      const N leading = point.size_of_leading(*in.variable);
+      if (abs(point.derivative(*in.variable, d)) > unit_roundoff<N>() * N(kRoundoffsOfSum) * leading) continue;
       N& x = machine_.series(in.slot)[0];
-      const N leading = point.size_of_leading(*in.variable), size = below == 0 ? leading : N(leading * elapsed);
-      if (abs(x) < size) x = x < N(0) ? N(-size) : size;
+      const N size = below == 0 ? leading : N(leading * elapsed);
+      if (abs(x) < size) x = x < N(0) ? N(-size) : size, moved = true;
     }
+    if (!moved) return;
     machine_.evaluate();
     sizes_.clear();
   }
