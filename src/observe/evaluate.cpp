@@ -126,8 +126,8 @@ class StateWriter {
               int digits, StateReport& report)
       : s_(s), e_(e), n_(s.mechanics->q.size()), point_(point), digits_(digits), out_(s, e.all, parameters),
         r_(report) {
-    out_.evaluate_moved(point, N(0));
-    moved_law_ = greatest_made_of(law()), moved_power_ = greatest_made_of(power());
+    if (out_.evaluate_moved(point, N(0)))
+      moved_law_ = greatest_made_of(law()), moved_power_ = greatest_made_of(power());
     out_.evaluate(point);
   }
 

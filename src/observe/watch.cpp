@@ -182,9 +182,10 @@ void Watch<W>::newton(const NewtonResidual<W>& c, SimulationReport& report) {
 
 template <Number W>
 void Watch<W>::see_moved(const Expansion<W>& point) {
-  outputs_.evaluate_moved(point, abs(W(point.time() - start_)));
-  moved_forces_ = made_of_forces();
+  moved_forces_ = W(0);
   moved_.assign(tracks_.size(), W(0));
+  if (!outputs_.evaluate_moved(point, abs(W(point.time() - start_)))) return;
+  moved_forces_ = made_of_forces();
   std::size_t at = first_monitor_;
   for (std::size_t i = 0; i < tracks_.size(); ++i)
     for (std::size_t k = 0; k < terms_[i]; ++k, ++at)

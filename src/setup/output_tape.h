@@ -42,23 +42,24 @@ class OutputTape {
   }
   // The same with each leading derivative that is round-off of the terms of the equations as large as these terms, and with
   // the derivative below it as large as that makes it within the time: what outputs are made of where accelerations are
-  // round-off.
-  void evaluate_moved(const Expansion<N>& point, const N& elapsed) {
-    evaluate(point);
-    bool moved = false;
+  // round-off. Returns false, and evaluates nothing, if none of these is larger than it is in the point.
+  bool evaluate_moved(const Expansion<N>& point, const N& elapsed) {
+    std::vector<std::pair<std::uint32_t, N>> moved;
     for (const InputPlace& in : places_) {
       if (!in.variable) continue;
       const int d = point.program().d[*in.variable], below = d - in.order;
       if (below != 0 && below != 1) continue;
       const N leading = point.size_of_leading(*in.variable);
       if (abs(point.derivative(*in.variable, d)) > unit_roundoff<N>() * N(kRoundoffsOfSum) * leading) continue;
-      N& x = machine_.series(in.slot)[0];
-      const N size = below == 0 ? leading : N(leading * elapsed);
-      if (abs(x) < size) x = x < N(0) ? N(-size) : size, moved = true;
+      const N x = point.derivative(*in.variable, in.order), size = below == 0 ? leading : N(leading * elapsed);
+      if (abs(x) < size) moved.push_back({in.slot, x < N(0) ? N(-size) : size});
     }
-    if (!moved) return;
+    if (moved.empty()) return false;
+    evaluate(point);
+    for (const auto& [slot, x] : moved) machine_.series(slot)[0] = x;
     machine_.evaluate();
     sizes_.clear();
+    return true;
   }
   // By the rule of tape/bind.h.
   template <class Rule>

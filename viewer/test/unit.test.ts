@@ -333,7 +333,7 @@ test('a page of one row is at its time', () => {
 });
 
 test('a long chain has an extent', () => {
-  const items = range(1000, (k) => ({ name: `p${k}`, kind: 'point', position: [0, 0, 0] })) as Item[];
+  const items = Array.from({ length: 1000 }, (_, k) => ({ name: `p${k}`, kind: 'point', position: [0, 0, 0] })) as unknown as Item[];
   const model = {
     items, sample_times: () => range(300, (k) => k), in_frame: (_frame: string, _time: number, v: Vector) => v,
     pose: () => items.map((item, k) => ({ name: item.name, kind: item.kind, axes: null, position: [k, -k, 0] as Vector })),
