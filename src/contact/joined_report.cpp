@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 
 #include "motion/stiff_method.h"
 #include "observe/floors/supports.h"
@@ -150,8 +151,12 @@ void JoinedReport::by_bdf(double t, SimulationReport r) {
 }
 
 void JoinedReport::set(double t, const std::vector<EventReport::Change>& changes, const std::string& without_event) {
-  const auto hit = std::find_if(all_.events.rbegin(), all_.events.rend(),
-                                [&](const EventReport& e) { return e.t.value == t && e.changes.empty(); });
+  const auto last = [&](const std::function<bool(const EventReport&)>& is) {
+    return std::find_if(all_.events.rbegin(), all_.events.rend(),
+                        [&](const EventReport& e) { return e.t.value == t && e.changes.empty() && is(e); });
+  };
+  auto hit = last([&](const EventReport& e) { return e.name == without_event; });
+  if (hit == all_.events.rend()) hit = last([](const EventReport&) { return true; });
   if (hit != all_.events.rend())
     hit->changes = changes;
   else

@@ -34,6 +34,7 @@ class ReferenceExpander {
   void begin(MotionTrack<N>& track, const std::vector<W>& guess, bool again);
   static constexpr void expand_kernel() {}
   static constexpr bool end_by_kernel(MotionTrack<N>&) { return false; }
+  static constexpr double drift_of_kernel() { return 0; }
   static constexpr void refuse_kernel(MotionTrack<N>&) {}
   Outcome prepare(MotionTrack<N>& track, const std::vector<W>& guess);
   Outcome solve(MotionTrack<N>& track, const std::vector<W>& guess) {
@@ -109,6 +110,7 @@ class GuardedExpander {
     if (awaits_kernel_) kernel_->expand();
   }
   bool end_by_kernel(MotionTrack<double>& track);
+  double drift_of_kernel() const { return kernel_->drift(); }
   // The reference is to make the expansion instead of the kernel, which has made it.
   void refuse_kernel(MotionTrack<double>& track) {
     kernel_->take_back_as_begun(track);

@@ -52,6 +52,8 @@ class KernelExpansion {
   double least_health() const { return least_health_; }
   // Whether no function hides in a step over h what its series do not show.
   bool hides_nothing_over(double h) const;
+  // How far the state of the present expansion was from the constraints before it was projected, relative to its size.
+  double drift() const { return kernel_->drift(lane_); }
   // Whether J may have been singular since the last expansion, by the pivots.
   bool suspected() const { return suspected_; }
   void forget_suspicion() { suspected_ = false; }

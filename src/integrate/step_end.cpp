@@ -65,6 +65,7 @@ void StepEnd<N>::restart() {
   others_.give_up = false;
   others_.shortened = 0;
   in_a_row_ = {};
+  turns_ = {};
   at_kink_ = false;
   finish();
 }
@@ -193,6 +194,7 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
     refused = true;
   }
   at_kink_ = kink.at_start || kink.ahead;
+  if (at_kink_) note_passing(step.series().machine(), kink, forward);
   if (are_too_many(kink, where, past, whole)) {
     others_.give_up = true;
     h = asked;
@@ -278,22 +280,59 @@ Outcome StepEnd<N>::note_kink(bool at_start, const W& where, const W& past) {
           "as tanh(x/0.01) for sign(x)"};
 }
 
-// A projection onto a constraint that turns at a kink takes velocity away, as an impulse would that no equation holds. A motion
-// that the constraint sends back does not pass the kink.
 template <Number N>
-Outcome StepEnd<N>::pass_turn(const MissedConstraint<N>& missed, Outcome solved) {
-  constexpr double kTurned = 1e-6;
-  constexpr int kMost = 3;
-  const bool turned = at_kink_ && missed.by > N(kTurned);
-  in_a_row_.turns = turned && in_a_row_.met_again > 0 ? in_a_row_.turns + 1 : 0;
-  if (!turned || (solved.ok() && in_a_row_.turns < kMost)) return solved;
-  const std::string name = "constraint '" + program_->system->equation_names[missed.equation] + "'";
-  return {OutcomeKind::step_collapse,
-          "the motion stays at a kink of the " + name +
-              ": the velocities before the kink miss it after the kink, and no equation holds the impulse that changes "
-              "them",
-          "let an event at the kink set the velocities, or put a smooth function in its place, such as sqrt(x^2 + "
-          "0.01^2) for abs(x)"};
+void StepEnd<N>::note_passing(const Machine<N>& machine, const Kink<N>& kink, bool forward) {
+  turns_.forward = forward;
+  turns_.passed.clear();
+  for (const std::uint32_t slot : kink.slots_at_start)
+    turns_.passed.push_back({slot, machine.series(slot)[0], machine.series(slot)[1]});
+  if (!kink.ahead || !kink.slot) return;
+  const N* c = machine.series(*kink.slot);
+  N rate(0);
+  for (int k = order_ - 1; k >= 1; --k) rate = rate * kink.where + c[k] * N(k);
+  turns_.passed.push_back({*kink.slot, kink.passes, rate});
+}
+
+// Whether a projection has put the state back to where it was before the kink.
+template <Number N>
+bool StepEnd<N>::put_back(const Machine<N>& machine) const {
+  return std::any_of(turns_.passed.begin(), turns_.passed.end(), [&](const Passing& p) {
+    const N past = machine.series(p.slot)[0] - p.value;
+    return turns_.forward ? past * p.rate < N(0) : past * p.rate > N(0);
+  });
+}
+
+template <Number N>
+Outcome StepEnd<N>::stays_at_constraint(std::size_t equation) const {
+  return {
+      OutcomeKind::step_collapse,
+      "the motion stays at a kink of the constraint '" + program_->system->equation_names[equation] +
+          "': the velocities before the kink miss it after the kink, and no equation holds the impulse that changes "
+          "them",
+      "put a smooth function in its place, such as sqrt(x^2 + 0.01^2) for abs(x), or let an event with stop = true end "
+      "the motion at the kink"};
+}
+
+// A projection onto a constraint that turns at a kink takes velocity away, as an impulse would that no equation holds. The
+// motion passes the kink if what decides there goes on in its direction. At the kink itself the constraint has no slope.
+template <Number N>
+Outcome StepEnd<N>::pass_turn(const MissedConstraint<N>& missed, const Machine<N>& machine, const W& t, Outcome made) {
+  constexpr double kStays = 1e-9, kSoon = 1e-9;
+  constexpr int kMostSoon = 10, kMostPutBack = 3;
+  if (!at_kink_ || made.kind == OutcomeKind::not_a_number) return made;
+  turns_.put_back = missed.by > N(0) && put_back(machine) ? turns_.put_back + 1 : 0;
+  if (turns_.put_back > kMostPutBack) return stays_at_constraint(missed.equation);
+  if (!(missed.by > N(kTurned))) return made;
+  const W since = turns_.last ? W(abs(W(t - *turns_.last))) : W(0);
+  turns_.soon = turns_.last && since < turns_.longest * W(kSoon) ? turns_.soon + 1 : 0;
+  turns_.longest = std::max(turns_.longest, since);
+  turns_.last = t;
+  const auto stays = [&](const Passing& p) {
+    const N* now = machine.series(p.slot);
+    return now[0] == p.value || !(now[1] * p.rate > N(kStays) * p.rate * p.rate);
+  };
+  const bool passes = turns_.soon < kMostSoon && std::none_of(turns_.passed.begin(), turns_.passed.end(), stays);
+  return made.ok() && passes ? made : stays_at_constraint(missed.equation);
 }
 
 template <Number N>

@@ -37,9 +37,13 @@ class StepEnd {
   // The length that a look at the end has left of the horizon.
   W horizon(const N& of_series) const { return limit_ > W(0) ? limit_ : convert<W>(of_series); }
 
-  // After a step the next expansion is solved, with this outcome, or is not. Not ok either where the motion stays at a kink at
-  // which a constraint turns by more than the velocities can follow.
-  Outcome pass_turn(const MissedConstraint<N>& missed, Outcome solved);
+  // The step ended at a kink.
+  bool at_kink() const { return at_kink_; }
+  // A constraint that is missed by a larger part after a kink turns there.
+  static constexpr double kTurned = 1e-6;
+  // After a step the next expansion is made at t, with this outcome, or is not. Not ok either where the motion does not pass
+  // the kink at which the step ended, as a constraint turns there, or passes such kinks sooner and sooner.
+  Outcome pass_turn(const MissedConstraint<N>& missed, const Machine<N>& machine, const W& t, Outcome made);
   // Shortens a step over h to what the equations hold for, and to its first kink. `whole`: what it would be without an
   // end. Not ok where the motion stays at a kink.
   Outcome shorten(PresentStep<N>& step, const EventWatch<N>& events, W& h, const W& whole);
@@ -73,11 +77,24 @@ class StepEnd {
     bool give_up = false;
     int shortened = 0;  // steps in a row that their kinks have made much shorter
   };
+  // What decides at a kink: its value there, and its rate before.
+  struct Passing {
+    std::uint32_t slot;
+    N value, rate;
+  };
+  // Kinks at which constraints turn: what decides at the last one; when one was passed, the longest time between two, and how
+  // many in a row were passed after a far shorter one; and how many expansions in a row were put back before the kink.
+  struct Turns {
+    std::vector<Passing> passed;
+    std::optional<W> last = {};
+    W longest{0};
+    int soon = 0, put_back = 0;
+    bool forward = true;
+  };
   // Numbers of steps in a row.
   struct InARow {
     int short_kinks = 0;  // that were cut by a kink shortly after their start
     int met_again = 0;    // that were cut by a kink at their start or shortly after it
-    int turns = 0;        // that begin at a kink after which a constraint is missed
   };
   struct Hidden {
     std::uint32_t slot;
@@ -87,6 +104,9 @@ class StepEnd {
   // Where a step ends that meets the kink; `past`: what makes sure that it is past one.
   W beyond(PresentStep<N>& step, const EventWatch<N>& events, const Kink<N>& kink, const W& where, const W& past,
            bool forward) const;
+  void note_passing(const Machine<N>& machine, const Kink<N>& kink, bool forward);
+  bool put_back(const Machine<N>& machine) const;
+  Outcome stays_at_constraint(std::size_t equation) const;
   Outcome note_kink(bool at_start, const W& where, const W& past);
   bool are_too_many(const Kink<N>& kink, const W& where, const W& past, const W& whole);
   bool may_end_at(PresentStep<N>& step, const EventWatch<N>& events, const W& h);
@@ -109,7 +129,8 @@ class StepEnd {
   W aimed_{0};            // the time where the step ends
   bool arrives_ = false;  // where the caller has set the end
   bool at_kink_ = false;  // it ends past a kink
-  W limit_{0};            // of its length, where a look at its end has shortened it; else 0
+  Turns turns_;
+  W limit_{0};   // of its length, where a look at its end has shortened it; else 0
   W looked_{0};  // how far the equations are looked at: to its end, or shortly before a kink; 0 where they are not
   W sent_{0};    // how far the kernel was sent to look
   std::size_t kinks_ = 0, kinks_before_ = 0;

@@ -152,6 +152,11 @@ bool Stepper<N>::end_expansion() {
 template <Number N>
 bool Stepper<N>::end_by_kernel() {
   if (!expander_.end_by_kernel(track_)) return false;
+  if (end_.at_kink() &&
+      expander_.drift_of_kernel() > StepEnd<N>::kTurned) {  // the reference tells whether it is passed
+    expander_.refuse_kernel(track_);
+    return false;
+  }
   one_sided_.reset();
   read_events();
   if (!events_.have_series()) {
@@ -178,9 +183,10 @@ template <Number N>
 Outcome Stepper<N>::expand_regularly(const std::vector<W>& guess) {
   if (Outcome o = expander_.prepare(track_, guess); !o.ok()) return o;
   if (Outcome o = guard_.check(expander_.series(), time(), record()); !o.ok()) return o;
-  Outcome solved = expander_.solve(track_, guess);
-  if (solved = end_.pass_turn(expander_.missed(), std::move(solved)); !solved.ok()) return solved;
-  if (Outcome o = expander_.extend(); !o.ok()) return o;
+  Outcome made = expander_.solve(track_, guess);
+  if (made.ok()) made = expander_.extend();
+  made = end_.pass_turn(expander_.missed(), expander_.series().machine(), time(), std::move(made));
+  if (!made.ok()) return made;
   horizon_ = expander_.reach();
   limit_by_kinks();
   read_events();

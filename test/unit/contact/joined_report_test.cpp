@@ -28,5 +28,19 @@ TEST(JoinedReport, EventsOfOneInstantAreListedByCause) {
   EXPECT_EQ(names(joined.report({}, 5, 0)), wanted);
 }
 
+TEST(JoinedReport, AnImpactIsToldWithItsOwnEvent) {
+  Model model;
+  std::vector<Contact> contacts(2);
+  contacts[0].name = "b", contacts[1].name = "a";
+  JoinedReport joined(model, contacts);
+  joined.event("b.hits", 1);
+  joined.event("a.sticks", 1);
+  joined.set(1, {{"z'", {-10, ""}, {0, ""}}}, "b.hits");
+  const SimulationReport r = joined.report({}, 2, 0);
+  ASSERT_EQ(names(r), (std::vector<std::string>{"b.hits", "a.sticks"}));
+  EXPECT_EQ(r.events[0].changes.size(), 1U);
+  EXPECT_TRUE(r.events[1].changes.empty());
+}
+
 }  // namespace joined_report_test
 }  // namespace anholon
