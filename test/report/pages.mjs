@@ -206,9 +206,12 @@ await test('the modes of a contact are bands under the plots', async () => {
       const scale = canvas.width / canvas.getBoundingClientRect().width, box = canvas.getBoundingClientRect(), o = over.getBoundingClientRect();
       const y = Math.round((o.bottom - box.top - 3) * scale), found = {};
       const line = canvas.getContext('2d').getImageData(Math.round((o.left - box.left) * scale), y, Math.round(o.width * scale), 1).data;
-      for (let k = 0; k < line.length; k += 4) if (line[k + 3] === 255) { const c = `rgb(${line[k]}, ${line[k + 1]}, ${line[k + 2]})`; found[c] = (found[c] ?? 0) + 4 / line.length; }
+      for (let k = 0; k < line.length; k += 4) if (line[k + 3] === 255) (found[`rgb(${line[k]}, ${line[k + 1]}, ${line[k + 2]})`] ??= []).push(k / 4);
+      // The parts of a dashed band with the gaps between its dashes.
+      const part = (at, gap) => at.reduce((sum, x, i) => sum + (i > 0 && x - at[i - 1] <= gap ? x - at[i - 1] : 1), 0) / (line.length / 4);
       const style = (name) => { const e = document.createElement('i'); e.style.color = `var(--${name})`; document.body.append(e); const c = getComputedStyle(e).color; e.remove(); return c; };
-      return { slips: found[style('c1')] ?? 0, sticks: found[style('c2')] ?? 0 };
+      const slips = found[style('c1')] ?? [], sticks = found[style('c2')] ?? [], gap = Math.ceil(6 * scale);
+      return { slips: part(slips, gap), dashes: part(slips, 1), sticks: part(sticks, 1) };
     });
     const key = await page.locator('.bands-key').allInnerTexts();
     if (model === 'disc') {
@@ -218,6 +221,7 @@ await test('the modes of a contact are bands under the plots', async () => {
       // It slips from 0.327 to 1.112, from 1.357 to 2.142 and from 2.387 on, of 3 seconds.
       assert.ok(Math.abs(colors.slips - (0.785 + 0.785 + 0.613) / 3) < 0.02, JSON.stringify(colors));
       assert.ok(Math.abs(colors.sticks - (0.327 + 0.245 + 0.245) / 3) < 0.02, JSON.stringify(colors));
+      assert.ok(colors.dashes < 0.7 * colors.slips, 'the two modes differ by more than their colours');
     }
     assert.deepEqual(faults, []);
     await page.close();
