@@ -346,7 +346,8 @@ class Model(Analysed):
         if isinstance(columns, str) or isinstance(reduce, str):
             raise TypeError('columns and reduce are lists of names: ["theta"]')
         end, relative = (None if number is None else text_of(number) for number in (to, tolerance))
-        words: Words = (values, laws, cases, seed, draw, together, end, relative, list_of(at), [spelled(str(name)) for name in columns], [spelled(str(formula)) for formula in reduce], table)
+        own_columns, reductions = ([spelled(str(name)) for name in names] for names in (columns, reduce))
+        words: Words = (values, laws, cases, seed, draw, together, end, relative, list_of(at), own_columns, reductions, table)
         if out is not None:
             return SweepRequest(self, form, texts_of(initial), words).fill(
                 os.fspath(out), chunk or 0, on=on, share=share, threads=threads, stop=stop, progress=progress, refine=refine, refine_by=refine_by
@@ -358,7 +359,7 @@ class Model(Analysed):
         again = SweepAgain(self, form, texts_of(initial), words, scenarios)
         with Shown(progress, self.title, count, unit="cases") as tell:
             core, raised = again.run(threads, stop, tell)
-        sweep = Sweep(core, [*vary, *core.varied_names[len(vary) - scenarios :]], words[10], again)
+        sweep = Sweep(core, [*vary, *core.varied_names[len(vary) - scenarios :]], reductions, again)
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted(sweep) from None
         if isinstance(raised, BaseException):

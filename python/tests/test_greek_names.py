@@ -70,3 +70,13 @@ def test_parameters_with_greek_letters() -> None:
         f(0, [0.4, 1], p={"μ": 3, "mu": 3})
     assert model.stability("μ", 1, 2, 3).parameter == "mu"
     assert model.sweep({"μ": [1, 2]}, to=1).varied["μ"].tolist() == [1, 2]
+
+
+def test_letters_are_spelled_as_in_the_language() -> None:
+    from anholon._names import _SPELLED, spelled
+
+    letters = [chr(code) for code in _SPELLED if chr(code).isalpha()]
+    assert len(letters) > 30
+    for letter in letters:
+        model = an.loads(f'coordinates = ["{letter}1"]\nparticle = [{{name = "P", mass = 1, position = "{letter}1*ex"}}]\n')
+        assert [c.name for c in model.coordinates] == [spelled(letter + "1")], letter

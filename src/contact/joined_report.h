@@ -12,8 +12,8 @@ class JoinedReport {
   bool add(const SimulationReport& segment, const std::map<std::string, ModeEvent>& contacts);
   // A segment by BDF that begins at t.
   void by_bdf(double t, SimulationReport segment);
-  // Velocities that an impact has set, told with the event of this name, or else with the last one of that instant; an impact at the start has none, and becomes one
-  // of this name.
+  // Velocities that an impact has set, told with the event of this name, or else with the last one of that instant; an
+  // impact at the start has none, and becomes one of this name.
   void set(double t, const std::vector<EventReport::Change>& changes, const std::string& without_event);
   void event(const std::string& name, double t);
   // Whether the last event of this name is at that time; and one that is told unless it is.

@@ -181,11 +181,12 @@ class StateWriter {
     phi.data = values(e_.phi);
     const NewtonResidual<N> c = certify(values(e_.inertia.at), force, values(e_.reaction.at), phi);
     const auto of_law = [&](const N& miss) {
-      return relative_miss(miss, c.largest, [&] { return behind(miss, law(), moved_law_); });
+      return relative_miss(miss, c.largest, [&] { return size_behind(miss, greatest_made_of(law()), moved_law_); });
     };
     const N dh = out_[e_.dh_dt.first], rate = out_[e_.noncons.first] + out_[e_.constraint.first];
-    const N power_miss = relative_miss(N(dh - rate), std::max(N(abs(dh)), N(abs(rate))),
-                                       [&] { return behind(N(dh - rate), power(), moved_power_); });
+    const N power_miss = relative_miss(N(dh - rate), std::max(N(abs(dh)), N(abs(rate))), [&] {
+      return size_behind(N(dh - rate), greatest_made_of(power()), moved_power_);
+    });
     const auto small = [](const N& x) { return number_text(to_double(x), 3); };
     r_.residuals = {{"newton", small(of_law(c.newton))},
                     {"projected", small(of_law(c.projected))},
@@ -206,11 +207,6 @@ class StateWriter {
   }
   Block law() const { return {0, e_.reaction.at.first + n_}; }
   Block power() const { return {e_.numbers.front().at.first, e_.numbers.size()}; }
-  // The numbers behind the terms, or those with which accelerations may be round-off, if the first do not explain the miss.
-  N behind(const N& miss, const Block& of, const N& moved) const {
-    const N made = greatest_made_of(of);
-    return abs(miss) <= unit_roundoff<N>() * N(kRoundoffsOfSum) * made || !(moved > made) ? made : moved;
-  }
   N greatest_made_of(const Block& of) const {
     N most(0);
     for (std::size_t i = of.first; i < of.first + of.count; ++i)

@@ -62,13 +62,6 @@ bool declared_conserved(const Model& model, const Monitor& m) {
   });
 }
 
-// The numbers behind the terms, or those with which accelerations may be round-off, if the first do not explain the miss.
-template <Number W>
-static W size_behind(const W& miss, const W& made_of, const W& moved) {
-  const bool explained = abs(miss) <= unit_roundoff<W>() * W(kRoundoffsOfSum) * made_of;
-  return explained || !(moved > made_of) ? made_of : moved;
-}
-
 template <Number W>
 void Track<W>::see(const W& value) {
   if (!any) first = least = greatest = value;

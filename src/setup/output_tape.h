@@ -10,6 +10,14 @@ namespace anholon {
 template <Number N>
 class LeastMultipliers;
 
+// The size with which a miss is compared: that of the numbers behind its terms; or, if their round-off does not explain it,
+// `moved`, the size of these numbers by OutputTape::evaluate_moved.
+template <Number N>
+N size_behind(const N& miss, const N& made_of, const N& moved) {
+  const bool explained = abs(miss) <= unit_roundoff<N>() * N(kRoundoffsOfSum) * made_of;
+  return explained || !(moved > made_of) ? made_of : moved;
+}
+
 // Expressions evaluated at a point of the motion. evaluate() reads no graph, so that one thread may evaluate while
 // another builds expressions. Where constraints are redundant multipliers are the least ones with the same forces; if
 // multipliers belong to the state, those of constraints that are left out are zero.

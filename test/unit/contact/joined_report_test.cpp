@@ -12,10 +12,15 @@ std::vector<std::string> names(const SimulationReport& r) {
   return list;
 }
 
+std::vector<Contact> named(const char* first, const char* second) {
+  std::vector<Contact> contacts(2);
+  contacts[0].name = first, contacts[1].name = second;
+  return contacts;
+}
+
 TEST(JoinedReport, EventsOfOneInstantAreListedByCause) {
   Model model;
-  std::vector<Contact> contacts(2);
-  contacts[0].name = "floor", contacts[1].name = "floor.rolling";
+  const std::vector<Contact> contacts = named("floor", "floor.rolling");
   JoinedReport joined(model, contacts);
   joined.event("floor.rests", 1);
   joined.event("floor.sticks", 2);
@@ -30,8 +35,7 @@ TEST(JoinedReport, EventsOfOneInstantAreListedByCause) {
 
 TEST(JoinedReport, AnImpactIsToldWithItsOwnEvent) {
   Model model;
-  std::vector<Contact> contacts(2);
-  contacts[0].name = "b", contacts[1].name = "a";
+  const std::vector<Contact> contacts = named("b", "a");
   JoinedReport joined(model, contacts);
   joined.event("b.hits", 1);
   joined.event("a.sticks", 1);
