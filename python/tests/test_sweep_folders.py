@@ -199,7 +199,7 @@ def test_a_grid_has_the_cases_of_its_list(tmp_path: pathlib.Path, disc: an.Model
     listed = disc.sweep(exact, to=1, out=tmp_path / "list", refine=1, refine_by=("theta", 0.5))
     assert memory.cases == 117 and np.array_equal(memory["theta"], folder["theta"][:117])
     assert folder.generations == listed.generations and np.array_equal(folder["theta"], listed["theta"])
-    with pytest.raises(an.ModelError, match="a grid has between 2 and 1000000000 points"):
+    with pytest.raises(an.ModelError, match="a range has between 2 and 1000000000 values"):
         disc.sweep({"phi'": an.grid(1, 7, 1)}, to=1)
 
 

@@ -111,7 +111,7 @@ Result<Stability> stability(const Model& model, const std::string& parameter, co
                             const LinearOptions& options) {
   return guarded(model.data().source, [&]() -> Result<Stability> {
     inner::LinearRequest request = request_of(model, options);
-    inner::ParameterRange range{inner::parameter_of(*model.data().model, parameter, ""), {}};
+    inner::ParameterRange range{inner::parameter_of(*model.data().model, parameter), {}};
     inner::GivenQuantity of = inner::GivenQuantity::of_parameter(*model.data().model, range.parameter);
     for (const Number& v : values) {
       const inner::Constant value = constant(v, parameter);

@@ -69,6 +69,10 @@ static std::pair<std::string, std::string> assignment(const std::string& text, c
   return {normal_name(text.substr(0, equals)), text.substr(equals + 1)};
 }
 
+void refuse(const MistakeInWord& m, const char* option) {
+  throw UsageError{print(m.diagnostic, SourceText{m.file.empty() ? option : m.file, m.word})};
+}
+
 Reader read(const ModelCommand& o) { return read(o, model_text(o.model)); }
 
 Reader read(const ModelCommand& o, SourceText source) {

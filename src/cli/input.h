@@ -10,6 +10,7 @@
 #include "modelfile/text/shipped.h"
 #include "proof/prove.h"
 #include "setup/scenario.h"
+#include "setup/words/mistake_in_word.h"
 #include "simulation/request.h"
 
 namespace anholon::cli {
@@ -18,6 +19,9 @@ namespace anholon::cli {
 struct UsageError {
   std::string text;
 };
+
+// Shows the place of the mistake in the word that the option has, or in the file from which it is. Throws UsageError.
+[[noreturn]] void refuse(const MistakeInWord& m, const char* option);
 
 struct Reader {
   std::shared_ptr<const Model> model;

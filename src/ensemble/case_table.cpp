@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ensemble/mistake_in_word.h"
+#include "setup/words/mistake_in_word.h"
 #include "result/parquet/table_text.h"
 #include "result/table.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "contact/mode_model.h"
-#include "ensemble/mistake_in_word.h"
+#include "setup/words/mistake_in_word.h"
 #include "formula/formula.h"
 #include "integrate/motion_state.h"
 #include "integrate/series/sign_change.h"

@@ -7,6 +7,7 @@
 #include "modelfile/names/constant.h"
 #include "numeric/random/philox.h"
 #include "numeric/random/sobol.h"
+#include "setup/words/mistake_in_word.h"
 
 namespace anholon {
 
@@ -14,87 +15,8 @@ namespace {
 
 constexpr std::size_t kMostPoints = 1'000'000'000;  // of one grid; 2^30 places between two of them have numbers
 
-// A part of the word, with its place.
-struct Part {
-  std::size_t at;
-  std::string text;
-};
-
-// Separators within brackets belong to a part.
-std::vector<Part> parts(const std::string& word, std::size_t from, std::size_t to, char separator) {
-  std::vector<Part> list;
-  std::size_t begin = from;
-  int depth = 0;
-  for (std::size_t at = from; at <= to; ++at) {
-    if (at < to && (word[at] == '(' || word[at] == '[')) ++depth;
-    if (at < to && (word[at] == ')' || word[at] == ']')) --depth;
-    if (at < to && (word[at] != separator || depth > 0)) continue;
-    list.push_back({begin, word.substr(begin, at - begin)});
-    begin = at + 1;
-  }
-  return list;
-}
-
 constexpr const char* kVaryHint =
     "--vary m=1:3:5 (from, to, how many), m=1..3:0.5 (step), m=1,2,5, 'm~normal(1,0.1)' or 'm~uniform(0,2)'";
-
-// A number, a formula of numbers and pi, or a number with a unit.
-Constant constant_in(const std::string& word, const Part& p) {
-  try {
-    return read_constant(p.text);
-  } catch (const Failure& f) {
-    const std::string& why = f.diagnostic.message;
-    mistake_in(word, p.at, p.text.size(),
-               "'" + p.text + "' is not a number" + (why.rfind("'" + p.text, 0) == 0 ? "" : ": " + why), kVaryHint);
-  }
-}
-
-// The part without blanks around it.
-Part without_blanks(const std::string& word, const Part& p) {
-  std::size_t skip = 0;
-  while (skip < p.text.size() && p.text[skip] == ' ') ++skip;
-  std::string text = p.text.substr(skip);
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  if (text.empty()) mistake_in(word, p.at + skip, 1, "a number is missing here", kVaryHint);
-  return {p.at + skip, std::move(text)};
-}
-
-Rational number(const std::string& word, const Part& part) {
-  return constant_in(word, without_blanks(word, part)).value;
-}
-
-// The same; a unit must be that of the varied quantity.
-Rational number(const std::string& word, const Part& part, GivenQuantity& of) {
-  const Part p = without_blanks(word, part);
-  const Constant c = constant_in(word, p);
-  if (const auto wrong = of.misfit(c)) mistake_in(word, p.at, p.text.size(), wrong->message, wrong->hint(""));
-  return c.value;
-}
-
-struct Stepped {
-  Rational from, to;
-  std::size_t points;
-};
-
-// A grid, NAME=FROM..TO:STEP; its last point is TO or the last one before it.
-Stepped stepped(const std::string& word, std::size_t sign, std::size_t dots, GivenQuantity& of) {
-  const std::string hint = "from, to, step: " + word.substr(0, sign) + "=0..10:0.1";
-  const std::size_t colon = word.find(':', dots);
-  if (colon == std::string::npos) mistake_in(word, sign + 1, word.size() - sign - 1, "this range has no step", hint);
-  const auto part = [&](std::size_t from, std::size_t to) { return Part{from, word.substr(from, to - from)}; };
-  const Part steps = part(colon + 1, word.size());
-  const Rational from = number(word, part(sign + 1, dots), of), to = number(word, part(dots + 2, colon), of),
-                 step = number(word, steps, of);
-  if (step == 0 || (to - from) / step < 0)
-    mistake_in(word, steps.at, steps.text.size(),
-               "no step of " + to_string(step) + " leads from " + to_string(from) + " to " + to_string(to), hint);
-  const Rational count = (to - from) / step;
-  if (count >= static_cast<unsigned long>(kMostPoints))
-    mistake_in(word, steps.at, steps.text.size(), "a grid has at most " + std::to_string(kMostPoints) + " points",
-               hint);
-  const mpz_class whole = count.get_num() / count.get_den();
-  return {from, from + step * Rational(whole), whole.get_ui() + 1};
-}
 
 // What a name that is none of the known ones may mean: "; did you mean …"; "" if nothing is near.
 std::string meant_by(const std::string& name, std::vector<std::string> known) {
@@ -172,11 +94,11 @@ Variation::Values Variation::law(const std::string& word, std::size_t sign, Give
   }
   if (open == std::string::npos || word.back() != ')')
     mistake_in(word, word.size(), 1, "a bracket is missing here", "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
-  const auto list = parts(word, open + 1, word.size() - 1, ',');
+  const auto list = parts_of(word, open + 1, word.size() - 1, ',');
   if (list.size() != 2)
     mistake_in(word, open, word.size() - open, "two numbers are expected here",
                "normal(MEAN,DEVIATION) or uniform(FROM,TO)");
-  const Rational a = number(word, list[0], of), b = number(word, list[1], of);
+  const Rational a = number_of(word, list[0], of), b = number_of(word, list[1], of);
   values.law = law == "normal" ? Values::Law::normal : Values::Law::uniform;
   if (values.law == Values::Law::normal ? b < 0 : b < a)
     mistake_in(word, list[1].at, list[1].text.size(),
@@ -186,36 +108,6 @@ Variation::Values Variation::law(const std::string& word, std::size_t sign, Give
   values.b = from_rational<double>(b);
   values.stream = streams_++;
   return values;
-}
-
-// A grid, NAME=FROM:TO:COUNT or NAME=FROM..TO:STEP, or a list, NAME=A,B,….
-Variation::Values Variation::listed(const std::string& word, std::size_t sign, GivenQuantity& of) const {
-  Values values;
-  if (const std::size_t dots = word.find("..", sign); dots != std::string::npos) {
-    const auto [from, to, points] = stepped(word, sign, dots, of);
-    values.grid = Grid{from, to, points};
-    return values;
-  }
-  if (word.find(':', sign) == std::string::npos) {
-    for (const Part& p : parts(word, sign + 1, word.size(), ',')) values.list.push_back(number(word, p, of));
-    return values;
-  }
-  const auto list = parts(word, sign + 1, word.size(), ':');
-  if (list.size() != 3)
-    mistake_in(word, sign + 1, word.size() - sign - 1, "a grid has three numbers",
-               "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
-  const Rational from = number(word, list[0], of), to = number(word, list[1], of), count = number(word, list[2]);
-  if (!count.is_integer() || count < 1 || count > static_cast<unsigned long>(kMostPoints) || (count == 1 && from != to))
-    mistake_in(word, list[2].at, list[2].text.size(),
-               "a grid has between 2 and " + std::to_string(kMostPoints) + " points",
-               "from, to, how many: " + word.substr(0, sign) + "=0:10:101");
-  values.grid = Grid{from, to, count.get_num().get_ui()};
-  return values;
-}
-
-Rational Variation::Grid::operator[](std::size_t k) const {
-  const Rational part(k, std::max<std::size_t>(points - 1, 1));
-  return from + (to - from) * part;
 }
 
 GivenQuantity Variation::name(const std::string& word, std::size_t sign, const Model& model) {
@@ -240,8 +132,13 @@ void Variation::add(const std::string& word, const Model& model) {
   if (sign == std::string::npos || sign == 0)
     mistake_in(word, 0, word.size(), "this is not of the form NAME=VALUES or NAME~LAW(…)", kVaryHint);
   GivenQuantity of = name(word, sign, model);
-  values_.push_back(word[sign] == '~' ? law(word, sign, of) : listed(word, sign, of));
-  if (!values_.back().drawn()) values_.back().axis = new_axis(values_.back().points());
+  if (word[sign] == '~') {
+    values_.push_back(law(word, sign, of));
+    return;
+  }
+  Values& values = values_.emplace_back();
+  values.range = read_value_range(word, sign, of, kMostPoints);
+  values.axis = new_axis(values.range->size());
 }
 
 void Variation::add(const std::string& name, const std::vector<Constant>& values, const Model& model) {
@@ -252,12 +149,14 @@ void Variation::add(const std::string& name, const std::vector<Constant>& values
                std::to_string(values.size()) + " values do not go together with " + std::to_string(axes_[*common_]),
                "as many values of each name");
   Values& listed = values_.emplace_back();
+  std::vector<Rational> list;
   listed.axis = together_ && common_ ? *common_ : new_axis(values.size());
   if (together_) common_ = listed.axis;
   for (const Constant& value : values) {
     if (const auto wrong = of.misfit(value)) mistake_in(name, 0, name.size(), wrong->message, wrong->hint(""));
-    listed.list.push_back(value.value);
+    list.push_back(value.value);
   }
+  listed.range = ValueRange(std::move(list));
 }
 
 void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) {
@@ -291,7 +190,7 @@ void Variation::add(std::shared_ptr<const CaseTable> table, const Model& model) 
                         "case " + std::to_string(row) + " has no '" + table_->names()[k] + "': this cell is empty",
                         "a number in it, or leave out the line; the value of the file is not taken");
       try {
-        number(cells[k], {0, cells[k]}, quantities[k]);
+        number_of(cells[k], {0, cells[k]}, quantities[k]);
       } catch (const MistakeInWord& m) {
         table_->mistake(row, k, m.diagnostic.message, "a number, pi/2, or a number with a unit: 8 cm");
       }
@@ -352,9 +251,9 @@ std::vector<Rational> Variation::operator()(std::size_t number) const {
       out[i] = Rational(draw(v, number));
     } else if (v.cell) {
       if (cells.empty()) cells = table_->cells(points[v.axis]);
-      out[i] = anholon::number(cells[*v.cell], {0, cells[*v.cell]});
+      out[i] = number_of(cells[*v.cell], {0, cells[*v.cell]});
     } else {
-      out[i] = v.at(points[v.axis]);
+      out[i] = (*v.range)[points[v.axis]];
     }
   }
   return out;
@@ -368,8 +267,9 @@ void Variation::must_be_a_grid() const {
       throw Failure(
           {}, "between the values of '" + name + "' lies no grid: they are " + (v.cell ? "those of a table" : "drawn"),
           "refine a grid: " + name + "=0:10:101");
-    for (std::size_t k = 1; k < v.points() && (k == 1 || !v.grid); ++k)
-      if (cmp(v.at(k), v.at(k - 1)) * cmp(v.at(1), v.at(0)) <= 0)
+    const ValueRange& r = *v.range;
+    for (std::size_t k = 1; k < r.size() && (k == 1 || !r.is_grid()); ++k)
+      if (cmp(r[k], r[k - 1]) * cmp(r[1], r[0]) <= 0)
         throw Failure({}, "between the values of '" + name + "' lies no grid: they neither ascend nor descend",
                       "refine a grid, or a list in ascending order");
   }
@@ -382,7 +282,8 @@ std::vector<Rational> Variation::between(std::span<const std::int64_t> places, u
     const std::int64_t place = places[v.axis];
     const auto k = static_cast<std::size_t>(place / fine);
     const Rational part(place % fine, fine);
-    out.push_back(part == 0 ? v.at(k) : v.at(k) + (v.at(k + 1) - v.at(k)) * part);
+    const ValueRange& r = *v.range;
+    out.push_back(part == 0 ? r[k] : r[k] + (r[k + 1] - r[k]) * part);
   }
   return out;
 }

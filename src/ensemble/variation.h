@@ -8,8 +8,8 @@
 
 #include "ensemble/case.h"
 #include "ensemble/case_table.h"
-#include "ensemble/mistake_in_word.h"
-#include "setup/choice.h"
+#include "setup/words/mistake_in_word.h"
+#include "setup/words/value_range.h"
 
 namespace anholon {
 
@@ -50,26 +50,16 @@ class Variation {
   std::vector<Rational> between(std::span<const std::int64_t> places, unsigned halvings) const;
 
  private:
-  // Evenly spaced points, which are computed when they are asked for.
-  struct Grid {
-    Rational from, to;
-    std::size_t points = 0;
-    Rational operator[](std::size_t k) const;
-  };
   struct Values {
-    std::vector<Rational> list;       // of a list; else empty
-    std::optional<Grid> grid;         // of a grid
+    std::optional<ValueRange> range;  // of a grid or a list
     std::optional<std::size_t> cell;  // of a line of the table
-    std::size_t axis = 0;             // of a list, a grid or a cell
+    std::size_t axis = 0;             // of a range or a cell
     enum class Law : std::uint8_t { normal, uniform } law = Law::normal;
     double a = 0, b = 0;  // parameters of the distribution
     std::uint32_t stream = 0;
-    bool drawn() const { return list.empty() && !grid && !cell; }
-    std::size_t points() const { return grid ? grid->points : list.size(); }  // of a list or a grid
-    Rational at(std::size_t k) const { return grid ? (*grid)[k] : list[k]; }
+    bool drawn() const { return !range && !cell; }
   };
   Values law(const std::string& word, std::size_t sign, GivenQuantity& of);
-  Values listed(const std::string& word, std::size_t sign, GivenQuantity& of) const;
   GivenQuantity name(const std::string& word, std::size_t sign, const Model& model);
   std::size_t new_axis(std::size_t size);
   double draw(const Values& v, std::size_t number) const;

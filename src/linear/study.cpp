@@ -6,7 +6,8 @@
 
 #include "linear/equilibrium.h"
 #include "model/exponents.h"
-#include "setup/choice.h"
+#include "setup/words/mistake_in_word.h"
+#include "setup/words/value_range.h"
 
 namespace anholon {
 
@@ -14,73 +15,6 @@ namespace {
 
 constexpr std::size_t kMostValues = 10000;
 constexpr int kWorkingDigits = 36, kGuardDigits = 24;  // 36: two words of 64 bits, with which MPFR is fastest
-
-Constant constant_of(const std::string& text, const std::string& called) {
-  try {
-    return read_constant(text);
-  } catch (const Failure& f) {
-    const std::string why = f.diagnostic.message.rfind("'" + text, 0) == 0 ? "" : ": " + f.diagnostic.message;
-    throw Failure({}, called + "'" + text + "' is not a number" + why,
-                  "a decimal such as 0.25, 1e-12, a fraction 1/3, pi/2 or a number with a unit, '30 deg'");
-  }
-}
-
-Rational number(const std::string& text, const std::string& called, GivenQuantity& of) {
-  const Constant c = constant_of(text, called);
-  if (const auto wrong = of.misfit(c)) throw Failure({}, called + wrong->message, wrong->hint("a number "));
-  return c.value;
-}
-
-[[noreturn]] void wrong(const std::string& called, const std::string& name, const std::string& why) {
-  throw Failure({}, called + why,
-                "a range NAME=FROM..TO:STEP such as " + name + "=0..10:1 or NAME=FROM:TO:COUNT such as " + name +
-                    "=0:10:11, or values " + name + "=0,1,2");
-}
-
-// FROM:TO:COUNT, as in sweeps.
-std::vector<Rational> counted(const std::string& text, const std::string& name, const std::string& called,
-                              GivenQuantity& of) {
-  const std::size_t first = text.find(':'), second = text.find(':', first + 1);
-  if (second == std::string::npos || text.find(':', second + 1) != std::string::npos)
-    wrong(called, name, "'" + text + "' is no range");
-  const Rational from = number(text.substr(0, first), called, of),
-                 to = number(text.substr(first + 1, second - first - 1), called, of),
-                 count = constant_of(text.substr(second + 1), called).value;
-  if (!count.is_integer() || count < 1 || count > static_cast<long>(kMostValues) || (count == 1 && from != to))
-    wrong(called, name, "a range has between 2 and " + std::to_string(kMostValues) + " values");
-  const std::size_t all = count.get_num().get_ui();
-  std::vector<Rational> values;
-  for (std::size_t k = 0; k < all; ++k)
-    values.push_back(from + (to - from) * Rational(k, std::max<std::size_t>(all - 1, 1)));
-  return values;
-}
-
-std::vector<Rational> values_of(const std::string& text, const std::string& name, const std::string& called,
-                                GivenQuantity of) {
-  std::vector<Rational> values;
-  const std::size_t dots = text.find("..");
-  if (dots == std::string::npos && text.find(':') != std::string::npos) return counted(text, name, called, of);
-  if (dots == std::string::npos) {
-    for (std::size_t at = 0; at <= text.size();) {
-      const std::size_t comma = std::min(text.find(',', at), text.size());
-      if (comma > at) values.push_back(number(text.substr(at, comma - at), called, of));
-      at = comma + 1;
-    }
-    if (values.empty()) wrong(called, name, "no value is given");
-    return values;
-  }
-  const std::size_t colon = text.find(':', dots);
-  if (colon == std::string::npos) wrong(called, name, "'" + text + "' has no step");
-  const Rational from = number(text.substr(0, dots), called, of),
-                 to = number(text.substr(dots + 2, colon - dots - 2), called, of),
-                 step = number(text.substr(colon + 1), called, of);
-  if (step == 0 || (to - from) / step < 0)
-    wrong(called, name, "no step of " + to_string(step) + " leads from " + to_string(from) + " to " + to_string(to));
-  if ((to - from) / step > static_cast<long>(kMostValues))
-    wrong(called, name, "these are more than " + std::to_string(kMostValues) + " values");
-  for (Rational v = from; step > 0 ? v <= to : v >= to; v += step) values.push_back(v);
-  return values;
-}
 
 std::vector<std::complex<double>> spectrum(const LinearResult& r) {
   std::vector<std::complex<double>> list;
@@ -91,25 +25,32 @@ std::vector<std::complex<double>> spectrum(const LinearResult& r) {
 
 }  // namespace
 
-std::size_t parameter_of(const Model& model, const std::string& name, const std::string& called) {
+std::size_t parameter_of(const Model& model, const std::string& name) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
     if (model.parameters[i].name == name) return i;
     names.push_back(model.parameters[i].name);
   }
   const std::string near = did_you_mean(name, names);
-  throw Failure({}, called + "there is no parameter '" + name + "'" +
-                        (near.empty() ? "" : "; did you mean '" + near + "'?"));
+  throw Failure({}, "there is no parameter '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
 
-ParameterRange read_range(const std::string& text, const Model& model, const std::string& called) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-    throw Failure({}, called + "'" + text + "' is not of the form NAME=VALUES",
-                  "a range such as v=0..10:1 or v=0:10:11, or values v=0,1,2");
-  const std::string name = text.substr(0, equals);
-  const std::size_t parameter = parameter_of(model, name, called);
-  return {parameter, values_of(text.substr(equals + 1), name, called, GivenQuantity::of_parameter(model, parameter))};
+ParameterRange read_range(const std::string& word, const Model& model) {
+  const std::size_t sign = word.find('=');
+  if (sign == std::string::npos || sign == 0 || sign + 1 == word.size())
+    mistake_in(word, 0, word.size(), "this is not of the form NAME=VALUES",
+               "a range such as v=0..10:1 (step) or v=0:10:11 (how many), or values v=0,1,2");
+  const std::string name = word.substr(0, sign);
+  ParameterRange range;
+  try {
+    range.parameter = parameter_of(model, name);
+  } catch (const Failure& f) {
+    mistake_in(word, 0, sign, f.diagnostic.message, f.diagnostic.hint);
+  }
+  GivenQuantity of = GivenQuantity::of_parameter(model, range.parameter);
+  const ValueRange values = read_value_range(word, sign, of, kMostValues);
+  for (std::size_t k = 0; k < values.size(); ++k) range.values.push_back(values[k]);
+  return range;
 }
 
 // The scenario of the model; of an equilibrium with the coordinates held that have no influence.

@@ -15,10 +15,10 @@ struct LinearRequest {
   int digits = 16;  // of the results
 };
 
-// A range as it is written: "v=0..10:1", or values "v=0,1,2". Throws Failure without a place; `called` begins its message.
-ParameterRange read_range(const std::string& text, const Model& model, const std::string& called);
+// A range as it is written (setup/words/value_range.h): "v=0..10:1", "v=0:10:11", or values "v=0,1,2". Throws MistakeInWord.
+ParameterRange read_range(const std::string& word, const Model& model);
 // The place of a parameter. Throws Failure without a place.
-std::size_t parameter_of(const Model& model, const std::string& name, const std::string& called);
+std::size_t parameter_of(const Model& model, const std::string& name);
 
 class LinearStudy {
  public:

@@ -27,10 +27,6 @@ namespace anholon::cli {
 
 namespace {
 
-[[noreturn]] void refuse(const MistakeInWord& m, const char* option) {
-  throw UsageError{print(m.diagnostic, SourceText{m.file.empty() ? option : m.file, m.word})};
-}
-
 // -n, or a number given to --cases.
 std::optional<std::size_t> count_of(const SweepCommand& o) {
   if (o.case_count.empty()) return std::nullopt;

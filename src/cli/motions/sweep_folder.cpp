@@ -77,7 +77,7 @@ Refinement refinement_of(const SweepCommand& o, const FolderSweep& sweep, const 
   try {
     r.rule = refine_rule(o.refine_by);
   } catch (const MistakeInWord& m) {
-    throw UsageError{print(m.diagnostic, SourceText{"--refine-by", m.word})};
+    refuse(m, "--refine-by");
   }
   if (!sweep.variation)
     throw UsageError{

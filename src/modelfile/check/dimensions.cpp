@@ -5,7 +5,7 @@
 #include <functional>
 #include <map>
 
-#include "modelfile/check/formula_dimensions.h"
+#include "modelfile/check/contact_dimensions.h"
 #include "modelfile/text/collect.h"
 
 namespace anholon {
@@ -33,7 +33,7 @@ class Elements {
   using Overrides = FormulaDimensions::Overrides;
 
   Elements(const Item& root, const Scope& scope, const Model& model, Overrides overrides = Overrides::read)
-      : root_(root), model_(model), formulas_(scope, model, overrides) {
+      : root_(root), model_(model), formulas_(scope, model, overrides), contacts_(formulas_, found_, noted_) {
     formulas_.of_multiplier = [this](const std::string& path) { return multiplier(path); };
   }
 
@@ -59,7 +59,7 @@ class Elements {
       if (const Item* e = c.find("equation")) equation(*e);
       if (const Item* a = c.find("active"); a && a->is_formula()) formulas_.of(*a);
     });
-    contacts();
+    list("contact", [&](const Item& c) { contacts_.read(c); });
     initial();
     each("monitor", [&](const Item& i) {
       if (i.is_formula()) formulas_.of(i);
@@ -69,7 +69,7 @@ class Elements {
       if (i.key == "at")
         for (const Item& t : i.items) expect(t, "s");
     });
-    list("contact", [&](const Item& c) { distance_and_velocity(c); });
+    list("contact", [&](const Item& c) { contacts_.check(c); });
     return formulas_.units_seen;
   }
 
@@ -82,7 +82,7 @@ class Elements {
         const Item& c = items->items[k];
         const Item* named = c.find("name");
         const std::string name = named ? normal_name(named->text()) : section + std::to_string(k + 1);
-        guard([&] { measure(list, c, name); }, c.span);
+        guard([&] { contacts_.measure(c, name, list); }, c.span);
       }
     }
   }
@@ -121,12 +121,7 @@ class Elements {
   }
 
   void expect(const Item& i, const DimensionForm& wanted) {
-    guard(
-        [&] {
-          if (i.is_formula() || i.kind == Item::Kind::array)
-            formulas_.expect(formulas_.term(i), wanted, i.is_formula() ? i.formula.whole() : i.span);
-        },
-        i.span);
+    guard([&] { formulas_.expect(i, wanted); }, i.span);
   }
   void expect(const Item& i, const char* unit) { expect(i, formulas_.unit(unit)); }
   void expect(const Item* i, const char* unit) {
@@ -190,13 +185,7 @@ class Elements {
         expect(b.find("angle"), "rad");
         if (const Item* o = b.find("orientation")) guard([&] { formulas_.of(*o); }, o->span);
         if (const Item* inertia = b.find("inertia")) moments(*inertia);
-        if (const Item* shape = b.find("shape"))
-          guard(
-              [&] {
-                const Syntax s = parse_formula(shape->formula);
-                for (const Syntax& a : s.args) formulas_.expect(formulas_.of(a), formulas_.unit("m"), a.span);
-              },
-              shape->span);
+        if (const Item* shape = b.find("shape")) guard([&] { formulas_.expect_lengths(*shape); }, shape->span);
         if (const Item* axes = b.find("axes"))
           for (const Item& a : axes->items)
             if (const Item *w = a.find("weight"), *v = a.find("vector"); w && v)
@@ -228,117 +217,6 @@ class Elements {
       if (const Item* initial = s.find("initial")) expect(*initial, z);
     });
     each("input", [&](const Item& i) { expect(i, named(i.key)); });
-  }
-
-  // The power of friction is that of a force: a coefficient without a body is [gap]/([slip] s).
-  void contacts() {
-    list("contact", [&](const Item& c) {
-      DimensionForm friction, distance;
-      const Item *gap = c.find("gap"), *slip = c.find("slip");
-      if (gap && gap->is_formula()) guard([&] { distance = formulas_.of(*gap).dimension; }, gap->span);
-      std::optional<DimensionForm> velocity;
-      if (slip) guard([&] { velocity = slip_velocity(slip); }, slip->span);
-      if (gap && gap->is_formula() && velocity) friction = distance / (*velocity * formulas_.unit("s"));
-      for (const char* key : {"friction", "static_friction"})
-        if (const Item* i = c.find(key); i && (c.find("body") || velocity)) expect(*i, friction);
-      if (const Item* e = c.find("restitution")) expect(*e, DimensionForm{});
-      for (const char* length : {"rolling_resistance", "drilling_resistance", "at", "through"})
-        expect(c.find(length), "m");
-    });
-  }
-
-  // The components of a slip velocity have one dimension.
-  std::optional<DimensionForm> slip_velocity(const Item* slip) {
-    const std::vector<const Item*> list = components_of(slip);
-    if (list.empty()) return std::nullopt;
-    const Measured first = formulas_.of(*list[0]);
-    for (std::size_t k = 1; k < list.size(); ++k)
-      formulas_.alike(first, formulas_.of(*list[k]), list[k]->span, " and ", " are components of one slip velocity");
-    return first.dimension;
-  }
-
-  // Of a formula, which may have a clash that has been reported already.
-  std::optional<Dimension> known_dimension(const Item& i) {
-    try {
-      return formulas_.known(formulas_.of(i).dimension);
-    } catch (const Failure&) {
-      return std::nullopt;
-    }
-  }
-
-  bool of_length_or_angle(const Dimension& d, int order) const {
-    for (const char* unit : {"m", "rad"})
-      if (d == *formulas_.known(formulas_.unit(unit) / power(formulas_.unit("s"), order))) return true;
-    return false;
-  }
-
-  // A gap is a length or an angle, and a slip velocity the rate of one. Their dimensions are looked at where all others are
-  // known, as none of the two follows from a formula that has neither.
-  void distance_and_velocity(const Item& c) {
-    const auto check = [&](const Item& i, int order, const char* what, const char* hint) {
-      const std::optional<Dimension> d = known_dimension(i);
-      if (!d || of_length_or_angle(*d, order)) return true;
-      found_.error(i.formula.whole(), std::string(what) + ", this is " + describe(*d), hint);
-      return false;
-    };
-    const Item *gap = c.find("gap"), *slip = c.find("slip");
-    bool right = gap && gap->is_formula();
-    if (right)
-      right = check(*gap, 0, "a gap is a length or an angle",
-                    "the distance itself, and not a function of it: gap = \"R - norm(P)\"");
-    for (const Item* i : components_of(slip))
-      right = check(*i, 1, "a slip velocity is a velocity or an angular velocity",
-                    "slip = \"vel(B, P)\", the velocity of the material point at the contact") &&
-              right;
-    if (right && !components_of(slip).empty()) note_bare_coefficients(c, *gap, *components_of(slip)[0]);
-  }
-
-  // A number without a unit as a coefficient that has one may be meant as a pure number.
-  void note_bare_coefficients(const Item& c, const Item& gap, const Item& slip) {
-    const std::optional<Dimension> distance = known_dimension(gap), velocity = known_dimension(slip);
-    if (!distance || !velocity) return;
-    const bool of_angle = *distance == Dimension{}, turns = *velocity == *formulas_.known(formulas_.unit("s^-1"));
-    if (of_angle == turns) return;
-    const Dimension d = *formulas_.known(formulas_.unit(of_angle ? "m^-1" : "m"));
-    for (const char* key : {"friction", "static_friction"}) {
-      const Item* i = c.find(key);
-      if (!i || !i->is_formula()) continue;
-      const Syntax s = parse_formula(i->formula);
-      if (s.op != Syntax::Op::number || parse_rational(s.text).value_or(0) == 0) continue;
-      noted_.warning(i->formula.whole(),
-                     s.text + " without a unit stands for " + describe(d) + ", as the gap is " +
-                         (of_angle ? "an angle and the slip velocity is none of an angle"
-                                   : "a length and the slip velocity is that of an angle"),
-                     of_angle ? "1*" + s.text + " where that is meant, or a gap that is a length"
-                              : "1*" + s.text + " where that is meant, or the velocity of a point: slip = \"R*phi'\"");
-    }
-  }
-
-  // The formulas of a slip velocity.
-  static std::vector<const Item*> components_of(const Item* slip) {
-    std::vector<const Item*> list;
-    if (slip && slip->is_formula()) list.push_back(slip);
-    if (slip && !slip->is_formula())
-      for (const Item& i : slip->items)
-        if (i.is_formula()) list.push_back(&i);
-    return list;
-  }
-
-  // The contacts of an element. The power of a force is that of the rate of its gap, and of its slip velocity.
-  void measure(std::vector<Contact>& list, const Item& c, const std::string& name) {
-    const Item *gap = c.find("gap"), *slip = c.find("slip"), *equation = c.find("equation");
-    DimensionForm distance = formulas_.unit("m"), velocity = formulas_.unit("m/s");
-    if (gap) distance = formulas_.of(*gap).dimension;
-    if (equation) distance = formulas_.of(parse_equation(equation->formula)[0]).dimension;
-    if (slip && slip->is_formula()) velocity = formulas_.of(*slip).dimension;
-    if (slip && !slip->items.empty()) velocity = formulas_.of(slip->items[0]).dimension;
-    const ContactUnits units{unit_of(distance), unit_of(formulas_.unit("J") / distance), unit_of(velocity),
-                             unit_of(formulas_.unit("W") / velocity)},
-        resistance{units.gap, units.normal, "1/s", "N*m"};
-    for (Contact& contact : list) {
-      const bool own = contact.under ? list[*contact.under].element == name : contact.element == name;
-      if (own && !contact.held) contact.units = contact.under ? resistance : units;
-    }
   }
 
   // The knots may have units as well.
@@ -422,6 +300,7 @@ class Elements {
   const Model& model_;
   FormulaDimensions formulas_;
   Diagnostics found_, noted_;
+  ContactDimensions contacts_;
 };
 
 }  // namespace

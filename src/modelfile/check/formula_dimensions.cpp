@@ -32,6 +32,16 @@ void FormulaDimensions::expect(const Measured& m, const DimensionForm& wanted, S
                 here == "a pure number" ? "a bare number has any unit: 1*(…), or give it one: 1 m" : "");
 }
 
+void FormulaDimensions::expect(const Item& item, const DimensionForm& wanted) {
+  if (item.is_formula() || item.kind == Item::Kind::array)
+    expect(term(item), wanted, item.is_formula() ? item.formula.whole() : item.span);
+}
+
+void FormulaDimensions::expect_lengths(const Item& shape) {
+  if (!shape.is_formula()) return;
+  for (const Syntax& size : parse_formula(shape.formula).args) expect(of(size), unit("m"), size.span);
+}
+
 void FormulaDimensions::alike(const Measured& a, const Measured& b, Span place, const char* between,
                               const char* behind) {
   if (a.type == Type::other || b.type == Type::other || dimensions_.equate(a.dimension, b.dimension)) return;

@@ -37,6 +37,9 @@ class FormulaDimensions {
   DimensionForm unit(const char* text) const;
   // Throws Failure if m cannot have the wanted dimension.
   void expect(const Measured& m, const DimensionForm& wanted, Span place);
+  void expect(const Item& item, const DimensionForm& wanted);  // a formula or an array; other items are passed over
+  // The sizes of a shape, as in "disc(R)", are lengths. Throws Failure if one cannot be.
+  void expect_lengths(const Item& shape);
   void alike(const Measured& a, const Measured& b, Span place, const char* between, const char* behind = "");
   std::optional<Dimension> known(const std::string& name);
   std::optional<Dimension> known(const DimensionForm& form) const { return dimensions_.known(form); }

@@ -140,7 +140,8 @@ void BodyReader::check_jumps(Expr position, const Item& item, const std::string&
 }
 
 void BodyReader::read() {
-  for (const Entry& e : entries_) collect(diagnostics_, [&] { read_body(e); }, *e.item);
+  for (const Entry& e : entries_)
+    scope_.parts(e.index).body_failed = !collect(diagnostics_, [&] { read_body(e); }, *e.item);
 }
 
 void BodyReader::read_body(const Entry& e) {

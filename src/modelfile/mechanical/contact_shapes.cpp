@@ -5,6 +5,7 @@
 #include "expr/normal.h"
 #include "modelfile/mechanical/shapes.h"
 #include "modelfile/names/constant.h"
+#include "modelfile/text/collect.h"
 #include "numeric/number.h"
 
 namespace anholon {
@@ -51,6 +52,7 @@ class TouchingReader {
       throw Failure(named.span, "a contact names one body, which touches a plane, a ball or a bowl", kTwoBodies);
     if (named.kind != Item::Kind::string) throw Failure(named.span, "the name of a body", "body = \"ball\"");
     body_ = scope.body(named.text(), named.span);
+    if (scope.parts(body_).body_failed) throw silent_failure();
     if (const Item* both = c.find("gap") ? c.find("gap") : c.find("slip"))
       throw Failure(both->key_span, "gap and slip velocity follow from the body and its shape",
                     "leave out 'gap' and 'slip', or 'body'");
@@ -98,6 +100,18 @@ class TouchingReader {
     if (solid == "rod")
       return "a contact for each end of the rod: at = \"" + b + ".center + " + b + "(l/2, 0, 0)\", and with -l/2";
     return kShapes;
+  }
+
+  // A disc or a torus whose axis is always along the normal.
+  Failure lies_flat() const {
+    const Item* shape = c_.find("shape");
+    const std::string b = body().name;
+    return Failure((shape ? shape : c_.find("body"))->span,
+                   "the " + shape_.kind +
+                       " lies flat: its axis is always along the normal, and no place of its rim is "
+                       "the lowest one",
+                   "contacts of points that carry it, three in space: shape = \"point\", at = \"" + b + ".center + " +
+                       b + "(R, 0, 0)\" and so on");
   }
 
   // Of the shapes of bodies some do not touch.
@@ -197,6 +211,7 @@ class TouchingReader {
       const Vector& a = orientation()[2];
       const Vector axis = cross(n, a), across = cross(a, axis);
       const Expr size = sqrt(dot(axis, axis));
+      if (proved_zero(size)) throw lies_flat();
       gap = gap - shape_.sizes[0] * size;
       q = place - (shape_.sizes[0] * pow(size, Rational(-1))) * across;
       // The tube of a torus is thick about the rim.

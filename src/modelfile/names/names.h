@@ -53,6 +53,7 @@ class Scope final : public Names {
     bool particle = false;
     bool center_open = false, orientation_open = false;
     bool center_failed = false, orientation_failed = false;  // and the failure was reported
+    bool body_failed = false;                                // its section has an error, which was reported
     std::optional<Vector> center_value;
     std::optional<Rotation> orientation_value;
   };

@@ -15,7 +15,7 @@ Linearization over(const std::string& text, const std::string& values, bool equi
   LinearRequest request;
   request.form = find_formulation("routh");
   request.equilibrium = equilibrium;
-  if (!values.empty()) request.range = read_range(values, *model, "");
+  if (!values.empty()) request.range = read_range(values, *model);
   const LinearStudy study(model, request);
   const PrecisionScope precision(study.working_digits());
   return study.compute();

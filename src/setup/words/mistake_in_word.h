@@ -1,4 +1,4 @@
-// A mistake in a word that somebody writes for a sweep: a variation, a line of a table of cases, a reduction.
+// A mistake in a word that somebody writes beside a model: a range, a variation, a line of a table of cases, a reduction.
 #pragma once
 #include <algorithm>
 #include <string>

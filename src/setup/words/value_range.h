@@ -1,0 +1,48 @@
+// The values of a quantity over which somebody asks for motions or linear models: "v=0:10:11", "v=0..10:1" or "v=1,2,5".
+// Sweeps and linear models share this notation.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "numeric/rational.h"
+#include "setup/choice.h"
+
+namespace anholon {
+
+// A part of a word, with its place.
+struct WordPart {
+  std::size_t at;
+  std::string text;
+};
+
+// The parts of the word between two places. Separators within brackets belong to a part.
+std::vector<WordPart> parts_of(const std::string& word, std::size_t from, std::size_t to, char separator);
+
+// A number, a formula of numbers and pi, or a number with a unit. Throws MistakeInWord.
+Rational number_of(const std::string& word, const WordPart& part);
+// The same; a unit must be that of the quantity.
+Rational number_of(const std::string& word, const WordPart& part, GivenQuantity& of);
+
+// Points of even distance, which are computed when they are asked for, or a list.
+class ValueRange {
+ public:
+  // Points from `from` to `to`. REQUIRES: points >= 1; from == to if it is one.
+  ValueRange(Rational from, Rational to, std::size_t points) : from_(from), to_(to), points_(points) {}
+  explicit ValueRange(std::vector<Rational> list) : list_(std::move(list)), points_(list_.size()) {}
+
+  std::size_t size() const { return points_; }
+  bool is_grid() const { return list_.empty(); }
+  Rational operator[](std::size_t k) const;
+
+ private:
+  std::vector<Rational> list_;  // empty of a grid
+  Rational from_, to_;
+  std::size_t points_;
+};
+
+// Reads what stands behind the sign of NAME=FROM:TO:COUNT, NAME=FROM..TO:STEP or NAME=A,B,…. The last point of a range with
+// a step is TO or the last one before it. Throws MistakeInWord, also if a grid has more than `most` points.
+ValueRange read_value_range(const std::string& word, std::size_t sign, GivenQuantity& of, std::size_t most);
+
+}  // namespace anholon
