@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "setup/words/mistake_in_word.h"
 #include "result/parquet/table_text.h"
 #include "result/table.h"
+#include "setup/words/mistake_in_word.h"
 
 namespace anholon {
 

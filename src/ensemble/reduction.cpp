@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "contact/mode_model.h"
-#include "setup/words/mistake_in_word.h"
 #include "formula/formula.h"
 #include "integrate/motion_state.h"
 #include "integrate/series/sign_change.h"
 #include "modelfile/names/names.h"
+#include "setup/words/mistake_in_word.h"
 
 namespace anholon {
 
