@@ -10,6 +10,8 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Union
 
+from ._names import by_spelled_names
+
 if TYPE_CHECKING:
     import numpy as np
 
@@ -51,6 +53,7 @@ def texts_of(values: Mapping[str, Number] | None) -> dict[str, str]:
 
     Raises:
         TypeError: `values` is no mapping of names to numbers.
+        ModelError: two of the names are one, as "μ" and "mu".
     """
     if values is None:
         return {}
@@ -63,7 +66,7 @@ def texts_of(values: Mapping[str, Number] | None) -> dict[str, str]:
             text_of(value)
         except (TypeError, ValueError) as mistake:
             raise type(mistake)(f"{name}: {mistake}") from None
-    return {name: text_of(value) for name, value in values.items()}
+    return {name: text_of(value) for name, value in by_spelled_names(values, "the values").items()}
 
 
 def whole(name: str, number: object, least: int) -> int:

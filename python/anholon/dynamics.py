@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, SupportsFloat, Union
+from typing import TYPE_CHECKING, Any
 
 from . import _core
+from ._arguments import Values, array_of_values, in_order, labelled_values, number_of, numbers_of, takes_numbers, time_of
 from ._errors import ModelError
 from ._names import by_spelled_names, ByName
 from ._torch import torch_function
@@ -19,78 +20,6 @@ if TYPE_CHECKING:
     from .model import Model
 
     Array = npt.NDArray[np.float64]
-
-
-Values = Union["npt.ArrayLike", Mapping[str, "npt.ArrayLike"], None]
-"""Inputs or parameters: an array in their order, values by name (the others keep theirs), or None for those of the model. A
-Series of pandas whose labels are texts has values by name."""
-
-
-def _time(t: object) -> float:
-    """The time as a float. Raises TypeError if it is no number."""
-    if type(t) is float:
-        return t
-    _refuse_dates("t", t)
-    if not isinstance(t, SupportsFloat) or getattr(t, "ndim", 0) != 0:
-        raise TypeError(f"t is a number, the time in s, not a {type(t).__name__}; the states follow: f(t, x)")
-    return float(t)
-
-
-def _refuse_dates(name: str, value: Any) -> None:
-    """Raises TypeError for a date or a duration of NumPy, which would count in units of its own."""
-    if getattr(getattr(value, "dtype", None), "kind", "") in ("m", "M"):
-        raise TypeError(f"{name} is a number in SI units, a time in s, not a {value.dtype.name.partition('[')[0]}")
-
-
-def _labelled(values: Any) -> dict[str, Any] | None:
-    """The values of a Series of pandas by its labels, if these are texts; None of all else, whose values have an order."""
-    index = getattr(values, "index", None)
-    if index is None or callable(index) or not hasattr(values, "iloc"):
-        return None
-    labels = list(index)
-    if not labels or not all(isinstance(label, str) for label in labels):
-        return None
-    found: dict[str, Any] = {}
-    for k, label in enumerate(labels):
-        if label in found:
-            raise ValueError(f"two values have the label {label!r}")
-        found[label] = values.iloc[k]
-    return found
-
-
-def _number(name: str, value: object) -> float:
-    """A value as a float. Raises TypeError if it is no number."""
-    _refuse_dates(name, value)
-    if not isinstance(value, SupportsFloat) or getattr(value, "ndim", 0) != 0:
-        raise TypeError(f"{name} is a number in SI units, not {value!r:.60}")
-    return float(value)
-
-
-def _numbers(name: str, values: object) -> Array:
-    """An array of float64. Raises TypeError if there are other things than numbers."""
-    import numpy as np
-
-    if values is None or isinstance(values, (str, Mapping)):
-        raise TypeError(f"{name} is a number or an array of numbers, not {'None' if values is None else f'a {type(values).__name__}'}")
-    if not isinstance(values, np.ndarray) or values.dtype.kind not in "fiub":
-        found = np.asarray(values)
-        if found.dtype.kind not in "fiubO" or any(x is None or isinstance(x, str) for x in (found.flat if found.dtype.kind == "O" else ())):
-            raise TypeError(f"{name} is an array of numbers in SI units, not {values!r:.60}")
-    return np.ascontiguousarray(values, dtype=np.float64)
-
-
-def _takes_numbers(out: Array, x: Array) -> bool:
-    """Whether the core can write to `out` itself. Raises TypeError or ValueError if no rates of x can be put there."""
-    import numpy as np
-
-    if not isinstance(out, np.ndarray) or out.dtype != np.float64:
-        kind = f"an array of {out.dtype}" if isinstance(out, np.ndarray) else f"a {type(out).__name__}"
-        raise TypeError(f"out is {kind}; it has to be an array of float64")
-    if out.shape != x.shape:
-        raise ValueError(f"out has the shape {out.shape}; it has to be that of x, {x.shape}")
-    if not out.flags.writeable:
-        raise ValueError("out cannot be written to")
-    return out.flags.carray and not np.may_share_memory(out, x)
 
 
 class Dynamics:
@@ -200,31 +129,17 @@ class Dynamics:
 
     def _values(self, given: Values, names: list[str], usual: Callable[[], Array], what: str, shape: tuple[int, ...] = ()) -> Array | None:
         """One set of numbers, or one for each state of a batch of this shape. Raises KeyError, ValueError."""
-        import numpy as np
-
-        if given is None:
-            return None
-        labelled = given if isinstance(given, Mapping) else _labelled(given)
+        labelled = labelled_values(given)
         if labelled is not None:
             labelled = by_spelled_names(labelled, what)
-            for name in labelled:
-                if what == "p" and name not in names and name in self.model.parameters:
-                    raise KeyError(
-                        f"{name!r} is not in p: it follows from other parameters, or its value decides the order of the equations; "
-                        f"the model has a function for another value, model.with_({name}=...).dynamics()"
-                    )
-                if name not in names:
-                    raise KeyError(f"there is no {name!r} in {what}; there are {', '.join(names) or 'none'}")
-            own = usual()
-            rows = [
-                _numbers(f"{what}[{name!r}]", labelled[name]).reshape(np.shape(labelled[name])) if name in labelled else own[i]
-                for i, name in enumerate(names)
-            ]
-            given = np.stack(np.broadcast_arrays(*rows)) if rows else np.empty(0)
-        array = _numbers(what, given)
-        if array.shape[:1] != (len(names),) or array.shape[1:] not in ((), shape):
-            raise ValueError(f"{what} has the shape {array.shape}; it has to be {(len(names),)}" + (f" or {(len(names), *shape)}" if shape else ""))
-        return array
+            fixed = next((name for name in labelled if what == "p" and name not in names and name in self.model.parameters), None)
+            if fixed is not None:
+                raise KeyError(
+                    f"{fixed!r} is not in p: it follows from other parameters, or its value decides the order of the equations; "
+                    f"the model has a function for another value, model.with_({fixed}=...).dynamics()"
+                )
+            given = in_order(labelled, names, usual, what)
+        return None if given is None else array_of_values(given, len(names), what, shape)
 
     def __call__(self, t: float, x: npt.ArrayLike, u: Values = None, p: Values = None, *, out: Array | None = None) -> Array:
         """The rates x' of one state, shape (states,), or of many, shape (states, …): the last axes count them.
@@ -252,12 +167,12 @@ class Dynamics:
         """
         import numpy as np
 
-        time = _time(t)
-        given = x if type(x) is np.ndarray and x.dtype == np.float64 and x.flags.c_contiguous else _numbers("x", x)
+        time = time_of(t)
+        given = x if type(x) is np.ndarray and x.dtype == np.float64 and x.flags.c_contiguous else numbers_of("x", x)
         if given.shape[:1] != (self._count,):
             raise ValueError(f"x has the shape {given.shape}; its first axis has to be the {self._count} states")
         # The core writes to contiguous numbers that x does not share.
-        to = out if out is not None and _takes_numbers(out, given) else np.empty_like(given)
+        to = out if out is not None and takes_numbers(out, given) else np.empty_like(given)
         if u is None and p is None:
             self._core.rates(time, given, to)
         else:
@@ -273,9 +188,8 @@ class Dynamics:
         those of the mapping act."""
         import numpy as np
 
-        u = _labelled(u) or u
-        if isinstance(u, Mapping):
-            u = by_spelled_names(u, "u")
+        labelled = labelled_values(u)
+        named = by_spelled_names(labelled or {}, "u")
         others = self._values(p, self.parameters, lambda: self.p0, "p", x.shape[1:])
 
         def by_formulas() -> Array:
@@ -290,21 +204,20 @@ class Dynamics:
             return np.array(rows).T.reshape((len(self.inputs), *x.shape[1:]))
 
         def numbers(name: str) -> list[float]:
-            given = _numbers(f"u[{name!r}]", named[name]).reshape(np.shape(named[name]))
+            given = numbers_of(f"u[{name!r}]", named[name]).reshape(np.shape(named[name]))
             if given.shape not in ((), x.shape[1:]):
                 raise ValueError(f"the input {name!r} has the shape {given.shape}; it has to be a number" + (f" or {x.shape[1:]}" if x.shape[1:] else ""))
             made: list[float] = np.broadcast_to(given, x.shape[1:]).reshape(-1).tolist()
             return made
 
-        named = u if isinstance(u, Mapping) else {}
-        usual = by_formulas if isinstance(u, Mapping) and any(name not in named for name in self.inputs) else lambda: self.u0
-        return self._values(u, self.inputs, usual, "u", x.shape[1:]), others
+        usual = by_formulas if labelled is not None and any(name not in named for name in self.inputs) else lambda: self.u0
+        return self._values(u if labelled is None else named, self.inputs, usual, "u", x.shape[1:]), others
 
     def _states(self, t: float, x: npt.ArrayLike, u: Values, p: Values) -> tuple[Array, Array | None, Array | None, tuple[int, ...]]:
         """States with their inputs and parameters, and the axes that count them."""
         import numpy as np
 
-        state = _numbers("x", x)
+        state = numbers_of("x", x)
         if state.shape[:1] != (self._count,):
             raise ValueError(f"x has the shape {state.shape}; its first axis has to be the {self._count} states")
         some, others = self._given(t, state, u, p)
@@ -319,7 +232,7 @@ class Dynamics:
             >>> f.outputs, f.output(0, np.tile(f.start[:, None], 100)).shape
             (['N', 'lam'], (2, 100))
         """
-        time = _time(t)
+        time = time_of(t)
         state, some, others, batch = self._states(time, x, u, p)
         made: Array = self._core.outputs_at(time, state, some, others)
         return made.reshape((len(made), *batch))
@@ -332,7 +245,7 @@ class Dynamics:
         """
         import numpy as np
 
-        time = _time(t)
+        time = time_of(t)
         state, _, parameters, batch = self._states(time, x, None, p)
         if batch:
             raise ValueError(f"x has the shape {state.shape}; it has to be that of one state, {(self._count,)}")
@@ -363,7 +276,7 @@ class Dynamics:
         """
         if by not in ("x", "u", "p") or of not in ("x'", "y"):
             raise ValueError("by is 'x', 'u' or 'p', and of is \"x'\" or 'y'")
-        time = _time(t)
+        time = time_of(t)
         state, some, others, batch = self._states(time, x, u, p)
         whole: Array = self._core.jacobian(time, state, some, others, "xup".index(by))
         chosen = whole[: self._count] if of == "x'" else whole[self._count :]
@@ -385,7 +298,7 @@ class Dynamics:
 
     @staticmethod
     def _aligned(jacobian: Array, vector: npt.ArrayLike, axis: int) -> tuple[Array, Array]:
-        array: npt.NDArray[Any] = _numbers("the vector", vector)
+        array: npt.NDArray[Any] = numbers_of("the vector", vector)
         batch = jacobian.shape[2:]
         if array.shape[:1] != (jacobian.shape[axis],) or array.shape[1:] not in ((), batch):
             fits = f"{(jacobian.shape[axis],)}" + (f" or {(jacobian.shape[axis], *batch)}" if batch else "")
@@ -405,7 +318,7 @@ class Dynamics:
                 "the equations are not solved for accelerations alone, so no mass matrix times accelerations is in them\n"
                 "hint: model.equations() shows what they are; f.jac has the derivatives of the rates"
             )
-        time = _time(t)
+        time = time_of(t)
         state, some, others, batch = self._states(time, x, u, p)
         matrix: Array
         right: Array
@@ -537,11 +450,11 @@ class Dynamics:
             for name in given[-1]:
                 if name not in expected:
                     raise KeyError(f"there is no {name!r}; there are {', '.join(expected)}")
-        at, others = self.t0 if t is None else _time(t), self._values(p, self.parameters, lambda: self.p0, "p")
-        q_list, qdot_list, z_list = ([_number(n, have.get(n, 0.0)) for n in expected] for have, expected in zip(given, names, strict=True))
+        at, others = self.t0 if t is None else time_of(t), self._values(p, self.parameters, lambda: self.p0, "p")
+        q_list, qdot_list, z_list = ([number_of(n, have.get(n, 0.0)) for n in expected] for have, expected in zip(given, names, strict=True))
         x = np.array(self._core.from_motion(at, q_list, qdot_list, z_list, [] if others is None else others.tolist()))
         if self.minimal:
-            rates = {n: _number(n, v) for n, v in given[1].items()}
+            rates = {n: number_of(n, v) for n, v in given[1].items()}
             motion, scale = self.motion(x, at, others), max([1.0, *(abs(v) for v in rates.values())])
             lost = next((n for n, v in rates.items() if not abs(motion[n] - v) < 1e-6 * scale), None)
             if lost is not None:
@@ -571,11 +484,11 @@ class Dynamics:
         """
         import numpy as np
 
-        state = _numbers("x", x)
+        state = numbers_of("x", x)
         if state.shape != (self._count,):
             raise ValueError(f"x has the shape {state.shape}; it has to be one state, ({self._count},)")
         others = self._values(p, self.parameters, lambda: self.p0, "p")
-        parts = self._core.to_motion(self.t0 if t is None else _time(t), state.tolist(), [] if others is None else others.tolist())
+        parts = self._core.to_motion(self.t0 if t is None else time_of(t), state.tolist(), [] if others is None else others.tolist())
         return ByName({n: v for names, values in zip(self._names(), parts, strict=True) for n, v in zip(names, values, strict=True)})
 
     def _names(self) -> tuple[list[str], list[str], list[str]]:

@@ -80,3 +80,12 @@ def test_letters_are_spelled_as_in_the_language() -> None:
     for letter in letters:
         model = an.loads(f'coordinates = ["{letter}1"]\nparticle = [{{name = "P", mass = 1, position = "{letter}1*ex"}}]\n')
         assert [c.name for c in model.coordinates] == [spelled(letter + "1")], letter
+
+
+def test_a_parameter_is_given_once() -> None:
+    model = an.loads(TEXT, set={"μ": 2}).with_(mu=3)
+    assert model.parameters["mu"] == 3
+    with pytest.raises(an.ModelError, match="'mu' is given twice"):
+        model.with_(**{"mu": 3, "μ": 4})
+    with pytest.raises(an.ModelError, match="'theta' is given twice"):
+        model.simulate(to=1, initial={"θ": 1, "theta": 2})

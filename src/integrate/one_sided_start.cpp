@@ -58,21 +58,22 @@ OneSidedStart<N>::OneSidedStart(PresentStep<N>& step, Outcome fault) : fault_(st
     step.expander.point(step.track, false).leading(at_point_);
 }
 
-// Parts of the times in which the lower derivatives change by their size, at least 1, as in step_size().
+// Parts of the times in which the lower derivatives change by their size, at least 1, measured as in step_size().
 template <Number N>
 typename OneSidedStart<N>::W OneSidedStart<N>::length(const PresentStep<N>& step, const Expansion<W>& point,
                                                       double log_tolerance) {
   const Program& p = point.program();
   double time = 1;
-  for (int k = 0; k < *std::max_element(p.d.begin(), p.d.end()); ++k) {
-    double size = 1;
-    for (std::size_t j = 0; j < p.unknowns(); ++j)
-      if (k < p.d[j]) size = std::max(size, std::abs(to_double(point.derivative(j, k))));
-    for (std::size_t j = 0; j < p.unknowns(); ++j)
-      for (int i = k + 1; i <= p.d[j]; ++i)
-        if (const double rate = std::abs(to_double(point.derivative(j, i))); rate > 0 && std::isfinite(rate))
-          time = std::min(time, std::pow(size / rate, 1.0 / (i - k)));
-  }
+  for (const std::vector<std::uint32_t>& scale : p.scales)
+    for (int k = 0; k < *std::max_element(p.d.begin(), p.d.end()); ++k) {
+      double size = 1;
+      for (const std::uint32_t j : scale)
+        if (k < p.d[j]) size = std::max(size, std::abs(to_double(point.derivative(j, k))));
+      for (const std::uint32_t j : scale)
+        for (int i = k + 1; i <= p.d[j]; ++i)
+          if (const double rate = std::abs(to_double(point.derivative(j, i))); rate > 0 && std::isfinite(rate))
+            time = std::min(time, std::pow(size / rate, 1.0 / (i - k)));
+    }
   const W part = W(std::exp(log_tolerance * kPartOfTolerance)) * W(time),
           resolved = convert<W>(unit_roundoff<N>()) * W(kRoundoffsOfTime) * abs(step.t());
   return part > resolved ? part : resolved;

@@ -37,7 +37,7 @@ class ReferenceExpansion {
 
   int order() const { return order_; }
   // The length of a step by the radius of convergence.
-  N reach(double shrink) const { return step_size<N>(unknowns_, order_, shrink); }
+  N reach(double shrink) const { return step_size<N>(unknowns_, program_->scales, order_, shrink); }
   Expansion<N>& series() { return expansion_; }
   const Expansion<N>& series() const { return expansion_; }
   // The changes of the state over h, and the leading derivatives there. `point`: where the expansion was made.

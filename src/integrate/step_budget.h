@@ -25,12 +25,14 @@ inline Outcome may_step(const StepSettings& settings, std::size_t steps) {
 // Judges whether the end of a motion lies beyond its step limit. Steps are short for a while after an impact, where a slip
 // begins and where a motion starts, so no single step counts: the paces of the whole motion and of the last kWindow steps
 // are both too slow, and the pace does not grow from window to window. An end that lies just beyond the limit is waited
-// for longer than a hopeless one.
+// for longer than a hopeless one. A motion that was fast before is out of reach when many windows one after another are
+// hopeless: it chatters at a kink, or becomes too fast to follow.
 class StepPaces {
  public:
   // The motion starts, or goes on, at the time t after so many steps.
   void begin(long double t, std::size_t steps) {
     now_ = before_ = last_ = {0, steps};
+    slow_windows_ = 0;
     started_ = t;
     first_ = steps;
   }
@@ -45,11 +47,17 @@ class StepPaces {
   // Asked before each step from the time t, whose length would be `step`; `left` is the span to the end.
   bool out_of_reach(const StepSettings& settings, std::size_t steps, long double t, double step, double left) {
     const double passed = std::abs(static_cast<double>(t - started_));
-    if (steps - now_.steps >= kWindow) before_ = last_, last_ = now_, now_ = {passed, steps};
     const std::size_t made = steps - first_;
-    if (made < kStepsToJudge) return false;
     const double most = static_cast<double>(settings.most_steps - steps);
+    if (steps - now_.steps >= kWindow) {
+      before_ = last_, last_ = now_, now_ = {passed, steps};
+      const double pace = of(last_, now_);
+      const bool slow = std::abs(left) > kHopeless * most * pace && !(pace > kGrows * of(before_, last_));
+      slow_windows_ = slow ? slow_windows_ + 1 : 0;
+    }
+    if (made < kStepsToJudge) return false;
     if (std::abs(left) <= step * most) return false;
+    if (slow_windows_ >= kHopelessWindows) return true;
     const double pace = of(last_, now_), mean = passed / static_cast<double>(made);
     const double steps_ahead = std::abs(left) / std::max({pace, mean, step});
     if (!(steps_ahead > most) || pace > kGrows * of(before_, last_)) return false;
@@ -59,6 +67,7 @@ class StepPaces {
  private:
   static constexpr std::size_t kWindow = 500, kStepsToJudge = 1000, kStepsIfNear = 20'000;
   static constexpr double kGrows = 1.25, kHopeless = 1000;
+  static constexpr int kHopelessWindows = 100;
   struct Mark {
     double passed = 0;
     std::size_t steps = 0;
@@ -69,6 +78,7 @@ class StepPaces {
 
   long double started_ = 0;
   std::size_t first_ = 0;
+  int slow_windows_ = 0;  // one after another, the last one among them
   Mark before_, last_, now_;
 };
 

@@ -55,30 +55,36 @@ double log_pole(std::span<const UnknownSeries<N>> x, int order) {
 }  // namespace
 
 template <Number N>
-N step_size(std::span<const UnknownSeries<N>> x, int order, double shrink) {
+N step_size(std::span<const UnknownSeries<N>> x, std::span<const std::vector<std::uint32_t>> scales, int order,
+            double shrink) {
   double last_weight = kNothing, before_weight = kNothing;
   int levels = 0;
   for (const UnknownSeries<N>& u : x) levels = std::max(levels, u.d);
-  for (int k = 0; k < levels; ++k) {
-    double size = 1, last = kNothing, before_last = kNothing;
-    for (const UnknownSeries<N>& u : x) {
-      if (k >= u.d) continue;
-      size = std::max(size, std::abs(to_double(derivative(u, k))));
-      last = std::max(last, log_coefficient(u, k, order));
-      before_last = std::max(before_last, log_coefficient(u, k, order - 1));
+  for (const std::vector<std::uint32_t>& scale : scales)
+    for (int k = 0; k < levels; ++k) {
+      double size = 1, last = kNothing, before_last = kNothing;
+      for (const std::uint32_t j : scale) {
+        const UnknownSeries<N>& u = x[j];
+        if (k >= u.d) continue;
+        size = std::max(size, std::abs(to_double(derivative(u, k))));
+        last = std::max(last, log_coefficient(u, k, order));
+        before_last = std::max(before_last, log_coefficient(u, k, order - 1));
+      }
+      last_weight = std::max(last_weight, last - std::log(size));
+      before_weight = std::max(before_weight, before_last - std::log(size));
     }
-    last_weight = std::max(last_weight, last - std::log(size));
-    before_weight = std::max(before_weight, before_last - std::log(size));
-  }
   constexpr double kFar = 300;
   const double log_rho = std::min({kFar, -last_weight / order, -before_weight / (order - 1)}),
                log_reach = std::min(kFar, -log_pole(x, order) / (order - 1));
   return N(std::exp(std::min(log_rho - shrink - 0.7 / (order - 1), log_reach - 0.7)));
 }
 
-template double step_size(std::span<const UnknownSeries<double>>, int, double);
-template long double step_size(std::span<const UnknownSeries<long double>>, int, double);
-template Quad step_size(std::span<const UnknownSeries<Quad>>, int, double);
-template Multi step_size(std::span<const UnknownSeries<Multi>>, int, double);
+template double step_size(std::span<const UnknownSeries<double>>, std::span<const std::vector<std::uint32_t>>, int,
+                          double);
+template long double step_size(std::span<const UnknownSeries<long double>>, std::span<const std::vector<std::uint32_t>>,
+                               int, double);
+template Quad step_size(std::span<const UnknownSeries<Quad>>, std::span<const std::vector<std::uint32_t>>, int, double);
+template Multi step_size(std::span<const UnknownSeries<Multi>>, std::span<const std::vector<std::uint32_t>>, int,
+                         double);
 
 }  // namespace anholon

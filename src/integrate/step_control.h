@@ -54,9 +54,11 @@ struct UnknownSeries {
 // h = (rho / e^shrink) exp(-0.7/(p-1)), rho the smaller root of |x| / |x_k| for the last two orders k,
 // in the greatest norm, relative to the size of x but at least 1 (Jorba & Zou 2005). Positions,
 // velocities, … are measured each against their own size: an angle that has turned a thousand times
-// must not loosen the tolerance of the velocities. REQUIRES: the coefficients of x_j up to order - 1 + d_j.
+// must not loosen the tolerance of the velocities. So are unknowns of different dimensions (`scales`, Program::scales): an
+// orbit in metres must not loosen the tolerance of angles. REQUIRES: the coefficients of x_j up to order - 1 + d_j.
 template <Number N>
-N step_size(std::span<const UnknownSeries<N>> x, int order, double shrink);
+N step_size(std::span<const UnknownSeries<N>> x, std::span<const std::vector<std::uint32_t>> scales, int order,
+            double shrink);
 
 // A tolerance by its natural logarithm; its value is 0 where no double holds it.
 struct Tolerance {

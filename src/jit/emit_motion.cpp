@@ -49,14 +49,18 @@ void Emitter::judge(const std::vector<Value*>& lu) {
 
 // Whether the solution displaces a state in any lane.
 llvm::Value* Emitter::displaced(int level) {
-  Value *one = number(1), *zero = number(0), *size = one, *most = zero;
-  for (std::size_t j = 0; j < p_.x.size(); ++j) {
-    const int k = p_.d[j] - level;
-    if (k < 0) continue;
-    size = larger(size, times(magnitude(coefficient_of(j, k)), factorial(k)));
-    most = larger(most, magnitude(solution_[j]));
+  Value *one = number(1), *zero = number(0), *displacement = nullptr, *drift = load(k_.found.drift);
+  for (const std::vector<std::uint32_t>& scale : p_.scales) {
+    Value *size = one, *most = zero;
+    for (const std::uint32_t j : scale) {
+      const int k = p_.d[j] - level;
+      if (k < 0) continue;
+      size = larger(size, times(magnitude(coefficient_of(j, k)), factorial(k)));
+      most = larger(most, magnitude(solution_[j]));
+    }
+    Value* here = b_.CreateFDiv(most, size);
+    displacement = displacement ? b_.CreateSelect(b_.CreateFCmpOLE(here, displacement), displacement, here) : here;
   }
-  Value *displacement = b_.CreateFDiv(most, size), *drift = load(k_.found.drift);
   store(b_.CreateSelect(b_.CreateFCmpOLE(displacement, drift), drift, displacement), k_.found.drift);
   Value* moves = b_.CreateFCmpOGT(displacement, number(kQuiet));
   store(b_.CreateSelect(moves, one, zero), k_.found.weight);
@@ -68,20 +72,20 @@ void Emitter::measure() {
   begin("measure");
   const int order = p_.stages + 1;
   Value *zero = number(0), *one = number(1), *last = zero, *before_last = zero, *pole = zero, *unfit = zero;
-  for (const auto& [first, end] : {std::pair(std::size_t{0}, p_.apart), std::pair(p_.apart, p_.x.size())}) {
+  for (const std::vector<std::uint32_t>& scale : p_.scales) {
     double factor = 1, factor_before = 1;
-    for (int k = 0; k < p_.largest_d && first < end; ++k) {
+    for (int k = 0; k < p_.largest_d; ++k) {
       if (k > 0) factor *= order + k, factor_before *= order - 1 + k;
       Value *size = one, *l = zero, *b = zero;
-      for (std::size_t j = first; j < end; ++j) {
+      for (const std::uint32_t j : scale) {
         if (k >= p_.d[j]) continue;
         size = larger(size, times(magnitude(coefficient_of(j, k)), factorial(k)));
         l = larger(l, magnitude(coefficient_of(j, order + k)));
         b = larger(b, magnitude(coefficient_of(j, order - 1 + k)));
       }
-      Value* scale = b_.CreateFDiv(number(factor), size);
-      last = larger(last, b_.CreateFMul(l, scale));
-      before_last = larger(before_last, b_.CreateFMul(b, times(scale, factor_before / factor)));
+      Value* weight = b_.CreateFDiv(number(factor), size);
+      last = larger(last, b_.CreateFMul(l, weight));
+      before_last = larger(before_last, b_.CreateFMul(b, times(weight, factor_before / factor)));
     }
   }
   bool poles = false;

@@ -125,9 +125,9 @@ void Writer::add(const Plan& plan) {
   // numbers.
   [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again,
                                 entries, completions, x, time, roots, root_is_zero, sides, quadratures, beyond_double,
-                                deciding, hiding, rows, largest_lead, largest_d, c, d, apart, determinant] = plan;
+                                deciding, hiding, rows, largest_lead, largest_d, c, d, scales, determinant] = plan;
   all(stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again, entries, completions, x,
-      time, roots, root_is_zero, sides, quadratures, beyond_double, rows, largest_lead, largest_d, c, d, apart);
+      time, roots, root_is_zero, sides, quadratures, beyond_double, rows, largest_lead, largest_d, c, d, scales);
 }
 
 void Writer::add(const SparseLu& elimination) {

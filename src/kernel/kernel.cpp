@@ -108,7 +108,6 @@ KernelPlan::KernelPlan(std::shared_ptr<const Program> program, std::shared_ptr<c
                        int stages, Company company)
     : program_(std::move(program)), map_(std::move(map)), plan_(anholon::plan(*program_, stages, judged)),
       company_(company) {
-  if (map_) plan_.apart = plan_.x.size() - map_->velocities();
   for (int d : plan_.d) tables_.state_size += static_cast<std::uint32_t>(d);
   levels_ = *std::max_element(plan_.c.begin(), plan_.c.end());
   tables_.plan = &plan_;

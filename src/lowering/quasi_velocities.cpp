@@ -173,7 +173,23 @@ class Writer {
       for (auto* names : {&s.equation_names, &s.variable_names}) names->push_back(c_.model->names.states[i]);
     }
     s.rates = rates_;
+    s.scales = scales();
     return s;
+  }
+
+  // Quasi-velocities are measured as the velocities that they stand for, apart from coordinates.
+  std::vector<std::uint32_t> scales() const {
+    const std::size_t states = c_.state_rates.size(), all = derived_.scales.size();
+    std::vector<std::uint32_t> list(derived_.scales.begin(),
+                                    derived_.scales.begin() + static_cast<std::ptrdiff_t>(all ? n_ : 0));
+    list.resize(n_);
+    for (std::size_t i = 0; i < states; ++i) list.push_back(all ? derived_.scales[all - states + i] : 0);
+    const std::uint32_t velocities = *std::max_element(list.begin(), list.end()) + 1;
+    for (std::size_t i = 0; i < v_.free.size(); ++i) {
+      const std::uint32_t coordinate = g_.node(v_.free[energy_.pivot(i)].id).index;
+      list.push_back(velocities + (coordinate < n_ ? list[coordinate] : 0));
+    }
+    return list;
   }
 
   Expr determinant() {

@@ -23,6 +23,9 @@ class ShortEnergy {
   // v in p, one by the other; `named`: what each of them is called.
   Column v_in(const Column& p, const std::function<Expr(Expr)>& named) const;
 
+  // k of p_i.
+  std::size_t pivot(std::size_t i) const { return order_[i]; }
+
  private:
   std::vector<std::size_t> order_;
   Rows above_;  // L_jk by j, in the order of pivots

@@ -146,12 +146,13 @@ static void for_each_expression(View& v, const ExprVisitor& f) {
 void for_each_expression(Model& model, const ExprVisitor& f) {
   auto& [graph, source_text, title, source, coordinates, parameters, unknown_functions, table_files, observer, masses,
          bodies, forces, potentials, dissipation, constraints, quasi, dependent, initial, states, controls, outputs,
-         events, bounds, monitors, simulate, view, names, cases, coordinate_units, parameter_units, notes] = model;
+         events, bounds, monitors, simulate, view, names, cases, coordinate_units, parameter_units, scales, notes] =
+      model;
   static_cast<void>(graph);
   for_each_expression_of(f, source_text, title, source, coordinates, parameters, unknown_functions, table_files,
                          observer, masses, bodies, forces, potentials, dissipation, constraints, quasi, dependent,
                          initial, states, controls, outputs, events, bounds, monitors, simulate, view, names, cases,
-                         coordinate_units, parameter_units, notes);
+                         coordinate_units, parameter_units, scales, notes);
 }
 
 std::shared_ptr<Model> clone(const Model& model, std::size_t nodes) {

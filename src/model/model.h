@@ -252,6 +252,9 @@ struct Model {
   std::vector<std::string> cases;  // scenarios of the file, [case.NAME]
   // Where the file has units: those of coordinates and parameters, empty where nothing tells.
   std::vector<std::string> coordinate_units, parameter_units;
+  // Coordinates, then states, by their dimension: those with one number have the same, as far as the formulas tell. Empty if
+  // all have number 0.
+  std::vector<std::uint32_t> scales;
   std::vector<ModelNote> notes;
 };
 

@@ -22,11 +22,24 @@ static bool may_have_several_solutions(const Program& p, const std::vector<std::
                      [&](const ProgramInput& in) { return in.leading && in.variable >= mechanical && needs(in.slot); });
 }
 
+// Multipliers that are no states are not measured.
+static std::vector<std::vector<std::uint32_t>> scales(const System& system, const std::vector<int>& d) {
+  std::vector<std::vector<std::uint32_t>> list;
+  for (std::uint32_t j = 0; j < d.size(); ++j) {
+    const std::size_t scale = system.scales.empty() ? 0 : system.scales[j];
+    if (list.size() <= scale) list.resize(scale + 1);
+    if (d[j] > 0) list[scale].push_back(j);
+  }
+  std::erase_if(list, [](const auto& members) { return members.empty(); });
+  return list;
+}
+
 Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures, bool shared) {
   Program p;
   p.system = &system;
   p.c = structure.c;
   p.d = structure.d;
+  p.scales = scales(system, p.d);
   Column es = system.equations;
   es.insert(es.end(), quadratures.begin(), quadratures.end());
   p.quadratures = quadratures.size();

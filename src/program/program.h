@@ -36,10 +36,11 @@ struct Program {
   std::vector<TaintedSlot> tainted;        // ascending, without the leading inputs
   std::vector<std::uint32_t> tangent_row;  // slot -> row, or kUntainted
   std::size_t tangent_rows = 0;
-  std::size_t quadratures = 0;                   // roots after the equations
-  bool nonlinear = false;                        // leading derivatives enter nonlinearly: J depends on them
-  bool several_solutions = false;                // and not in rates of the model's states alone
-  std::shared_ptr<const Linearized> linearized;  // of programs with many unknowns
+  std::size_t quadratures = 0;                     // roots after the equations
+  std::vector<std::vector<std::uint32_t>> scales;  // the unknowns that are measured against one size (system/system.h)
+  bool nonlinear = false;                          // leading derivatives enter nonlinearly: J depends on them
+  bool several_solutions = false;                  // and not in rates of the model's states alone
+  std::shared_ptr<const Linearized> linearized;    // of programs with many unknowns
 
   static constexpr std::uint32_t kUntainted = 0xffffffffU;
   std::size_t unknowns() const { return d.size(); }

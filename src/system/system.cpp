@@ -90,6 +90,10 @@ System implicit_system(std::shared_ptr<const Model> model, const Mechanics& m, c
     s.variable_names.push_back(z.name);
   }
   if (constraints.size() < model->constraints.size()) s.equations = taking_part(s, s.equations);
+  if (model->scales.size() == s.coordinates + model->states.size()) {
+    s.scales = model->scales;
+    s.scales.insert(s.scales.begin() + static_cast<std::ptrdiff_t>(s.coordinates), constraints.size(), 0);
+  }
   return s;
 }
 
@@ -100,9 +104,11 @@ Column taking_part(const System& s, const Column& es) {
 }
 
 void for_each_expression(System& s, const ExprVisitor& f) {
-  auto& [model, form, coordinates, constraints, equations, of_motion, equation_names, variable_names, rates] = s;
+  auto& [model, form, coordinates, constraints, equations, of_motion, equation_names, variable_names, scales, rates] =
+      s;
   static_cast<void>(model), static_cast<void>(form);
-  for_each_expression_of(f, coordinates, constraints, equations, of_motion, equation_names, variable_names, rates);
+  for_each_expression_of(f, coordinates, constraints, equations, of_motion, equation_names, variable_names, scales,
+                         rates);
 }
 
 }  // namespace anholon

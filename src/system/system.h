@@ -20,6 +20,9 @@ struct System {
   std::size_t of_motion = 0;             // how many of the n belong to the form; the others give lambda
   std::vector<std::string> equation_names;
   std::vector<std::string> variable_names;  // q_a, then lambda.NAME
+  // Of each variable: those with one number are measured against one size when the length of a step is chosen, as lengths are,
+  // and angles. Empty if all are.
+  std::vector<std::uint32_t> scales;
   Column rates;  // jets of coordinates n + k stand for these and their derivatives (by_rates.h)
 
   std::size_t size() const { return equations.size(); }

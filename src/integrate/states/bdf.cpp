@@ -23,6 +23,7 @@ Outcome Bdf::start(const MotionPoint& from, long double end) {
   settings.most_steps = settings_.most_steps;
   settings.cancelled = settings_.cancelled;
   now_ = before_ = from;
+  paces_.begin(from.t, steps_);
   motion_.emplace(std::move(*rate_), settings, static_cast<double>(from.t), static_cast<double>(end),
                   narrow(from.state), from.leading, narrow(from.integrals));
   rate_.reset();
@@ -36,6 +37,9 @@ double Bdf::more_work() const {
 }
 
 Outcome Bdf::step(long double end) {
+  const double last = std::abs(static_cast<double>(now_.t - before_.t));
+  if (paces_.out_of_reach(settings_, steps_, now_.t, last, static_cast<double>(end - now_.t)))
+    return end_out_of_reach(settings_, last);
   if (Outcome o = motion_->step(); !o.ok()) return o;
   std::swap(before_, now_);
   put(now_);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "integrate/states/sundials.h"
+#include "integrate/step_budget.h"
 
 namespace anholon {
 
@@ -26,6 +27,7 @@ class Bdf final : public StateStepper {
   std::optional<StateRate> rate_;
   std::optional<Sundials> motion_;
   StepSettings settings_;
+  StepPaces paces_;
 };
 
 }  // namespace anholon

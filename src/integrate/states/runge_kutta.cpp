@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/assert.h"
+#include "integrate/series/held_at_kink.h"
 #include "integrate/step_budget.h"
 
 namespace anholon {
@@ -19,6 +20,10 @@ constexpr double kBlowUp = 1e100;
 constexpr int kMostRefusals = 40;
 // Kinks met so soon after another one are other kinks, until they are too many.
 constexpr int kMostShortKinks = 20;
+// A constraint that the state misses by a larger part after a kink turns there. Turns are soon after one another within this
+// part of the time.
+constexpr double kTurned = 1e-6, kTurnedOfTolerance = 1e4, kSoon = 1e-6;
+constexpr int kMostTurns = 20;
 // Taylor's steps miss by about this part of the tolerance; it is to mean the same here.
 constexpr double kOfTolerance = 0.1;
 // PI controller (Hairer & Wanner, IV.2): exponents for an estimate of order 8, and the bounds of one change.
@@ -119,10 +124,8 @@ Outcome RungeKutta::first_rate() {
 // From the sizes of x' and x'' (Hairer, Nørsett & Wanner 1993, II.4).
 double RungeKutta::first_step(double direction) {
   narrow(now_.state, start_);
-  level_sizes(rate_, start_, sizes_);
-  const auto weight = [&](std::size_t i) {
-    return 1 / (tolerance_ * sizes_[static_cast<std::size_t>(rate_.level()[i])]);
-  };
+  scale_sizes(rate_, start_, sizes_);
+  const auto weight = [&](std::size_t i) { return 1 / (tolerance_ * sizes_[rate_.scale()[i]]); };
   double d0 = 1, d1 = 0, d2 = 0;
   for (std::size_t i = 0; i < start_.size(); ++i)
     d0 = std::max(d0, std::abs(start_[i]) * weight(i)), d1 = std::max(d1, std::abs(here_[i]) * weight(i));
@@ -206,6 +209,16 @@ Outcome RungeKutta::cut_at_kink(double& h) {
   return at_high ? Outcome{} : whole(h);
 }
 
+// At now(). A constraint that turns at a kink, which the last step has passed, changes velocities without an impulse in the
+// equations; a motion that it turns back, or that passes such kinks sooner and sooner, does not go on.
+bool RungeKutta::is_held_by_turns() {
+  if (kinks_.sides.empty() || !(rate_.drift() > std::max(kTurned, kTurnedOfTolerance * tolerance_))) return false;
+  const bool soon = std::abs(now_.t - kinks_.last_turn) <= kSoon * std::abs(now_.t);
+  kinks_.turns = soon ? kinks_.turns + 1 : 1;
+  kinks_.last_turn = now_.t;
+  return kinks_.turns > kMostTurns;
+}
+
 // In units of the tolerance: the largest of any level.
 double RungeKutta::error(double h) {
   const std::size_t n = rate_.size(), all = k_[0].size();
@@ -214,7 +227,7 @@ double RungeKutta::error(double h) {
   // Of each level, and of each integral.
   most_.assign(sizes_.size() + all - n, {0.0, 0.0});
   for (std::size_t i = 0; i < all; ++i) {
-    auto& [five, three] = most_[i < n ? static_cast<std::size_t>(rate_.level()[i]) : sizes_.size() + i - n];
+    auto& [five, three] = most_[i < n ? rate_.scale()[i] : sizes_.size() + i - n];
     if (!std::isfinite(e5_[i]) || !std::isfinite(e3_[i])) return std::numeric_limits<double>::infinity();
     five = std::max(five, std::abs(e5_[i]));
     three = std::max(three, std::abs(e3_[i]));
@@ -252,7 +265,7 @@ Outcome RungeKutta::step(long double end) {
   const double floor = 0x1p-53 * kCollapsedRoundoffs * static_cast<double>(std::abs(now_.t));
   k_[0] = here_;
   narrow(now_.state, start_);
-  level_sizes(rate_, start_, sizes_);
+  scale_sizes(rate_, start_, sizes_);
   Outcome trouble;
   for (int again = 0;; ++again) {
     if (again > 0) ++refused_;
@@ -311,6 +324,7 @@ Outcome RungeKutta::step(long double end) {
       continue;
     }
     ++steps_;
+    if (is_held_by_turns()) return held_at_kink("a constraint");
     const double grown = e > 0 ? kSafety * std::pow(e, -kProportional) * std::pow(error_before_, kIntegral) : kMost;
     // What the end or a kink cut short says nothing of the steps beyond; after a refusal a step does not grow.
     const double next_h = std::abs(h) * std::clamp(grown, kLeast, again > 0 ? 1.0 : kMost);

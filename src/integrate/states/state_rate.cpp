@@ -15,12 +15,15 @@ StateRate::StateRate(const Program& program, const std::vector<double>& paramete
     kernel_->set_parameters(0, wide_parameters);
     find_kinks();
   }
-  for (int d : program.d) {
-    for (int k = 0; k < d; ++k) level_.push_back(k);
-    levels_ = std::max(levels_, d);
-  }
+  const auto levels = static_cast<std::size_t>(std::max(1, *std::max_element(program.d.begin(), program.d.end())));
+  std::vector<std::size_t> first(program.unknowns(), 0);  // of the scales of each unknown
+  for (std::size_t s = 0; s < program.scales.size(); ++s)
+    for (const std::uint32_t j : program.scales[s]) first[j] = s * levels;
+  for (std::size_t j = 0; j < program.unknowns(); ++j)
+    for (std::size_t k = 0; k < static_cast<std::size_t>(program.d[j]); ++k) scale_.push_back(first[j] + k);
+  scales_ = levels * std::max<std::size_t>(1, program.scales.size());
   constrained_ = std::any_of(program.c.begin(), program.c.end(), [](int c) { return c > 0; });
-  rate_.resize(level_.size());
+  rate_.resize(scale_.size());
 }
 
 void StateRate::find_kinks() {
@@ -116,10 +119,10 @@ Outcome StateRate::by_reference(double t, const std::vector<double>& state, bool
   return {};
 }
 
-void level_sizes(const StateRate& rate, const std::vector<double>& state, std::vector<double>& sizes) {
-  sizes.assign(static_cast<std::size_t>(rate.levels()), 1.0);
+void scale_sizes(const StateRate& rate, const std::vector<double>& state, std::vector<double>& sizes) {
+  sizes.assign(rate.scales(), 1.0);
   for (std::size_t i = 0; i < state.size(); ++i) {
-    double& size = sizes[static_cast<std::size_t>(rate.level()[i])];
+    double& size = sizes[rate.scale()[i]];
     size = std::max(size, std::abs(state[i]));
   }
 }

@@ -53,10 +53,10 @@ class StateRate {
 
   const Program& program() const { return *program_; }
   const std::vector<double>& parameters() const { return point_.parameters(); }
-  std::size_t size() const { return level_.size(); }
-  // Of each entry of the state: k of x_j^(k).
-  const std::vector<int>& level() const { return level_; }
-  int levels() const { return levels_; }
+  std::size_t size() const { return scale_.size(); }
+  // Of each entry x_j^(k) of the state the scale on which it is measured: entries of one k and one scale of the program.
+  const std::vector<std::size_t>& scale() const { return scale_; }
+  std::size_t scales() const { return scales_; }
   bool constrained() const { return constrained_; }
   const KernelPlan* plan() const { return kernel_ ? &kernel_->plan() : nullptr; }
   std::size_t evaluations() const { return evaluations_; }
@@ -76,8 +76,9 @@ class StateRate {
   Expansion<double> point_;
   std::vector<Guard> guards_;
   std::vector<Kink> kinks_;
-  std::vector<int> level_, sides_;
-  int levels_ = 1;
+  std::vector<std::size_t> scale_;
+  std::vector<int> sides_;
+  std::size_t scales_ = 1;
   bool constrained_ = false, moved_ = false, guarded_ = false;
   std::vector<double> state_, rate_, leading_, integrands_, arguments_;
   double drift_ = 0;
@@ -118,7 +119,7 @@ class StateStepper {
   double worst_constraint_ = 0;
 };
 
-// The size of each level of derivatives, at least 1: that which a tolerance is relative to.
-void level_sizes(const StateRate& rate, const std::vector<double>& state, std::vector<double>& sizes);
+// The size of the entries of each scale, at least 1: that which a tolerance is relative to.
+void scale_sizes(const StateRate& rate, const std::vector<double>& state, std::vector<double>& sizes);
 
 }  // namespace anholon

@@ -122,9 +122,8 @@ struct Sundials::Work {
   // Reciprocals of the errors allowed.
   int weights(const double* from, double* out) {
     now.assign(from, from + states());
-    level_sizes(*field, now, sizes);
-    for (std::size_t i = 0; i < states(); ++i)
-      out[i] = 1 / (settings.tolerance * sizes[static_cast<std::size_t>(field->level()[i])]);
+    scale_sizes(*field, now, sizes);
+    for (std::size_t i = 0; i < states(); ++i) out[i] = 1 / (settings.tolerance * sizes[field->scale()[i]]);
     for (std::size_t i = first_integral(); i < size(); ++i)
       out[i] = 1 / (settings.integral_tolerance * std::max(1.0, std::abs(from[i])));
     return 0;

@@ -153,8 +153,8 @@ struct Plan {
   std::uint32_t rows = 0;  // of the linearized tape
   int largest_lead = 0, largest_d = 0;
   std::vector<int> c, d;
-  std::size_t apart = 0;  // the unknowns from here on are measured relative to their own size when a step is chosen
-  std::optional<Place> determinant;  // judged together with the pivots
+  std::vector<std::vector<std::uint32_t>> scales;  // of the program
+  std::optional<Place> determinant;                // judged together with the pivots
 
   // For choices of representation: the number of multiplications and additions of one expansion (without the
   // elimination).

@@ -59,7 +59,7 @@ Plan plan(const Program& program, int stages, bool judged) {
     plan.determinant = plan.quadratures.back();
     plan.quadratures.pop_back();
   }
-  plan.apart = program.unknowns();
+  plan.scales = program.scales;
   note_watched(slots, layout, plan);
   return plan;
 }

@@ -83,15 +83,20 @@ class Sweep final : public SweepSteps<L> {
   }
 
   bool displaced(int level) override {
-    V size = T::broadcast(1), most = T::broadcast(0);
-    for (std::size_t j = 0; j < p_.x.size(); ++j) {
-      const int k = p_.d[j] - level;
-      if (k < 0) continue;
-      size = larger(size, abs(w_[p_.x[j] + static_cast<std::uint32_t>(k)]) *
-                              T::broadcast(k_.factorial[static_cast<std::size_t>(k)]));
-      most = larger(most, abs(w_[k_.solution + j]));
+    const V one = T::broadcast(1), zero = T::broadcast(0);
+    V displacement = zero;
+    for (const std::vector<std::uint32_t>& scale : p_.scales) {
+      V size = one, most = zero;
+      for (const std::uint32_t j : scale) {
+        const int k = p_.d[j] - level;
+        if (k < 0) continue;
+        size = larger(size, abs(w_[p_.x[j] + static_cast<std::uint32_t>(k)]) *
+                                T::broadcast(k_.factorial[static_cast<std::size_t>(k)]));
+        most = larger(most, abs(w_[k_.solution + j]));
+      }
+      const V here = most / size;
+      displacement = here <= displacement ? displacement : here;
     }
-    const V displacement = most / size, one = T::broadcast(1), zero = T::broadcast(0);
     V& drift = w_[k_.found.drift];
     drift = displacement <= drift ? drift : displacement;
     const auto moves = displacement > T::broadcast(kQuiet);

@@ -65,21 +65,21 @@ class SweepSteps : public Arithmetic {
     const int order = p_.stages + 1;
     const V zero = T::broadcast(0), one = T::broadcast(1);
     V last = zero, before_last = zero, pole = zero, unfit = zero;
-    for (const auto& [first, end] : {std::pair(std::size_t{0}, p_.apart), std::pair(p_.apart, p_.x.size())}) {
+    for (const std::vector<std::uint32_t>& scale : p_.scales) {
       double factor = 1, factor_before = 1;
-      for (int k = 0; k < p_.largest_d && first < end; ++k) {
+      for (int k = 0; k < p_.largest_d; ++k) {
         if (k > 0) factor *= order + k, factor_before *= order - 1 + k;
         V size = one, l = zero, b = zero;
-        for (std::size_t j = first; j < end; ++j) {
+        for (const std::uint32_t j : scale) {
           if (k >= p_.d[j]) continue;
           const V* x = w_ + p_.x[j] + k;
           size = larger(size, abs(x[0]) * T::broadcast(k_.factorial[static_cast<std::size_t>(k)]));
           l = larger(l, abs(x[order]));
           b = larger(b, abs(x[order - 1]));
         }
-        const V scale = T::broadcast(factor) / size;
-        last = larger(last, l * scale);
-        before_last = larger(before_last, b * (scale * T::broadcast(factor_before / factor)));
+        const V weight = T::broadcast(factor) / size;
+        last = larger(last, l * weight);
+        before_last = larger(before_last, b * (weight * T::broadcast(factor_before / factor)));
       }
     }
     bool poles = false;

@@ -104,6 +104,22 @@ class Elements {
     });
   }
 
+  // Of coordinates, then states: those of one dimension have one number, and so have those whose dimension does not follow.
+  // Empty if all have number 0. REQUIRES: the elements have been run.
+  std::vector<std::uint32_t> scales() {
+    std::vector<std::optional<Dimension>> kinds;
+    std::vector<std::uint32_t> list;
+    const auto add = [&](const std::string& name) {
+      const std::optional<Dimension> d = formulas_.known(named(name));
+      const auto at = std::find(kinds.begin(), kinds.end(), d);
+      list.push_back(static_cast<std::uint32_t>(at - kinds.begin()));
+      if (at == kinds.end()) kinds.push_back(d);
+    };
+    for (const std::string& name : model_.names.coordinates) add(name);
+    for (const StateVariable& z : model_.states) add(z.name);
+    return kinds.size() > 1 ? list : std::vector<std::uint32_t>{};
+  }
+
   const std::vector<Diagnostic>& found() const { return found_.list(); }
   const std::vector<Diagnostic>& noted() const { return noted_.list(); }  // warnings
   FormulaDimensions& formulas() { return formulas_; }
@@ -357,9 +373,10 @@ static bool overrides_with_units(const Scope& scope) {
 
 void check_dimensions(const Item& root, const Scope& scope, Model& model, std::vector<Contact>& contacts,
                       Diagnostics& diagnostics) {
-  if (!may_have_units(root) && !overrides_with_units(scope)) return;
   Elements elements(root, scope, model);
   const bool units_seen = elements.run();
+  if (elements.found().empty()) model.scales = elements.scales();
+  if (!may_have_units(root) && !overrides_with_units(scope)) return;
   // Without units the check passes over formulas that contradict one another, but not over a unit from outside that does.
   if (!elements.found().empty() && (units_seen || consistent_without_overrides(root, scope, model)))
     for (const Diagnostic& d : elements.found()) diagnostics.add(d);

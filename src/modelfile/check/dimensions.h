@@ -10,7 +10,8 @@
 
 namespace anholon {
 
-// Reports clashes, and stores the units that were found in the model and in its contacts. The file must have no errors.
+// Reports clashes, and stores the units that were found in the model and in its contacts, and the scales of the unknowns,
+// which follow from the formulas also in a file without units. The file must have no errors.
 void check_dimensions(const Item& root, const Scope& scope, Model& model, std::vector<Contact>& contacts,
                       Diagnostics& diagnostics);
 // The units of the coordinates and parameters of a file without units, as far as they follow from its formulas: a position

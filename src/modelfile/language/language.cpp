@@ -36,8 +36,8 @@ const LanguageSection* find_subject(const std::string& word) {
   for (const LanguageSection& s : language())
     if (s.form != LanguageSection::Form::top && (asked == s.name || word == s.name)) return &s;
   for (const LanguageSection& s : language())
-    if (s.form != LanguageSection::Form::top && s.form != LanguageSection::Form::part &&
-        (asked == plural(s.name) || std::find(s.words.begin(), s.words.end(), asked) != s.words.end()))
+    if (s.form != LanguageSection::Form::part &&
+        ((*s.name && asked == plural(s.name)) || std::find(s.words.begin(), s.words.end(), asked) != s.words.end()))
       return &s;
   return nullptr;
 }

@@ -72,7 +72,8 @@ constraint, `norm.a` is added, and `check` says so. Where `a` is not given the s
 coordinates = ["a", "b", "c", "d"]
 body = [{name = "ball", mass = 1, shape = "ball(1)", center = "0", orientation = "quat(a, b, c, d)"}]
 ```
-)md"},
+)md",
+       {"rigid", "inertia", "shape", "orientation", "mass", "wheel", "rod", "disc", "ball", "box", "quaternion"}},
       {"body.axes",
        Form::part,
        any,
@@ -154,7 +155,8 @@ generalized = {theta = "-theta'"}
 - A force without `from` acts from outside; `check` lists these.
 - A force works through the velocity of the material point: at a place that moves over the body, the velocity of the body there counts.
 - Forces may depend on anything but `lambda.NAME` and `reaction(B)`, and definitions that hold them.
-)md"},
+)md",
+       {"torque", "torques", "damper", "motor", "tension", "cable", "thrust", "actuator"}},
       {"force.on",
        Form::part,
        any,
@@ -176,7 +178,8 @@ x = 7e6
 
 - The field acts on every mass with its current value, so it needs no `[[force]]` and no potential beside it. A note names a
   potential that holds the same weight.
-)md"},
+)md",
+       {"weight"}},
       {"potential",
        Form::named,
        formula,
@@ -188,7 +191,8 @@ weight = "m*g*y"
 ```
 
 - Forces are −∂V/∂q. The name of a varying mass within it counts as frozen. A potential does not depend on velocities.
-)md"},
+)md",
+       {"spring", "springs", "energy"}},
       {"dissipation",
        Form::named,
        formula,
@@ -199,7 +203,8 @@ damper = "0.2*x'^2/2"              # the force -0.2 x'
 ```
 
 - Forces are −∂R/∂q′.
-)md"},
+)md",
+       {"damping", "rayleigh", "drag"}},
       {"constraint",
        Form::elements,
        any,
@@ -275,7 +280,9 @@ name = "floor"
 equation = "y = 0"
 one_sided = true
 ```
-)md"},
+)md",
+       {"rolling", "roll", "rope", "joint", "hinge", "nonholonomic", "holonomic", "multiplier", "multipliers", "lambda",
+        "rheonomic"}},
       {"quasi",
        Form::named,
        formula,
@@ -326,7 +333,8 @@ monitor = {v = "norm(vel(P, inertial))"}
 ```text
 error: the inertial velocity of the observer's origin is not known
 ```
-)md"},
+)md",
+       {"noninertial", "rotating", "coriolis", "earth"}},
   };
 }
 

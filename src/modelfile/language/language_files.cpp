@@ -64,7 +64,8 @@ body.plate.inertia = "J + 1"       # of the body plate, the other keys stay
 ```console
 $ anholon check heavy.toml --quiet > heavy.txt
 ```
-)md"},
+)md",
+       {"coordinates", "coordinate", "base", "title"}},
       {"index",
        Form::named,
        formula,
@@ -108,7 +109,8 @@ index = {i = "1..2"}
 ```text
 error: in bead[2]: there is no 's[3]'; s has 1..2
 ```
-)md"},
+)md",
+       {"chain", "family", "families"}},
       {"case",
        Form::named,
        any,
@@ -128,7 +130,8 @@ vector = "ex"
 - `--case a --case b` applies both, one after the other; the later wins. `--set` comes last. Without `--case` none applies, but names in them
   are not looked up.
 - An element of a family goes by the name in the file (`"trailer[i]"`); one member alone is written out in a new element.
-)md"},
+)md",
+       {"scenario", "scenarios"}},
   };
 }
 

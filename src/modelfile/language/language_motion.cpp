@@ -278,7 +278,8 @@ by = "w"
   stands in a constraint of which derivatives are needed remains a formula there, and so does one whose formula is put in. An input that is given acts in forces,
   rates of states, outputs, events and other inputs alike.
 - Inputs may use each other, not themselves. `{}` needs a constraint that is kept by it.
-)md"},
+)md",
+       {"control", "controls", "controller"}},
       {"output",
        Form::named,
        any,
@@ -359,7 +360,8 @@ initial = {theta = "x + 1"}
 ```text
 error: an initial value is a number or a formula of parameters
 ```
-)md"},
+)md",
+       {"start", "guess"}},
       {"monitor",
        Form::named,
        formula,
@@ -431,7 +433,8 @@ view = {follow = "plat"}
 ```text
 error: there is no body or point 'plat'; did you mean 'plate'?
 ```
-)md"},
+)md",
+       {"animation", "picture", "film"}},
   };
 }
 

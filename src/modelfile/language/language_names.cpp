@@ -25,7 +25,8 @@ c     = {value = 3, unit = "N*s/m", doc = "of the damper"}
 
 - A parameter is constant: what depends on t stands under `[functions]`, what depends on coordinates under `[define]`.
 - `--set l=0.8` gives another value, and what follows from `l` follows. Decimals are exact, `0.1` is 1/10.
-)md"},
+)md",
+       {"parameter", "constants"}},
       {"functions",
        Form::named,
        formula,
@@ -43,7 +44,8 @@ wind     = {}                      # unknown: derived and proved with, not integ
 - A function that jumps is written with `piecewise`: `push = "piecewise(t < 1, 0, t < 3, 5, 0)"` is 0, from t = 1 on 5, and from t = 3 on 0 again.
   A motion makes a step to each jump.
 - `f(2*t)` puts the argument in place of t; `f'` is the derivative by time. Of functions with arguments: `D(rho(y), 1)`.
-)md"},
+)md",
+       {"function"}},
       {"define",
        Form::named,
        any,
@@ -58,7 +60,8 @@ turn  = "rotz(2*theta)"            # a rotation; with axes turn.x
 
 - A name for a formula of any type. Equations print the name where the formula occurs as a whole.
 - One that holds `lambda.NAME` or `reaction(B)` is for monitors, outputs, rates, conditions and events; forces and constraints refuse it.
-)md"},
+)md",
+       {"definition", "definitions"}},
       {"frame",
        Form::named,
        rotation,
@@ -143,7 +146,8 @@ name = "drag"
 file = "drag.csv"
 columns = ["mach", "drag"]
 ```
-)md"},
+)md",
+       {"data", "interpolation", "spline"}},
       {"notation",
        Form::named,
        text,

@@ -1,5 +1,7 @@
 #include "modelfile/language/reference.h"
 
+#include <algorithm>
+
 #include "base/diagnostic.h"
 #include "formula/units.h"
 #include "modelfile/language/language.h"
@@ -272,20 +274,31 @@ std::string reference_page() {
   return out;
 }
 
-bool is_in_reference(const std::string& word) { return word == "formulas" || find_subject(word); }
+// Words for the chapter on formulas, which tells about units, too.
+static const std::vector<std::string>& words_of_formulas() {
+  static const std::vector<std::string> words = {"formulas", "formula", "units", "unit", "numbers"};
+  return words;
+}
+
+static bool is_about_formulas(const std::string& word) {
+  const std::vector<std::string>& words = words_of_formulas();
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool is_in_reference(const std::string& word) { return is_about_formulas(word) || find_subject(word); }
 
 std::vector<std::string> reference_words() {
-  std::vector<std::string> known = {"formulas"};
+  std::vector<std::string> known = words_of_formulas();
   for (const LanguageSection& s : language()) {
-    if (s.form == Form::part || s.form == Form::top) continue;
-    known.emplace_back(s.name);
+    if (s.form == Form::part) continue;
+    if (s.form != Form::top) known.emplace_back(s.name);
     known.insert(known.end(), s.words.begin(), s.words.end());
   }
   return known;
 }
 
 std::string reference_section(const std::string& word) {
-  if (word == "formulas") return formulas();
+  if (is_about_formulas(word)) return formulas();
   if (const LanguageSection* s = find_subject(word)) {
     const std::string text = part(*s);
     return text.find("```toml\n") == std::string::npos

@@ -18,7 +18,8 @@ std::vector<N> pole(N radius, int power, int count) {
 template <class N>
 double step(const std::vector<N>& c, int d, int order, double shrink = 0) {
   const std::vector<UnknownSeries<N>> x = {{c.data(), d}};
-  return to_double(step_size<N>(x, order, shrink));
+  const std::vector<std::vector<std::uint32_t>> one_scale = {{0}};
+  return to_double(step_size<N>(x, one_scale, order, shrink));
 }
 
 TEST(StepControl, OrderFollowsFromTheTolerance) {
@@ -79,7 +80,19 @@ TEST(StepControl, StaysAwayFromPolesOfMultipliers) {
   const auto smooth = pole(1e3, 1, order + 2);
   const auto multiplier = pole(0.5, 1, order);
   const std::vector<UnknownSeries<double>> x = {{smooth.data(), 1}, {multiplier.data(), 0}};
-  EXPECT_NEAR(step_size<double>(x, order, 2), 0.5 * std::exp(-0.7), 1e-12);
+  const std::vector<std::vector<std::uint32_t>> scales = {{0}};
+  EXPECT_NEAR(step_size<double>(x, scales, order, 2), 0.5 * std::exp(-0.7), 1e-12);
+}
+
+// An orbit in metres does not lengthen the steps that an angle allows, unless both are measured against one size.
+TEST(StepControl, DimensionsAreMeasuredApart) {
+  const int order = 20;
+  auto orbit = pole(1e3, 1, order + 1), angle = pole(1.0, 1, order + 1);
+  orbit[0] = 7e6;
+  const std::vector<UnknownSeries<double>> x = {{orbit.data(), 1}, {angle.data(), 1}};
+  const std::vector<std::vector<std::uint32_t>> apart = {{0}, {1}}, together = {{0, 1}};
+  EXPECT_EQ(step_size<double>(x, apart, order, 2), step(angle, 1, order, 2));
+  EXPECT_GT(step_size<double>(x, together, order, 2), 2 * step(angle, 1, order, 2));
 }
 
 TEST(StepControl, AMotionWithoutHigherTermsHasNoBound) {
