@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/assert.h"
+#include "expr/diff.h"
 
 namespace anholon {
 
@@ -17,11 +18,13 @@ namespace {
 
 using Numbers = std::vector<Rational>;
 
-// Second derivatives at the knots, from a tridiagonal, diagonally dominant system. Their digits would grow with every
-// knot, so a hundred are kept.
+// Second derivatives at the knots, from a tridiagonal, diagonally dominant system. They are exact as long as they have few
+// digits, which grow with every knot; of more, a hundred and twenty are kept.
 Numbers natural_spline(const Numbers& x, const Numbers& y) {
   const std::size_t n = x.size();
+  constexpr std::uint64_t kMostBits = 800;  // of numerator and denominator
   const auto rounded = [](const Rational& r) {
+    if (r.bits() <= kMostBits) return r;
     mpz_class scaled = (r.get_num() << 400) / r.get_den();
     return Rational(scaled, mpz_class(1) << 400);
   };
@@ -130,6 +133,11 @@ Expr TableFunction::operator()(Expr x) const {
   return value;
 }
 
+static bool is_constant_in_time(Expr e) {
+  const std::vector<NodeId> met = symbols({&e, 1});
+  return std::all_of(met.begin(), met.end(), [&](NodeId id) { return e.graph->node(id).kind == Kind::parameter; });
+}
+
 std::optional<std::string> too_rough(Expr e, int derivative) {
   const Graph& g = *e.graph;
   struct Use {
@@ -140,7 +148,7 @@ std::optional<std::string> too_rough(Expr e, int derivative) {
     const Node& n = g.node(id);
     if (n.kind != Kind::lookup) continue;
     const StepFunction& f = g.step_function(n.index);
-    if (f.power < 0) continue;
+    if (f.power < 0 || is_constant_in_time(Expr{e.graph, g.terms(id)[0].node})) continue;
     Use& use = tables.try_emplace(f.name.substr(0, f.name.rfind('.')), Use{f.power, f.smooth}).first->second;
     use.power = std::min(use.power, f.power);
   }

@@ -169,8 +169,10 @@ void explain_stop(Workspace& s, const Motion<N>& motion, Outcome& outcome) {
     outcome.kind = OutcomeKind::singular;
     message = "singular configuration" + when + where(s, motion) + ": " +
               (!lost.empty() ? lost
-                             : (j < s.system.coordinates ? "the equations no longer determine the acceleration of "
-                                                         : "the equations no longer determine the multiplier ") +
+                             : std::string("the equations no longer determine the ") +
+                                   (j < system.coordinates    ? "acceleration of "
+                                    : j < system.mechanical() ? "multiplier "
+                                                              : "rate of the state ") +
                                    system.variable_names[j]);
     if (outcome.hint.empty() || !lost.empty() || !s.redundant.empty())
       outcome.hint = switched(s)

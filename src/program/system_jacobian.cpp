@@ -54,26 +54,57 @@ N SystemJacobian<N>::largest(std::size_t i, int level) const {
   return most;
 }
 
-// The unit is the median of the largest inertia in each equation: moments of inertia are further from 1 than masses, as lengths
-// are.
+namespace {
+
+double power_of_two_near(double x) { return std::exp2(std::round(std::log2(x))); }
+
+// The median of the largest inertia in each equation: moments of inertia are further from 1 than masses, as lengths are.
+// Returns 1 if there is no inertia.
 template <Number N>
-Scales<N> SystemJacobian<N>::scales_of_far_masses() const {
-  constexpr double kFar = 0x1p20;
-  const std::size_t n = program_->system->coordinates, mechanical = program_->system->mechanical();
-  if (is_sparse_ || n == mechanical) return {};
+double unit_of_mass(const Matrix<N>& j, std::size_t coordinates) {
   std::vector<double> inertias;
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < coordinates; ++i) {
     double largest = 0;
-    for (std::size_t j = 0; j < n; ++j) largest = std::max(largest, std::abs(to_double(j_(i, j))));
+    for (std::size_t k = 0; k < coordinates; ++k) largest = std::max(largest, std::abs(to_double(j(i, k))));
     if (largest > 0 && std::isfinite(largest)) inertias.push_back(largest);
   }
-  if (inertias.empty()) return {};
+  if (inertias.empty()) return 1;
   const auto median = inertias.begin() + static_cast<std::ptrdiff_t>(inertias.size() / 2);
   std::nth_element(inertias.begin(), median, inertias.end());
-  if (*median < kFar && *median * kFar > 1) return {};
-  const double unit = std::exp2(std::round(std::log2(*median)));
-  Scales<N> scales{std::vector<N>(j_.rows, N(0)), std::vector<N>(j_.cols, N(1))};
-  for (std::size_t j = n; j < mechanical; ++j) scales.column[j] = N(unit);
+  return *median;
+}
+
+}  // namespace
+
+// Units in which a multiplier or a rate is far from 1 say nothing about how regular J is. A constraint whose coefficients are
+// small may be about to lose its hold, and keeps its multiplier's unit.
+template <Number N>
+Scales<N> SystemJacobian<N>::scales_of_far_units() const {
+  constexpr double kFar = 0x1p20, kFarther = 0x1p30;
+  const std::size_t n = program_->system->coordinates, mechanical = program_->system->mechanical();
+  if (is_sparse_) return {};
+  const double mass = unit_of_mass(j_, n);
+  const bool far_masses = n < mechanical && !(mass < kFar && mass * kFar > 1);
+  std::vector<N> column(j_.cols, N(1));
+  bool far = far_masses;
+  for (std::size_t k = n; k < mechanical; ++k) {
+    if (far_masses) column[k] = N(power_of_two_near(mass));
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, std::abs(to_double(j_(i, k))));
+    if (!(largest > kFarther * std::max(1.0, mass)) || !std::isfinite(largest)) continue;
+    column[k] = N(power_of_two_near(mass / largest));
+    far = true;
+  }
+  for (std::size_t z = mechanical; z < j_.cols; ++z) {
+    double largest = 0;
+    for (std::size_t k = 0; k < mechanical; ++k) largest = std::max(largest, std::abs(to_double(j_(z, k))));
+    const double own = std::abs(to_double(j_(z, z)));
+    if (!(own > 0) || !(largest > kFarther * own) || !std::isfinite(largest)) continue;
+    column[z] = N(power_of_two_near(largest / own));
+    far = true;
+  }
+  if (!far) return {};
+  Scales<N> scales{std::vector<N>(j_.rows, N(0)), std::move(column)};
   for (std::size_t i = 0; i < j_.rows; ++i)
     for (std::size_t j = 0; j < j_.cols; ++j)
       scales.row[i] = std::max(scales.row[i], N(abs(N(j_(i, j) * scales.column[j]))));

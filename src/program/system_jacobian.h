@@ -46,10 +46,11 @@ class SystemJacobian {
   }
   void solve(const std::vector<N>& b, std::vector<N>& x) const { is_sparse_ ? sparse_.solve(b, x) : lu_.solve(b, x); }
   int passes() const { return is_sparse_ ? 2 : lu_.passes(); }
-  // An estimate for J with rows divided by their largest entry. Where inertia is far from 1, as with masses of 1e-18, it is
-  // for another unit of mass, and columns are divided by their largest entries as well.
+  // An estimate for J with rows divided by their largest entry. Where inertia is far from 1, as with masses of 1e-18, or the
+  // coefficients of a constraint or of a rate are very large, it is for other units of mass, multipliers and rates, and columns
+  // are divided by their largest entries as well.
   N smallest_singular_value(std::vector<N>& direction) const {
-    const Scales<N> scales = scales_of_far_masses();
+    const Scales<N> scales = scales_of_far_units();
     return is_sparse_ ? sparse_.smallest_singular_value(direction, scales)
                       : lu_.smallest_singular_value(direction, scales);
   }
@@ -61,8 +62,8 @@ class SystemJacobian {
   const Balance& balance() const;
 
  private:
-  // Empty if the inertia is not far from 1, or J is sparse.
-  Scales<N> scales_of_far_masses() const;
+  // Empty if no unit is far from 1, or J is sparse.
+  Scales<N> scales_of_far_units() const;
   // Where J is not needed, there is no memory for it.
   void make_room() {
     if (j_.data.empty()) j_ = Matrix<N>(program_->unknowns(), program_->unknowns());

@@ -131,10 +131,11 @@ std::vector<Warning> warnings(const Workspace& s, const Course<N>& course, const
   std::vector<Warning> list;
   if (course.smallest_sigma() < course.first_sigma() * N(kNearSingular)) {
     const std::size_t j = course.weakest_unknown(), n = s.system.coordinates;
-    const unsigned order = j < n ? static_cast<unsigned>(course.taylor().program().d[j]) : 0;
+    const bool is_multiplier = n <= j && j < s.system.mechanical();
+    const unsigned order = is_multiplier ? 0 : static_cast<unsigned>(course.taylor().program().d[j]);
     const std::string what =
-        j < n ? derivative_name(s.system.variable_names[j], order, Format::text) + " is hardly determined"
-              : "the constraint '" + s.system.equation_names[j] + "' nearly loses its hold";
+        is_multiplier ? "the constraint '" + s.system.equation_names[j] + "' nearly loses its hold"
+                      : derivative_name(s.system.variable_names[j], order, Format::text) + " is hardly determined";
     list.push_back({std::string(kPassesNearSingular) +
                         " at t = " + number_text(to_double(course.smallest_sigma_time()), 6) + ": " + what,
                     "trust what follows less; write the constraint or the coordinates so that they are regular there"});

@@ -322,13 +322,13 @@ std::vector<bool> held(const Stage<N>& s, const std::vector<std::size_t>& free) 
   return is;
 }
 
-// The k-th point around the guess in these unknowns, at increasing distance.
+// The k-th point around the guess, at increasing distance. `numbers`: of the unknowns, by which the point is drawn.
 template <Number N>
-std::vector<N> around(const std::vector<N>& guess, const std::vector<bool>& moved, int k) {
+std::vector<N> around(const std::vector<N>& guess, const std::vector<std::size_t>& numbers, int k) {
   std::vector<N> p = guess;
   for (std::size_t j = 0; j < p.size(); ++j) {
-    if (!moved[j]) continue;
-    const unsigned draw = (static_cast<unsigned>(k) * 2654435761U + static_cast<unsigned>(j + 1) * 2246822519U) >> 16;
+    const unsigned draw =
+        (static_cast<unsigned>(k) * 2654435761U + static_cast<unsigned>(numbers[j] + 1) * 2246822519U) >> 16;
     const N size = abs(p[j]) > N(1) ? N(abs(p[j])) : N(1);
     p[j] += size * N(k) * N(static_cast<int>(draw % 2001U) - 1000) / N(4000);
   }
@@ -338,8 +338,13 @@ std::vector<N> around(const std::vector<N>& guess, const std::vector<bool>& move
 }  // namespace
 
 template <Number N>
-bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& free,
+bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& may_move,
                           const InitialState<double>* near, bool by_flow) {
+  // In the mass norm the others would move along, which are coupled to these by inertia alone.
+  std::vector<std::size_t> free, numbers;
+  const std::vector<bool> moves = held(s, may_move);
+  for (std::size_t j = 0; j < may_move.size(); ++j)
+    if (moves[j]) free.push_back(may_move[j]), numbers.push_back(j);
   constexpr int kStarts = 12, kStartsInMany = 3;
   constexpr std::size_t kMany = 60;  // unknowns
   Iteration<N> newton(s, state, free);
@@ -367,11 +372,10 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
   const bool solved = value && newton.solved();
   if ((solved && (by_flow || newton.direct())) || free.empty() || s.linear()) return value;
   const InitialState<N> first = state;
-  const std::vector<bool> moved = held(s, free);
   Nearest<N> nearest;
   if (solved) nearest.offer(newton);
   for (int k = 0; k <= kStarts && (nearest.point.empty() || k < kStartsInMany || free.size() <= kMany); ++k) {
-    if (!newton.go_to(around(newton.guess(), moved, k))) continue;
+    if (!newton.go_to(around(newton.guess(), numbers, k))) continue;
     if (!newton.follow() && !(newton.run(false) && newton.solved())) continue;
     newton.descend();
     nearest.offer(newton);

@@ -143,12 +143,12 @@ N stage_rounding() {
   return unit_roundoff<N>() * N(200);
 }
 
-// min |x - x0| over the free unknowns subject to the equations, with x0 the values in the state, by Newton's method
+// min |x - x0| over the free unknowns that an equation contains, subject to the equations; the others stay. x0 are the values
+// in the state. By Newton's method
 // with a line search. If it does not converge by full steps, solutions are searched from x0 and from points around it, too, and
 // the nearest is taken; if none is found, the state ends at the least residual reached, which the caller examines.
 // Returns false if the equations have no value there. `near`: the start of the first search, if not x0. `by_flow`: searches
 // first along Newton's flow from x0, d/ds F(x(s)) = -F(x(s)), which leads to the solution that belongs to x0 among several.
-// Searches begin at other values than x0 only in unknowns that an equation contains.
 template <Number N>
 bool find_by_least_change(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free,
                           const InitialState<double>* near = nullptr, bool by_flow = false);

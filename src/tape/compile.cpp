@@ -5,6 +5,8 @@
 
 #include "base/assert.h"
 #include "base/hash_index.h"
+#include "tape/large_numbers.h"
+#include "tape/leads.h"
 #include "tape/tape.h"
 
 namespace anholon {
@@ -41,7 +43,10 @@ class Compiler {
         all.insert(all.end(), derivatives.begin(), derivatives.end());
       }
       if (shared_) share(all);
-      for (NodeId id : reachable(all)) emit(id);
+      const std::vector<NodeId> nodes = reachable(all);
+      large_.merge(large_sums(g_, nodes));
+      for (NodeId id : nodes) emit(id);
+      for (Expr e : all) plain(e.id);  // derivatives of functions, too, are used before the end of the part
     };
     part(es.first(leads.size()));
     std::vector<std::uint32_t> roots;
@@ -49,7 +54,7 @@ class Compiler {
     for (Expr e : es.first(leads.size())) roots.push_back(alias(e.id));
     tape_.main_end = static_cast<std::uint32_t>(tape_.code.size());
     part(es.subspan(leads.size()));
-    for (Expr e : es.subspan(leads.size())) roots.push_back(slot_.at(e.id));
+    for (Expr e : es.subspan(leads.size())) roots.push_back(plain(e.id));
     tape_.roots = roots;
     tape_.nodes.assign(tape_.code.size(), Tape::kNoNode);
     for (const auto& [id, slot] : slot_) tape_.nodes[slot] = std::min(tape_.nodes[slot], id);
@@ -57,11 +62,11 @@ class Compiler {
       Instruction& in = tape_.code[slot];
       const auto& [first, second] = derivative_.at(id);
       if (in.op == Op::function)
-        in.index = g_.node(id).index, in.b = slot_.at(first.id);
+        in.index = g_.node(id).index, in.b = plain(first.id);
       else
-        in.first = slot_.at(first.id), in.count = slot_.at(second.id);
+        in.first = plain(first.id), in.count = plain(second.id);
     }
-    spread_leads(leads);
+    spread_leads(tape_, leads);
     return std::move(tape_);
   }
 
@@ -87,8 +92,22 @@ class Compiler {
     in.first = static_cast<std::uint32_t>(tape_.linear_terms.size());
     in.count = 1;
     in.constant = constant(slot_.at(id));
-    tape_.linear_terms.push_back({rational(1), slot_.at(id)});
+    tape_.linear_terms.push_back({rational(times_power_of_two(1, unit(id))), slot_.at(id)});
     return push(in);
+  }
+
+  // k, if the slot of a node holds its value divided by 2^k.
+  long unit(NodeId id) const {
+    const auto it = unit_.find(id);
+    return it == unit_.end() ? 0 : it->second;
+  }
+
+  // The slot that holds the value of a node itself.
+  std::uint32_t plain(NodeId id) {
+    if (unit(id) == 0) return slot_.at(id);
+    const auto [it, fresh] = plain_.try_emplace(id, 0);
+    if (fresh) it->second = alias(id);
+    return it->second;
   }
 
   std::uint32_t one() {
@@ -195,6 +214,14 @@ class Compiler {
     for (auto& [id, list] : products) factors_[id] = std::move(list);
   }
 
+  // Whether a power is a product of that many factors.
+  static bool is_repeated(const Rational& exponent) { return exponent.is_integer() && abs(exponent) <= 1000; }
+
+  // Whether the power of a value in units of 2^k is one in units of a whole power of two.
+  static bool keeps_unit(const Rational& exponent) {
+    return abs(exponent) <= 1000 && (exponent * Rational(kUnits)).is_integer();
+  }
+
   std::uint32_t factor_slot(std::uint64_t f) {
     if (f < kPair) return slot_.at(static_cast<NodeId>(f));
     const std::uint64_t k = f - kPair;
@@ -214,7 +241,7 @@ class Compiler {
     for (const Term& t : g_.terms(id)) {
       const Rational& e = g_.rational(t.weight);
       const std::uint32_t x = slot_.at(t.node);
-      const bool whole = e.is_integer() && abs(e) <= 1000;
+      const bool whole = is_repeated(e);
       if (shared != factors_.end() && whole && e > 0 && e <= 4 && !constant(x)) continue;
       if (whole) {
         const std::uint32_t p = whole_power(x, static_cast<unsigned long>(std::labs(e.to_long())));
@@ -222,7 +249,7 @@ class Compiler {
       } else {
         Instruction in{Op::power};
         in.constant = constant(x);
-        in.a = x;
+        in.a = keeps_unit(e) ? x : plain(t.node);
         in.index = rational(e);
         (in.constant ? constants : varying).push_back(push(in));
       }
@@ -257,18 +284,23 @@ class Compiler {
   }
 
   std::uint32_t product(NodeId id) {
+    long unit_of_product = 0;
+    for (const Term& t : g_.terms(id))
+      if (const long k = unit(t.node); k != 0 && keeps_unit(g_.rational(t.weight)))
+        unit_of_product += (g_.rational(t.weight) * Rational(k)).to_long();
+    if (unit_of_product != 0) unit_[id] = unit_of_product;
     if (shared_) return shared_product(id);
     std::vector<std::uint32_t> top, bottom;
     for (const Term& t : g_.terms(id)) {
       const Rational& e = g_.rational(t.weight);
       const std::uint32_t x = slot_.at(t.node);
-      if (e.is_integer() && abs(e) <= 1000) {
+      if (is_repeated(e)) {
         const long n = e.to_long();
         (n > 0 ? top : bottom).push_back(whole_power(x, static_cast<unsigned long>(std::labs(n))));
       } else {
         Instruction in{Op::power};
         in.constant = constant(x);
-        in.a = x;
+        in.a = keeps_unit(e) ? x : plain(t.node);
         in.index = rational(e);
         top.push_back(push(in));
       }
@@ -297,7 +329,7 @@ class Compiler {
     const Node n = g_.node(id);
     switch (n.kind) {
     case Kind::number:
-      return constant_of(Op::constant, rational(g_.value(id)));
+      return number(id);
     case Kind::pi:
       return constant_of(Op::pi, 0);
     case Kind::parameter:
@@ -331,7 +363,20 @@ class Compiler {
     return 0;
   }
 
-  std::uint32_t operand(NodeId id, std::size_t k) const { return slot_.at(g_.terms(id)[k].node); }
+  std::uint32_t operand(NodeId id, std::size_t k) { return plain(g_.terms(id)[k].node); }
+
+  // A number that few doubles are near has a unit.
+  std::uint32_t number(NodeId id) {
+    const Rational& r = g_.value(id);
+    const long k = r == 0 ? 0 : whole_units(binary_exponent(r));
+    if (std::labs(k) <= kLargestExponent) return constant_of(Op::constant, rational(r));
+    unit_[id] = k;
+    return constant_of(Op::constant, rational(times_power_of_two(r, -k)));
+  }
+
+  // Units are powers of 2^12, so that roots of them are powers of two.
+  static constexpr long kUnits = 12;
+  static long whole_units(long exponent) { return exponent / kUnits * kUnits; }
 
   std::uint32_t constant_of(Op op, std::uint32_t index) {
     Instruction in{op, true};
@@ -350,9 +395,9 @@ class Compiler {
   // A derivative of an expression, which is compiled before.
   std::uint32_t rate(Expr of, std::uint32_t order) {
     for (NodeId below : reachable({&of, 1})) emit(below);
-    if (order == 0) return slot_.at(of.id);
+    if (order == 0) return plain(of.id);
     Instruction in{Op::rate};
-    in.a = slot_.at(of.id);
+    in.a = plain(of.id);
     in.index = order;
     return push(in);
   }
@@ -360,9 +405,18 @@ class Compiler {
   std::uint32_t sum(NodeId id) {
     Instruction in{Op::linear, true};
     in.first = static_cast<std::uint32_t>(tape_.linear_terms.size());
+    const auto weight = [&](const Term& t) {
+      const Rational& w = g_.rational(t.weight);
+      return unit(t.node) == 0 ? w : times_power_of_two(w, unit(t.node));
+    };
+    long down = 0;
+    if (large_.contains(id)) {
+      for (const Term& t : g_.summands(id)) down = std::max(down, binary_exponent(weight(t)));
+      if (down = whole_units(down); down != 0) unit_[id] = down;
+    }
     for (const Term& t : g_.summands(id)) {
       const std::uint32_t x = slot_.at(t.node);
-      tape_.linear_terms.push_back({rational(g_.rational(t.weight)), x});
+      tape_.linear_terms.push_back({rational(down == 0 ? weight(t) : times_power_of_two(weight(t), -down)), x});
       in.constant = in.constant && constant(x);
       ++in.count;
     }
@@ -403,61 +457,6 @@ class Compiler {
     return push(in);
   }
 
-  void spread_leads(std::span<const int> leads) {
-    std::vector<Instruction>& code = tape_.code;
-    for (std::size_t i = 0; i < leads.size(); ++i) {
-      code[tape_.roots[i]].lead = static_cast<std::uint8_t>(leads[i]);
-    }
-    const auto raise = [&](std::uint32_t slot, std::uint8_t lead) {
-      bool changed = code[slot].lead < lead;
-      code[slot].lead = std::max(code[slot].lead, lead);
-      return changed;
-    };
-    // Derivative slots may come after the function that uses them: repeat until nothing changes.
-    for (bool again = true; again;) {
-      again = false;
-      for (std::uint32_t s = tape_.main_end; s-- > 0;) {
-        const Instruction in = code[s];
-        switch (in.op) {
-        case Op::constant:
-        case Op::pi:
-        case Op::input:
-        case Op::parameter:
-          break;
-        case Op::linear:
-          for (std::uint32_t k = in.first; k < in.first + in.count; ++k) raise(tape_.linear_terms[k].slot, in.lead);
-          break;
-        case Op::square:
-        case Op::power:
-        case Op::lookup:
-          raise(in.a, in.lead);
-          break;
-        case Op::rate:
-          raise(in.a, static_cast<std::uint8_t>(in.lead + in.index));
-          break;
-        case Op::select:
-          raise(in.a, in.lead), raise(in.b, in.lead), raise(in.first, in.lead);
-          break;
-        case Op::multiply:
-        case Op::scale:
-        case Op::divide:
-          raise(in.a, in.lead), raise(in.b, in.lead);
-          break;
-        case Op::function:
-          raise(in.a, in.lead);
-          if (raise(in.b, in.lead)) again = true;
-          break;
-        case Op::arctan2:
-          raise(in.a, in.lead), raise(in.b, in.lead);
-          if (raise(in.first, in.lead)) again = true;
-          if (raise(in.count, in.lead)) again = true;
-          break;
-        }
-      }
-    }
-    for (const Instruction& in : code) tape_.largest_lead = std::max<int>(tape_.largest_lead, in.lead);
-  }
-
   static constexpr std::uint64_t kPair = 1ULL << 32;
 
   Graph& g_;
@@ -473,6 +472,9 @@ class Compiler {
   std::unordered_map<NodeId, bool> expanded_;
   std::unordered_map<NodeId, std::pair<Expr, Expr>> derivative_;
   std::vector<std::pair<std::uint32_t, NodeId>> pending_derivatives_;
+  std::unordered_set<NodeId> large_;                 // sums that are computed in units of their own
+  std::unordered_map<NodeId, long> unit_;            // of nodes whose slot holds the value divided by 2^unit
+  std::unordered_map<NodeId, std::uint32_t> plain_;  // the slots of their values
   HashIndex rational_;
   std::unordered_map<std::uint32_t, std::uint32_t> step_function_;
   std::unordered_map<std::uint64_t, std::uint32_t> whole_power_;

@@ -212,7 +212,7 @@ Outcome RungeKutta::cut_at_kink(double& h) {
 // At now(). A constraint that turns at a kink, which the last step has passed, changes velocities without an impulse in the
 // equations; a motion that it turns back, or that passes such kinks sooner and sooner, does not go on.
 bool RungeKutta::is_held_by_turns() {
-  if (kinks_.sides.empty() || !(rate_.drift() > std::max(kTurned, kTurnedOfTolerance * tolerance_))) return false;
+  if (!rate_.may_kink() || !(rate_.drift() > std::max(kTurned, kTurnedOfTolerance * tolerance_))) return false;
   const bool soon = std::abs(now_.t - kinks_.last_turn) <= kSoon * std::abs(now_.t);
   kinks_.turns = soon ? kinks_.turns + 1 : 1;
   kinks_.last_turn = now_.t;

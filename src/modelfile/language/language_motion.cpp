@@ -341,7 +341,7 @@ initial = {qddot = {x = 0.2}, qdddot = {x = 0.05}}
 ```
 
 - Every coordinate and its derivatives may be a key: `theta`, `"theta'"`, `"D(theta, 3)"`. What is not given follows from the constraints, and what they leave free
-  is as near to the guess, 0 without one, as the mass norm allows. All that is free changes by the least amount together, so a velocity that could be 0 need not be: a torus
+  is as near to the guess, 0 without one, as the mass norm allows; what no constraint contains keeps its guess. All that is free changes by the least amount together, so a velocity that could be 0 need not be: a torus
   wheel that leans and spins with `phi' = 8`, without a `psi'`, must move its centre, and the least motion that does so turns it with `psi' = -4`. Give all velocities of a
   rolling body. `check` says of each value where it comes from.
 - A value is a number or a formula of parameters. Relations between unknowns stand under `conditions`, which may hold accelerations and

@@ -137,6 +137,24 @@ TYPED_TEST(TaylorIn, EveryOperation) {
     EXPECT_LE(error_in_roundoffs<TypeParam>(e, reference(e, kOrders)), this->kRoundoffs) << name;
 }
 
+// The graph writes 1 + 1e-34 x as 1e-34 (1e34 + x), whose tenth power no double holds.
+TYPED_TEST(TaylorIn, SumsWithFarCoefficients) {
+  Graph g;
+  const Expr x = g.jet(0, 0), y = g.jet(1, 0), p = g.parameter(0);
+  const Expr small = g.number(Rational("1/10000000000000000000000000000000000"));
+  const Expr far = 1 + small * x, digits = 1 + g.number(Rational("12345678/100000000")) * x;
+  const std::pair<const char*, Expr> cases[] = {{"power", pow(far, 10)},
+                                                {"digits", pow(digits, 38) / pow(2 + digits * y, 30)},
+                                                {"function", sin(pow(far, 12) * y)},
+                                                {"root", sqrt(pow(far, 11) + 2 * pow(far, 9) * y)},
+                                                {"quotient", p * pow(far, 10) / pow(far + y * y, 20)},
+                                                {"alone", far},
+                                                {"nested", pow(1 + small * pow(far, 10) * y, 10) + pow(far, 10)},
+                                                {"with a parameter", pow(1 + small * p, 10) * x}};
+  for (const auto& [name, e] : cases)
+    EXPECT_LE(error_in_roundoffs<TypeParam>(e, reference(e, kOrders)), this->kRoundoffs) << name;
+}
+
 TYPED_TEST(TaylorIn, RandomExpressions) {
   Graph g;
   const std::vector<Expr> atoms = {g.jet(0, 0), g.jet(1, 0), g.jet(0, 1), g.parameter(0), g.time()};

@@ -1,0 +1,26 @@
+// Sums whose numbers a double does not hold.
+//
+// The graph writes a sum with whole coefficients, 1 + 1e-34 y as 1e-34 (1e34 + y). Its tenth power is then 1e-340 (1e34 + y)^10,
+// a product of two numbers that no double holds. A tape computes such a sum in units of its largest coefficient, by which the
+// coefficient in front of the product grows.
+#pragma once
+#include <span>
+#include <unordered_set>
+
+#include "expr/expr.h"
+
+namespace anholon {
+
+// Numbers up to 2^256 are held as they are.
+inline constexpr long kLargestExponent = 256;
+
+// The sums among these nodes whose coefficients make a product, or stand alone, with numbers beyond 2^256.
+std::unordered_set<NodeId> large_sums(const Graph& g, std::span<const NodeId> nodes);
+
+// k of the largest |r| = 2^k, rounded down. REQUIRES: r != 0.
+long binary_exponent(const Rational& r);
+
+// 2^k r.
+Rational times_power_of_two(const Rational& r, long k);
+
+}  // namespace anholon

@@ -1,0 +1,13 @@
+// How far the slots of a tape are ahead of the state: an equation that is differentiated c times needs its operands c orders
+// further.
+#pragma once
+#include <span>
+
+#include "tape/tape.h"
+
+namespace anholon {
+
+// Gives the roots of a tape these leads, and the slots on which they depend the leads that they need.
+void spread_leads(Tape& tape, std::span<const int> leads);
+
+}  // namespace anholon
