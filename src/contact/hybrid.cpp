@@ -31,10 +31,7 @@ class HybridMotion {
         joined_(*s.model, contacts), accumulation_(contacts.size()), impact_states_(s, contacts_), o_(o) {
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
     if (end_ < bodies_.at.t) throw Failure({}, "a motion with contacts goes forwards only", "an end after the start");
-    std::vector<Rational> times = o.at;
-    if (o.every)
-      for (Rational t = bodies_.at.t; t < end_; t += *o.every) times.push_back(t);
-    if (!times.empty() && times.back() != end_) times.push_back(end_);
+    std::vector<Rational> times = times_of_rows(o, bodies_.at.t, end_);
     choose_order();
     segments_.emplace(s, o_, bodies_, joined_, sink, std::move(times), end_,
                       [this](std::size_t contact) { slips_->told(contact); });
