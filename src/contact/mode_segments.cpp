@@ -204,6 +204,7 @@ SimulationOptions ModeSegments::asked(const Rational& to) const {
   o.watches_floors = o_.watches_floors && has_supports_;
   o.watches_carriers = false;  // the note tells of the start of the whole motion
   o.note = nullptr;
+  if (o_.progress) o.progress = [this](double t, std::size_t steps) { o_.progress(t, joined_.steps() + steps); };
   o.state.t = bodies_.at.t;
   return o;
 }

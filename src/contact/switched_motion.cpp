@@ -220,6 +220,7 @@ class SwitchedMotion {
     o.estimate = ErrorEstimate::never;
     o.conserved.clear();
     o.note = nullptr;
+    if (o_.progress) o.progress = [this](double t, std::size_t steps) { o_.progress(t, joined_.steps() + steps); };
     rows_.begin_segment();
     const SimulationReport r = simulate_in(own, o, rows_);
     outcome = r.outcome;
