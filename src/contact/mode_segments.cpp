@@ -177,6 +177,7 @@ bool ModeSegments::last_until(const Rational& to, ContactState& at) {
   o.dense = nullptr;
   o.followed.clear();
   o.watches_floors = false;
+  o.watches_ranges = false;
   o.from_zero = from_zero(*mode, bodies_);
   const SimulationReport r = simulate_in(*mode->own, o, last, &mode->plans);
   at = bodies_.at;
