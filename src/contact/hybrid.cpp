@@ -31,10 +31,7 @@ class HybridMotion {
         joined_(*s.model, contacts), accumulation_(contacts.size()), impact_states_(s, contacts_), o_(o) {
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
     if (end_ < bodies_.at.t) throw Failure({}, "a motion with contacts goes forwards only", "an end after the start");
-    std::vector<Rational> times = o.at;
-    if (o.every)
-      for (Rational t = bodies_.at.t; t < end_; t += *o.every) times.push_back(t);
-    if (!times.empty() && times.back() != end_) times.push_back(end_);
+    std::vector<Rational> times = times_of_rows(o, bodies_.at.t, end_);
     choose_order();
     segments_.emplace(s, o_, bodies_, joined_, sink, std::move(times), end_,
                       [this](std::size_t contact) { slips_->told(contact); });
@@ -213,7 +210,10 @@ class HybridMotion {
     if (list.size() != 1) return undecided(list.size());
     slips_->tell_who_slips_too(list[0].modes);
     bodies_.modes = list[0].modes;
-    if (over_border) tell_changes(before);
+    if (over_border)
+      tell_changes(before);
+    else if (struck)
+      tell_openings(before);
     if (Outcome o = not_flat(kFlat); !o.ok()) return o;
     note_rests(p, list[0]);
     name_reversals(bodies_.modes);
@@ -296,11 +296,22 @@ class HybridMotion {
       else if (touched && now.touch == Touch::slips && now.direction[0] * before[c].direction[0] < 0 &&
                bodies_.contacts[c].slip.size() == 1)
         change = ModeChange::reverses;
-      // An impact tells that its bodies part.
-      if (change &&
-          !(change == ModeChange::leaves && joined_.has(event_name(c, ModeChange::hits), bodies_.at.t.get_d())))
+      if (change == ModeChange::leaves)
+        tell_leaves(c);
+      else if (change)
         joined_.event_once(event_name(c, *change), bodies_.at.t.get_d());
     }
+  }
+  // Tells which closed contacts the impacts of others have opened.
+  void tell_openings(const ContactModes& before) {
+    for (std::size_t c = 0; c < before.size(); ++c)
+      if (before[c].touch != Touch::open && bodies_.modes[c].touch == Touch::open && !bodies_.contacts[c].under)
+        tell_leaves(c);
+  }
+  // An impact of the contact itself tells that its bodies part.
+  void tell_leaves(std::size_t c) {
+    const double t = bodies_.at.t.get_d();
+    if (!joined_.has(event_name(c, ModeChange::hits), t)) joined_.event_once(event_name(c, ModeChange::leaves), t);
   }
 
   // The motion with all contacts open tells which formula has no value.

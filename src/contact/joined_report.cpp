@@ -58,6 +58,7 @@ static void join(std::vector<WatchedReport>& all, const std::vector<WatchedRepor
     if (m.least.value < known->least.value) known->least = m.least;
     if (m.greatest.value > known->greatest.value) known->greatest = m.greatest;
     known->size = std::max(known->size, m.size);
+    known->times += m.times;
     const double change = std::max(known->greatest.value - known->first.value, known->first.value - known->least.value);
     known->largest_change =
         std::max({known->largest_change, m.largest_change, known->size > 0 ? change / known->size : 0});

@@ -177,6 +177,7 @@ bool ModeSegments::last_until(const Rational& to, ContactState& at) {
   o.dense = nullptr;
   o.followed.clear();
   o.watches_floors = false;
+  o.watches_ranges = false;
   o.from_zero = from_zero(*mode, bodies_);
   const SimulationReport r = simulate_in(*mode->own, o, last, &mode->plans);
   at = bodies_.at;
@@ -204,6 +205,7 @@ SimulationOptions ModeSegments::asked(const Rational& to) const {
   o.watches_floors = o_.watches_floors && has_supports_;
   o.watches_carriers = false;  // the note tells of the start of the whole motion
   o.note = nullptr;
+  if (o_.progress) o.progress = [this](double t, std::size_t steps) { o_.progress(t, joined_.steps() + steps); };
   o.state.t = bodies_.at.t;
   return o;
 }

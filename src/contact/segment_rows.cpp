@@ -7,6 +7,18 @@
 
 namespace anholon {
 
+std::vector<Rational> times_of_rows(const SimulationOptions& o, const Rational& start, const Rational& end) {
+  std::vector<Rational> times = o.at;
+  if (o.every) {
+    for (Rational t = start; t < end; t += *o.every) times.push_back(t);
+    // As RowSchedule does: a multiple whose number is that of the end has no row of its own.
+    const double last = from_rational<double>(end);
+    while (times.size() > 1 && from_rational<double>(times.back()) == last) times.pop_back();
+  }
+  if (!times.empty() && times.back() != end) times.push_back(end);
+  return times;
+}
+
 void SegmentRows::only_at(const std::vector<Rational>& times) {
   // As rows round them: get_d() cuts the digits off.
   for (const Rational& t : times) times_.push_back(from_rational<double>(t));

@@ -1,9 +1,13 @@
 // The rows of the segments of a motion with contacts, in the columns that all segments have.
 #pragma once
 #include "contact/mode_model.h"
+#include "observe/options.h"
 #include "result/rows.h"
 
 namespace anholon {
+
+// The times of rows from the start of a motion in doubles to its end, with the end; none if rows are due at every step.
+std::vector<Rational> times_of_rows(const SimulationOptions& o, const Rational& start, const Rational& end);
 
 class SegmentRows final : public RowSink {
  public:

@@ -23,10 +23,7 @@ class SwitchedMotion {
     end_ = o.to && (o.at.empty() || *o.to > o.at.back()) ? *o.to : o.at.back();
     if (end_ < at_.t)
       throw Failure({}, "a motion with constraints that are switched goes forwards only", "an end after the start");
-    times_ = o.at;
-    if (o.every)
-      for (Rational t = at_.t; t < end_; t += *o.every) times_.push_back(t);
-    if (!times_.empty() && times_.back() != end_) times_.push_back(end_);
+    times_ = times_of_rows(o, at_.t, end_);
     rows_.only_at(times_);
     for (const Event& e : s.model->events)
       for (const Assignment& a : e.set) must_be_of_state(e, a);
@@ -223,6 +220,7 @@ class SwitchedMotion {
     o.estimate = ErrorEstimate::never;
     o.conserved.clear();
     o.note = nullptr;
+    if (o_.progress) o.progress = [this](double t, std::size_t steps) { o_.progress(t, joined_.steps() + steps); };
     rows_.begin_segment();
     const SimulationReport r = simulate_in(own, o, rows_);
     outcome = r.outcome;

@@ -32,17 +32,22 @@ CaseTable::CaseTable(std::string text, std::string file) : text_(std::move(text)
   constexpr std::string_view kMark = "\xEF\xBB\xBF";  // of UTF-8, which some programs write first
   if (text_.compare(0, kMark.size(), kMark) == 0) text_.erase(0, kMark.size());
   bool header = false;
-  std::size_t cells = 0;
+  std::size_t cells = 0, named_or_not = 0;  // in the first line: without empty ones at its end, and with them
   for (std::size_t at = 0; at < text_.size();) {
     const std::string_view here = line(at);
     const std::size_t begin = at;
     at = std::min(text_.find('\n', at), text_.size() - 1) + 1;
     if (here.find_first_not_of(" \t") == std::string_view::npos) continue;
-    const std::size_t count = split_csv(here).size();
+    const std::vector<std::string> all = split_csv(here);
+    std::size_t count = all.size();
+    // Commas at the end of lines make no cells.
+    while (count > std::max<std::size_t>(cells, 1) && trimmed(all[count - 1]).empty()) --count;
     if (!header) {
-      header_ = begin, header = true, cells = count;
+      header_ = begin, header = true, cells = count, named_or_not = all.size();
       continue;
     }
+    if (count > cells && count <= named_or_not)
+      mistake_at(header_, cells, "this column has no name", "the name of what varies in it, or leave out the column");
     if (count != cells)
       mistake_at(begin, 0,
                  "the line has " + std::to_string(count) + (count == 1 ? " cell" : " cells") + ", the first line " +
@@ -51,7 +56,8 @@ CaseTable::CaseTable(std::string text, std::string file) : text_(std::move(text)
     lines_.push_back(begin);
   }
   if (!header) throw Failure({}, "the table " + file_ + " is empty", kTableHint);
-  const std::vector<std::string> all = split_csv(line(header_));
+  std::vector<std::string> all = split_csv(line(header_));
+  all.resize(cells);
   for (std::size_t k = 0; k < all.size(); ++k) {
     std::string name = trimmed(all[k]);
     if (name == "case") {

@@ -69,7 +69,9 @@ struct SimulationOptions {
   ErrorEstimate estimate = ErrorEstimate::never;
   // Whether the notes tell of supports that pull and of friction that is needed (observe/floors/floor_watch.h).
   bool watches_floors = true;
-  bool watches_carriers = true;        // of supports of one body alone, too
+  bool watches_carriers = true;  // of supports of one body alone, too
+  // Whether the ranges of monitors count where Taylor's steps end, too.
+  bool watches_ranges = true;
   std::vector<Conserved> conserved;    // to be watched: expressions of the scenario
   std::vector<std::size_t> from_zero;  // events whose formulas are zero at the start, and have round-off as values
   // Called at the end, and every few seconds: what is needed to go on.

@@ -8,12 +8,14 @@
 
 namespace anholon {
 
-// A number watched from the start, at the rows and at the end; the numbers are in the precision of the rows.
+// A number watched from the start to the end, at the rows; a monitor also where Taylor's steps end (of
+// long motions ever fewer of them), before and after events. The numbers are in the precision of the rows.
 struct WatchedReport {
   std::string name;
   WrittenNumber first, last, least, greatest;
   double largest_change = 0;  // from the start, in relation to the greatest of its terms
   double size = 0;            // that greatest; 0 in reports that were read from a file
+  std::size_t times = 0;      // at which a monitor was seen; 0 if nobody has counted
 };
 
 // Derivatives k = 0, 1, … of a constraint that have to vanish: the worst at the rows, in relation to their terms.

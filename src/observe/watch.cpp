@@ -159,6 +159,7 @@ Outcome Watch<W>::see(const Expansion<W>& point, SimulationReport& report) {
   turn_over(energy());
   constraints(point, rows, phi, report);
   track();
+  ++times_;
   multipliers_ = redundant_.multipliers(point);
   return still_redundant(point, report);
 }
@@ -259,6 +260,7 @@ void Watch<W>::save(SavedRun& to) const {
   to.set_numbers("tracks", tracks);
   to.set_numbers<W>("energy", {h0_, forces_, turned_over_});
   to.set_numbers<W>("from", from_);
+  to.set_numbers<double>("times", {static_cast<double>(times_)});
 }
 
 constexpr std::size_t kNumbersOfTrack = 9;  // in a saved run
@@ -277,19 +279,27 @@ void Watch<W>::resume(const SavedRun& from, const std::vector<W>& parameters) {
   forces_ = energy[1];
   turned_over_ = energy[2];
   from_ = from.numbers<W>("from", s_.system.coordinates);
+  if (from.has("times")) times_ = static_cast<std::size_t>(from.number<double>("times"));
 }
 
 template <Number W>
 void Watch<W>::look(const Expansion<W>& point) {
   outputs_.evaluate(point);
-  track(true);
+  track(Which::constants);
 }
 
 template <Number W>
-void Watch<W>::track(bool constants_only) {
+void Watch<W>::look_at_ranges(const Expansion<W>& point) {
+  outputs_.evaluate(point);
+  track(Which::ranges);
+  ++times_;
+}
+
+template <Number W>
+void Watch<W>::track(Which which) {
   std::size_t at = first_monitor_;
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (constants_only && !constant_[i]) {
+    if (which == (constant_[i] ? Which::ranges : Which::constants)) {
       at += terms_[i];
       continue;
     }
@@ -332,6 +342,7 @@ void Watch<W>::enter(const Expansion<W>& point, const std::vector<W>& parameters
   redundant_.set_parameters(parameters);
   outputs_.evaluate(point);
   h0_ += energy() - before_;
+  track(Which::ranges);
 }
 
 template <Number W>

@@ -55,6 +55,7 @@ class Watch {
   // and the integrals, one after the other.
   template <class Value, class Terms>
   void track(Value value, Terms terms) {
+    ++times_;
     std::size_t at = 0;
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       double sum = 0, size = 0;
@@ -71,6 +72,23 @@ class Watch {
     return std::find(constant_.begin(), end, true) != end;
   }
   void look(const Expansion<W>& point);
+  // Whether there are monitors whose range is reported; these alone are seen at a point between rows, or at one that was
+  // computed in doubles: value(i) of the i-th monitor.
+  bool any_ranges() const {
+    const auto end = constant_.begin() + static_cast<std::ptrdiff_t>(s_.model->monitors.size());
+    return std::find(constant_.begin(), end, false) != end;
+  }
+  void look_at_ranges(const Expansion<W>& point);
+  template <class Value>
+  void track_ranges(Value value) {
+    for (std::size_t i = 0; i < s_.model->monitors.size(); ++i)
+      if (!constant_[i]) tracks_[i].see(W(value(i)));
+    ++times_;
+  }
+  // How many times of the motion the ranges are made of: the rows, and the points between them. The start counts by
+  // count_start() if it has no row; the two sides of an event are at the end of a step, and do not count again.
+  void count_start() { ++times_; }
+  std::size_t times() const { return times_; }
   // Whether constraints are left out that have to follow from the others.
   bool any_redundant() const { return redundant_.any(); }
   // Whether they do.
@@ -100,7 +118,8 @@ class Watch {
 
  private:
   Column expressions(const Power& power, const std::vector<Conserved>& conserved);
-  void track(bool constants_only = false);
+  enum class Which : std::uint8_t { all, constants, ranges };
+  void track(Which which = Which::all);
   W made_of_forces() const;
   void see_moved(const Expansion<W>& point);
   std::vector<std::size_t> rows_at(const Expansion<W>& point) const;
@@ -114,6 +133,7 @@ class Watch {
   std::vector<Track<W>> tracks_;
   std::vector<std::size_t> terms_;  // of which each is the sum
   std::vector<bool> constant_;      // which ought to be
+  std::size_t times_ = 0;           // at which monitors were seen
   std::vector<double> made_of_;     // of the numbers behind their terms, at the point seen last
   // Constraints that no derivative hides: their accelerations, … are solved for with the equations.
   std::vector<std::size_t> open_;

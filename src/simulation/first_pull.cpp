@@ -51,6 +51,7 @@ std::optional<FirstPassing> first_event(const Scenario& s, const SimulationOptio
   const double start = o.state.t ? o.state.t->get_d() : to_double(scenario.state.t);
   if (support && start != until) own.at.insert(own.at.begin(), o.state.t ? *o.state.t : Rational(start));
   own.watches_floors = false;
+  own.watches_ranges = false;
   FirstRow rows(support ? multiplier_name(*model, support->constraint) : "");
   const SimulationReport r = simulate(scenario, own, rows);
   for (const EventReport& e : r.events)

@@ -32,9 +32,15 @@ KernelRows::KernelRows(Workspace& s, const SimulationOptions& o, const Motion<do
 }
 
 void KernelRows::add(const Motion<double>& motion, long double t, const std::string& label, bool judged) {
+  note(motion, t, label, judged ? Block::Use::judged_row : Block::Use::row);
+}
+
+void KernelRows::look(const Motion<double>& motion, long double t) { note(motion, t, "", Block::Use::look); }
+
+void KernelRows::note(const Motion<double>& motion, long double t, const std::string& label, Block::Use use) {
   Block& block = work_.filling();
   block.rows.add(motion, t, label);
-  block.judged.push_back(judged);
+  block.uses.push_back(use);
   if (++noted_ > kFew) work_.work_beside();
   if (block.rows.full()) pass_on();
 }
@@ -78,15 +84,19 @@ void KernelRows::work(Block& block) {
   if (!failed_)
     waiting_->compute(block.rows, [&](const WaitingRows::Computed& row) {
       tell_steps(block);
-      trouble_ = take(row, block.judged[block.taken] != 0);
+      const Block::Use use = block.uses[block.taken];
+      if (use == Block::Use::look)
+        look(row);
+      else
+        trouble_ = take(row, use == Block::Use::judged_row);
       if (!trouble_.ok()) failed_ = true;
       ++block.taken;
       return trouble_.ok() && !(o_.rows_lost && o_.rows_lost());
     });
   count_doubtful();
-  if (!failed_) block.taken = block.judged.size();
+  if (!failed_) block.taken = block.uses.size();
   tell_steps(block);
-  block.rows.clear(), block.judged.clear(), block.steps.clear();
+  block.rows.clear(), block.uses.clear(), block.steps.clear();
 }
 
 Outcome KernelRows::take(const WaitingRows::Computed& row, bool judged) {
@@ -115,6 +125,14 @@ Outcome KernelRows::take(const WaitingRows::Computed& row, bool judged) {
   takers_.writer.row(place.t, row.label(), numbers_);
   ++takers_.report.rows;
   return {};
+}
+
+// A point without a solution is left out: if a row needs it, that ends the motion.
+void KernelRows::look(const WaitingRows::Computed& row) {
+  if (row.good())
+    takers_.watch.track_ranges([&](std::size_t i) { return row.monitor(i); });
+  else if (settle_at(point_, row.place(), stages_ > 0).ok())
+    takers_.watch.look_at_ranges(point_);
 }
 
 // A row whose numbers differ by more than round-off waits until the kernel is free to compute it again.

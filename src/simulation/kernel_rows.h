@@ -34,6 +34,8 @@ class KernelRows {
 
   // Notes a row in the last step. `judged`: it may count for the estimate of the error.
   void add(const Motion<double>& motion, long double t, const std::string& label, bool judged);
+  // Notes a time of the last step at which the ranges of monitors are watched without a row.
+  void look(const Motion<double>& motion, long double t);
   // The end of a step after the rows that were noted.
   void step(double end);
   // Hands over what waits for too long.
@@ -55,7 +57,8 @@ class KernelRows {
   struct Block {
     explicit Block(std::size_t room) : rows(room) {}
     WaitingBlock rows;
-    std::vector<char> judged;  // of each row
+    enum class Use : std::uint8_t { row, judged_row, look };
+    std::vector<Use> uses;  // of each of them
     struct StepEnd {
       double t;
       std::size_t rows;  // before it, in this block
@@ -64,10 +67,12 @@ class KernelRows {
     std::size_t taken = 0, told = 0;  // rows and steps that were worked on
   };
 
+  void note(const Motion<double>& motion, long double t, const std::string& label, Block::Use use);
   void pass_on() { work_.pass_on(); }
   void work(Block& block);
   void tell_steps(Block& block);
   Outcome take(const WaitingRows::Computed& row, bool judged);
+  void look(const WaitingRows::Computed& row);
   void compare(const WaitingRows::Computed& row);
   void count_doubtful();
   // By how much each column changes with the round-off of the state.

@@ -133,6 +133,7 @@ class ReportWriter {
       number("min", w.least);
       number("max", w.greatest);
       number("largest_change", w.largest_change);
+      if (w.times > 0) count("times", w.times);
       j_.close();
     }
     j_.close();
@@ -292,6 +293,7 @@ std::vector<WatchedReport> watched(const Fields& list) {
     const Fields w(value);
     all.push_back(
         {name, w.written("first"), w.written("last"), w.written("min"), w.written("max"), w.number("largest_change")});
+    if (w.has("times")) all.back().times = w.count("times");
   }
   return all;
 }

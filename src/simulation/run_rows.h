@@ -2,6 +2,7 @@
 // watched, judged and written.
 #pragma once
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -12,6 +13,23 @@
 #include "simulation/shown_motion.h"
 
 namespace anholon {
+
+// The steps at whose ends the ranges of monitors are watched: the first ones, then ever fewer, so that they are not what
+// takes the time of a run.
+inline std::size_t steps_between_looks(std::size_t step) {
+  constexpr std::size_t kFirst = 1024;
+  return std::bit_ceil(step / kFirst + 1);
+}
+inline bool is_looked_at(std::size_t step) { return step % steps_between_looks(step) == 0; }
+// How many steps lead from this one to the next at which they are watched.
+inline std::size_t steps_to_next_look(std::size_t step) {
+  std::size_t next = step + 1;
+  while (!is_looked_at(next)) {
+    const std::size_t between = steps_between_looks(next);
+    next += between - next % between;
+  }
+  return next - step;
+}
 
 template <Number N>
 class RunRows {
@@ -51,7 +69,7 @@ class RunRows {
       const double end = to_double(schedule_.end());
       if (!known)
         known = WaitingRows::make(of_.s, of_.options.conserved, of_.stages, motion.start_parameters(),
-                                  motion.start_state(), end, schedule_.left());
+                                  motion.start_state(), end, watches_ranges() ? 0 : schedule_.left());
       const std::shared_ptr<WaitingRows>& rows = *known;
       if (!rows) return;
       rows->set_parameters(motion.parameters());
@@ -74,9 +92,15 @@ class RunRows {
       if (schedule_.reaches(due.t, stop)) given = due.t;
     }
     if (schedule_.reaches(*schedule_.given(), stop)) return;
-    if (schedule_.every_step()) in_parts(*schedule_.given(), stop);
+    if (schedule_.every_step())
+      in_parts(*schedule_.given(), stop);
+    else if (watches_ranges() && is_looked_at(of_.course.steps()) && of_.course.by_taylor() &&
+             of_.report.outcome.ok() && !schedule_.took(stop))
+      look(stop);
     schedule_.set_given(given);
   }
+  // Whether the ranges of monitors count where Taylor's steps end, too.
+  bool watches_ranges() const { return of_.options.watches_ranges && of_.watch.any_ranges() && !of_.shown.second(); }
 
   // Tells the end of a step. While rows are under way, their thread tells it, after the rows before it.
   void tell_step(const W& end) {
@@ -162,6 +186,18 @@ class RunRows {
       }
     settle();
     if (of_.report.outcome.ok()) at(t, label);
+  }
+
+  // Sees the monitors at a time of the last step.
+  void look(const W& t) {
+    if constexpr (std::same_as<N, double>)
+      if (const Motion<N>& motion = of_.course.taylor(); beside_ && !motion.stepper().one_sided()) {
+        beside_->look(motion, t);
+        if (beside_->failed()) settle();
+        return;
+      }
+    settle();
+    if (of_.report.outcome.ok() && of_.shown.at(t).ok()) of_.watch.look_at_ranges(of_.shown.point());
   }
 
   Parts of_;

@@ -34,7 +34,7 @@ class RowSchedule {
     }
     end_ = times_.empty() || (backwards ? to < times_.back() : to > times_.back()) ? to : times_.back();
     forward_ = end_ > start_;
-    if (o.every) evenly(*o.every);
+    if (o.every) evenly(*o.every, o.precision == Precision::real);
     every_step_ = times_.empty();
     while (given_ && due(*given_)) ++next_;
   }
@@ -66,13 +66,17 @@ class RowSchedule {
   void set_given(const W& t) { given_ = t; }
 
  private:
-  void evenly(const Rational& every) {
+  // in_doubles: those are the times that rows have.
+  void evenly(const Rational& every, bool in_doubles) {
     const Multiples<W> steps(end_ < start_ ? Rational(-every) : every);
     for (long k = 0;; ++k) {
       const W next = start_ + steps(k);
       if (end_ < start_ ? next < end_ : next > end_) break;
       times_.push_back(next);
     }
+    // A multiple whose double is that of the end has no row of its own.
+    while (in_doubles && times_.size() > 1 && times_.back() != end_ && to_double(times_.back()) == to_double(end_))
+      times_.pop_back();
     if (times_.empty() || times_.back() != end_) times_.push_back(end_);
   }
 

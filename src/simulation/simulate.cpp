@@ -110,6 +110,7 @@ class Run {
     if (o_.estimate != ErrorEstimate::never) motion().expect_second_run();
     rows_.begin_beside(plans_.rows);
     if (course_.at(schedule().start()).ok()) watch_.start(course_.point());
+    if (!schedule().every_step() && !schedule().due_at(schedule().start())) watch_.count_start();
     if (Outcome o = motion().within_bounds(schedule().forward()); !o.ok()) return o;
     if (Outcome o = follow_beside_start(s_); !o.ok()) return o;
     if (schedule().forward())
@@ -215,6 +216,7 @@ class Run {
     const bool each = schedule().every_step() || o_.dense || defect_ || watch_.any_redundant() ||
                       masses_vary<N>(*s_.model, motion().stepper()) || looks_between();
     stretch_.begin(each, schedule().next());
+    if (rows_.watches_ranges()) stretch_.limit(steps_to_next_look(course_.steps()));
     angles_.keep_in(stretch_);
   }
 
@@ -259,6 +261,7 @@ class Run {
   void look_between() {
     constexpr int kParts = 4;
     if (!looks_between()) return;
+    rows_.settle();  // they are watched, too
     ++looks_;
     const W begin = course_.before(), length = course_.time() - begin;
     for (int k = 1; k < kParts; ++k)
@@ -417,8 +420,10 @@ class Run {
     const std::size_t monitors = s_.model->monitors.size();
     for (std::size_t i = 0; i < monitors; ++i) {
       const Monitor& m = s_.model->monitors[i];
-      (declared_conserved(*s_.model, m) ? report_.conserved : report_.monitors)
-          .push_back(watched(m.name, watch_.tracks()[i]));
+      const bool conserved = declared_conserved(*s_.model, m);
+      WatchedReport& w =
+          (conserved ? report_.conserved : report_.monitors).emplace_back(watched(m.name, watch_.tracks()[i]));
+      if (!conserved) w.times = watch_.times();
     }
     for (std::size_t i = 0; i < o_.conserved.size(); ++i)
       report_.conserved.push_back(watched(o_.conserved[i].name, watch_.tracks()[monitors + i]));

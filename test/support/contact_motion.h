@@ -10,7 +10,8 @@ namespace anholon::test {
 // The motion up to the time `to`, with rows at these times, or at the steps without them. Throws if the model is refused.
 inline Motion contact_motion(const std::string& text, const Rational& to, const Overrides& overrides = {},
                              const std::vector<Rational>& at = {},
-                             const Rational& tolerance = SimulationOptions().tolerance) {
+                             const Rational& tolerance = SimulationOptions().tolerance,
+                             const std::function<void(double, std::size_t)>& progress = {}) {
   const SourceText source{"test.toml", text};
   Diagnostics diagnostics;
   const auto open = open_model(source, diagnostics, overrides);
@@ -23,6 +24,7 @@ inline Motion contact_motion(const std::string& text, const Rational& to, const 
   o.to = to;
   o.at = at;
   o.tolerance = tolerance;
+  o.progress = progress;
   Motion m;
   m.report = simulate_with_contacts(own, contacts(*open->names), o, m.rows);
   return m;

@@ -131,9 +131,10 @@ void print_report(const Scenario& s, const SimulationReport& r, const Units& uni
     // Columns of contacts and of switched constraints jump, and gaps begin at zero: size is no measure of a change.
     const bool of_model = std::any_of(s.model->monitors.begin(), s.model->monitors.end(),
                                       [&](const Monitor& m) { return m.name == w.name; });
-    say(stderr, "monitor %s: from %s to %s%s, between %s and %s%s%s\n", w.name.c_str(), w.first.text().c_str(),
+    const std::string times = w.times > 0 ? " at " + std::to_string(w.times) + (w.times == 1 ? " time" : " times") : "";
+    say(stderr, "monitor %s: from %s to %s%s, between %s and %s%s%s%s\n", w.name.c_str(), w.first.text().c_str(),
         w.last.text().c_str(), unit.c_str(), w.least.text().c_str(), w.greatest.text().c_str(), unit.c_str(),
-        of_model ? (", largest change " + small(w.largest_change) + " of its size").c_str() : "");
+        times.c_str(), of_model ? (", largest change " + small(w.largest_change) + " of its size").c_str() : "");
   }
   if (r.rigorous) {
     const RigorousReport& g = *r.rigorous;

@@ -52,6 +52,8 @@ orientation = "rotz(0.3*t)"
 - The centre and the orientation are formulas of coordinates and t, not of velocities, nor of inputs.
 - A mass that varies pushes by the matter that leaves or joins: `expelled_velocity` says how. Without it that matter has the
   velocity of the body's point, and there is no push.
+- So the turning of the matter inside the body is left out, and with it jet damping: matter that flows to the nozzle takes more angular momentum along than at its place. It is a torque
+  `"(m'*l^2 - J')*theta'*ez"` of a `[[force]]`, where l is the distance from the mass centre to the nozzle: [a recipe](recipes/models.md#jet-damping-of-a-rocket).
 
 ```toml
 [[body]]
@@ -251,7 +253,7 @@ set = {caught = 1}
   `lambda.NAME` is its force, as that of a contact.
 - With `active` the constraint holds while the formula, of [modes](#mode) and parameters, is positive: events that set the modes switch it. Where it
   sets in, positions must satisfy it, and the velocities jump by the least change in the mass norm, which takes energy and gives none unless the constraint
-  moves. An event that sets modes to the numbers that they are does not happen. Rows have `NAME.active` and `lambda.NAME`, which is 0 while it does not hold; such
+  moves. In such a model an event that sets nothing but modes, to the numbers that they are, does not happen: the formula of a constraint that holds is round-off and passes zero again and again. Rows have `NAME.active` and `lambda.NAME`, which is 0 while it does not hold; such
   a force stands in monitors, outputs and the `when` of events. Constraints of positions and velocities have it, without `by` and
   `one_sided`, and not beside contacts. [A recipe](contact.md#a-string-that-catches).
 - With `by` no ideal reaction acts: the input, which has no formula (`u = {}`), becomes the unknown instead of λ. An input keeps one

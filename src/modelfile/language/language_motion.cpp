@@ -60,7 +60,7 @@ when = "t - 2"
 set = {stage = "stage + 1"}
 ```
 
-- A number that only events change. `--set stage=2` is for parameters, not for modes: a case changes where a mode starts.
+- A number that only events change. An event that sets it to the number that it is happens like any other, and is counted and reported (`stage 1 -> 1`), except [beside `active`](#constraint). `--set stage=2` is for parameters, not for modes: a case changes where a mode starts.
 )md"},
       {"contact",
        Form::elements,
@@ -171,7 +171,8 @@ initial = {z = 1, "phi'" = 9}
   rolls, at most δN while it does not; the same about the normal. They need a `body` with an orientation. Columns are `NAME.rolling.mode` (0 open, 1 rolls, 2 rests),
   `NAME.rolling.moment`, `NAME.drilling.mode`, `NAME.drilling.moment`; events are `NAME.rolling.starts`, `NAME.rolling.stops`, `NAME.rolling.reverses`, and the same of `NAME.drilling`.
 - **Events and columns.** Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. A gap that is 0 at the start and shrinks is an impact, `NAME.hits`, at the start. At `NAME.reverses` a slip
-  velocity passes zero, or jumps over it, and the contact slips on. `NAME.slips` ends a time of sticking, and `NAME.sticks` one of slipping: what a contact does from the start, or from an impact on, is no event, and its column `mode` tells it. Events
+  velocity passes zero, or jumps over it, and the contact slips on. `NAME.slips` ends a time of sticking, and `NAME.sticks` one of slipping. A contact that slips or sticks from the start on, or from an impact on, has no event of it: its column `mode` tells which of them it does. A closed contact
+  that the impact of another one opens leaves there (`NAME.leaves`); one that strikes itself and opens has `NAME.hits` alone. Events
   of contacts at one instant are listed by cause: impacts, other changes of mode, `NAME.rests`. Rows have the columns `NAME.mode` (0 open, 1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
 - **Forces in formulas.** In monitors, outputs, rates of states, events and the definitions they use, `lambda.NAME` is N, 0 while the contact is open, and `lambda.NAME.t1`, `lambda.NAME.t2` are the components
   of friction along those of the slip velocity, as forces on what slips; `lambda.NAME.rolling.t1` and so on are the moments of resistance. `reaction(B)` holds the forces of contacts. A force that jumps over
@@ -372,7 +373,8 @@ height = "P.y"
 reach  = "norm(P) - 2"
 ```
 
-- Numbers to watch along the motion: columns, with their range in the report. May hold `lambda.NAME`, `reaction(B)` and derivatives of any order, also through `[define]`.
+- Numbers to watch along the motion: columns, with their range in the report: of the rows, of the ends of Taylor's steps (of more than a thousand steps ever fewer) and of both sides of events. Between these a monitor may go beyond it; rows at more times (`--every`) come nearer to its extremes, and in a sweep
+  `--reduce "max(NAME)"` finds them. May hold `lambda.NAME`, `reaction(B)` and derivatives of any order, also through `[define]`.
 )md"},
       {"simulate", Form::keys, any, keys_of_simulate(),
        R"md(```toml

@@ -121,6 +121,8 @@ monitor = {l = "lift(1)"}
 - `fit = "linear"` and `outside = "hold"` unless said otherwise. The step is that of the knot below. Values are exact; those of a spline with many knots have 120 digits.
 - Knots are located and stepped to. `linear` may be differentiated once, `monotone` twice, `spline` three times, the last derivative
   a step; `hold` not at all. A formula that needs more is an error.
+- The slope of `monotone` at a knot is the weighted harmonic mean of the slopes on both sides (Fritsch and Butland 1984), 0 where these differ in sign, and at the first and the
+  last knot the slope beside it. `pchip` of SciPy and MATLAB is the same but for the slopes at these two knots ([theory](theory/events.md#tables)).
 - With `outside = "error"` the motion stops with an outcome where the argument leaves the knots, also at the start.
 - The numbers of a table have no units and fit any dimension. In a file with units the call says which are meant:
   `Cd(t/(1 ms))*(1 N)` for columns of milliseconds and newtons.
@@ -133,7 +135,8 @@ monitor = {i = "D(a(x), 1)", j = "D(a(x), 2)"}
 error: a derivative of order 2 of the table 'a', which its fit does not have
 ```
 
-Columns of a file stand between semicolons if a line has any, else between commas, else between blanks. Numbers have a decimal point.
+Columns of a file stand between semicolons if a line has any, else between commas, else between blanks. Numbers have a decimal point. A column that `columns` names stands once in the heading, and a row has
+no more cells than the first line; empty ones at the end of a line do not count.
 
 ```csv drag.csv
 mach,drag,lift

@@ -16,11 +16,15 @@ namespace {
 constexpr std::size_t kMostKnots = 10'000;
 constexpr std::uintmax_t kLargestFile = 16U << 20;
 
-// A row of a text file: fields between semicolons if there are any, else between commas, else between blanks. A field in
-// quotes may hold the separator.
+// Fields of a row of a text file stand between semicolons if there are any, else between commas, else between blanks.
+char separator_of(const std::string& line) {
+  return line.find(';') != std::string::npos ? ';' : line.find(',') != std::string::npos ? ',' : ' ';
+}
+
+// A field in quotes may hold the separator.
 std::vector<std::string> fields(const std::string& line) {
   std::vector<std::string> out;
-  const char separator = line.find(';') != std::string::npos ? ';' : line.find(',') != std::string::npos ? ',' : ' ';
+  const char separator = separator_of(line);
   std::string field;
   bool quoted = false;
   const auto end = [&] {
@@ -42,6 +46,12 @@ std::vector<std::string> fields(const std::string& line) {
   }
   end();
   return out;
+}
+
+// How many fields a row has without the empty ones at its end.
+std::size_t width(const std::vector<std::string>& row) {
+  const auto last = std::find_if(row.rbegin(), row.rend(), [](const std::string& field) { return !field.empty(); });
+  return static_cast<std::size_t>(row.rend() - last);
 }
 
 // Takes off the mark of UTF-8 with which some programs begin a file.
@@ -165,6 +175,27 @@ class TableReader {
                       : "the line has " + std::to_string(row.size()) + (row.size() == 1 ? " column" : " columns"));
   }
 
+  // A name of the heading that stands there twice does not tell which column is meant.
+  static void must_be_one(const Item& columns, std::size_t k, const std::string& path,
+                          const std::vector<std::string>& heading, std::size_t first) {
+    const auto again =
+        std::find(heading.begin() + static_cast<std::ptrdiff_t>(first) + 1, heading.end(), heading[first]);
+    if (again == heading.end()) return;
+    const std::string one = std::to_string(first + 1), other = std::to_string(again - heading.begin() + 1);
+    throw Failure(columns.items[k].span,
+                  "the heading of '" + path + "' names two columns '" + heading[first] + "', column " + one +
+                      " and column " + other,
+                  "the number of the column in place of the name, \"" + one + "\" or \"" + other + "\"");
+  }
+
+  [[noreturn]] static void too_many(const Item& file, const std::string& path, std::size_t line, std::size_t cells,
+                                    std::size_t first) {
+    throw Failure(file.span,
+                  "line " + std::to_string(line) + " of '" + path + "' has " + std::to_string(cells) +
+                      " cells, and the first line has " + std::to_string(first),
+                  "a cell for each column: numbers have a decimal point, and no commas between thousands");
+  }
+
   void from_file(const Item& file, const Item* columns, Table& table) {
     if (file.kind != Item::Kind::string) throw Failure(file.span, "a file is a name in quotes");
     // Relative to the file in which it stands, which may be a base of the model file.
@@ -183,6 +214,8 @@ class TableReader {
     }
     std::size_t at[2] = {0, 0}, number = 0;
     std::vector<std::string> column_names;
+    std::size_t first_width = 0;
+    char first_separator = ' ';
     bool placed = false;
     for (std::string line; std::getline(in, line);) {
       if (++number == 1) drop_byte_order_mark(line);
@@ -190,25 +223,31 @@ class TableReader {
       if (row.empty() || row[0].rfind('#', 0) == 0) continue;
       if (!placed) {
         placed = true;
+        first_width = row.size(), first_separator = separator_of(line);
         bool heading = false;
         for (int k = 0; k < 2; ++k) {
           const auto it = std::find(row.begin(), row.end(), wanted[static_cast<std::size_t>(k)]);
           const auto index = parse_rational(wanted[static_cast<std::size_t>(k)]);
-          if (it != row.end() && !index)
+          if (it != row.end() && !index) {
             at[k] = static_cast<std::size_t>(it - row.begin()), heading = true;
-          else if (index && index->is_integer() && *index >= 1 && *index <= 1000)
+            must_be_one(*columns, static_cast<std::size_t>(k), path.string(), row, at[k]);
+          } else if (index && index->is_integer() && *index >= 1 && *index <= 1000) {
             at[k] = index->get_num().get_ui() - 1;
-          else
+          } else {
             throw Failure(columns ? columns->items[static_cast<std::size_t>(k)].span : file.span,
                           "the file '" + path.string() + "' has no column '" + wanted[static_cast<std::size_t>(k)] +
                               "'",
                           "its first line has the columns " + joined(row));
+          }
         }
         if (heading || !parse_rational(row[0])) {
           column_names = row;
           continue;
         }
       }
+      // A line of blanks may be a title in words, and so have fewer fields.
+      if (first_separator != ' ' && first_separator == separator_of(line) && width(row) > first_width)
+        too_many(file, path.string(), number, width(row), first_width);
       for (int k = 0; k < 2; ++k) {
         const auto v = at[k] < row.size() ? parse_rational(row[at[k]]) : std::nullopt;
         if (!v) no_number(file, path.string(), number, row, at[k], column_names);

@@ -1,7 +1,10 @@
 // The order of events of contacts at one instant.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "contact/joined_report.h"
+#include "support/contact_motion.h"
 
 namespace anholon {
 namespace joined_report_test {
@@ -44,6 +47,68 @@ TEST(JoinedReport, AnImpactIsToldWithItsOwnEvent) {
   ASSERT_EQ(names(r), (std::vector<std::string>{"b.hits", "a.sticks"}));
   EXPECT_EQ(r.events[0].changes.size(), 1U);
   EXPECT_TRUE(r.events[1].changes.empty());
+}
+
+// Progress counts the steps of all segments, not those of the one under way.
+TEST(JoinedReport, ProgressIsThatOfTheWholeMotion) {
+  std::vector<std::size_t> steps;
+  std::vector<double> t;
+  const test::Motion m = test::contact_motion(
+      R"toml(coordinates = ["z"]
+gravity.field = "-10*ez"
+body = [{name = "ball", mass = 1, shape = "ball(0.1)", center = "z*ez", orientation = "rotz(0)"}]
+contact = [{name = "floor", body = "ball", restitution = 0.9}]
+initial = {z = 1.1}
+)toml",
+      3, {}, {}, SimulationOptions().tolerance, [&](double at, std::size_t count) {
+        t.push_back(at);
+        steps.push_back(count);
+      });
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  ASSERT_GT(test::times(m, "floor.hits").size(), 2U);
+  EXPECT_TRUE(std::is_sorted(t.begin(), t.end()));
+  EXPECT_TRUE(std::is_sorted(steps.begin(), steps.end()));
+  EXPECT_EQ(steps.back(), m.report.steps);
+}
+
+// The impact of one foot opens the one that stood.
+TEST(JoinedReport, AnImpactOpensAnotherContact) {
+  const auto wheel = [](const std::string& restitution) {
+    return test::contact_motion(R"toml(coordinates = ["x", "z", "phi"]
+parameters = {l = 1, a = 0.4, slope = 0.1}
+gravity.field = "10*(sin(slope)*ex - cos(slope)*ez)"
+body = [{name = "wheel", mass = 1, inertia = [0.1, 0.1, 0.1], center = "x*ex + z*ez", orientation = "roty(phi)"}]
+[point]
+back = "wheel.center + wheel(-l*sin(a), 0, -l*cos(a))"
+front = "wheel.center + wheel(l*sin(a), 0, -l*cos(a))"
+[[contact]]
+name = "b"
+body = "wheel"
+at = "back"
+friction = 5
+restitution = )toml" + restitution + R"toml(
+[[contact]]
+name = "f"
+body = "wheel"
+at = "front"
+friction = 5
+restitution = )toml" + restitution + R"toml(
+[initial]
+z = "l*cos(a - 0.1)"
+x = 0
+phi = -0.1
+"phi'" = 2
+conditions = ["vel(wheel, back) = 0"]
+)toml",
+                                Rational(2, 5));
+  };
+  const test::Motion m = wheel("0");
+  ASSERT_TRUE(m.report.outcome.ok()) << m.report.outcome.message;
+  const std::vector<double> hits = test::times(m, "f.hits"), leaves = test::times(m, "b.leaves");
+  ASSERT_FALSE(hits.empty());
+  ASSERT_FALSE(leaves.empty());
+  EXPECT_EQ(hits[0], leaves[0]);
+  EXPECT_TRUE(test::times(m, "f.leaves").empty());
 }
 
 }  // namespace joined_report_test

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "simulation/run_rows.h"
 #include "support/models.h"
 #include "support/motion.h"
 
@@ -35,6 +36,73 @@ th = 1
 speed2 = "norm2(vel(P.center))"
 jerk = "D(th,4)"
 )toml";
+
+// The range is that of the ends of all steps, whatever rows are asked for and whatever computes them.
+TEST(Monitor, RangeDoesNotHangOnTheRows) {
+  SimulationOptions o;
+  o.to = 5;
+  Result all;
+  ASSERT_NO_FATAL_FAILURE(run(kPendulum, o, all));
+  ASSERT_TRUE(all.report.outcome.ok());
+  ASSERT_GT(all.report.steps, 3U);
+  for (const WatchedReport& w : all.report.monitors) EXPECT_EQ(w.times, all.report.rows) << w.name;
+  o.at = {5};
+  for (const bool kernel : {true, false})
+    for (const Precision precision : {Precision::real, Precision::long_real, Precision::quad}) {
+      SimulationOptions few = o;
+      few.kernel = kernel, few.precision = precision;
+      SimulationOptions every = few;
+      every.at.clear();
+      Result r, reference;
+      ASSERT_NO_FATAL_FAILURE(run(kPendulum, few, r));
+      ASSERT_NO_FATAL_FAILURE(run(kPendulum, every, reference));
+      EXPECT_EQ(r.report.rows, 1U);
+      EXPECT_EQ(r.report.steps, reference.report.steps);
+      for (std::size_t i = 0; i < r.report.monitors.size(); ++i) {
+        const WatchedReport &w = r.report.monitors[i], &of = reference.report.monitors[i];
+        // The kernel and the reference that looks at rows differ in round-off.
+        const double round_off = 1e-12 * of.size;
+        EXPECT_NEAR(w.least.value, of.least.value, round_off) << w.name;
+        EXPECT_NEAR(w.greatest.value, of.greatest.value, round_off) << w.name;
+        EXPECT_GT(w.greatest.value - w.least.value, std::abs(w.last.value - w.first.value) + 1e-3) << w.name;
+        EXPECT_EQ(w.times, of.times) << w.name;
+      }
+    }
+}
+
+// The first steps, then ever fewer.
+TEST(Monitor, RangesOfLongMotionsAreSeenAtFewSteps) {
+  std::size_t looks = 0;
+  for (std::size_t step = 0; step < 1'000'000;) {
+    const std::size_t next = step + steps_to_next_look(step);
+    EXPECT_TRUE(is_looked_at(next)) << next;
+    if (next <= 1024) {
+      EXPECT_EQ(next, step + 1);
+    }
+    step = next, ++looks;
+  }
+  EXPECT_GT(looks, 5000U);
+  EXPECT_LT(looks, 10000U);
+}
+
+// What an event sets counts from the event on.
+TEST(Monitor, RangeHoldsBothSidesOfAnEvent) {
+  SimulationOptions o;
+  o.to = 2;
+  o.at = {2};
+  Result r;
+  ASSERT_NO_FATAL_FAILURE(run(R"toml(coordinates = ["x"]
+particle = [{name = "P", mass = 1, position = "x*ex"}]
+force = [{on = "P", vector = "-x'*ex"}]
+event = [{when = "t - 1", set = {"x'" = "-3*x'"}}]
+monitor.v = "x'"
+initial = {x = 0, "x'" = 1}
+)toml",
+                              o, r));
+  ASSERT_TRUE(r.report.outcome.ok()) << r.report.outcome.message;
+  EXPECT_NEAR(r.report.monitors[0].least.value, -3 * std::exp(-1.0), 1e-13);
+  EXPECT_NEAR(r.report.monitors[0].greatest.value, 1, 1e-15);
+}
 
 TEST(Monitor, FormulasAreColumnsAndARange) {
   SimulationOptions o;
