@@ -22,6 +22,7 @@ struct FolderProgress {
   std::vector<FolderGeneration> generations = {};
   // Why cases stopped: for each outcome how many there are, the first one, its message and a hint.
   std::vector<std::string> notes = {};
+  std::map<std::string, std::size_t> events = {};  // finished cases by the event that ended them
 };
 
 // A column over all cases of the parts that are there. `number` is a double that may be NaN.

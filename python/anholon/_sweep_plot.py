@@ -28,6 +28,11 @@ def not_drawn(table: Columns, varied: Sequence[str], shown: Sequence[str]) -> li
     return grids if any(different.get(name, 0) > 1 for name in grids) else list(varied)
 
 
+def ending(outcome: str, event: str) -> str:
+    """The outcome of a case; of one that finished by an event, the event."""
+    return f"event {event}" if event and outcome == "finished" else outcome
+
+
 def axes_of(varied: Sequence[str], x: str | None, y: str | None) -> list[str]:
     """The columns along the axes: those that are named, then those that vary, two at most."""
     given = [name for name in (x, y) if name is not None]
@@ -90,7 +95,10 @@ def plot_folder(folder: SweepFolder, names: list[str], x: str | None, y: str | N
         ax.set_title(f"{folder.parts - missing} of {folder.parts} parts")
     varied = [name for name in folder.varied if name not in shown]
     wanted = [*shown, *varied, "case", *(name for name in ("case_name", "t", x, y) if name is not None and name in folder)]
-    table = folder.to_dict(list(dict.fromkeys(wanted)))
+    ends = "outcome" in shown and "event" in folder
+    table = folder.to_dict(list(dict.fromkeys(wanted + ["event"] * ends)))
+    if ends:
+        table["outcome"] = np.array([ending(*pair) for pair in zip(table["outcome"], table["event"], strict=True)], dtype=object)
     at_times = "t" in table and bool((np.diff(table["case"]) == 0).any())
     if at_times and y is None and x not in varied and all(table[name].dtype != object for name in shown):
         over = x or "t"

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from ._errors import ModelError
-from ._sympy_parts import atoms_of, center_of, integral_of, is_particle, mechanics_module, numeric, sympy_module, vanish, with_values
+from ._sympy_parts import atoms_of, center_of, exact, integral_of, is_particle, mechanics_module, numeric, short_decimal, sympy_module, vanish, with_values
 from ._sympy_turns import factors_between, orientation
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ class Bodies:
 
     def _axis(self, axis: Mapping[str, Any]) -> str:
         formula = self._made.writer.formula
-        return f'{{weight = {json.dumps(formula(axis["weight"]))}, vector = {json.dumps([formula(x) for x in axis["vector"]])}}}'
+        return f'{{weight = {json.dumps(formula(short_decimal(axis["weight"])))}, vector = {json.dumps([formula(x) for x in axis["vector"]])}}}'
 
     def _inertia(self, body: Any, turned: Turned, given: Mapping[Any, Any]) -> str:
         """The line of the inertia: a number for a body that turns about its own z axis, a matrix, or weighted axes for moments
@@ -141,6 +141,8 @@ class Bodies:
             if not possible(inertia, given, acting):
                 if len(acting) > 1 and not self._keeps_its_axis(turned):
                     self._warn(body, turned)
+                # In the fractions of the decimals, so that no rounding of sums stands in the text.
+                inertia = exact(inertia)
                 weights, turn = [inertia.trace() / 2 - inertia[k, k] for k in range(3)], turned.rotation
                 axes = []
                 for k in range(3):
@@ -170,9 +172,14 @@ class Bodies:
         inertia = turned.inertia
         products = [inertia[0, 1], inertia[1, 2], inertia[2, 0]]
         what = f"moments are {', '.join(str(inertia[k, k]) for k in range(3))}" + (f" and products {', '.join(map(str, products))}" if any(products) else "")
+        in_space = f"as {body.name} turns in space, "
+        if any(inertia[k, k] == 0 for k in range(3)):
+            in_space += f"me.inertia({body.frame.name}, Ixx, Iyy, Izz) needs all three moments"
+        else:
+            in_space += f"check the numbers and their order in me.inertia({body.frame.name}, Ixx, Iyy, Izz, Ixy, Iyz, Izx)"
         warnings.warn(
             f"no body has the inertia of {body.name}, whose {what}: each principal moment is at most the sum of the two others. The model has this "
-            f"inertia, and so SymPy's equations; as {body.name} turns in space, me.inertia({body.frame.name}, Ixx, Iyy, Izz) needs all three moments",
+            f"inertia, and so SymPy's equations; {in_space}",
             stacklevel=8,
         )
 

@@ -235,6 +235,12 @@ def exact(e: Any) -> Any:
     return e.xreplace({f: sm.Rational(_decimal(f)) for f in e.atoms(sm.Float) if f.is_finite})
 
 
+def short_decimal(e: Any) -> Any:
+    """A fraction as a Float, where the decimal that this is written with is the fraction: 0.012 for 3/250."""
+    sm = sympy_module()
+    return sm.Float(e) if e.is_Rational and not e.is_Integer and sm.Rational(repr(float(e))) == e else e
+
+
 def _decimal(f: Any) -> str:
     """The decimal of a Float; of one with the precision of a double the shortest."""
     return repr(float(f)) if f._prec <= 53 else str(f)

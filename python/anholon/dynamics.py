@@ -412,7 +412,13 @@ class Dynamics:
         return torch_function(self)
 
     def state(
-        self, t: float | None = None, *, q: Mapping[str, float], qdot: Mapping[str, float], z: Mapping[str, float] | None = None, p: Values = None
+        self,
+        t: float | None = None,
+        *,
+        q: Mapping[str, float] | None = None,
+        qdot: Mapping[str, float] | None = None,
+        z: Mapping[str, float] | None = None,
+        p: Values = None,
     ) -> Array:
         """x from values of coordinates, velocities ("x'") and states of the model by name; 0 for those left out.
 
@@ -425,9 +431,9 @@ class Dynamics:
 
         Args:
             t: the time, s; that of the start if it is None.
-            q: coordinates.
-            qdot: velocities, and higher derivatives of the state.
-            z: states of the model.
+            q: coordinates; all 0 if it is None.
+            qdot: velocities, and higher derivatives of the state; all 0 if it is None.
+            z: states of the model; all 0 if it is None.
             p: parameters, shape (parameters,), or some by name; those of the model if it is None.
 
         Warns:
@@ -442,10 +448,9 @@ class Dynamics:
 
         names = self._names()
         given = []
-        for of, have, expected in zip(("q", "qdot", "z"), (q, qdot, z or {}), names, strict=True):
+        for of, have, expected in zip(("q", "qdot", "z"), ({} if values is None else values for values in (q, qdot, z)), names, strict=True):
             if not isinstance(have, Mapping):
-                kind = "None" if have is None else f"a {type(have).__name__}"
-                raise TypeError(f"{of} has values by name, as {of}={{{(expected or ['a'])[0]!r}: 0.5}}, not {kind}")
+                raise TypeError(f"{of} has values by name, as {of}={{{(expected or ['a'])[0]!r}: 0.5}}, not a {type(have).__name__}")
             given.append(by_spelled_names(have, of))
             for name in given[-1]:
                 if name not in expected:

@@ -186,7 +186,9 @@ class Formulas:
         """A pure function f(t, x, u, p) of JAX, for ``jit``, ``vmap``, ``grad``; returns (x', y).
 
         Without u the inputs follow the formulas of the model. JAX computes with 32 bits unless ``jax.config.update("jax_enable_x64", True)`` comes first.
+        Reverse derivatives compute the formulas again in place of keeping all that is in them.
         """
+        import jax
         import jax.numpy as jnp
 
         library = _Library(jnp, {}, jnp.where)
@@ -206,7 +208,10 @@ class Formulas:
             rates, outputs = self.evaluate(library, solve, t, x, u, p)
             return stack(rates, x), stack(outputs, x)
 
-        return f
+        # A reverse derivative of a rollout would keep hundreds of numbers of each step as arrays of their own, and XLA compiles
+        # such a loop ten times as long.
+        g: Callable[..., Any] = jax.checkpoint(f)
+        return g
 
     def sympy(self) -> SymPyRates:
         """The formulas as SymPy expressions."""

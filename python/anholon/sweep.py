@@ -245,6 +245,12 @@ class Sweep(Mapping[str, "Array"]):
         table = {f"{name}(0)" if name.rstrip("'") in coordinates else name: values for name, values in self.varied.items()}
         return {"case_name": table.pop("case"), **table} if self._core.scenarios else table
 
+    def _endings(self) -> list[str]:
+        """How the motions ended, for pictures: the outcomes, and in place of ``finished`` the events that ended them."""
+        from ._sweep_plot import ending
+
+        return [ending(outcome, event) for outcome, event in zip(self.outcomes, self.events, strict=True)]
+
     def _outcomes(self) -> tuple[int, list[str]]:
         """The place and the words of the column of outcomes in a table."""
         times = self.times.size
@@ -356,7 +362,7 @@ class Sweep(Mapping[str, "Array"]):
 
         varied = self._varied_columns()
         varied.pop("case_name", None)
-        table = {**varied, "outcome": np.array(self.outcomes, dtype=object), "t": self.t, "steps": self.steps, **{name: self[name] for name in self}}
+        table = {**varied, "outcome": np.array(self._endings(), dtype=object), "t": self.t, "steps": self.steps, **{name: self[name] for name in self}}
         usual = [c.name for c in self.model.coordinates if c.name in self] or list(self)
         over = list(varied)
         if y is None and all(name in table for name in names):
@@ -381,7 +387,7 @@ class Sweep(Mapping[str, "Array"]):
         return ax
 
     def _repr_html_(self) -> str:
-        return _display.sweep(self, f"sweep of {self.model.title}", self.outcomes)
+        return _display.sweep(self, f"sweep of {self.model.title}", self._endings())
 
     def __repr__(self) -> str:
         return f"<sweep of {self.model.title!r}: {self.finished} of {self.cases} cases finished; varied: {', '.join(self.varied)}>"

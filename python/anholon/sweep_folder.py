@@ -372,7 +372,8 @@ class SweepFolder(Mapping[str, "npt.NDArray[Any]"]):
 
         p = self.progress()
         lines = [("parts", f"{p.parts} of {p.all_parts}"), ("cases", f"{p.cases} of {p.all_cases}")]
-        return _display.rows(html.escape(f"sweep in {self.path}"), lines + [(html.escape(kind), str(count)) for kind, count in p.outcomes.items()])
+        lines += [(html.escape(kind), str(count)) for kind, count in p.outcomes.items()]
+        return _display.rows(html.escape(f"sweep in {self.path}"), lines + [(html.escape(f"by event {event}"), str(count)) for event, count in p.events.items()])
 
     def __repr__(self) -> str:
         missing = len(self.missing)

@@ -35,6 +35,7 @@ void bind_sweep_folders(nb::module_& m) {
       .def_ro("all_cases", &FolderProgress::all_cases)
       .def_ro("unfinished", &FolderProgress::unfinished, "Files of parts under way, or of processes that were killed.")
       .def_ro("outcomes", &FolderProgress::outcomes, "How many cases ended in which way.")
+      .def_ro("events", &FolderProgress::events, "How many of the cases that finished were ended by which event.")
       .def_ro("cases_per_second", &FolderProgress::cases_per_second,
               "By the times at which the last parts were written; 0: unknown.")
       .def_prop_ro(

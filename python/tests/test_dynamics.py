@@ -293,6 +293,10 @@ def test_constraints_of_higher_order_have_rates_too(name: str) -> None:
     z = {n: there.pop(n) for n in model.states}
     q, qdot = ({n: v for n, v in there.items() if n.endswith("'") == dashed} for dashed in (False, True))
     np.testing.assert_array_equal(f.state(q=q, qdot=qdot, z=z), x[:, -1])
+    # Each of them may be left out.
+    np.testing.assert_array_equal(f.state(), f.state(q={}, qdot={}, z={}))
+    np.testing.assert_array_equal(f.state(q=q), f.state(q=q, qdot={}))
+    np.testing.assert_array_equal(f.state(qdot=qdot), f.state(q={}, qdot=qdot))
     with pytest.raises(an.ModelError, match="not solved for accelerations alone"):
         f.mass_matrix(0, f.start)
 

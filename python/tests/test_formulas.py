@@ -53,6 +53,20 @@ def test_jax(name: str, minimal: bool) -> None:
     np.testing.assert_allclose(mapped, f(0.3, many.T.copy(), u, p).T, rtol=1e-10, atol=1e-11)
 
 
+def test_a_reverse_derivative_in_jax_keeps_states_alone() -> None:
+    jax = pytest.importorskip("jax")
+    f, x, u, p = point("trailers", True)
+    g = f.formulas.jax()
+
+    def end(p: Any) -> Any:
+        return jax.lax.scan(lambda x, _: (x + 0.01 * g(0.3, x, u, p)[0], None), jax.numpy.asarray(x), None, length=5)[0].sum()
+
+    # A loop whose formulas are all kept has hundreds of results, and is compiled for minutes.
+    loops = [e for e in jax.make_jaxpr(jax.grad(end))(p).eqns if e.primitive.name == "scan"]
+    assert len(loops) == 2
+    assert all(len(e.outvars) < 10 for e in loops)
+
+
 @pytest.mark.parametrize(("name", "minimal"), MODELS)
 def test_casadi(name: str, minimal: bool) -> None:
     pytest.importorskip("casadi")

@@ -263,7 +263,7 @@ def test_what_is_given_to_a_function_of_a_model() -> None:
     mistakes: list[tuple[Any, str]] = [
         (lambda: f.state(q={"x": "1 m"}, qdot={}), "x is a number in SI units, not '1 m'"),
         (lambda: f.state(q={"x": [1, 2]}, qdot={}), r"x is a number in SI units, not \[1, 2\]"),
-        (lambda: f.state(q=nothing, qdot={}), r"q has values by name, as q=\{'x': 0\.5\}, not None"),
+        (lambda: f.state(q=[1]), r"q has values by name, as q=\{'x': 0\.5\}, not a list"),
         (lambda: f.state(q={}, qdot=[1]), r"qdot has values by name, as qdot=\{\"x'\": 0\.5\}, not a list"),
         (lambda: f(0, x, p={"m": nothing}), r"p\['m'\] is a number or an array of numbers, not None"),
         (lambda: f(0, x, p={"m": "3 kg"}), r"p\['m'\] is a number or an array of numbers, not a str"),

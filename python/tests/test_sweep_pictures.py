@@ -128,9 +128,9 @@ def test_a_map_over_two_numbers(measured: an.Model) -> None:
     axes = sweep.plot("x'")
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("m [kg]", "x(0) [m]")
     assert axes.collections[0].get_array().tolist() == sweep["x'"].tolist()
-    assert [text.get_text() for text in sweep.plot().get_legend().get_texts()] == ["finished"]
+    assert [text.get_text() for text in sweep.plot().get_legend().get_texts()] == ["event low"]
     assert sweep.plot("z", x="x(0)").get_ylabel() == "m [kg]"
-    assert "finished" in sweep.figure().svg
+    assert "event low" in sweep.figure().svg
     with pytest.raises(an.ModelError, match="shows one column, and there are 2"):
         sweep.plot("x", "z")
     with pytest.raises(an.ModelError, match="shows one column, and there are 2"):
@@ -164,3 +164,15 @@ def test_cases_without_numbers_are_left_out(measured: an.Model) -> None:
     sweep = measured.sweep({"m": [1, -1, 2]}, to="0.2", columns=["x"])
     lines = sweep.plot("x").lines
     assert lines[0].get_xdata().tolist() == np.sort(sweep.varied["m"][np.isfinite(sweep["x"])]).tolist()
+
+
+def test_pictures_tell_which_event_ended_a_case(measured: an.Model, tmp_path: pathlib.Path) -> None:
+    pytest.importorskip("matplotlib").use("agg")
+    vary = {"m": [1, 2], "z": [2, 20]}
+    sweep, folder = measured.sweep(vary), measured.sweep(vary, out=tmp_path / "all")
+    assert sweep.outcomes == ["finished"] * 4 and folder.outcomes == {"finished": 4}
+    assert folder.progress().events == {"low": 2}
+    for of in (sweep, folder):
+        assert [text.get_text() for text in of.plot().get_legend().get_texts()] == ["event low", "finished"]
+        assert all(word in of.figure().svg for word in (">event low<", ">finished<"))
+        assert "event low" in of._repr_html_()

@@ -81,9 +81,20 @@ def two_axes(inertia: Any) -> Any:
 @pytest.mark.parametrize("moments", [(0, 0, J), (J, 0, 0), (J, J, 3 * J, J / 8, J / 4, 0)], ids=str)
 def test_moments_that_no_body_has_are_told(moments: Any) -> None:
     given = re.escape(", ".join(map(str, moments[:3]))) + (re.escape(" and products J/8, J/4, 0") if len(moments) > 3 else "")
-    with pytest.warns(UserWarning, match=rf"no body has the inertia of b, whose moments are {given}: .* me\.inertia\(B, Ixx, Iyy, Izz\)") as told:
+    advice = re.escape(
+        "check the numbers and their order in me.inertia(B, Ixx, Iyy, Izz, Ixy, Iyz, Izx)"
+        if len(moments) > 3
+        else "me.inertia(B, Ixx, Iyy, Izz) needs all three moments"
+    )
+    with pytest.warns(UserWarning, match=rf"no body has the inertia of b, whose moments are {given}: .* in space, {advice}$") as told:
         agree(two_axes(lambda B: me.inertia(B, *moments)), NUMBERS)
     assert told[0].filename.endswith("test_sympy_turns.py")  # where from_sympy is called
+
+
+def test_sums_of_decimals_are_written_as_decimals() -> None:
+    with pytest.warns(UserWarning, match="no body has the inertia of b"):
+        model = an.from_sympy(two_axes(lambda B: me.inertia(B, 0.02, 0.03, 0.01, 0.002)), values={m: 1, l: 1})
+    assert re.findall(r'weight = "(.*?)"', model.text) == ["(-0.002)", "(0.012)", "(0.002)", "(0.02)"]
 
 
 def test_moments_that_a_body_has_are_not_told() -> None:

@@ -3,6 +3,7 @@
 
 #include "anholon/page.h"
 #include "api/sweep_data.h"
+#include "ensemble/ending.h"
 #include "plot/drawing.h"
 #include "plot/over_variation.h"
 #include "result/choose_columns.h"
@@ -62,8 +63,8 @@ class FigureColumns {
   }
   NamedColumn outcomes(std::vector<std::string>& words) const {
     NamedColumn column{kOutcome, "", {}};
-    for (const Outcome& o : d_.outcomes) {
-      const std::string word = name(o.kind);
+    for (std::size_t k = 0; k < d_.outcomes.size(); ++k) {
+      const std::string word = inner::ending(name(d_.outcomes[k].kind), sweep_.event(k));
       const auto at = std::find(words.begin(), words.end(), word);
       column.values.push_back(static_cast<double>(at - words.begin()));
       if (at == words.end()) words.push_back(word);

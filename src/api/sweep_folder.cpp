@@ -164,6 +164,7 @@ Result<FolderProgress> SweepFolder::progress() const {
     inner::StoppedByKind stopped;
     for (const std::string& note : p.stopped) inner::add_stopped(stopped, note);
     for (const auto& [kind, cases] : stopped) all.notes.push_back(inner::stopped_note(kind, cases));
+    all.events = p.events;
     return all;
   });
 }

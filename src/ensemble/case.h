@@ -88,6 +88,7 @@ struct CasesResiduals {
 struct EnsembleReport {
   Outcome outcome;  // interrupted, or finished; cases may have stopped in both
   std::size_t done = 0, finished = 0;
+  std::map<std::string, std::size_t> events;         // finished cases by the event that ended them
   std::map<std::string, std::size_t> without_value;  // reduction of a formula -> finished cases in which it has none
   std::size_t in_workspaces = 0;                     // cases that were not computed by the shared tapes
   std::size_t most_held = 0;                         // the largest number of results that were in memory at once

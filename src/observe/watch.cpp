@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <type_traits>
 
 namespace anholon {
 
@@ -91,12 +92,22 @@ void Track<W>::see_double(double value, double terms, double made_of) {
   if (W(v) > missed || !std::isfinite(v)) missed = W(v);
 }
 
+// What sums may leave of the numbers that their terms are made of. Rows of motions in double are computed in doubles.
+template <Number W>
+static W round_off() {
+  const W unit = std::is_same_v<W, long double> ? W(unit_roundoff<double>()) : unit_roundoff<W>();
+  return unit * W(kRoundoffsOfSum);
+}
+
 template <Number W>
 double Track<W>::relative_change() const {
   // Far above what integration leaves of the terms, and of the numbers that these are made of.
   constexpr double kNoise = 1e-6;
   if (missed > W(kNoise) && is_finite(made) && change <= W(kNoise) * made) return to_double(W(change / made));
-  return to_double(missed > W(0) || change == W(0) ? missed : W(change / size));
+  if (missed > W(0) || change == W(0)) return to_double(missed);
+  // A number that is zero but for round-off has no size to which a change could be compared.
+  if (is_finite(made) && size <= round_off<W>() * made) return 0;
+  return to_double(W(change / size));
 }
 
 template <Number W>
@@ -310,6 +321,7 @@ void Watch<W>::track(Which which) {
     }
     if (!constant_[i]) {
       tracks_[i].see(value);
+      tracks_[i].made = std::max(tracks_[i].made, outputs_.made_of(at - 1));
       continue;
     }
     W made(0);

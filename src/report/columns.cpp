@@ -27,23 +27,6 @@ constexpr double kMostDoubtful = 0.05;
 constexpr const char* kDerivatives[] = {"coordinates", "velocities", "accelerations", "third derivatives",
                                         "fourth derivatives"};
 
-const std::vector<PlotGroup>& all_groups() {
-  static const std::vector<PlotGroup> list = {{"coordinates", "Coordinates"},
-                                              {"velocities", "Velocities"},
-                                              {"accelerations", "Accelerations"},
-                                              {"third derivatives", "Third derivatives"},
-                                              {"fourth derivatives", "Fourth derivatives"},
-                                              {"states", "States"},
-                                              {"multipliers", "Multipliers"},
-                                              {"reactions", "Generalized reactions"},
-                                              {"energies", "Energies"},
-                                              {"integrals", "Integrals of the motion"},
-                                              {"monitors", "Outputs and monitors"},
-                                              {"residuals", "Residuals of the stored rows", true},
-                                              {"steps", "Size of the steps", true}};
-  return list;
-}
-
 // The new value of a mode after an event; no column holds it.
 struct ModeChange {
   double t;
@@ -113,12 +96,14 @@ class Plots {
     if (!table_.values.empty()) data_.t = numbers(0);
     data_.rows = data_.t.size();
     given();
+    leave_out_zero_reactions();
+    groups_ = parted_groups(data_.columns, dimensions_);
     modes_as_steps();
     energies();
     residuals();
     steps();
     shorten();
-    for (const PlotGroup& g : all_groups())
+    for (const PlotGroup& g : groups_)
       if (std::any_of(data_.columns.begin(), data_.columns.end(), [&](const PlotColumn& c) { return c.group == g.id; }))
         data_.groups.push_back(g), data_.groups.back().columns = size_[g.id];
     return std::move(data_);
@@ -152,25 +137,46 @@ class Plots {
   void given() {
     const RunTable& t = table_;
     std::map<std::string, std::pair<std::string, std::string>> known;  // name -> group, math
+    std::map<std::string, std::string> scales;  // name -> its dimension, of a model without units
+    const auto scale = [&](std::size_t unknown) {
+      return unknown < model_.scales.size() ? std::to_string(model_.scales[unknown]) : std::string();
+    };
     const auto knows = [&](const std::string& name, const char* group, ColumnKind kind, std::size_t index, unsigned k) {
       known[derivative_name(name, k, Format::text)] = {
           group, column_formula(model_, {name, kind, index, k, ""}, Format::mathml)};
     };
     for (std::size_t a = 0; a < model_.coordinates.size(); ++a) {
       const std::string& name = model_.coordinates[a].name;
-      for (unsigned k = 0; k < std::size(kDerivatives); ++k) knows(name, kDerivatives[k], ColumnKind::coordinate, a, k);
+      for (unsigned k = 0; k < std::size(kDerivatives); ++k) {
+        knows(name, kDerivatives[k], ColumnKind::coordinate, a, k);
+        scales[derivative_name(name, k, Format::text)] = scale(a);
+      }
       knows("N." + name, "reactions", ColumnKind::reaction, a, 0);
+      scales["N." + name] = scale(a);
     }
     for (std::size_t r = 0; r < model_.constraints.size(); ++r)
       for (unsigned k = 0; k < 3; ++k) knows(multiplier_name(model_, r), "multipliers", ColumnKind::multiplier, r, k);
-    for (std::size_t k = 0; k < model_.states.size(); ++k)
+    for (std::size_t k = 0; k < model_.states.size(); ++k) {
       knows(model_.states[k].name, "states", ColumnKind::state, k, 0);
+      scales[model_.states[k].name] = scale(model_.coordinates.size() + k);
+    }
     for (std::size_t k = 1; k < t.columns.size(); ++k) {
       const auto it = known.find(t.columns[k]);
       PlotColumn& c = it == known.end() ? add(t.columns[k], mathml_name(t.columns[k]), "monitors", numbers(k))
                                         : add(t.columns[k], it->second.second, it->second.first, numbers(k));
       if (const auto unit = run_.units.find(c.name); unit != run_.units.end()) c.unit = unit->second;
+      dimensions_.push_back(run_.units.empty() ? scales[c.name] : c.unit);
     }
+  }
+
+  // Without a constraint that acts there are no reactions. What was asked for by its name is shown.
+  void leave_out_zero_reactions() {
+    const auto acts = [](const PlotColumn& c) {
+      return c.group == "reactions" && std::any_of(c.values.begin(), c.values.end(), [](double x) { return x != 0; });
+    };
+    if (!chosen_.empty() || std::any_of(data_.columns.begin(), data_.columns.end(), acts)) return;
+    for (PlotColumn& c : data_.columns)
+      if (c.group == "reactions") c.group.clear();
   }
 
   void energies() {
@@ -264,13 +270,15 @@ class Plots {
 
   // Keeps the chosen columns, or as many of every group as there is room for.
   void fewer_columns() {
-    for (const PlotColumn& c : data_.columns) ++size_[c.group];
+    for (const PlotColumn& c : data_.columns)
+      if (!c.group.empty()) ++size_[c.group];
     const bool all = chosen_.empty() && data_.columns.size() <= kMostColumns;
     const std::size_t each = std::max<std::size_t>(kMostColumns / std::max<std::size_t>(size_.size(), 1), 4);
     const std::size_t given = table_.columns.size() - 1;
     std::map<std::string, std::size_t> seen;
     for (std::size_t k = 0; k < data_.columns.size() && !all; ++k) {
       PlotColumn& c = data_.columns[k];
+      if (c.group.empty()) continue;
       const bool stays = k < given && !chosen_.empty()
                              ? std::find(chosen_.begin(), chosen_.end(), c.name) != chosen_.end()
                              : ++seen[c.group] <= each;
@@ -369,6 +377,8 @@ class Plots {
   std::vector<ModeChange> modes_;
   RunTable table_;  // the rows of the run, with both sides of jumps
   PlotData data_;
+  Dimensions dimensions_;                    // of the columns of the run
+  std::vector<PlotGroup> groups_;            // that may have columns
   std::map<std::string, std::size_t> size_;  // columns of each group
   std::size_t most_kept_ = 0;                // rows of the column with the most rows
 };

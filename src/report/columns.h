@@ -8,22 +8,12 @@
 #include <vector>
 
 #include "mechanics/conserved.h"
+#include "report/plot_groups.h"
 #include "report/scene.h"
 #include "result/run_file.h"
 #include "setup/scenario.h"
 
 namespace anholon {
-
-struct PlotColumn {
-  std::string name, math, unit, group;  // math: MathML of the name; an empty group: only for the picture
-  std::vector<double> t, values;        // an empty t: the common times
-};
-
-struct PlotGroup {
-  std::string id, title;
-  bool log = false;
-  std::size_t columns = 0;  // how many there are, those that are not plotted among them
-};
 
 struct PlotData {
   std::vector<double> t;

@@ -6,6 +6,7 @@
 #include "api/sweep_case.h"
 #include "base/join.h"
 #include "base/read_file.h"
+#include "ensemble/ending.h"
 #include "modelfile/read.h"
 #include "observe/rows/quantity_units.h"
 #include "result/format.h"
@@ -79,6 +80,27 @@ void append(std::vector<double>& to, const ParquetColumn& from, std::vector<std:
     }
     for (const std::uint32_t k : w.rows) to.push_back(places[k]);
   }
+}
+
+// The outcomes with the events that ended the motions.
+ParquetColumn endings(const ParquetColumn& outcomes, const ParquetColumn& events) {
+  const Words *how = std::get_if<Words>(&outcomes.values), *by = std::get_if<Words>(&events.values);
+  if (!how || !by) return outcomes;
+  // A pair of words is put together once.
+  constexpr std::uint32_t kNew = ~std::uint32_t{0};
+  std::vector<std::uint32_t> known(how->different.size() * by->different.size(), kNew);
+  Words all;
+  for (std::size_t row = 0; row < how->rows.size(); ++row) {
+    std::uint32_t& place = known[how->rows[row] * by->different.size() + by->rows[row]];
+    if (place == kNew) {
+      std::string word = inner::ending(how->different[how->rows[row]], by->different[by->rows[row]]);
+      const auto at = std::find(all.different.begin(), all.different.end(), word);
+      place = static_cast<std::uint32_t>(at - all.different.begin());
+      if (at == all.different.end()) all.different.push_back(std::move(word));
+    }
+    all.rows.push_back(place);
+  }
+  return {outcomes.name, std::move(all)};
 }
 
 std::string text_of(const std::string& path) {
@@ -175,8 +197,15 @@ std::vector<NamedColumn> SweepCases::read(const std::vector<std::string>& wanted
     if (const auto known = known_.find(name); known != known_.end()) column.points = known->second.points;
     column.name = name;
   }
+  const auto event = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), "event") - names_.begin());
   each_table([&](const ParquetTable& table) {
-    for (std::size_t k = 0; k < all.size(); ++k) append(all[k].values, table.columns.at(places[k]), words);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const ParquetColumn& column = table.columns.at(places[k]);
+      if (column.name == "outcome" && event < names_.size())
+        append(all[k].values, endings(column, table.columns.at(event)), words);
+      else
+        append(all[k].values, column, words);
+    }
   });
   return all;
 }

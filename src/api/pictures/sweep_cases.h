@@ -24,8 +24,9 @@ class SweepCases {
   // The folder; null for a file.
   const inner::SweepStore* store() const { return store_ ? &*store_ : nullptr; }
 
-  // Columns by name; the words of a column of words are added to `words`, and its values are their indices. If parts are
-  // missing, what varies has the points of the whole sweep. Throws Failure without a place if there is no such column.
+  // Columns by name; the words of a column of words are added to `words`, and its values are their indices. An outcome
+  // of a case that an event ended tells the event (ensemble/ending.h). If parts are missing, what varies has the points of
+  // the whole sweep. Throws Failure without a place if there is no such column.
   std::vector<inner::plot::NamedColumn> read(const std::vector<std::string>& names,
                                              std::vector<std::string>& words) const;
   // The generation of each row that `read` returns; empty if there is one generation.

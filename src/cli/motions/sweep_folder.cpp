@@ -13,6 +13,7 @@
 #include "cli/motions/sweep_output.h"
 #include "cli/say.h"
 #include "cli/stop.h"
+#include "ensemble/ending.h"
 #include "ensemble/parts/judgement.h"
 #include "ensemble/parts/sweep_report.h"
 #include "ensemble/refine/refine.h"
@@ -87,13 +88,6 @@ Refinement refinement_of(const SweepCommand& o, const FolderSweep& sweep, const 
   return r;
 }
 
-std::string outcome_list(const std::map<std::string, std::size_t>& outcomes) {
-  std::string list;
-  for (const auto& [outcome, cases] : outcomes)
-    list += (list.empty() ? "" : ", ") + std::to_string(cases) + " " + outcome;
-  return list;
-}
-
 std::string duration(double seconds) {
   const auto s = static_cast<long>(std::lround(seconds));
   if (s < 100) return std::to_string(s) + " s";
@@ -131,7 +125,7 @@ std::string with_judgement(std::string object, const SweepStore& store) {
 
 void say_progress(const SweepStore& store, const SweepStore::Progress& p) {
   say(stderr, "%s: %zu of %zu parts, %zu of %zu cases%s%s\n", store.folder().c_str(), p.parts, p.all_parts, p.cases,
-      p.all_cases, p.outcomes.empty() ? "" : ": ", outcome_list(p.outcomes).c_str());
+      p.all_cases, p.outcomes.empty() ? "" : ": ", list_of_endings(p.outcomes, p.events).c_str());
   if (const std::string list = generation_list(store); !list.empty()) say(stderr, "generations: %s\n", list.c_str());
 }
 
@@ -298,7 +292,7 @@ void watch(SweepStore& store) {
       rest = "; " + number_text(speed, 3) + " cases/s, " +
              duration(static_cast<double>(p.all_cases - p.cases) / speed) + " left";
     say(stdout, "%zu of %zu parts, %zu of %zu cases%s%s%s\n", p.parts, p.all_parts, p.cases, p.all_cases,
-        p.outcomes.empty() ? "" : ": ", outcome_list(p.outcomes).c_str(), rest.c_str());
+        p.outcomes.empty() ? "" : ": ", list_of_endings(p.outcomes, p.events).c_str(), rest.c_str());
     std::fflush(stdout);
     if (p.parts == p.all_parts) return;
     if (!last || p.cases > before) last = now, before = p.cases;
@@ -323,7 +317,13 @@ int sweep_status(const SweepFolderCommand& o) {
     j.key("seconds_left").number(number_text(left(p)));
     j.key("outcomes").open_object();
     for (const auto& [outcome, cases] : p.outcomes) count(outcome.c_str(), cases);
-    j.close().key("generations").open_array();
+    j.close();
+    if (!p.events.empty()) {
+      j.key("events").open_object();
+      for (const auto& [event, cases] : p.events) count(event.c_str(), cases);
+      j.close();
+    }
+    j.key("generations").open_array();
     for (std::size_t g = 0; g < store.generations().size(); ++g) {
       const Generation& of = store.generations()[g];
       j.open_object();
@@ -339,7 +339,7 @@ int sweep_status(const SweepFolderCommand& o) {
   say(stdout, "%s: %zu of %zu parts, %zu of %zu cases\n", store.folder().c_str(), p.parts, p.all_parts, p.cases,
       p.all_cases);
   if (const std::string list = generation_list(store); !list.empty()) say(stdout, "generations: %s\n", list.c_str());
-  if (!p.outcomes.empty()) say(stdout, "outcomes: %s\n", outcome_list(p.outcomes).c_str());
+  if (!p.outcomes.empty()) say(stdout, "outcomes: %s\n", list_of_endings(p.outcomes, p.events).c_str());
   report_stopped(stopped_of(p), stdout);
   say_judgement(store, stdout);
   if (p.parts < p.all_parts && p.cases_per_second > 0)
@@ -378,7 +378,7 @@ int sweep_collect(const SweepFolderCommand& o) {
   }
   if (!file) throw UsageError{"error: no part is in " + store.folder() + "\n"};
   const SweepStore::Progress p = store.progress();
-  const CollectedReport report{stopped_of(p), store.judgement(), cases, finished_of(p)};
+  const CollectedReport report{stopped_of(p), store.judgement(), cases, finished_of(p), p.events};
   if (const std::string why = file->close(sweep_report_json(report)); !why.empty()) {
     say(stderr, "error: %s\n", why.c_str());
     return kBadInput;

@@ -2,6 +2,7 @@
 
 #include "cli/motions/result_file.h"
 #include "cli/say.h"
+#include "ensemble/ending.h"
 #include "ensemble/parts/judgement.h"
 
 namespace anholon::cli {
@@ -40,10 +41,11 @@ const ResultFormat& sweep_format(const std::string& output, bool json) {
 }
 
 void report_sweep(const EnsembleReport& r, std::size_t cases, const SweepOutput& out) {
+  const std::string finished = list_of_endings({{name(OutcomeKind::finished), r.finished}}, r.events);
   std::string list;
   for (const auto& [kind, s] : out.stopped()) list += ", " + std::to_string(s.count) + " " + name(kind);
-  say(stderr, "%zu of %zu cases: %zu finished%s; %.3g s on %zu %s\n", r.done, cases, r.finished, list.c_str(),
-      r.seconds, r.threads, r.threads == 1 ? "thread" : "threads");
+  say(stderr, "%zu of %zu cases: %s%s; %.3g s on %zu %s\n", r.done, cases, finished.c_str(), list.c_str(), r.seconds,
+      r.threads, r.threads == 1 ? "thread" : "threads");
   for (const std::string& line : judgement_lines(r)) say(stderr, "%s\n", line.c_str());
 }
 

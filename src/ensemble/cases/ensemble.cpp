@@ -111,6 +111,7 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
       ++report.done;
       if (!r.outcome.ok()) continue;
       ++report.finished;
+      if (!r.event.empty()) ++report.events[r.event];
       for (std::size_t k = 0; k < r.reduced.size(); ++k)
         if (const Reduction& of = o.reductions.list[k]; !of.of_event() && std::isnan(r.reduced[k]))
           ++report.without_value[of.name];

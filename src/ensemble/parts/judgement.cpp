@@ -102,6 +102,7 @@ void add_report(EnsembleReport& all, const EnsembleReport& next) {
   all.done += next.done, all.finished += next.finished, all.in_workspaces += next.in_workspaces;
   all.seconds += next.seconds;
   all.threads = next.threads;
+  for (const auto& [name, cases] : next.events) all.events[name] += cases;
   for (const auto& [name, cases] : next.without_value) all.without_value[name] += cases;
   if (!next.outcome.ok()) all.outcome = next.outcome;
   for (std::size_t k : next.error.cases) all.error.cases.push_back(before + k);

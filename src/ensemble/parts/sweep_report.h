@@ -12,10 +12,11 @@ struct CollectedReport {
   StoppedByKind stopped;
   std::string judgement;  // empty if there is none
   std::size_t cases = 0, finished = 0;
+  std::map<std::string, std::size_t> events;  // finished cases by the event that ended them
 };
 std::string sweep_report_json(const CollectedReport& report);
 
-// A JSON object: stopped, error_estimate, residuals, cases, finished, outcome. (doc/json.md)
+// A JSON object: stopped, error_estimate, residuals, cases, finished, events, outcome. (doc/json.md)
 std::string sweep_report_json(const StoppedByKind& stopped, const EnsembleReport& report);
 
 }  // namespace anholon

@@ -24,7 +24,9 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kPart = "part-", kEnding = ".parquet";
 constexpr const char *kSweepNote = "anholon.sweep", *kFirstNote = "anholon.first", *kOutcomesNote = "anholon.outcomes",
-                     *kRuleNote = "anholon.rule";
+                     *kEventsNote = "anholon.events", *kRuleNote = "anholon.rule";
+// Between the words of a note and their counts. The name of an event may hold a comma.
+constexpr char kOutcomeEnds = ',', kEventEnds = '\n';
 // Readers of a folder as one table leave out names that begin so. A folder may have the request under the second name,
 // which pandas takes for a part.
 constexpr const char *kRequest = "_sweep.json", *kOtherRequest = "sweep.json";
@@ -112,28 +114,31 @@ std::optional<std::size_t> part_of(std::string_view name) {
   return number;
 }
 
-// Of each case once: it has a row at each of the times that are asked for.
-std::string outcomes_of(const ParquetTable& rows) {
+// The words of a column with the number of cases that have each. Of each case once: it has a row at each of the times that
+// are asked for.
+std::string words_of_cases(const ParquetTable& rows, std::string_view column, char ends) {
   std::map<std::string, std::size_t> count;
   const std::vector<std::int64_t>* numbers = nullptr;
   for (const ParquetColumn& c : rows.columns)
     if (c.name == "case" && !numbers) numbers = std::get_if<std::vector<std::int64_t>>(&c.values);
   for (const ParquetColumn& c : rows.columns)
-    if (const auto* words = std::get_if<Words>(&c.values); words && c.name == "outcome")
+    if (const auto* words = std::get_if<Words>(&c.values); words && c.name == column)
       for (std::size_t row = 0; row < words->rows.size(); ++row)
         if (row == 0 || !numbers || (*numbers)[row] != (*numbers)[row - 1]) ++count[words->different[words->rows[row]]];
   std::string text;
-  for (const auto& [outcome, cases] : count) text += (text.empty() ? "" : ",") + outcome + " " + std::to_string(cases);
+  for (const auto& [word, cases] : count)
+    if (!word.empty()) text += (text.empty() ? "" : std::string(1, ends)) + word + " " + std::to_string(cases);
   return text;
 }
 
-void add_outcomes(std::string_view text, std::map<std::string, std::size_t>& to) {
+void add_words(std::string_view text, char ends, std::map<std::string, std::size_t>& to) {
   while (!text.empty()) {
-    const std::size_t comma = std::min(text.find(','), text.size()), space = text.find(' ');
+    const std::string_view entry = text.substr(0, text.find(ends));
+    const std::size_t space = std::min(entry.rfind(' '), entry.size());
     std::size_t count = 0;
-    if (space < comma) std::from_chars(text.data() + space + 1, text.data() + comma, count);
-    to[std::string(text.substr(0, std::min(space, comma)))] += count;
-    text.remove_prefix(std::min(comma + 1, text.size()));
+    if (space < entry.size()) std::from_chars(entry.data() + space + 1, entry.data() + entry.size(), count);
+    to[std::string(entry.substr(0, space))] += count;
+    text.remove_prefix(std::min(entry.size() + 1, text.size()));
   }
 }
 
@@ -329,8 +334,12 @@ std::vector<std::size_t> SweepStore::missing() const {
 }
 
 std::string SweepStore::commit(std::size_t part, ParquetTable rows) const {
-  const std::vector<std::pair<std::string, std::string>> notes{
-      {kSweepNote, id_}, {kFirstNote, std::to_string(range(part).first)}, {kOutcomesNote, outcomes_of(rows)}};
+  std::vector<std::pair<std::string, std::string>> notes{
+      {kSweepNote, id_},
+      {kFirstNote, std::to_string(range(part).first)},
+      {kOutcomesNote, words_of_cases(rows, "outcome", kOutcomeEnds)}};
+  if (std::string events = words_of_cases(rows, "event", kEventEnds); !events.empty())
+    notes.emplace_back(kEventsNote, std::move(events));
   rows.notes.insert(rows.notes.begin(), notes.begin(), notes.end());
   const std::string bytes = parquet_bytes(rows), path = path_of(part);
   const Committed done = commit_file(folder_, fs::path(path).filename().string(), bytes);
@@ -399,7 +408,8 @@ SweepStore::Progress SweepStore::progress() const {
     const auto [from, to] = range(part);
     ++p.parts, p.cases += to - from;
     ++p.parts_there[generation_of(generations_, from)];
-    add_outcomes(notes.note(kOutcomesNote), p.outcomes);
+    add_words(notes.note(kOutcomesNote), kOutcomeEnds, p.outcomes);
+    add_words(notes.note(kEventsNote), kEventEnds, p.events);
     if (const std::string_view stopped = notes.note(kStoppedNote); !stopped.empty()) p.stopped.emplace_back(stopped);
     written.emplace_back(read.written, to - from);
   }

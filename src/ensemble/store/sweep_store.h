@@ -71,6 +71,7 @@ class SweepStore {
   struct Progress {
     std::size_t parts = 0, all_parts = 0, cases = 0, all_cases = 0;
     std::map<std::string, std::size_t> outcomes;  // cases by the name of their outcome
+    std::map<std::string, std::size_t> events;    // cases by the event that ended them
     double cases_per_second = 0;                  // by the times at which the last parts were written; 0: unknown
     std::size_t unfinished = 0;                   // files of parts under way, or of processes that were killed
     std::vector<std::size_t> parts_there;         // of each generation

@@ -25,7 +25,8 @@ struct Extent {
 // Takes away what is neither plotted nor in the picture; the other columns keep their places.
 void reduce(PlotData& d, const std::vector<std::string>& groups, const std::vector<int>& in_picture) {
   const auto plotted = [&](const std::string& group) {
-    return std::find(groups.begin(), groups.end(), group) != groups.end();
+    return std::any_of(groups.begin(), groups.end(),
+                       [&](const std::string& kind) { return group == kind || group.starts_with(kind + ' '); });
   };
   for (std::size_t k = 0; k < d.columns.size(); ++k) {
     PlotColumn& c = d.columns[k];

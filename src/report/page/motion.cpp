@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <span>
 
 #include "report/assets.h"
 #include "report/markup.h"
@@ -51,11 +53,20 @@ class MotionSection {
                       std::string(units ? "<th>unit</th>" : "") + "</tr></thead><tbody>\n";
     for (std::size_t k = 0; k < std::min(t.columns.size(), kMostColumns); ++k) {
       const auto unit = c.run.units.find(t.columns[k]);
-      out += "<tr><th scope=\"row\">" + user(t.columns[k]) + "</th><td>" + markup_escape(t.text(0, k)) + "</td><td>" +
-             markup_escape(t.text(t.rows() - 1, k)) + "</td>" +
+      out += "<tr><th scope=\"row\">" + user(t.columns[k]) + "</th><td>" + text(t, 0, k) + "</td><td>" +
+             text(t, t.rows() - 1, k) + "</td>" +
              (units ? "<td>" + (unit == c.run.units.end() ? "" : user(unit->second)) + "</td>" : "") + "</tr>\n";
     }
     return out + "</tbody></table></div>\n";
+  }
+
+  // A number that the start has made of a zero, such as 5e-57 in a column of numbers of size 1, is shown as zero.
+  static std::string text(const RunTable& t, std::size_t row, std::size_t column) {
+    constexpr double kNothing = 1e-30;  // far below the round-off of doubles
+    const std::span<const double> all = t.values[column];
+    const double most = std::abs(
+        *std::max_element(all.begin(), all.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    return std::abs(all[row]) < kNothing * most ? "0" : markup_escape(t.text(row, column));
   }
 
   // A file of rows alone does not know how the motion ended.
