@@ -409,10 +409,13 @@ class Compiler {
       const Rational& w = g_.rational(t.weight);
       return unit(t.node) == 0 ? w : times_power_of_two(w, unit(t.node));
     };
+    const bool has_units =
+        std::any_of(g_.summands(id).begin(), g_.summands(id).end(), [&](const Term& t) { return unit(t.node) != 0; });
     long down = 0;
-    if (large_.contains(id)) {
+    if (const bool large = large_.contains(id); large || has_units) {
       for (const Term& t : g_.summands(id)) down = std::max(down, binary_exponent(weight(t)));
-      if (down = whole_units(down); down != 0) unit_[id] = down;
+      down = large || down > kLargestExponent ? whole_units(down) : 0;
+      if (down != 0) unit_[id] = down;
     }
     for (const Term& t : g_.summands(id)) {
       const std::uint32_t x = slot_.at(t.node);

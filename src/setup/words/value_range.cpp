@@ -115,7 +115,7 @@ Rational number_of(const std::string& word, const WordPart& part) {
 Rational number_of(const std::string& word, const WordPart& part, GivenQuantity& of) {
   const WordPart p = without_blanks(word, part);
   const Constant c = constant_in(word, p);
-  if (const auto wrong = of.misfit(c)) mistake_in(word, p.at, p.text.size(), wrong->message, wrong->hint(""));
+  if (const auto wrong = of.misfit(c)) mistake_in(word, p.at, p.text.size(), wrong->message, wrong->hint("a number "));
   return c.value;
 }
 
