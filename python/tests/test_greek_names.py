@@ -86,6 +86,6 @@ def test_a_parameter_is_given_once() -> None:
     model = an.loads(TEXT, set={"μ": 2}).with_(mu=3)
     assert model.parameters["mu"] == 3
     with pytest.raises(an.ModelError, match="'mu' is given twice"):
-        model.with_(**{"mu": 3, "μ": 4})
+        model.with_(mu=3, μ=4)
     with pytest.raises(an.ModelError, match="'theta' is given twice"):
         model.simulate(to=1, initial={"θ": 1, "theta": 2})
