@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrate/series/held_at_kink.h"
 #include "integrate/series/hidden_points.h"
 #include "integrate/series/time_kink.h"
 
@@ -305,7 +304,13 @@ bool StepEnd<N>::put_back(const Machine<N>& machine) const {
 
 template <Number N>
 Outcome StepEnd<N>::stays_at_constraint(std::size_t equation) const {
-  return held_at_kink("the constraint '" + program_->system->equation_names[equation] + "'");
+  return {
+      OutcomeKind::step_collapse,
+      "the motion stays at a kink of the constraint '" + program_->system->equation_names[equation] +
+          "': the velocities before the kink miss it after the kink, and no equation holds the impulse that changes "
+          "them",
+      "put a smooth function in its place, such as sqrt(x^2 + 0.01^2) for abs(x), or let an event with stop = true end "
+      "the motion at the kink"};
 }
 
 // A projection onto a constraint that turns at a kink takes velocity away, as an impulse would that no equation holds. The

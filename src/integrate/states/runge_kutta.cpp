@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/assert.h"
-#include "integrate/series/held_at_kink.h"
 #include "integrate/step_budget.h"
 
 namespace anholon {
@@ -20,10 +19,6 @@ constexpr double kBlowUp = 1e100;
 constexpr int kMostRefusals = 40;
 // Kinks met so soon after another one are other kinks, until they are too many.
 constexpr int kMostShortKinks = 20;
-// A constraint that the state misses by a larger part after a kink turns there. Turns are soon after one another within this
-// part of the time.
-constexpr double kTurned = 1e-6, kTurnedOfTolerance = 1e4, kSoon = 1e-6;
-constexpr int kMostTurns = 20;
 // Taylor's steps miss by about this part of the tolerance; it is to mean the same here.
 constexpr double kOfTolerance = 0.1;
 // PI controller (Hairer & Wanner, IV.2): exponents for an estimate of order 8, and the bounds of one change.
@@ -209,16 +204,6 @@ Outcome RungeKutta::cut_at_kink(double& h) {
   return at_high ? Outcome{} : whole(h);
 }
 
-// At now(). A constraint that turns at a kink, which the last step has passed, changes velocities without an impulse in the
-// equations; a motion that it turns back, or that passes such kinks sooner and sooner, does not go on.
-bool RungeKutta::is_held_by_turns() {
-  if (!rate_.may_kink() || !(rate_.drift() > std::max(kTurned, kTurnedOfTolerance * tolerance_))) return false;
-  const bool soon = std::abs(now_.t - kinks_.last_turn) <= kSoon * std::abs(now_.t);
-  kinks_.turns = soon ? kinks_.turns + 1 : 1;
-  kinks_.last_turn = now_.t;
-  return kinks_.turns > kMostTurns;
-}
-
 // In units of the tolerance: the largest of any level.
 double RungeKutta::error(double h) {
   const std::size_t n = rate_.size(), all = k_[0].size();
@@ -324,7 +309,6 @@ Outcome RungeKutta::step(long double end) {
       continue;
     }
     ++steps_;
-    if (is_held_by_turns()) return held_at_kink("a constraint");
     const double grown = e > 0 ? kSafety * std::pow(e, -kProportional) * std::pow(error_before_, kIntegral) : kMost;
     // What the end or a kink cut short says nothing of the steps beyond; after a refusal a step does not grow.
     const double next_h = std::abs(h) * std::clamp(grown, kLeast, again > 0 ? 1.0 : kMost);

@@ -33,7 +33,6 @@ class RungeKutta final : public StateStepper {
   Outcome whole(double h);
   bool turned() const;
   Outcome cut_at_kink(double& h);
-  bool is_held_by_turns();
   double error(double h);
   // The round-offs of the sums of a state and of the integrals.
   struct RoundOffs {
@@ -56,9 +55,6 @@ class RungeKutta final : public StateStepper {
     std::vector<int> sides;
     std::vector<double> arguments;
     int short_steps = 0;  // in a row that were cut at their very start
-    // Kinks that a constraint turns at, each soon after the one before, and the time of the last one.
-    int turns = 0;
-    long double last_turn = 0;
   };
   Kinks kinks_;
 };

@@ -43,7 +43,6 @@ class StateRate {
   // Where f may have a kink: on which side each abs, sign, piecewise or table was, the number of a piece or of an
   // interval between knots. By a kernel alone.
   const std::vector<int>& sides() const { return sides_; }
-  bool may_kink() const { return !kinks_.empty(); }
   // Their arguments there; how far one is beyond the end of a side, in the direction of another one.
   const std::vector<double>& arguments() const { return arguments_; }
   double beyond(std::size_t kink, double argument, int side, int other) const;
