@@ -365,7 +365,7 @@ class Compiler {
 
   std::uint32_t operand(NodeId id, std::size_t k) { return plain(g_.terms(id)[k].node); }
 
-  // A number that few doubles are near has a unit.
+  // A number beyond 2^256, or below 2^-256, has a unit.
   std::uint32_t number(NodeId id) {
     const Rational& r = g_.value(id);
     const long k = r == 0 ? 0 : whole_units(binary_exponent(r));
