@@ -329,11 +329,11 @@ int linearize(const LinearizeCommand& o) {
   if (o.json && o.csv) throw UsageError{"error: --json and --csv are two formats\nhint: leave out one of them\n"};
   const Reader in = in_mode(read(o), o, "linearize");
   LinearRequest request;
-  if (!o.vary.empty()) try {
-      request.range = read_range(o.vary, *in.model);
-    } catch (const MistakeInWord& m) {
-      refuse(m, "--vary");
-    }
+  try {
+    if (!o.vary.empty()) request.range = read_range(o.vary, *in.model);
+  } catch (const MistakeInWord& m) {
+    refuse(m, "--vary");
+  }
   request.form = &form(o, *in.model);
   must_have_motions(in, *request.form);
   request.equilibrium = o.about == "equilibrium";

@@ -93,7 +93,7 @@ class RangeReader {
     if (count < 1 && count > 0)
       wrong("the first step of " + to_string(step) + " from " + to_string(from) + " goes beyond " + to_string(to),
             step.is_integer() && step > 1 ? name_ + "=" + part(begin_, dots).text + ":" + part(dots + 2, colon).text +
-                                                ":" + steps.text + " has that many values; " + step_hint()
+                                                ":" + steps.text + " has " + steps.text + " values; " + step_hint()
                                           : step_hint());
     const mpz_class whole = count.get_num() / count.get_den();
     return {from, from + step * Rational(whole), whole.get_ui() + 1};

@@ -57,5 +57,14 @@ TEST(StepBudget, AnEndJustBeyondTheLimitIsWaitedFor) {
   EXPECT_EQ(judged([](std::size_t k) { return k < 3000 ? 1e-8 : 1e-3; }, 10, 100'000), 0U);
 }
 
+// A fast motion that chatters has a good mean, which says nothing of what follows.
+TEST(StepBudget, AMotionThatChattersIsNoticed) {
+  const auto chatters = [](double then) { return [then](std::size_t k) { return k < 100 ? 0.05 : then; }; };
+  EXPECT_EQ(judged(chatters(1e-13), 10, 200'000), 50'500U);
+  // The mutants: a pace that is not hopeless, and one that is so for a while.
+  EXPECT_EQ(judged(chatters(1e-9), 10, 200'000), 0U);
+  EXPECT_EQ(judged([](std::size_t k) { return k < 100 || k > 45'000 ? 0.05 : 1e-13; }, 10, 200'000), 0U);
+}
+
 }  // namespace step_budget_test
 }  // namespace anholon

@@ -1,4 +1,4 @@
-// Units that fit together and units that do not; and that a file without units is never looked at.
+// Units that fit together and units that do not; and that a file without units is never refused.
 #include <gtest/gtest.h>
 
 #include "modelfile/text/shipped.h"
@@ -176,7 +176,7 @@ TEST(DimensionsOfAModel, OfAnAxisAloneAreFree) {
 }
 
 // The same nonsense without units is consistent with some, or nobody asked.
-TEST(DimensionsOfAModel, AreNotLookedAtWithoutUnits) {
+TEST(DimensionsOfAModel, AreNotRefusedWithoutUnits) {
   EXPECT_EQ(messages(found("coordinates = [\"x\"]\n[[particle]]\nname = \"p\"\nmass = \"1 + 2\"\nposition = "
                            "\"sin(x)*ex\"\n[gravity]\nfield = \"x*ey - vel([x, 0, 0])\"\n")),
             "");
@@ -185,6 +185,26 @@ TEST(DimensionsOfAModel, AreNotLookedAtWithoutUnits) {
   EXPECT_EQ(messages(found(pendulum + "\"30 deg\"\n")), "") << "an angle has no dimension";
   EXPECT_NE(messages(found(pendulum + "\"30 deg\"\n\"th'\" = \"2 s^-1\"\n")), "")
       << "the length of the pendulum is missing";
+}
+
+// Coordinates and states of one dimension have one scale, with units and without.
+TEST(DimensionsOfAModel, GiveTheScalesOfUnknowns) {
+  const auto scales = [](const std::string& radius, const std::string& rate) {
+    return test::model_of("coordinates = [\"x\", \"th\", \"y\"]\nparticle = [{name = \"p\", mass = 1, position = "
+                          "\"x*ex + (y + (" +
+                          radius + ")*sin(th))*ey\"}]\nstate.s = {rate = \"" + rate + "\", initial = 0}\n")
+        ->scales;
+  };
+  using Scales = std::vector<std::uint32_t>;
+  EXPECT_EQ(scales("2 m", "x'"), (Scales{0, 1, 0, 0}));
+  EXPECT_EQ(scales("2", "x'"), (Scales{0, 1, 0, 0}));
+  EXPECT_EQ(scales("2", "th'"), (Scales{0, 1, 0, 1}));
+  EXPECT_EQ(scales("2", "x"), (Scales{0, 1, 0, 2})) << "metres times seconds";
+  // Formulas that contradict one another give none, nor does one dimension alone.
+  EXPECT_EQ(scales("x*y", "x'"), Scales{});
+  EXPECT_EQ(
+      test::model_of("coordinates = [\"x\"]\nparticle = [{name = \"p\", mass = 1, position = \"x*ex\"}]\n")->scales,
+      Scales{});
 }
 
 // A multiplier times a derivative of its constraint is a force.
