@@ -17,7 +17,7 @@ inline constexpr long kLargestExponent = 256;
 // The sums among these nodes whose coefficients make a product, or stand alone, with numbers beyond 2^256.
 std::unordered_set<NodeId> large_sums(const Graph& g, std::span<const NodeId> nodes);
 
-// k of the largest |r| = 2^k, rounded down. REQUIRES: r != 0.
+// A k with 2^(k-1) < |r| < 2^(k+1). REQUIRES: r != 0.
 long binary_exponent(const Rational& r);
 
 // 2^k r.
