@@ -1,5 +1,6 @@
 #include "model/formula_of_slot.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "model/exponents.h"
@@ -84,12 +85,69 @@ Described described(const Tape& tape, const Model& model, std::uint32_t slot) {
   return {short_text(tape, model, slot).empty() ? "a formula" : short_text(tape, model, slot), slot};
 }
 
+using Formulas = std::vector<Expr>;
+
+void add(Formulas& list, Expr e) {
+  if (e.graph) list.push_back(e);
+}
+void add(Formulas& list, const Vector& v) {
+  for (int i = 0; i < 3; ++i) add(list, v[i]);
+}
+
+// Calls visit(title, formulas) for each element that the equations of motion come from.
+template <class Visit>
+void for_each_element(const Model& model, const Visit& visit) {
+  const auto show = [&](const std::string& kind, const std::string& name, const Formulas& formulas) {
+    visit(kind + " '" + name + "'", formulas);
+  };
+  for (const Force& f : model.forces) {
+    Formulas formulas;
+    add(formulas, f.vector);
+    add(formulas, f.tension);
+    for (const auto& [coordinate, component] : f.generalized) add(formulas, component);
+    show("the force", f.name, formulas);
+  }
+  for (const Potential& p : model.potentials) show("the potential", p.name, {p.value});
+  for (const Dissipation& d : model.dissipation) show("the dissipation", d.name, {d.value});
+  for (const Constraint& c : model.constraints) show("the constraint", c.name, {c.phi});
+  for (const VaryingMass& m : model.masses) show("the mass of", m.name, {m.value});
+  for (const StateVariable& z : model.states) show("the rate of", z.name, {z.rate});
+  for (const Body& b : model.bodies) {
+    Formulas formulas;
+    add(formulas, b.center);
+    show("the position of", b.name, formulas);
+  }
+}
+
+// The element whose formulas hold the node, "the force 'spring'"; empty if there is none or several.
+std::string element_with(const Model& model, NodeId node) {
+  std::string found;
+  int elements = 0;
+  for_each_element(model, [&](const std::string& title, const Formulas& formulas) {
+    const std::vector<NodeId> nodes = reachable(formulas);
+    if (!std::binary_search(nodes.begin(), nodes.end(), node)) return;
+    ++elements;
+    found = title;
+  });
+  return elements == 1 ? found : std::string();
+}
+
+// The element from which a formula or, if derivatives have changed it, its argument comes: " in the force 'spring'".
+std::string in_element(const Tape& tape, const Model& model, std::uint32_t slot, std::uint32_t argument) {
+  for (const std::uint32_t s : {slot, argument}) {
+    if (tape.nodes[s] == Tape::kNoNode || tape.code[s].op == Op::input) continue;
+    if (const std::string element = element_with(model, tape.nodes[s]); !element.empty()) return " in " + element;
+  }
+  return {};
+}
+
 }  // namespace
 
 Outcome without_value(const Tape& tape, const Model& model, std::uint32_t slot,
                       const std::function<double(std::uint32_t)>& value) {
   const Described d = described(tape, model, slot);
-  std::string message = d.formula + (std::isfinite(value(slot)) ? " has no derivatives" : " has no value");
+  std::string message = d.formula + in_element(tape, model, slot, d.argument) +
+                        (std::isfinite(value(slot)) ? " has no derivatives" : " has no value");
   if (d.argument != slot) {
     const std::string argument = short_text(tape, model, d.argument);
     if (!argument.empty()) message += ", where " + argument + " = " + number_text(value(d.argument), 6);

@@ -8,8 +8,8 @@
 
 namespace anholon {
 
-// `not_a_number`, with the formula of the slot and the value of its argument: "sqrt(x - 1) has no value, where
-// x - 1 = -0.25". `value`: that of a slot at order 0; where it is finite, the formula has no derivatives.
+// `not_a_number`, with the formula of the slot, the element of the model that alone holds it, and the value of its
+// argument: "sqrt(x - 1) in the force 'spring' has no value, where x - 1 = -0.25". `value`: that of a slot at order 0; where it is finite, the formula has no derivatives.
 Outcome without_value(const Tape& tape, const Model& model, std::uint32_t slot,
                       const std::function<double(std::uint32_t)>& value);
 

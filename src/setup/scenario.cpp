@@ -8,6 +8,7 @@
 #include "expr/table.h"
 #include "model/exponents.h"
 #include "setup/large_angles.h"
+#include "structure/branch.h"
 #include "structure/redundancy.h"
 
 namespace anholon {
@@ -220,8 +221,9 @@ static Outcome complete(const InitialProblem<double>& problem, Scenario& s) {
   return complete_state(problem, *s.routh, s.routh_structure, s.state);
 }
 
-// Constraints on accelerations, and conditions on them, ask for more than positions and velocities.
-static bool may_need_completion(const Model& model) {
+// Constraints on accelerations, conditions on them and forces that are nonlinear in them ask for more than positions and
+// velocities.
+static bool may_need_completion(const Model& model, const Mechanics& mechanics) {
   const auto high = [](Expr e) {
     for (NodeId id : symbols({&e, 1}))
       if (const Node& n = e.graph->node(id); n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 1))
@@ -231,7 +233,8 @@ static bool may_need_completion(const Model& model) {
   return std::any_of(model.constraints.begin(), model.constraints.end(),
                      [](const Constraint& c) { return c.order >= 2; }) ||
          std::any_of(model.initial.conditions.begin(), model.initial.conditions.end(),
-                     [&](const Condition& c) { return high(c.residual); });
+                     [&](const Condition& c) { return high(c.residual); }) ||
+         !nonlinear_in_forces(mechanics).empty();
 }
 
 // Derivatives of a constraint that the structure asks for, and the fits of its tables do not have.
@@ -286,7 +289,7 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
     choose_constraints(*model, parameters, s);
   else
     for (std::size_t r = 0; r < model->constraints.size(); ++r) s.independent.push_back(r);
-  if (initial.ok() && numbers && may_need_completion(*model)) initial = complete(problem, s);
+  if (initial.ok() && numbers && may_need_completion(*model, *s.mechanics)) initial = complete(problem, s);
   s.elimination = Elimination();
   if (form.eliminates()) {
     const auto at = std::make_shared<PointValues>(values_near(*model, parameters, s.state));

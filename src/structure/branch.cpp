@@ -16,8 +16,28 @@ bool may_branch(const Mechanics& m, const System& s, std::size_t r) {
   return false;
 }
 
-bool may_branch(const Mechanics& m, const System& s) {
+Column nonlinear_in_forces(const Mechanics& m) {
+  Column list;
+  Graph& g = m.graph();
+  for (const Column* forces : {&m.Q, &m.QR, &m.QD})
+    for (Expr force : *forces) {
+      if (jet_order(force) < 2) continue;
+      for (NodeId id : symbols({&force, 1})) {
+        const Expr x{&g, id};
+        if (g.node(id).kind == Kind::jet && g.node(id).order >= 2 && jet_order(partial(force, x)) >= 2 &&
+            std::none_of(list.begin(), list.end(), [&](Expr other) { return other.id == id; }))
+          list.push_back(x);
+      }
+    }
+  return list;
+}
+
+static bool constraints_may_branch(const Mechanics& m, const System& s) {
   return std::any_of(s.constraints.begin(), s.constraints.end(), [&](std::size_t r) { return may_branch(m, s, r); });
+}
+
+bool may_branch(const Mechanics& m, const System& s) {
+  return constraints_may_branch(m, s) || !nonlinear_in_forces(m).empty();
 }
 
 StageEquation law(const System& s, std::size_t i, unsigned k) {
@@ -156,7 +176,7 @@ class Search {
 
   // Accelerations with zero multipliers of the nonlinear constraints: Gauss' principle measures from them.
   void without_nonlinear_constraints() {
-    if (metric_ != 1U << 2 || guessed()) return;
+    if (metric_ != 1U << 2 || guessed() || !constraints_may_branch(m_, s_)) return;
     std::vector<StageEquation> rows = part(equations_, 0, n_);
     Column unknowns = part(unknowns_, 0, n_);
     for (std::size_t i = n_; i < s_.size(); ++i)

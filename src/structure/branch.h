@@ -10,6 +10,10 @@ namespace anholon {
 // True if a constraint of order 2 or more is nonlinear in its highest derivatives: its equations may have several
 // solutions.
 bool may_branch(const Mechanics& m, const System& s, std::size_t constraint);
+// The accelerations and higher derivatives in which a given force is nonlinear: the equations of motion may have several
+// solutions for them.
+Column nonlinear_in_forces(const Mechanics& m);
+// True if there is such a constraint or such a force.
 bool may_branch(const Mechanics& m, const System& s);
 
 template <Number N>

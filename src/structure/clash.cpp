@@ -1,10 +1,14 @@
 // Messages that explain why there are no consistent initial data.
+#include <algorithm>
 #include <utility>
 
 #include "expr/normal.h"
 #include "structure/state_solver.h"
 
 namespace anholon {
+
+static constexpr const char* kGiveGuess =
+    "there may be no real solution; a guess helps where there is one: [initial] guess = {…}";
 
 template <Number N>
 std::string StateSolver<N>::entry_name(const Node& n) const {
@@ -13,15 +17,18 @@ std::string StateSolver<N>::entry_name(const Node& n) const {
                          n.order, Format::text);
 }
 
-// The derivatives and multipliers of the nonlinear constraints.
+// The derivatives and multipliers of the nonlinear constraints, and the derivatives in which forces are nonlinear.
 template <Number N>
 std::string StateSolver<N>::solution_text(const std::vector<N>& x, const System& s, const Structure& t) const {
   std::string list;
+  const Column of_forces = nonlinear_in_forces(m_);
   for (std::size_t j = 0; j < s.size(); ++j) {
     if (j >= s.mechanical()) continue;
+    const Expr leading = s.symbol(j, static_cast<unsigned>(t.d[j]));
     bool named = j >= s.coordinates && may_branch(m_, s, s.constraints[j - s.coordinates]);
     for (std::size_t r : s.constraints)
       named = named || (j < s.coordinates && may_branch(m_, s, r) && !is_zero(m_.Phi[r][j]));
+    named = named || std::any_of(of_forces.begin(), of_forces.end(), [&](Expr of) { return of.id == leading.id; });
     if (!named) continue;
     list += (list.empty() ? "" : ", ") +
             derivative_name(s.variable_names[j], static_cast<unsigned>(t.d[j]), Format::text) + " = " +
@@ -39,6 +46,7 @@ Outcome StateSolver<N>::no_leading(const System& s, const LeadingSolutions<N>& s
   if (!others.empty())
     return {OutcomeKind::inconsistent, "no solution lies on the branch asked for; there is " + others,
             "another [initial] branch, or other initial data"};
+  if (which.empty()) return no_accelerations(solutions.singular);
   if (solutions.singular)
     return {OutcomeKind::singular,
             "singular configuration: the multiplier of the constraint " + which +
@@ -47,7 +55,21 @@ Outcome StateSolver<N>::no_leading(const System& s, const LeadingSolutions<N>& s
   return {OutcomeKind::no_convergence,
           "no derivatives were found at the start that satisfy the constraint " + which +
               " and the equations of motion",
-          "there may be no real solution; a guess helps where there is one: [initial] guess = {…}"};
+          kGiveGuess};
+}
+
+// Forces are nonlinear in the accelerations, and no regular solution was found.
+template <Number N>
+Outcome StateSolver<N>::no_accelerations(bool singular) const {
+  if (singular)
+    return {OutcomeKind::singular,
+            "singular configuration: forces are nonlinear in the accelerations, and the equations of motion do not "
+            "determine these at the start",
+            "give other initial data"};
+  return {OutcomeKind::no_convergence,
+          "forces are nonlinear in the accelerations, and no accelerations were found at the start that satisfy the "
+          "equations of motion",
+          kGiveGuess};
 }
 
 template <Number N>

@@ -201,7 +201,8 @@ Outcome StateSolver<N>::leading(const System& s, const Structure& t) {
   if (!others.empty() && !branch_was_named(s, t))
     state_.notes.push_back("the equations have several solutions at the start: " + solution_text(*taken, s, t) +
                            " is taken, there is also " + others +
-                           "; name one by [initial] branch = {…} or guess = {…}");
+                           (nonlinear_in_forces(m_).empty() ? "; name one by [initial] branch = {…} or guess = {…}"
+                                                            : "; name one by [initial] guess = {…}"));
   return {};
 }
 

@@ -72,6 +72,7 @@ class StateSolver {
   std::string entry_name(const Node& n) const;
   std::string solution_text(const std::vector<N>& x, const System& s, const Structure& t) const;
   Outcome no_leading(const System& s, const LeadingSolutions<N>& solutions, const std::string& others) const;
+  Outcome no_accelerations(bool singular) const;
   std::string kind(const Stage<N>& stage) const;
   Outcome no_value(const Stage<N>& stage);
   std::string equation_text(const StageEquation& e) const;
