@@ -23,6 +23,8 @@
 #include "base/json.h"
 #include "base/read_file.h"
 #include "fma_peak.h"
+#include "integrate/lanes/ordinary_steps.h"
+#include "integrate/stretch.h"
 #include "kernel/arithmetic.h"
 #include "motion/form_choice.h"
 #include "motion/representation.h"
@@ -118,7 +120,12 @@ struct Trajectory {
         stepper(*ready_.stepping, parameter_values<N>(*ready_.scenario.model), wide, settings) {}
   void go(const Start<W>& start, const W& end, std::size_t most_steps) {
     must(stepper.start(start.t, start.state, start.leading));
-    while (!(stepper.time() == end) && stepper.steps() < most_steps) must(stepper.step(end));
+    // Stretches of as many steps as `simulate` asks for at once.
+    for (Stretch<W> stretch; !(stepper.time() == end) && stepper.steps() < most_steps;) {
+      stretch.restart();
+      stretch.most = std::min<std::size_t>(64, most_steps - stepper.steps());
+      must(stepper.steps(end, stretch));
+    }
   }
   std::vector<W> last() const {
     Expansion<W> point(*ready->stepping, wide, 1);
@@ -228,7 +235,7 @@ std::vector<Start<W>> neighbours(const Ready& r, const std::string& name) {
   const double* const from = s.state.value(s.system.symbol_node(j, 0));
   std::vector<Start<W>> starts(static_cast<std::size_t>(tiers().back().lanes));
   for (std::size_t lane = 0; lane < starts.size(); ++lane)
-    must(initial_state(s, {{{0, j, Rational(*from) + Rational(static_cast<long>(lane), 64)}}, {}, {}}, starts[lane]));
+    must(initial_state(s, {{{0, j, Rational(*from) + Rational(static_cast<long>(lane), 64)}}, {}, {}, {}}, starts[lane]));
   return starts;
 }
 
@@ -252,9 +259,9 @@ void answer_lanes(const Ready& r, const std::string& name, JsonWriter& json) {
   write_state(json, last);
 }
 
-// The lanes of one kernel, each to the end; those that are there wait for the others. Where they have arrived, if asked
-// for.
-void go_side_by_side(Kernel& kernel, std::deque<Trajectory<double>>& motions,
+// Takes the motions in the lanes of one kernel to the end, as a sweep does: ordinary steps are made for all lanes at once.
+// A motion that has arrived waits for the others. `last`: filled with where they have arrived, if given.
+void go_side_by_side(Kernel& kernel, OrdinarySteps& ordinary, std::deque<Trajectory<double>>& motions,
                      const std::vector<Start<Wider<double>>>& starts, const Wider<double>& end,
                      std::vector<std::vector<Wider<double>>>* last = nullptr) {
   for (std::size_t i = 0; i < motions.size(); ++i)
@@ -270,10 +277,19 @@ void go_side_by_side(Kernel& kernel, std::deque<Trajectory<double>>& motions,
   };
   while (all([](Stepper<double>& s) { return s.begin_step(); })) {
     kernel.begin();
-    all([&](Stepper<double>& s) { return s.aim(end); });
-    for (bool again = true; again;) {
-      kernel.advance();
-      kernel.start_next();
+    std::vector<OrdinarySteps::Motion> walking;
+    for (Trajectory<double>& m : motions)
+      if (Stepper<double>& s = m.stepper; s.time() == end)
+        walking.emplace_back();
+      else
+        walking.push_back({&s, end, end});
+    bool aimed = ordinary.run(walking);
+    if (!aimed) all([&](Stepper<double>& s) { return s.aim(end); });
+    for (bool again = true; again; aimed = false) {
+      if (!aimed) {
+        kernel.advance();
+        kernel.start_next();
+      }
       again = false;
       all([&](Stepper<double>& s) {
         const EndOfStep there = s.look_at_end(end);
@@ -310,14 +326,15 @@ void answer_batch(Ready& r, double tolerance, double seconds, const std::string&
     kernel->set_parameters(lane, m.wide);
     m.stepper.accelerate(kernel, lane);
   }
+  OrdinarySteps ordinary(kernel, settings);
   std::vector<double> times;
   for (const Stopwatch all; times.empty() || all.wall_seconds() < seconds;) {
     const Stopwatch watch;
-    go_side_by_side(*kernel, motions, starts, end);
+    go_side_by_side(*kernel, ordinary, motions, starts, end);
     times.push_back(watch.seconds());
   }
   std::vector<std::vector<W>> arrived;
-  go_side_by_side(*kernel, motions, starts, end, &arrived);
+  go_side_by_side(*kernel, ordinary, motions, starts, end, &arrived);
   // The same motions, each alone.
   Trajectory<double> alone(r, settings);
   alone.stepper.accelerate(plan);
