@@ -235,7 +235,8 @@ std::vector<Start<W>> neighbours(const Ready& r, const std::string& name) {
   const double* const from = s.state.value(s.system.symbol_node(j, 0));
   std::vector<Start<W>> starts(static_cast<std::size_t>(tiers().back().lanes));
   for (std::size_t lane = 0; lane < starts.size(); ++lane)
-    must(initial_state(s, {{{0, j, Rational(*from) + Rational(static_cast<long>(lane), 64)}}, {}, {}, {}}, starts[lane]));
+    must(initial_state(s, {{{0, j, Rational(*from) + Rational(static_cast<long>(lane), 64)}}, {}, {}, {}},
+                       starts[lane]));
   return starts;
 }
 
