@@ -72,18 +72,18 @@ class Elimination {
   FreeQuantities free;
   std::optional<QuasiBasis> quasi;  // if u are quasi-velocities
 
-  // X on the manifold.
+  // Returns X on the manifold.
   Expr on(Expr X) const;
   Column on(const Column& X) const;
   Rows on(const Rows& X) const;
-  // d/dt along the manifold (frozen masses stay frozen).
+  // Returns d/dt X along the manifold (frozen masses stay frozen).
   Column rate(const Column& X) const { return on(total_derivative(X)); }
   Rows rate(const Rows& X) const;
-  // Partial derivatives of X, on the manifold and with the other free quantities held, with respect to
+  // These return partial derivatives of X, on the manifold and with the other free quantities held, with respect to
   Column by_u(Expr X) const;            // u                    (n - s)
   Column by_u_rate(Expr X) const;       // u'                   (n - s)
   Column by(unsigned k, Expr X) const;  // q^(k), k < m         (n)
-  // As above for g and g' = dg/dt: row s is the gradient of g_s.
+  // The same derivatives of g and g' = dg/dt: row s is the gradient of g_s.
   const Column& g() const { return top_.values; }
   const Rows& g_by_u() const { return top_.by_u; }  // B of [N 4.3], n x (n - s)
   const Rows& g_by(unsigned k) const;               // n x n
@@ -95,7 +95,7 @@ class Elimination {
 
   // C = -Phi_D^-1 Phi_I of [L 3.7], dependent by independent.
   Rows C() const;
-  // A^-1, with pivots that are not small near the state.
+  // Returns A^-1, computed with pivots that are not small near the state.
   Rows inverted(const Rows& A) const { return pivots_.inverse(A, Wanted::brief); }
   // The divisors; near a zero of one of them another elimination is better.
   const Column& pivots() const { return pivots_.divisors(); }
@@ -105,11 +105,11 @@ class Elimination {
   Column I(const Column& X) const { return pick(X, independent); }
   Column D(const Column& X) const { return pick(X, dependent); }
 
-  // Writes quasi-velocities and all their derivatives in coordinates again.
+  // Expresses quasi-velocities and all their derivatives in coordinates again.
   Column in_coordinates(const Column& X) const;
 
-  // The same of `copy`, a copy of the mechanics, with values of its own near the state; the handles are left as they
-  // are.
+  // Returns the same elimination for `copy`, a copy of the mechanics, with values of its own near the state. The
+  // handles still refer to the old graph.
   Elimination of(const Mechanics& copy) const;
   // The handles of the elimination (expr/handles.h), without those of its mechanics.
   friend void for_each_expression(Elimination& e, const ExprVisitor& f);
