@@ -14,7 +14,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   const Column p = E.on(gradient(T_before, jets(*M.model, E.m)));  // dT^(m-1)/dq_s^(m)
   Rows g_by_pi;                                                    // dg_s/dpi_a^(m-1)
   for (const Column& row : E.g_by(E.m - 1)) g_by_pi.push_back(E.contract(row));
-  // Term by term, as in chaplygin.cpp.
+  // The terms are computed one by one, as in chaplygin.cpp.
   const Column first = E.by_u(T(M, E.m)), second = E.contract(E.by(E.m - 1, T_before)),
                third = E.contract(gradient(M.T, M.q)), fourth = p * (E.g_rate_by_u() - g_by_pi);
   return {first - second - third - fourth, E.contract(forces(M))};
