@@ -103,8 +103,8 @@ const char* name(Certificate::ClaimKind kind);
 
 std::string to_json(const Certificate& c);
 
-// Is safe for any bytes: throws Failure with the place inside the JSON ("nodes[3]: …"), and accepts only certificates
-// that satisfy all conditions above.
+// Reads a certificate. The function is safe for any bytes: it throws Failure with the place inside the JSON ("nodes[3]:
+// …"), and accepts only certificates that satisfy all conditions above.
 Certificate read_certificate(std::string_view text);
 
 }  // namespace anholon

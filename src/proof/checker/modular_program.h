@@ -114,25 +114,25 @@ class ModularProgram {
     return list;
   }
 
-  // Flattens the angles and bounds the degrees; it comes before what follows. Throws Unable.
+  // Flattens the angles and bounds the degrees. REQUIRED before the functions below. Throws Unable.
   void prepare();
   // The degree of the difference that a claim states, and the number of pairs of arguments that have to differ times
-  // their degree: bounds on the number of zeros.
+  // their degree; both bound the number of zeros.
   double difference_degree(const Certificate::Claim& claim);
   double key_collisions() const { return keyed_ * keyed_ * largest_key_; }
   double log2_conjugates() const { return log2_conjugates_; }
-  // Roots whose arguments vary: half of the points have none.
+  // Returns the number of roots whose arguments vary: each has a value at half of the points.
   double varying_roots() const;
-  // Choices of signs that the points seen have left open.
+  // Returns the number of choices of signs that the points so far have left open.
   int open_branches() const;
 
-  // The program over a field; nullopt if a number of the program has no value in it.
+  // Returns the program over a field; nullopt if a number of the program has no value in it.
   std::optional<ReducedProgram> over(const Field& field) const;
 
   enum class Drawn : std::uint8_t { good, undefined, not_square, bad_prime };
-  // The values of all nodes at the random point that `key` determines. Throws Unable at the limit of work.
+  // Computes the values of all nodes at the random point that `key` determines. Throws Unable at the limit of work.
   Drawn draw(const ReducedProgram& r, const HashKey& key, std::vector<Word>& values);
-  // left - sum coefficient * term of a claim, from the values of the nodes.
+  // Returns left - sum coefficient * term of a claim, from the values of the nodes.
   Word difference(const ReducedProgram& r, const Certificate::Claim& claim, const std::vector<Word>& values) const;
 
  private:
