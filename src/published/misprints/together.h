@@ -20,9 +20,9 @@ class Together {
   static constexpr unsigned kMost = 4;
 
   Together(Trial& trial, const Syntax& difference);
-  // The sets of `count` changes by which left - right vanishes, the likely ones first. A misprint that changes several
-  // places in one way counts once: a symbol that lost its dots or was mistaken for another one everywhere, an exponent
-  // that moved to another factor.
+  // Returns the sets of `count` changes by which left - right vanishes, the likely ones first. A misprint that changes
+  // several places in one way counts once: a symbol that lost its dots or was mistaken for another one everywhere, an
+  // exponent that moved to another factor.
   std::vector<Misprint> sets_of(unsigned count);
 
  private:
