@@ -20,9 +20,9 @@ Outcome Expansion<N>::solve(const Solver& solver) {
   return newton(solver, false);
 }
 
-// Whether no residual of the equations exceeds the rounding error of its evaluation. Terms that vanish together count
-// with the size at which they were computed: a small factor may precede a difference of large accelerations, and products
-// of velocities that are no terms of the equation may cancel within one of them.
+// True if no residual of the equations exceeds the rounding error of its evaluation. Terms that vanish together count
+// with the size at which they were computed: a small factor may precede a difference of large accelerations, and
+// products of velocities that are no terms of the equation may cancel within one of them.
 template <Number N>
 bool Expansion<N>::left_is_roundoff() const {
   const Program& p = *program_;

@@ -30,7 +30,7 @@ void Sensitivity<N>::jacobian(const Machine<N>& machine, Matrix<N>& all) {
     columns(machine, from, std::min(kColumns, p.unknowns() - from), all);
 }
 
-// The derivatives with respect to the unknowns [first, first + count).
+// Computes the derivatives with respect to the unknowns [first, first + count).
 template <Number N>
 void Sensitivity<N>::columns(const Machine<N>& machine, std::size_t first, std::size_t count, Matrix<N>& all) {
   const Program& p = *program_;
