@@ -126,7 +126,7 @@ std::string number(const Rational& r) {
                   "a number near " + sign + digits.substr(0, 1) + "e" + std::to_string(exponent - 1) +
                       " occurs: double cannot hold it",
                   "choose units in which numbers lie between 1e-300 and 1e300");
-  // A short decimal is written as such, and so is a quotient of exact numbers: either is rounded once.
+  // A short decimal is written as such, and so is a quotient of exact numbers, because both are rounded once.
   if (!(terminates && digits.size() <= 17) && abs(num) < exact_limit && den < exact_limit)
     return num.get_str() + ".0/" + den.get_str() + ".0";
   if (exponent > 9 || exponent < -3) {
@@ -195,7 +195,7 @@ std::vector<std::string> head(const System& s, const Structure& structure, const
     out.push_back(kept);
   };
   const auto count = [](std::size_t n) { return "[" + std::to_string(n) + "]"; };
-  // "  0  x": the numbers of an array, each with its meaning.
+  // Lists the numbers of an array, each with its meaning: "  0  x".
   const auto list = [&](const std::vector<std::string>& meanings) {
     for (std::size_t i = 0; i < meanings.size(); ++i) {
       const std::string index = std::to_string(i);
