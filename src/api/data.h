@@ -50,7 +50,7 @@ Outcome to_public(const inner::Outcome& outcome);
 Error error_of(const inner::Diagnostics& diagnostics, const inner::SourceText& source);
 Error error_of(const inner::Failure& failure, const inner::SourceText& source);
 Error error_of(const inner::Outcome& outcome);
-// The error of a mistake in an argument of a call.
+// Returns the error of a mistake in an argument of a call.
 Error mistake(const std::string& message, const std::string& hint = {});
 
 // Calls f, which returns a Result. A Failure or a stop request that f throws becomes the error of the Result.

@@ -5,7 +5,7 @@
 //   sums      c0 + c1 x1 + c2 x2 + …   exact rational coefficients, flattened, sorted by id
 //   products  x1^r1 x2^r2 …            exact rational exponents, flattened, sorted by id
 //   f(x)                               one of elementary.def; atan2(y, x)
-//   (s >= 0 ? a : b), step functions   what goes on as something else at a point (a kink)
+//   (s >= 0 ? a : b), step functions   continue as another function at a point (a kink)
 //   leaves    number, pi, and symbols  t, q_a^(k), parameters, frozen masses mu_i, lambda_r^(k), u_a^(k), z_i^(k)
 //
 // Invariants

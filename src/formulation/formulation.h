@@ -35,9 +35,9 @@ struct Formulation {
   // Returns an empty string if the form applies to the model, else the reason why it does not.
   std::string (*obstacle)(const Mechanics&);
   Equations (*equations)(const Mechanics&, const Elimination&);
-  // The quantities from which the equations are built, for `derive --steps`; null if nothing is listed.
+  // Returns the quantities from which the equations are built, for `derive --steps`; null if nothing is listed.
   Quantities (*quantities)(const Mechanics&, const Elimination&) = nullptr;
-  // The highest order m that can be asked for; 0: the equations do not depend on an order.
+  // The highest order m that can be requested; 0: the equations do not depend on an order.
   unsigned highest_m = 0;
 
   bool eliminates() const { return unknowns == Unknowns::coordinates || unknowns == Unknowns::quasi_velocities; }
@@ -68,7 +68,7 @@ std::string order_obstacle(const Formulation& form, const Mechanics& M, unsigned
 // Returns all forms, sorted by name; the build generates the list from the files in forms/.
 const std::vector<const Formulation*>& formulations();
 const Formulation* find_formulation(const std::string& name);
-// "(2.7) of Luo & Zhao, …"
+// Returns "(2.7) of Luo & Zhao, …".
 std::string citation(const Formulation& form);
 
 }  // namespace anholon

@@ -55,12 +55,12 @@ Quantities dependent_partials(const Mechanics& M, const Elimination& E, const La
 Quantities f_by_lower(const Mechanics& M, const Elimination& E);
 Quantities rates_of_f_by_u(const Mechanics& M, const Elimination& E);
 Quantities f_rate_by_u(const Mechanics& M, const Elimination& E);
-// The velocities (or the quantity `of`) of all weighted points, component by component: v.NAME.x; for the axes of a
-// body v.NAME.1.x.
+// Returns labels of the velocities (or the quantity `of`) of all weighted points, component by component: v.NAME.x; for
+// the axes of a body v.NAME.1.x.
 Labels point_labels(const Mechanics& M, const Label& of);
 // sum_s G_s B_sa, the forces along the constraints: G.x, G.u1
 Quantities forces_along(const Mechanics& M, const Elimination& E);
-// The same contraction of any column of forces.
+// Names the same contraction of any column of forces.
 Quantities along(const Mechanics& M, const Elimination& E, const Label& of, const Column& X);
 
 }  // namespace anholon

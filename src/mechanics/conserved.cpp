@@ -157,8 +157,8 @@ bool add_gravity(const Body& body, Column& potentials) {
   return u.has_value();
 }
 
-// The torque of a field that varies over the body has the potential -1/2 sum e u.(dg/dr u) if the centre does not move
-// through the field.
+// Adds the potential -1/2 sum e u.(dg/dr u) of the torque of a field that varies over the body; returns false if the
+// centre moves through the field.
 bool add_gravity_gradient(const Body& body, Column& potentials) {
   if (body.gravity_gradient.empty()) return true;
   Graph& g = *body.mass.graph;

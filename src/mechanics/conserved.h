@@ -12,8 +12,8 @@
 // in q, which include cyclic coordinates, translations and rotations of the whole or of parts. Candidates are found by
 // linear algebra at random points; each result is proved by the exact zero test.
 //
-// The proofs hold where all formulas have derivatives. A continuous integral goes on through kinks; one that may jump,
-// such as an energy whose potential has a sign(x), is marked.
+// The proofs hold where all formulas have derivatives. A continuous integral stays constant at kinks; one that may
+// jump, such as an energy whose potential has a sign(x), is marked.
 #pragma once
 #include "mechanics/mechanics.h"
 

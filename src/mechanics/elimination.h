@@ -1,7 +1,7 @@
 // The constraints solved for highest derivatives (theory: elimination).
 //
-// All constraints are lifted to one order m, the highest among them or a higher one that is asked for (N does not
-// change). On their manifold the highest derivatives are functions of the lower ones and of n - s free quantities u:
+// All constraints are lifted to one order m, the highest among them or a higher requested one (N does not change). On
+// their manifold the highest derivatives are functions of the lower ones and of n - s free quantities u:
 //
 //   q^(m) = g(q, …, q^(m-1), u, t)
 //
@@ -28,7 +28,7 @@ struct EliminationChoice {
   bool by_quasi = false;                 // u are quasi-velocities, n - s of them; else u = q_I^(m)
   std::vector<QuasiVelocity> quasi;
   bool solve = true;  // if the constraints can be solved
-  unsigned m = 0;     // the common order asked for; 0: the highest order of the constraints and quasi-velocities
+  unsigned m = 0;     // the requested common order; 0: the highest order of the constraints and quasi-velocities
 };
 
 // The free quantities u, n - s of them.
@@ -37,8 +37,8 @@ struct FreeQuantities {
   std::vector<unsigned> orders;    // u_k is the derivative of order orders[k] of names[k]
   Column u, rate;                  // u': symbols; u: symbols if solved, else functions of q, …, q^(m)
   Column value, rate_value;        // u, u' in coordinates
-  Column named;                    // of quasi-velocities: what names[k] itself is in coordinates
-  // The index of a name; nullopt if it is not among them.
+  Column named;                    // for quasi-velocities: names[k] itself in coordinates
+  // Returns the index of a name; nullopt if the name is not among the free quantities.
   std::optional<std::size_t> index_of(const std::string& name) const;
 };
 
@@ -64,7 +64,7 @@ class Elimination {
   Elimination(const Mechanics& mechanics, const EliminationChoice& choice, std::shared_ptr<PointValues> at);
 
   unsigned m = 1;      // common order of the lifted constraints, at least 1
-  unsigned asked = 0;  // m, if it was asked for
+  unsigned asked = 0;  // m, if it was requested
   std::vector<std::size_t> constraints, dependent, independent;
   Column phi;           // lifted constraints, masses substituted
   Rows Phi_D_inverse;   // of dphi/dq_D^(m), s x s
@@ -88,20 +88,21 @@ class Elimination {
   const Rows& g_by_u() const { return top_.by_u; }  // B of [N 4.3], n x (n - s)
   const Rows& g_by(unsigned k) const;               // n x n
   const Rows& g_rate_by_u() const { return next_.by_u; }
-  // f_b,nu and similar derivatives: the rows of the dependent coordinates, the columns of the independent ones.
+  // These return f_b,nu and similar derivatives: the rows of the dependent coordinates, the columns of the independent
+  // ones.
   Rows f_by_u() const;
   Rows f_by(unsigned k) const;
   Rows f_rate_by_u() const;
 
-  // C = -Phi_D^-1 Phi_I of [L 3.7], dependent by independent.
+  // Returns C = -Phi_D^-1 Phi_I of [L 3.7], dependent by independent.
   Rows C() const;
   // Returns A^-1, computed with pivots that are not small near the state.
   Rows inverted(const Rows& A) const { return pivots_.inverse(A, Wanted::brief); }
   // The divisors; near a zero of one of them another elimination is better.
   const Column& pivots() const { return pivots_.divisors(); }
-  // sum_s X_s B_sa: X_nu + sum_b X_b f_b,nu.
+  // Returns sum_s X_s B_sa, which is X_nu + sum_b X_b f_b,nu.
   Column contract(const Column& X) const;
-  // The entries of the independent and of the dependent coordinates.
+  // Return the entries of the independent and of the dependent coordinates.
   Column I(const Column& X) const { return pick(X, independent); }
   Column D(const Column& X) const { return pick(X, dependent); }
 
@@ -120,7 +121,7 @@ class Elimination {
   void by_quasi_velocities(const std::vector<QuasiVelocity>& list, bool solve);
   void differentiate();
   void differentiate_implicitly();
-  // w = (u, phi) in coordinates, whose Jacobian is W.
+  // Returns w = (u, phi) in coordinates, whose Jacobian is W.
   Column all_values() const;
 
   const Mechanics* mechanics_ = nullptr;

@@ -10,7 +10,7 @@ namespace anholon {
 
 using Rows = std::vector<Column>;
 
-// sum_b X_b Y_b,a: the sums over dependent coordinates of [L 3.13] and its kin.
+// Returns sum_b X_b Y_b,a: the sums over dependent coordinates of [L 3.13] and similar equations.
 Column operator*(const Column& X, const Rows& Y);
 Rows operator-(const Rows& a, const Rows& b);
 Rows operator+(const Rows& a, const Rows& b);

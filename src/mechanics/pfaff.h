@@ -48,7 +48,7 @@ class FormPoint {
   // own.
   FormPoint(const Mechanics& m, PointValues& near, std::uint64_t seed, bool other_parameters);
   Multi operator()(Expr e) { return (*values_)(e); }
-  // The point in double, for the choice of pivots.
+  // Returns the point in double, for the choice of pivots.
   PointValues rough() const;
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kLongestFormula = 120;
 
-// Long formulas are cut to keep the message one sentence long.
+// Returns the formula of a slot; long ones are cut to keep the message one sentence long.
 std::string short_text(const Tape& tape, const Model& model, std::uint32_t slot) {
   const NodeId node = tape.nodes[slot];
   if (node == Tape::kNoNode) return {};

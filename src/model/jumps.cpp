@@ -45,7 +45,7 @@ int same_sign(Expr a, Expr b) {
   return ratio && is_number(*ratio) ? sgn(number_value(*ratio)) : 0;
 }
 
-// Returns e as it is where s has the sign `side`.
+// Returns the form that e has where s has the sign `side`.
 Expr on_side(Expr e, Expr s, int side) {
   Graph& g = *e.graph;
   for (int depth = 0; depth < kDeepest; ++depth) {

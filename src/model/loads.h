@@ -13,8 +13,8 @@ struct Load {
 std::vector<Load> given_loads(const Model& model);
 std::vector<Load> reactive_loads(const Model& model);
 
-// The total constraint reaction on each body, or on body b: m a - F - mdot u - fictitious forces, and its torque about
-// the mass centre (theory: certificate). Masses are substituted; the result contains accelerations.
+// Return the total constraint reaction on each body, or on body b: m a - F - mdot u - fictitious forces, and its torque
+// about the mass centre (theory: certificate). Masses are substituted; the result contains accelerations.
 std::vector<Load> reactions(const Model& model);
 Load reaction(const Model& model, std::size_t b);
 

@@ -19,7 +19,7 @@ struct MethodInfo {
   const char* title;     // "Runge-Kutta 8"
   const char* citation;  // key of refs.bib; empty if every page cites it
   bool wide_numbers;     // computes in numbers wider than double
-  bool resumes;          // a saved run goes on with the same bits
+  bool resumes;          // a saved run is continued with the same bits
   bool encloses;         // has a dense output that can be enclosed in balls
   bool has_order;        // its order can be chosen
   int order;             // order of the steps; 0: the tolerance determines it

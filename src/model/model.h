@@ -275,8 +275,9 @@ Expr put_masses(const Model& model, Expr e);
 Column put_varying_masses(const Model& model, std::span<const Expr> es);
 Column put_controls(const Model& model, std::span<const Expr> es);
 
-// Monitors, rates of states, events and inputs hold the formulas of the inputs. Beside such a formula stands its open
-// form, in which inputs are symbols; the open form has no graph if the formula contains no input that has a formula.
+// Returns the open form of a formula. Monitors, rates of states, events and inputs hold the formulas of the inputs.
+// Beside such a formula stands its open form, in which inputs are symbols; the open form has no graph if the formula
+// contains no input that has a formula.
 Expr open_form(const Model& model, Expr as_read);
 // Substitutes the inputs into monitors, rates and events anew, after the formulas of inputs were changed. Inputs
 // without a formula stay symbols.

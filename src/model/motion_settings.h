@@ -15,7 +15,7 @@ namespace anholon {
 
 struct WrittenTime {
   Rational value;
-  std::string text;  // as it is to be printed; if empty, the number is printed
+  std::string text;  // the text to be printed; if empty, the number is printed
 };
 
 // The settings of a motion; a member is empty if it is not set.
@@ -58,7 +58,7 @@ void set(MotionSettings& settings, const MotionOption& option, const OptionValue
 void set(MotionSettings& settings, const MotionOption& option, const std::vector<std::string>& words,
          const std::string& called, const std::function<Rational(const std::string&)>& number);
 bool is_set(const MotionSettings& settings, const MotionOption& option);
-// The value as words from which it can be set again; empty if the option is not set.
+// Returns the value as words from which it can be set again; empty if the option is not set.
 std::vector<std::string> words(const MotionSettings& settings, const MotionOption& option);
 // Returns the settings in `asked`, and those of the file where `asked` has none. The end in the file is ignored if
 // `asked` has times of rows, and the tolerance in the file if `asked` has more digits.

@@ -74,7 +74,7 @@ class Ball {
   }
 
   static Ball pi();
-  // The whole real line: the enclosure of an undefined value.
+  // Returns the whole real line, the enclosure of an undefined value.
   static Ball unknown();
 
   bool is_finite() const { return arb_is_finite(v_) != 0; }

@@ -17,10 +17,10 @@ constexpr std::size_t kFactoredVariables = 12;  // its variables
 constexpr unsigned long kFactoredDegree = 10;   // and its total degree
 constexpr std::size_t kComparedTerms = 100;     // monomials that are compared in pairs
 constexpr long kMostSteps = 2'000;              // sums that are put into groups
-constexpr long kMostComparisons = 1'000'000;    // of a monomial with a factor of others
+constexpr long kMostComparisons = 1'000'000;    // comparisons of a monomial with a factor of others
 constexpr std::size_t kNestedBrackets =
-    3;                                 // what brackets around n levels of brackets cost: this times n^2 characters,
-constexpr std::size_t kRepeated = 12;  // and an acceleration in a second place
+    3;                                 // the cost of brackets around n levels of brackets: this times n^2 characters,
+constexpr std::size_t kRepeated = 12;  // the cost of an acceleration in a second place
 constexpr int kDeepest = 12;           // groups within groups
 
 using Mask = std::vector<bool>;

@@ -65,9 +65,9 @@ class Expansion {
   // Corrects the state by least change so that all hidden constraints hold to round-off.
   Outcome project();
   Outcome project(const Solver& solver);
-  // Only measures the residuals of the hidden constraints, after prepare().
+  // Measures the residuals of the hidden constraints, after prepare(), without a projection.
   void measure();
-  // Newton's method for the leading derivatives.
+  // Solves for the leading derivatives by Newton's method.
   Outcome solve();
   Outcome solve(const Solver& solver);
   template <Number M>

@@ -79,7 +79,7 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
     if (!is_finite(worst)) return fault_outcome(*program_, machine_, 0);
     equation_residual_ = worst;
     const bool holds = !(worst > eps * N(kQuietRoundoffs));
-    // The steps no longer shrink.
+    // The residual shrinks no further, and is round-off.
     const bool stalls = !holds && left >= N(0) && !(worst < left * N(0.5)) && left_is_roundoff();
     left = worst;
     solver(r_, y_);

@@ -34,7 +34,7 @@ struct Edit {
   bool in_function = false;  // the place is in the argument of an elementary function, or in an exponent
 };
 
-// left - right
+// Returns left - right.
 Syntax difference_of(const PublishedEquation& equation);
 
 const Syntax& node_at(const Syntax& s, const Path& path, std::size_t length);

@@ -159,7 +159,7 @@ EliminationChoice choose_elimination(const Mechanics& m, const std::vector<std::
 std::vector<std::size_t> independent_rows(const Mechanics& m, const std::vector<std::size_t>& all, PointValues& at) {
   std::vector<std::size_t> rows = choose_rows(constraint_matrix(m, all, at), kSingular).independent;
   if (rows.size() < all.size()) {
-    // Are there fewer independent rows at a singular state only?
+    // Decides whether there are fewer independent rows at a singular state only.
     PointValues elsewhere(generic);
     rows = choose_rows(constraint_matrix(m, all, elsewhere), kSingular).independent;
   }

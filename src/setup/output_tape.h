@@ -10,8 +10,8 @@ namespace anholon {
 template <Number N>
 class LeastMultipliers;
 
-// The size to which a residual is compared: that of the numbers behind its terms; or, if their round-off does not
-// explain the residual, `moved`, the size of these numbers by OutputTape::evaluate_moved.
+// Returns the size to which a residual is compared: that of the numbers behind its terms; or, if their round-off does
+// not explain the residual, `moved`, the size of these numbers by OutputTape::evaluate_moved.
 template <Number N>
 N size_behind(const N& miss, const N& made_of, const N& moved) {
   const bool explained = abs(miss) <= unit_roundoff<N>() * N(kRoundoffsOfSum) * made_of;

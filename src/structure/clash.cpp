@@ -59,7 +59,7 @@ Outcome StateSolver<N>::no_leading(const System& s, const LeadingSolutions<N>& s
           kGiveGuess};
 }
 
-// The outcome if forces are nonlinear in the accelerations and no regular solution is found.
+// Returns the outcome for forces that are nonlinear in the accelerations if no regular solution is found.
 template <Number N>
 Outcome StateSolver<N>::no_accelerations(bool singular) const {
   if (singular)

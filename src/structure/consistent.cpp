@@ -47,7 +47,7 @@ bool StateSolver<N>::move_positions(const StartPlan& plan, const InitialState<N>
   return near;
 }
 
-// The model's states start with the values of the file.
+// Sets the model's states to the values of the file.
 template <Number N>
 void StateSolver<N>::states() {
   const std::size_t n = model_.states.size();

@@ -44,7 +44,7 @@ class Iteration {
   }
   bool solved() const { return !(s_.worst() > stage_rounding<N>()); }
 
-  // The square of the distance from the guess, in the metric at the point.
+  // Returns the square of the distance from the guess, in the metric at the point.
   N distance() const { return distance(s_.metric); }
 
   // Goes towards the solution nearest to the guess or, if `nearest` is false, to any solution: every step is then the

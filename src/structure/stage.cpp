@@ -133,7 +133,8 @@ bool Stage<N>::read_equations(bool jacobian_stays) {
   return true;
 }
 
-// The round-off of doubles is used in all number types, because users type values as doubles.
+// Sets partial derivatives to zero that are round-off. The round-off of doubles is used in all number types, because
+// users type values as doubles.
 template <Number N>
 void Stage<N>::drop_round_off() {
   constexpr double kSmall = 64 * std::numeric_limits<double>::epsilon(),
@@ -303,7 +304,7 @@ template class Stage<long double>;
 template class Stage<Quad>;
 template class Stage<Multi>;
 
-// A tape names the symbols of its inputs by their ids, which a clone of the graph has, too.
+// A tape refers to the symbols of its inputs by their ids, which are the same in a clone of the graph.
 template <>
 inline constexpr bool kHoldsNoExpressions<Tape> = true;
 

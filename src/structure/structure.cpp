@@ -205,8 +205,8 @@ std::vector<std::size_t> too_many(const std::vector<std::vector<int>>& sigma) {
   return {};
 }
 
-// The outcome for a servo constraint whose input does not act on the quantity that it should keep; nullopt if there is
-// none.
+// Returns the outcome for a servo constraint whose input does not act on the quantity that it should keep; nullopt if
+// there is none.
 std::optional<Outcome> idle_input(const System& s, const std::vector<std::vector<int>>& sigma) {
   for (const std::size_t row : too_many(sigma)) {
     if (row < s.coordinates || row >= s.mechanical()) continue;

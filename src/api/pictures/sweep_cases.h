@@ -29,7 +29,7 @@ class SweepCases {
   // the varied columns have the points of the whole sweep. Throws Failure without a place if a column does not exist.
   std::vector<inner::plot::NamedColumn> read(const std::vector<std::string>& names,
                                              std::vector<std::string>& words) const;
-  // The generation of each row that `read` returns; empty if there is one generation.
+  // Returns the generation of each row that `read` returns; empty if there is one generation.
   std::vector<unsigned> generations() const;
   // Returns the command that computes the motion of a case, without the numbers of the case; empty for a file, which
   // does not name the model. A model of which only the text is known is called model.toml.

@@ -236,7 +236,7 @@ class Elements {
     each("input", [&](const Item& i) { expect(i, named(i.key)); });
   }
 
-  // The knots may have units as well.
+  // Reads the units of tables: the knots may have units as well.
   void tables() {
     list("table", [&](const Item& t) {
       const Item* name = t.find("name");

@@ -38,7 +38,7 @@ class FormulaDimensions {
   // Throws Failure if m cannot have the wanted dimension.
   void expect(const Measured& m, const DimensionForm& wanted, Span place);
   void expect(const Item& item, const DimensionForm& wanted);  // a formula or an array; other items are skipped
-  // The sizes of a shape, as in "disc(R)", are lengths. Throws Failure if one cannot be.
+  // Requires that the sizes of a shape, as in "disc(R)", are lengths. Throws Failure if one cannot be a length.
   void expect_lengths(const Item& shape);
   void alike(const Measured& a, const Measured& b, Span place, const char* between, const char* behind = "");
   std::optional<Dimension> known(const std::string& name);

@@ -314,8 +314,8 @@ class Writer {
     i.formula.set_indices(std::move(indices));
   }
 
-  // The part of a list element that makes it a family: the entry itself, its name, or, for a force without name, the
-  // object it acts on.
+  // Returns the part of a list element that makes it a family: the entry itself, its name, or, for a force without
+  // name, the object it acts on.
   static const Item* naming(const Item& element) {
     if (element.kind == Item::Kind::string) return &element;
     const Item* name = element.find("name");

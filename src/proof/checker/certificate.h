@@ -94,7 +94,7 @@ struct Certificate {
   std::vector<Node> nodes;
   std::vector<Claim> claims;
 
-  // The permitted names of a function node.
+  // Returns the permitted names of a function node.
   static const std::vector<std::string>& functions();
   static bool has_function(std::string_view name);
 };

@@ -106,7 +106,7 @@ class ModularProgram {
   ModularProgram& operator=(const ModularProgram&) = delete;
 
   const std::vector<std::size_t>& claims() const { return claims_; }
-  // The choices of signs: nodes of the certificate, and whether a root is taken of them.
+  // Returns the choices of signs: nodes of the certificate, and whether a root is taken of them.
   std::vector<std::pair<Index, bool>> sites() const {
     std::vector<std::pair<Index, bool>> list;
     for (const Site& s : sites_) list.emplace_back(nodes_[s.local], s.root);
@@ -116,8 +116,8 @@ class ModularProgram {
 
   // Flattens the angles and bounds the degrees. REQUIRED before the functions below. Throws Unable.
   void prepare();
-  // The degree of the difference that a claim states, and the number of pairs of arguments that have to differ times
-  // their degree; both bound the number of zeros.
+  // Return the degree of the difference that a claim states, and the number of pairs of arguments that have to differ
+  // times their degree; both bound the number of zeros.
   double difference_degree(const Certificate::Claim& claim);
   double key_collisions() const { return keyed_ * keyed_ * largest_key_; }
   double log2_conjugates() const { return log2_conjugates_; }
