@@ -28,10 +28,10 @@ static void or_stopped(std::span<double> numbers, const Dynamics::Given& given, 
 
 struct Dynamics::Data {
   System system;
-  inner::Scenario opened;               // with outputs of its own, or with inputs as parameters
-  const inner::Scenario* scenario;      // of the system, or the opened one
+  inner::Scenario opened;               // a scenario with outputs of its own, or with inputs as parameters
+  const inner::Scenario* scenario;      // that of the system, or the opened one
   std::vector<std::string> inputs;      // names
-  std::vector<inner::NodeId> formulas;  // of the inputs
+  std::vector<inner::NodeId> formulas;  // formulas of the inputs
   std::vector<inner::NodeId> open;      // the same, in terms of the parameters that are inputs
   std::unique_ptr<const inner::Dynamics> function;
   std::string obstacle;  // why there are no independent velocities

@@ -25,7 +25,7 @@ std::optional<PivotOrder> elimination_at_start(const System& system, const Motio
 // The names of the entries of matrix and right side, row by row; entries that vanish have empty names.
 struct EliminationNames {
   std::vector<std::string> matrix, right;
-  std::string prefix;             // of further names
+  std::string prefix;             // prefix of further names
   std::string residual;           // for a correction: statements that compute, for a solution `lead`,
   std::vector<std::string> left;  // the residuals of the equations, under these names
 };

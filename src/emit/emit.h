@@ -41,7 +41,7 @@ struct EmitOptions {
   std::optional<Start> start;  // an initial state
   std::vector<InputFormula> inputs;
   std::vector<std::pair<std::string, Expr>> outputs;  // names and values
-  const RateFormulas* rates = nullptr;                // of independent velocities, for Python
+  const RateFormulas* rates = nullptr;                // rates of independent velocities, for Python
   std::vector<std::string> of_order;                  // parameters that determine the order of the equations
 };
 

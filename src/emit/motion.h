@@ -23,7 +23,7 @@ struct Motion {
   Column input_values;               // by their formulas
   Column parameters;                 // values in terms of the independent parameters
   bool linear = true;                // the equations are linear in the leading derivatives
-  std::vector<int> orders;           // of the leading derivatives, by variable
+  std::vector<int> orders;           // orders of the leading derivatives, by variable
   Column outputs;
   struct Event {
     std::size_t index;  // in the model

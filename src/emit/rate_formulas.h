@@ -25,9 +25,9 @@ struct RateFormulas {
   Symbols x, u, p, lead;              // p: the parameters that do not follow from others
   Column exact_parameters;            // the values of p in the model
   std::vector<std::string> meanings;  // for x: the meaning of an independent velocity; empty for the others
-  Column rates;                       // of x, one by one
+  Column rates;                       // rates of x, one by one
   Column equations;                   // one for each of lead
-  bool linear = true;                 // in lead
+  bool linear = true;                 // true if the equations are linear in lead
   // u by the formulas of the model, in t, x, p; empty if some contain solved unknowns
   Column input_formulas;
   Column open_input_formulas;  // the same, with u where a formula contains other inputs

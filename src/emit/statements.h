@@ -72,7 +72,7 @@ class Writer {
   Language language_;
   std::unordered_map<NodeId, Text> text_;
   std::unordered_map<NodeId, std::size_t> uses_;
-  std::map<std::pair<NodeId, Rational>, std::size_t> power_uses_;  // of roots and reciprocals
+  std::map<std::pair<NodeId, Rational>, std::size_t> power_uses_;  // uses of roots and reciprocals
   std::map<std::pair<NodeId, Rational>, std::string> powers_;      // the powers that have a variable
   std::unordered_map<NodeId, std::optional<GeneralPowers>> general_;
   std::size_t next_ = 0;

@@ -91,11 +91,11 @@ class StraightLine {
   bool time_ = false, used_sign_ = false;
   std::vector<Use> uses_;
   std::vector<std::string> name_;                        // names of arguments, literals, and slots that constants need
-  std::vector<Form> forms_;                              // of slots that vary
+  std::vector<Form> forms_;                              // forms of slots that vary
   std::unordered_map<std::string, std::string> values_;  // the name of a computed text
   std::unordered_map<std::string, std::pair<std::string, Coefficient>>
       powers_;                                 // base and exponent of the values pow(x, n)
-  std::map<Coefficient, std::size_t> places_;  // of constants in c
+  std::map<Coefficient, std::size_t> places_;  // places of constants in c
   std::vector<Coefficient> constants_;
   std::vector<std::size_t> zeros_;  // roots that vanish
   std::string text_, constants_text_;

@@ -115,7 +115,7 @@ std::string number(const Rational& r) {
   mpz_class quotient, rest;
   mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), top.get_mpz_t(), below.get_mpz_t());
   std::string digits = quotient.get_str();
-  const long exponent = static_cast<long>(digits.size()) - shift;  // of 0.d
+  const long exponent = static_cast<long>(digits.size()) - shift;  // the exponent of 0.d
   const bool cut = digits.size() > kDigits && digits.find_first_not_of('0', kDigits) != std::string::npos;
   const bool terminates = rest == 0 && !cut;
   digits.resize(std::min(digits.size(), kDigits));

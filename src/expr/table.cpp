@@ -22,7 +22,7 @@ using Numbers = std::vector<Rational>;
 // they have few digits, whose number grows with every knot; otherwise a hundred and twenty digits are kept.
 Numbers natural_spline(const Numbers& x, const Numbers& y) {
   const std::size_t n = x.size();
-  constexpr std::uint64_t kMostBits = 800;  // of numerator and denominator
+  constexpr std::uint64_t kMostBits = 800;  // the limit of numerator and denominator
   const auto rounded = [](const Rational& r) {
     if (r.bits() <= kMostBits) return r;
     mpz_class scaled = (r.get_num() << 400) / r.get_den();

@@ -38,7 +38,7 @@ bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0;
 struct Sign {
   std::string_view spelling;
   Token token;
-  std::string_view text = {};  // of the lexeme, if it differs from the spelling
+  std::string_view text = {};  // text of the lexeme, if it differs from the spelling
 };
 constexpr Sign kSigns[] = {
     {"+", Token::plus},

@@ -14,7 +14,7 @@ namespace anholon {
 using Dimension = std::array<Rational, 7>;  // m, kg, s, A, K, mol, cd
 
 struct Unit {
-  Rational factor = 1;  // to SI
+  Rational factor = 1;  // factor to SI
   int pi = 0;           // exponent of the factor pi
   Dimension dimension;
 };

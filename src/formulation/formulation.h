@@ -27,7 +27,7 @@ enum class Unknowns : std::uint8_t {
 inline constexpr unsigned kHighestM = 12;
 
 struct Formulation {
-  const char* name;  // as --form accepts it
+  const char* name;  // the name that --form accepts
   const char* title;
   const char* equation;  // number in its source; empty for the classics
   const char* source;

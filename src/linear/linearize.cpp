@@ -120,7 +120,7 @@ class Values {
   const StateChoice& choice_;
   const bool in_exponents_;  // the value is substituted in the equations as a number
   const Signals& signals_;
-  std::unique_ptr<Made> made_;  // of the last value
+  std::unique_ptr<Made> made_;  // scenario and linearizer of the last value
 };
 
 // One end of an interval of the parameter.

@@ -20,14 +20,14 @@ struct ParameterRange {
 };
 
 struct LinearResult {
-  std::string value;  // of the parameter, as exact text; empty without a range
+  std::string value;  // value of the parameter, as exact text; empty without a range
   Outcome outcome;
   LinearModel model;  // if the outcome is ok
 };
 
 struct Crossing {
-  Multi value{0};             // of the parameter
-  Multi frequency{0};         // of the eigenvalue there; 0: the eigenvalue is real
+  Multi value{0};             // value of the parameter
+  Multi frequency{0};         // frequency of the eigenvalue there; 0: the eigenvalue is real
   int eigenvalues = 1;        // number that crosses: 2 for a pair
   bool destabilizes = false;  // true if the eigenvalue moves to the right for growing values of the parameter
   int unstable_above = 0;     // eigenvalues with a positive real part at a slightly larger value

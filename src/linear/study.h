@@ -12,7 +12,7 @@ struct LinearRequest {
   bool equilibrium = false;  // about the state of rest near the given positions
   StateChoice choice;
   std::optional<ParameterRange> range;
-  int digits = 16;  // of the results
+  int digits = 16;  // digits of the results
 };
 
 // Reads a range as users write it (setup/words/value_range.h): "v=0..10:1", "v=0:10:11", or values "v=0,1,2". Throws
@@ -40,7 +40,7 @@ class LinearStudy {
   LinearRequest request_;
   std::shared_ptr<const Model> model_;  // with the signals; at rest if an equilibrium is requested
   Signals signals_;
-  std::vector<std::string> states_;  // of the model
+  std::vector<std::string> states_;  // states of the model
   Scenario scenario_;
   Outcome start_;
 };

@@ -28,7 +28,7 @@ struct VariedEquations {
   std::vector<std::pair<std::size_t, int>> rows;  // E_i^(k), k <= c_i
   std::vector<Partial> partials;
   Tape tape;       // values of the rows, outputs, then the partial derivatives
-  OneSided sides;  // of the rows and outputs
+  OneSided sides;  // sides of the rows and outputs
 };
 
 }  // namespace anholon

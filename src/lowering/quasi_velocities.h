@@ -20,7 +20,7 @@ namespace anholon {
 struct QuasiVelocities {
   System
       system;  // unknowns: the coordinates, the model's states, then p, as states that follow those; all of first order
-  std::size_t count = 0;      // of p
+  std::size_t count = 0;      // number of the p
   Column inertia;             // I: T = 1/2 sum I_i p_i^2 + terms of lower degree in p
   Column of_state;            // p in t, q, q'
   Column velocities;          // q' in t, q, p

@@ -24,10 +24,10 @@ namespace anholon {
 // The choice of eliminated and of free quantities.
 struct EliminationChoice {
   std::vector<std::size_t> constraints;  // the constraints that take part; they are independent
-  std::vector<std::size_t> dependent;    // as many coordinates, dphi/dq_D^(m) regular
+  std::vector<std::size_t> dependent;    // as many coordinates as constraints, dphi/dq_D^(m) regular
   bool by_quasi = false;                 // u are quasi-velocities, n - s of them; else u = q_I^(m)
   std::vector<QuasiVelocity> quasi;
-  bool solve = true;  // if the constraints can be solved
+  bool solve = true;  // solves the constraints, if they can be solved
   unsigned m = 0;     // the requested common order; 0: the highest order of the constraints and quasi-velocities
 };
 
@@ -67,7 +67,7 @@ class Elimination {
   unsigned asked = 0;  // m, if it was requested
   std::vector<std::size_t> constraints, dependent, independent;
   Column phi;           // lifted constraints, masses substituted
-  Rows Phi_D_inverse;   // of dphi/dq_D^(m), s x s
+  Rows Phi_D_inverse;   // inverse of dphi/dq_D^(m), s x s
   bool solved = false;  // g is known as a formula
   FreeQuantities free;
   std::optional<QuasiBasis> quasi;  // if u are quasi-velocities
@@ -126,7 +126,7 @@ class Elimination {
 
   const Mechanics* mechanics_ = nullptr;
   OnManifold top_, next_;           // q^(m) = g, q^(m+1) = g'
-  Rows W_inverse_;                  // not solved: n x n
+  Rows W_inverse_;                  // if not solved, n x n
   mutable std::vector<Rows> g_by_;  // those computed so far
   mutable PivotChoice pivots_;
 };

@@ -23,10 +23,10 @@ struct GaveUp {
 // The forms of a model, and a basis of their kernel.
 struct Pfaffian {
   FormSpace space;
-  Rows forms;  // of holonomic constraints first, then of `constraints`
+  Rows forms;  // forms of holonomic constraints first, then of `constraints`
   std::size_t holonomic = 0;
   std::vector<std::size_t> constraints;
-  std::vector<std::size_t> pivots;  // as many columns as forms
+  std::vector<std::size_t> pivots;  // pivot columns, as many as forms
   Rows inverse;                     // inverse of the pivot columns
   Rows kernel;                      // vector fields X with w(X) = 0
   Column phi;                       // the holonomic constraints

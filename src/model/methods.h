@@ -15,13 +15,13 @@ struct MethodInfo {
   // rows.
   enum class Use : std::uint8_t { motion, second_opinion, both };
   Use use;
-  const char* name;      // as the option accepts it
+  const char* name;      // the name that the option accepts
   const char* title;     // "Runge-Kutta 8"
   const char* citation;  // key of refs.bib; empty if every page cites it
   bool wide_numbers;     // computes in numbers wider than double
   bool resumes;          // a saved run is continued with the same bits
   bool encloses;         // has a dense output that can be enclosed in balls
-  bool has_order;        // its order can be chosen
+  bool has_order;        // true if the order can be chosen
   int order;             // order of the steps; 0: the tolerance determines it
   double least_tolerance;
   bool raises_tolerance;  // a smaller tolerance is raised to the least one; else it is refused

@@ -46,7 +46,7 @@ struct Observer {
 // A mass or axis weight that varies with t, q, q': its frozen symbol is graph.mass(index).
 struct VaryingMass {
   std::string name;
-  bool weight = false;  // of an axis: may be negative (products of inertia)
+  bool weight = false;  // true for the weight of an axis, which may be negative (products of inertia)
   Expr value;
   Span span;
 };
@@ -128,7 +128,7 @@ struct StateVariable {
 struct Control {
   std::string name;
   std::optional<Expr> value;
-  std::optional<std::size_t> constraint = std::nullopt;  // that it keeps
+  std::optional<std::size_t> constraint = std::nullopt;  // the constraint that it keeps
   Span span;
   Expr open = {};  // see put_inputs
   // An element in which the formula replaces the symbol, such as "the potential 'V'"; empty if there is none.

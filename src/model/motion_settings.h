@@ -33,10 +33,10 @@ struct MotionOption {
   // The group of an option: the times of a motion, how it is computed, how it is judged, or the form of its equations.
   enum class Part : std::uint8_t { times, accuracy, judgement, form };
   const char* name;     // "error-estimate" for --error-estimate
-  const char* key;      // in [simulate]: "error_estimate"
+  const char* key;      // key in [simulate]: "error_estimate"
   const char* value;    // name of its value in the help: "WHEN"
-  const char* help;     // of the command line
-  const char* in_file;  // of [simulate]
+  const char* help;     // text of the command line
+  const char* in_file;  // text of [simulate]
   Part part;
   Member member;
   const char* in_sweep = nullptr;                     // its help for sweeps; nullptr if sweeps do not take the option

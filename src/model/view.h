@@ -14,7 +14,7 @@ namespace anholon {
 // The homogeneous solid whose inertia a body has, or as which a body is drawn.
 struct Shape {
   std::string kind;         // "disc", "ball", …
-  std::vector<Expr> sizes;  // of numbers and parameters
+  std::vector<Expr> sizes;  // formulas of numbers and parameters
 };
 
 struct View {
@@ -32,7 +32,7 @@ struct View {
     Span span;
   };
   std::vector<Element> elements;
-  std::vector<std::pair<std::string, Vector>> points;  // of [point], in the order of the file
+  std::vector<std::pair<std::string, Vector>> points;  // points of [point], in the order of the file
   std::optional<Vector> camera, target;                // place of the camera, and the point it looks at
   std::optional<Vector> up;                            // a constant direction; z if absent
   std::optional<Expr> floor;                           // height of a plane z = const

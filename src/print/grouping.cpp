@@ -31,7 +31,7 @@ struct Built {
   Expr e;
   std::size_t length;
   bool is_sum;
-  std::size_t depth = 0;            // of brackets
+  std::size_t depth = 0;            // depth of brackets
   std::uint64_t accelerations = 0;  // the first 64 that occur, one bit each
 };
 

@@ -163,8 +163,8 @@ class Expansion {
   N constraint_residual_{0}, drift_{0}, equation_residual_{0};
   std::size_t most_missed_ = 0;  // the equation of drift_
   HiddenResiduals<N> hidden_;
-  mutable std::vector<std::optional<N>> size_;  // of each level, balanced, at the current point
-  mutable std::vector<std::vector<N>> moved_;   // of each level, by a sparse J: moved_by_unknowns for all equations
+  mutable std::vector<std::optional<N>> size_;  // size of each level, balanced, at the current point
+  mutable std::vector<std::vector<N>> moved_;   // for each level, by a sparse J: moved_by_unknowns for all equations
 };
 
 extern template class Expansion<double>;

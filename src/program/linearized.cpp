@@ -160,7 +160,7 @@ void multiply_sizes_transposed(const Linearized& l, const Partials<N>& partials,
 
 std::vector<std::vector<double>> largest_of_rows(const Linearized& l, const Partials<double>& partials,
                                                  const std::vector<int>& of_class) {
-  constexpr std::uint32_t kColumns = 16;  // at a time
+  constexpr std::uint32_t kColumns = 16;  // columns that are computed at a time
   const std::uint32_t slots = l.slots(), n = l.unknowns();
   const int classes = *std::max_element(of_class.begin(), of_class.end()) + 1;
   std::vector<std::vector<double>> most(static_cast<std::size_t>(classes), std::vector<double>(n, 0));

@@ -19,8 +19,8 @@ class Linearized {
   // A partial derivative of slot `tainted[k]` of the program.
   enum class Source : std::uint8_t { rational, by_a, by_b };
   struct Term {
-    std::uint32_t column;  // of the operand
-    std::uint32_t index;   // of the rational, or k
+    std::uint32_t column;  // column of the operand
+    std::uint32_t index;   // index of the rational, or k
     Source source;
   };
 

@@ -16,7 +16,7 @@ struct ProgramInput {
   enum class Kind : std::uint8_t { time, variable, other } kind = Kind::other;
   std::uint32_t slot = 0;
   std::size_t variable = 0;
-  int order = 0;         // of the derivative
+  int order = 0;         // order of the derivative
   bool leading = false;  // order + lead == d: the unknown of each stage
 };
 
@@ -41,7 +41,7 @@ struct Program {
   bool nonlinear = false;                          // leading derivatives enter nonlinearly: J depends on them
   // leading derivatives other than rates of the model's states enter nonlinearly
   bool several_solutions = false;
-  std::shared_ptr<const Linearized> linearized;  // of programs with many unknowns
+  std::shared_ptr<const Linearized> linearized;  // set for programs with many unknowns
 
   static constexpr std::uint32_t kUntainted = 0xffffffffU;
   std::size_t unknowns() const { return d.size(); }

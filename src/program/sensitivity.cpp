@@ -5,7 +5,7 @@
 namespace anholon {
 
 namespace {
-constexpr std::size_t kColumns = 16;  // at a time
+constexpr std::size_t kColumns = 16;  // columns that are computed at a time
 }  // namespace
 
 template <Number N>

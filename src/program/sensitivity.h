@@ -55,7 +55,7 @@ class Sensitivity {
     const N* row;
     N factor;
   };
-  std::vector<Operand> operands_;  // of the present slot
+  std::vector<Operand> operands_;  // operands of the present slot
   std::vector<typename Machine<N>::Partials> partials_;
   std::vector<N> delta_;  // the change of each slot
 };

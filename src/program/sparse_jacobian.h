@@ -68,7 +68,7 @@ class SparseJacobian {
   std::vector<int> d_;
   Partials<N> partials_, taken_;
   std::vector<std::vector<double>> largest_;
-  std::vector<N> values_;  // of the entries of the sparse matrix
+  std::vector<N> values_;  // values of the entries of the sparse matrix
   ThresholdLu<N> lu_;
   bool factored_ = false, refused_ = false;
   mutable std::optional<Balance> balance_;

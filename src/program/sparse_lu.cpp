@@ -352,7 +352,7 @@ class Eliminated {
   std::vector<Column> columns_;
   std::vector<Values> row_scale_, column_scale_;
   std::vector<std::optional<Values>> largest_;  // the largest entry of a row in its present state, scaled
-  std::vector<std::uint32_t> version_;          // of a row: counts its changes
+  std::vector<std::uint32_t> version_;          // version of a row, which counts its changes
   std::set<std::pair<std::size_t, std::uint32_t>> short_rows_, short_columns_;
   Best best_;
   bool one_sign_ = true;  // only pivots of the same sign at all samples

@@ -72,7 +72,7 @@ struct SparseLu {
     std::uint32_t column, first, count;  // into `own_terms`
   };
   std::vector<Own> own;
-  std::vector<Term> own_terms;  // of given entries
+  std::vector<Term> own_terms;  // terms of given entries
 
   double work() const {
     return static_cast<double>(influences.empty() ? forward.size() + terms.size() + backward.size()

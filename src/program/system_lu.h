@@ -35,7 +35,7 @@ class SystemLu {
 
   Lu<N> lu_;
   bool in_double_ = false;
-  Matrix<N> original_;  // with narrow_ instead of lu_, if in_double_
+  Matrix<N> original_;  // the matrix, kept with narrow_ instead of lu_ if in_double_
   Lu<double> narrow_;
   mutable std::vector<double> narrow_side_, narrow_solution_;
   mutable std::vector<N> residual_, correction_;

@@ -23,7 +23,7 @@ struct SparseColumns {
 // The columns in the order of their elimination, each with the preferred row of its pivot.
 struct EliminationOrder {
   std::vector<std::uint32_t> column, row;
-  std::size_t entries = 0;  // of the factors, if every pivot is taken where it is preferred
+  std::size_t entries = 0;  // number of entries of the factors, if every preferred pivot is taken
 };
 
 template <Number N>
@@ -46,7 +46,7 @@ class ThresholdLu {
   static constexpr std::uint32_t kNone = 0xffffffffU;
   static constexpr double kThreshold = 0.1;
   struct Entry {
-    std::uint32_t at;  // of L: the row; of U: the step of elimination
+    std::uint32_t at;  // for L the row, for U the step of elimination
     N value;
   };
 
@@ -61,11 +61,11 @@ class ThresholdLu {
 
   // These serve the present column.
   std::vector<std::uint32_t> step_of_;  // the step in which a row was the pivot's, else kNone
-  std::vector<N> scale_, x_;            // of rows: the reciprocal of the largest entry; the column
-  std::vector<std::uint32_t> seen_;     // of a row: the last step that met it, plus 1
+  std::vector<N> scale_, x_;            // for rows: the reciprocal of the largest entry; the column
+  std::vector<std::uint32_t> seen_;     // for a row: the last step that met it, plus 1
   // rows of the column that have been pivot rows, in reverse order; the other rows
   std::vector<std::uint32_t> done_, left_;
-  std::vector<std::uint32_t> path_, next_;  // of the search: rows, and the entries of L to follow
+  std::vector<std::uint32_t> path_, next_;  // for the search: rows, and the entries of L to follow
   std::uint32_t now_ = 0;                   // the present step, plus 1
   mutable std::vector<N> side_;
 };

@@ -18,7 +18,7 @@ class UnknownCoefficients {
     for (std::size_t k = 1; k < length_ + 2; ++k) factorial_.push_back(factorial_.back() * N(static_cast<int>(k)));
   }
 
-  std::size_t length() const { return length_; }  // of each series
+  std::size_t length() const { return length_; }  // length of each series
   std::size_t state_size() const { return offset_.back(); }
   // Returns the place of x_j in the state.
   std::size_t offset(std::size_t j) const { return offset_[j]; }

@@ -16,7 +16,7 @@ namespace anholon {
 // A derived equation, left side - right side, with masses substituted.
 struct DerivedEquation {
   bool constraint = false;
-  std::size_t index = 0;  // of a coordinate or constraint
+  std::size_t index = 0;  // index of a coordinate or constraint
   unsigned times = 0;     // number of differentiations
   Expr residual;
 };
@@ -34,7 +34,7 @@ class EquationsOfMotion {
 
   unsigned highest = 2;
   std::vector<DerivedEquation> lower;  // constraints and their derivatives of orders 0 and 1
-  std::vector<DerivedEquation> rows;   // of orders 2 and more: independent equations
+  std::vector<DerivedEquation> rows;   // rows of orders 2 and more: independent equations
   Column top;                          // q'', …, q^(h), lambda, …: the rows are affine in these, if the constraints are
   // The equations of all orders, and as many unknowns.
   Column equations, unknowns;

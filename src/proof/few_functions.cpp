@@ -131,7 +131,7 @@ class Rewriting {
   std::optional<Expr> known_angle(Function f, Expr u) {
     if (!is_number(u)) return std::nullopt;
     const Rational x = number_value(u);
-    std::optional<Rational> part;  // of pi
+    std::optional<Rational> part;  // the fraction of pi
     if (f == Function::atan && abs(x) == 1) part = x / 4;
     if (f != Function::atan && (x == 0 || abs(x) == 1)) part = x / 2;
     if (f != Function::atan && abs(x) == Rational(1, 2)) part = x / 3;

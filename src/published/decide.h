@@ -11,8 +11,8 @@ namespace anholon {
 // The result of one check.
 struct Decision {
   const ClaimCheck* check = nullptr;
-  Verdict verdict = Verdict::unknown;  // of the statement
-  Verdict mutant = Verdict::unknown;   // of its mutant, if there is one, which must be refuted
+  Verdict verdict = Verdict::unknown;  // verdict on the statement
+  Verdict mutant = Verdict::unknown;   // verdict on its mutant, if there is one, which must be refuted
   bool has_mutant = false;
   // The kind of a true statement, the counterexample of a false one, or the reason if nothing is decided.
   std::string detail;

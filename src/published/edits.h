@@ -13,7 +13,7 @@ struct Alphabet {
   std::vector<std::string> coordinates, others, constraints, masses, free;  // free: quasi-velocities
 };
 
-using Path = std::vector<std::uint32_t>;  // of a node: its indices among the arguments, from the root down
+using Path = std::vector<std::uint32_t>;  // the path of a node: its indices among the arguments, from the root down
 
 struct Edit {
   enum class Kind : std::uint8_t {

@@ -61,7 +61,7 @@ OpenModel Subject::with_free_inputs(OpenModel open) {
 
 struct Subject::WithNumbers {
   Model model;
-  std::unordered_map<NodeId, Expr> values;  // of parameters and inputs
+  std::unordered_map<NodeId, Expr> values;  // values of parameters and inputs
   Mechanics mechanics;
   Elimination elimination;
   std::optional<Comparer> comparer;

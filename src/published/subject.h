@@ -68,7 +68,7 @@ class Subject {
   OpenModel open_;
   StateChoice choice_;
   Mechanics mechanics_;
-  std::unique_ptr<const Elimination> eliminations_[2];  // of coordinates, in quasi-velocities
+  std::unique_ptr<const Elimination> eliminations_[2];  // the elimination of coordinates, and that in quasi-velocities
   Vocabulary words_;
   Comparer comparer_;
   Alphabet alphabet_;

@@ -20,7 +20,7 @@ class ChoiceWatch {
  private:
   std::size_t of_elimination_;
   std::vector<std::size_t> rows_;
-  std::vector<int> orders_;  // of the constraints of the rows
+  std::vector<int> orders_;  // orders of the constraints of the rows
   OutputTape<W> outputs_;    // the pivots, then the rows of Phi
 };
 

@@ -7,7 +7,7 @@
 namespace anholon {
 
 struct OpenSystem {
-  System system;  // of a model in which these inputs have no formulas
+  System system;  // the system of a model in which these inputs have no formulas
   std::vector<InputFormula> inputs;
 };
 
@@ -27,7 +27,7 @@ std::vector<std::string> inputs_with_rates(const Scenario& scenario);
 struct InputsAsParameters {
   std::shared_ptr<const Model> model;
   std::vector<std::string> names;
-  std::vector<NodeId> formulas;       // of the inputs, in the graph of the model, in t, state and parameters
+  std::vector<NodeId> formulas;       // formulas of the inputs, in the graph of the model, in t, state and parameters
   std::vector<NodeId> open_formulas;  // the same, in terms of the parameters that are inputs
   std::vector<std::string> left_out;  // monitors that hold the rate of an input, which has no value
 };

@@ -101,7 +101,7 @@ class OutputTape {
   };
   struct MultiplierPlace {
     std::size_t input;       // among the places
-    std::size_t constraint;  // of the model
+    std::size_t constraint;  // index in the model
   };
   void find_multipliers(const System& of_point) {
     for (const MultiplierPlace& m : multipliers_) {
@@ -115,7 +115,7 @@ class OutputTape {
   const System& system_;
   Tape tape_;
   Machine<N> machine_;
-  std::vector<InputPlace> places_;              // of the inputs
+  std::vector<InputPlace> places_;              // places of the inputs
   std::vector<MultiplierPlace> multipliers_;    // those among the places, if constraints are redundant
   std::shared_ptr<LeastMultipliers<N>> least_;  // computes them; null if there is nothing to choose
   mutable std::vector<N> sizes_;

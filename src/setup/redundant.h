@@ -14,7 +14,7 @@ class Redundant {
   bool any() const { return outputs_.has_value(); }
   // The residual of a constraint that is left out at a point, relative to the size of the state.
   struct Miss {
-    std::size_t constraint = 0;  // of the model
+    std::size_t constraint = 0;  // index in the model
     double miss = 0;
   };
   // Fails if a constraint that is left out does not hold at a point of the motion. If the point is the start, the

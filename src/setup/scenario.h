@@ -15,7 +15,7 @@ namespace anholon {
 
 struct ConstraintClass {
   std::string kind;          // holonomic, linear, affine, nonlinear (in its top derivative)
-  bool homogeneous = false;  // in the top derivative (order 1: it does no work)
+  bool homogeneous = false;  // homogeneous in the top derivative (order 1: it does no work)
   bool rheonomic = false;    // contains t explicitly
   bool redundant = false;    // follows from the others at the initial state
 };
@@ -42,7 +42,7 @@ struct Scenario {
   std::shared_ptr<const StartPlan> start;  // null without numbers
   InitialState<double> state;              // consistent, in double
   std::vector<std::size_t> independent, redundant;
-  Elimination elimination;  // of forms without multipliers
+  Elimination elimination;  // the elimination of forms without multipliers
   System system;
   Structure structure;
   // Routh's system, if the initial state holds more than positions and velocities or the equations have several

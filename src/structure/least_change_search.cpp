@@ -294,7 +294,7 @@ class Iteration {
   const std::vector<std::size_t>& free_;
   std::vector<N*> x_;
   std::vector<N> guess_;
-  std::vector<N> right_, step_;  // of a step: the right side, and the step itself
+  std::vector<N> right_, step_;  // right side of a step, and the step itself
   std::vector<N> scale_, old_;   // scales and point at the start of a step
   std::vector<N> old_residual_;  // residuals at the start of a step along Newton's flow
   double flow_part_ = 1;         // the part of the last step that was made along the flow

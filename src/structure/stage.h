@@ -37,7 +37,7 @@ struct StagePlan {
   // The slots that depend on the unknowns; `mass_moves` tells whether the mass matrix is among them.
   std::vector<std::uint32_t> moving;
   bool mass_moves = false;
-  std::vector<bool> is_unknown;          // of the tape's inputs
+  std::vector<bool> is_unknown;          // true for those of the tape's inputs that are unknowns
   std::vector<std::vector<bool>> holds;  // true if equation i contains unknown j
 };
 

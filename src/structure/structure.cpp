@@ -146,10 +146,10 @@ class Probe {
   const Tape& tape_;
   Machine<double> machine_;
   std::vector<Machine<double>::Partials> partials_;
-  std::vector<double> tangent_, terms_;  // of each slot, for the present columns
+  std::vector<double> tangent_, terms_;  // numbers of each slot, for the present columns
   std::vector<unsigned char> zero_;      // true if a slot has no entry there
   const System& system_;
-  std::vector<std::size_t> variable_of_;  // of each input that is an unknown or a derivative of one
+  std::vector<std::size_t> variable_of_;  // the unknown of each input that is an unknown or a derivative of one
   std::vector<int> order_of_;
   std::vector<std::uint32_t> columns_;  // these inputs, the highest derivatives first
 };
@@ -179,7 +179,7 @@ std::string without_inertia(const System& s, const std::vector<std::vector<int>>
 // that no matching gives an unknown of its own.
 std::vector<std::size_t> too_many(const std::vector<std::vector<int>>& sigma) {
   const std::size_t n = sigma.size();
-  std::vector<std::size_t> row_of(n, n);  // of each column
+  std::vector<std::size_t> row_of(n, n);  // the row of each column
   for (std::size_t free = 0; free < n; ++free) {
     std::vector<std::size_t> reached{free}, from(n, n);  // from[j]: the row by which column j is reached
     std::size_t end = n;

@@ -19,7 +19,7 @@ struct SweepPicture {
   std::optional<inner::plot::HeatMap> map;
   std::optional<inner::plot::Histogram> histogram;
   std::vector<inner::plot::NamedRun> curves;  // without these: a run of each case, or one without a name
-  inner::plot::FigureOptions options;         // of the curves
+  inner::plot::FigureOptions options;         // options of the curves
   std::string note;                           // "1 of 20 parts", also part of the title; empty if all parts are present
 };
 

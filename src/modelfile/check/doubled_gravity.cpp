@@ -44,7 +44,7 @@ using Values = std::array<double, kPoints>;
 
 struct Energies {
   std::vector<Values> potentials;
-  std::vector<Values> gravity;  // of each body
+  std::vector<Values> gravity;  // energies of each body
   Values gravity_of_all{};
 };
 

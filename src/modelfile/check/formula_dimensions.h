@@ -52,7 +52,7 @@ class FormulaDimensions {
   // A number without a unit, other than 0, as a term of a sum whose terms have a unit: the 2 of "2 + r" with a length r.
   struct BareTerm {
     Span span;
-    std::string text;  // of the number
+    std::string text;  // text of the number
     Dimension dimension;
   };
   // Returns the bare terms of all formulas that were checked, in the order of the file.

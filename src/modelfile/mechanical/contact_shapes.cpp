@@ -242,7 +242,7 @@ class TouchingReader {
   std::size_t body_ = 0;
   Shape shape_;
   Vector normal_, through_;
-  std::optional<Expr> radius_;  // of a ball or bowl that is touched
+  std::optional<Expr> radius_;  // radius of the touched ball or bowl
   bool bowl_ = false;
 };
 

@@ -39,7 +39,7 @@ Expr with_contact_forces(Graph& g, Expr formula, const std::function<Expr(const 
 // formula of modes is positive.
 struct Switch {
   Expr active;
-  int order = 0;         // of the constraint, 0 or 1
+  int order = 0;         // order of the constraint, 0 or 1
   std::string equation;  // as written
   // Its place among the constraints of the model if it holds at the start; the model then has it.
   std::optional<std::size_t> at_start;
@@ -56,8 +56,8 @@ struct Contact {
   std::string shape;       // shape of the body: point, ball, disc, torus or box; empty if the gap is a formula
   Expr gap;                // g(q, t) >= 0
   std::vector<Expr> slip;  // components of the relative tangential velocity, at most two, linear in q'
-  Expr friction;           // of slip, mu >= 0
-  Expr static_friction;    // of sticking
+  Expr friction;           // coefficient of slip, mu >= 0
+  Expr static_friction;    // coefficient of sticking
   Expr restitution;        // 0 … 1
   ImpactLaw law = ImpactLaw::newton;
   Span span;
@@ -72,7 +72,7 @@ struct Contact {
     Span span;
   };
   std::vector<Coefficient> given;
-  std::vector<Expr> sizes;     // of the shapes in contact, as far as they are given; they are positive
+  std::vector<Expr> sizes;     // sizes of the shapes in contact, as far as they are given; they are positive
   std::optional<Switch> held;  // a constraint that holds in some modes; `gap` is its left side minus its right side
   std::shared_ptr<const ContactForces> forces;  // the forces of all contacts of the model; null if no formula holds any
   ContactUnits units;

@@ -22,13 +22,13 @@ class Scope final : public Names {
   enum class Role : std::uint8_t { coordinate, parameter, function, define, frame, point, state, control, table };
   struct Declaration {
     Role role = Role::define;
-    std::size_t index = 0;  // of a coordinate, parameter or unknown function
+    std::size_t index = 0;  // index of a coordinate, parameter or unknown function
     FormulaText formula;
     const Item* item = nullptr;          // an array value
     std::vector<std::string> arguments;  // of a function with arguments
     Span span;
     bool symbolic = false;  // a symbol of its own: coordinate, unknown function
-    std::string unit;       // of a parameter {value, unit}
+    std::string unit;       // unit of a parameter {value, unit}
     std::string override;   // "--set m=3", if the value comes from the command line
     enum class State : std::uint8_t { fresh, open, done, failed } state = State::fresh;
     std::size_t place = 0;  // among all declarations
@@ -36,7 +36,7 @@ class Scope final : public Names {
     Syntax body{};  // of a function with arguments
     bool parsed = false;
   };
-  void reserve(const std::set<std::string>& letters) { letters_ = letters; }  // of [index]
+  void reserve(const std::set<std::string>& letters) { letters_ = letters; }  // letters of [index]
   // Throws Failure if the name is reserved, already taken, or not an identifier (P[2], with whole numbers in a bracket,
   // is allowed).
   void declare(const std::string& name, Declaration d);
@@ -117,7 +117,7 @@ class Scope final : public Names {
   // uniform.
   bool gravity_gradient = false;  // set by [gravity] gradient
   std::vector<Vector> gravity_gradient_at(const Vector& place, Span use);
-  std::vector<Diagnostic> failures;  // of declarations evaluated on demand
+  std::vector<Diagnostic> failures;  // failures of declarations evaluated on demand
 
   // Names
   Graph& graph() override { return *model_.graph; }
@@ -184,13 +184,13 @@ class Scope final : public Names {
   std::vector<Quaternion> quaternions_;
   std::vector<std::string> open_;                        // path of names being evaluated
   std::size_t depth_ = 0;                                // depth of nested definitions and parts of bodies
-  std::vector<std::map<std::string, Value>> arguments_;  // of functions being called
+  std::vector<std::map<std::string, Value>> arguments_;  // arguments of functions being called
   int multipliers_ = 0;                                  // number of callers that allow them
   struct DefinitionsWithMultipliers {
     std::optional<bool> any;            // some definition may hold a multiplier
     std::map<std::string, bool> known;  // true for a definition that may hold one
   } with_multipliers_;
-  std::size_t calls_ = 0;  // of given functions, over the whole file
+  std::size_t calls_ = 0;  // calls of given functions, over the whole file
 };
 
 // Multipliers from this one on are forces of contacts; models have far fewer constraints.

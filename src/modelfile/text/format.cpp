@@ -26,7 +26,7 @@ struct Written {
 
 struct Line {
   enum class Kind { blank, comment, header, entry } kind = Kind::blank;
-  std::string text;  // of a comment or header
+  std::string text;  // text of a comment or header
   std::string key;
   Written value;
   std::string comment;

@@ -289,7 +289,7 @@ void ModularProgram::angle_degree(std::size_t i, Degree& d) {
   const Step& s = steps_[i];
   const std::string& name = s.node->function;
   const bool circle = s.family == Family::circle;
-  const std::uint64_t special = static_cast<std::uint64_t>(steps_.size()) * kBases;  // of the atoms 1 and π
+  const std::uint64_t special = static_cast<std::uint64_t>(steps_.size()) * kBases;  // bases of the atoms 1 and π
   double sum = 0;
   for (const Part& part : s.angle.parts) {
     const double times = std::abs(Rational(part.coefficient * (circle ? circle_q_ : growth_q_)).get_d());

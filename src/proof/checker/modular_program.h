@@ -86,7 +86,7 @@ struct ReducedProgram {
   ReducedProgram(const Field& f, std::size_t steps);
   Field field;
   Word half;
-  Point twelfth;                           // of the angle pi/12
+  Point twelfth;                           // the point of the angle pi/12
   std::vector<std::vector<Word>> weights;  // number: its value; sum: coefficients
   std::vector<std::vector<Factor>> factors;
   std::vector<std::vector<Turn>> turns;
@@ -160,7 +160,7 @@ class ModularProgram {
   std::vector<Site> sites_;
   std::map<std::pair<std::uint32_t, bool>, std::uint32_t> site_of_;
   mpz_class circle_q_ = 1, growth_q_ = 1;
-  std::uint64_t cost_ = 100;  // of one point
+  std::uint64_t cost_ = 100;  // cost of one point
 
   std::vector<Degree> degree_;
   std::map<std::uint64_t, double> base_degree_;

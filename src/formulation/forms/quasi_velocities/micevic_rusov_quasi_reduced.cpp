@@ -25,7 +25,7 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
   const Label before = energy("T", E.m - 1), star = energy("T", E.m - 1, Over::star),
               star_m = energy("T", E.m, Over::star);
   const Labels q_m = jet_labels(M, E.m);
-  Labels pi, pi_below;  // of the operators d/dpi and d/dpi^(m-1)
+  Labels pi, pi_below;  // labels of the operators d/dpi and d/dpi^(m-1)
   for (const std::string& u : E.free.names) {
     pi.push_back(indexed(energy("pi"), u, {name_of(*M.model, u)}));
     pi_below.push_back(indexed(energy("pi", E.m - 1), u, {name_of(*M.model, u)}));
