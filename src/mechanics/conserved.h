@@ -24,7 +24,7 @@ struct Conserved {
   std::string because;  // in words
   Expr value;           // masses substituted
   Column terms;         // the terms of the sum
-  bool jumps = false;   // it may change where a formula in it jumps, and is constant between the jumps
+  bool jumps = false;   // the value may change where a formula in it jumps, and is constant between the jumps
   // For a momentum: the coordinates that determine its unit, J*s*[by]/[along]; nullopt if no component determines it.
   std::optional<std::size_t> along, by;
 };

@@ -253,7 +253,7 @@ N Machine<N>::quotient(const Instruction& in, const N* w, std::size_t p) const {
   return s / b[0];
 }
 
-// By u w' = r w u'. Multiples of r, for example of 1/3, would be rounded in the same way at every step.
+// Uses u w' = r w u'. Multiples of r, for example of 1/3, would be rounded in the same way at every step.
 template <Scalar N>
 N Machine<N>::power(const Instruction& in, const N* w, std::size_t p) const {
   const N* u = series(in.a);
@@ -270,7 +270,7 @@ N Machine<N>::power(const Instruction& in, const N* w, std::size_t p) const {
   return (r * rates_of_u - rates_of_w) / (N(static_cast<int>(p)) * u[0]);
 }
 
-// By w' = f'(u) u', p > 0.
+// Uses w' = f'(u) u', p > 0.
 template <Scalar N>
 N Machine<N>::function(const Instruction& in, std::size_t p) const {
   const N *u = series(in.a), *g = series(in.b);
@@ -282,7 +282,7 @@ N Machine<N>::function(const Instruction& in, std::size_t p) const {
   return s / N(static_cast<int>(p));
 }
 
-// By w' = gy y' + gx x', p > 0.
+// Uses w' = gy y' + gx x', p > 0.
 template <Scalar N>
 N Machine<N>::arctan2(const Instruction& in, std::size_t p) const {
   const N *y = series(in.a), *x = series(in.b), *gy = series(in.first), *gx = series(in.count);
