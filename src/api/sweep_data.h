@@ -9,7 +9,7 @@ namespace anholon::v1 {
 
 struct Sweep::Data {
   std::shared_ptr<const Model::Data> model;  // without the scenarios that vary applied
-  // names of the varied values; columns of the final state, then of the reductions
+  // Names of the varied values; columns of the final state, then of the reductions.
   std::vector<std::string> names, columns;
   std::vector<std::string> scenarios;               // the scenarios that vary; each has the same number of cases
   std::vector<std::vector<double>> varied, values;  // numbers by name, and by column

@@ -23,7 +23,7 @@ using Id = std::uint32_t;
 
 constexpr std::uint32_t kNone = Arithmetic::kNone;
 constexpr long kLargestPower = 4;  // whole powers up to this exponent are products
-// the most factors of a product into which the products among its factors are merged
+// The most factors of a product into which the products among its factors are merged.
 constexpr std::size_t kMostFactors = 12;
 constexpr std::size_t kMostPairs = 20'000;  // the most pairs for which products search common pairs
 

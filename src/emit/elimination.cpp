@@ -14,7 +14,7 @@ constexpr std::size_t kMostUnknowns = 200;  // the most unknowns of an eliminati
 constexpr int kSamples = 6;
 constexpr double kAround = 0.3;     // radius of the samples, in coordinates and velocities
 constexpr double kThreshold = 0.1;  // the least ratio of a pivot to the largest entry of its column
-// lost digits of a number of size 1: a tenth of the 1e-12 to which programs agree with the motion
+// Lost digits of a number of size 1: a tenth of the 1e-12 to which programs agree with the motion.
 constexpr double kLost = 1e-13;
 
 using Table = std::vector<std::vector<double>>;

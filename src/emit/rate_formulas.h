@@ -28,7 +28,7 @@ struct RateFormulas {
   Column rates;                       // rates of x, one by one
   Column equations;                   // one for each of lead
   bool linear = true;                 // true if the equations are linear in lead
-  // u by the formulas of the model, in t, x, p; empty if some contain solved unknowns
+  // The inputs u by the formulas of the model, in t, x, p; empty if some contain solved unknowns.
   Column input_formulas;
   Column open_input_formulas;  // the same, with u where a formula contains other inputs
   std::vector<std::string> output_names;

@@ -31,7 +31,7 @@ struct Crossing {
   int eigenvalues = 1;        // number that crosses: 2 for a pair
   bool destabilizes = false;  // true if the eigenvalue moves to the right for growing values of the parameter
   int unstable_above = 0;     // eigenvalues with a positive real part at a slightly larger value
-  // false if the eigenvalues belong to states that are not steady, and do not decide stability
+  // False if the eigenvalues belong to states that are not steady, and do not decide stability.
   bool steady = true;
 };
 // Returns "stable above", or another meaning of the crossing for larger values of the parameter.

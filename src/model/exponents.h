@@ -1,8 +1,8 @@
 // Powers whose exponents are formulas of parameters.
 //
-// a^b is read as exp(b*log(a)), which has a value for a > 0 alone. If b is known to be a whole number k, it is replaced
-// by a^k, which has a value for every a. Parameters in such an exponent become numbers wherever they occur, so that
-// x^(n + 1)/(n + 1) becomes x^4/4.
+// a^b is read as exp(b*log(a)), which has a value for a > 0 alone. If b is known to be a whole number k, the formula
+// becomes a^k, which has a value for every a. Parameters in such an exponent become numbers wherever they occur, so
+// that x^(n + 1)/(n + 1) becomes x^4/4.
 #pragma once
 #include "model/model.h"
 #include "print/powers.h"

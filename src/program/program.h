@@ -39,7 +39,7 @@ struct Program {
   std::size_t quadratures = 0;                     // roots after the equations
   std::vector<std::vector<std::uint32_t>> scales;  // the unknowns that are measured against one size (system/system.h)
   bool nonlinear = false;                          // leading derivatives enter nonlinearly: J depends on them
-  // leading derivatives other than rates of the model's states enter nonlinearly
+  // Leading derivatives other than rates of the model's states enter nonlinearly.
   bool several_solutions = false;
   std::shared_ptr<const Linearized> linearized;  // set for programs with many unknowns
 

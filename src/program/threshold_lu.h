@@ -63,7 +63,7 @@ class ThresholdLu {
   std::vector<std::uint32_t> step_of_;  // the step in which a row was the pivot's, else kNone
   std::vector<N> scale_, x_;            // for rows: the reciprocal of the largest entry; the column
   std::vector<std::uint32_t> seen_;     // for a row: the last step that met it, plus 1
-  // rows of the column that have been pivot rows, in reverse order; the other rows
+  // Rows of the column that have been pivot rows, in reverse order; the other rows.
   std::vector<std::uint32_t> done_, left_;
   std::vector<std::uint32_t> path_, next_;  // for the search: rows, and the entries of L to follow
   std::uint32_t now_ = 0;                   // the present step, plus 1

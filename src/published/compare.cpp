@@ -292,7 +292,7 @@ Comparison Comparer::decide(Expr P) {
     return out;
   }
   if (combined(P, motion, out) || on_manifold(P, true, out) || by_contractions(P, out)) return out;
-  // up to this number of nodes, a difference below the round-off of numbers is searched as well
+  // Up to this number of nodes, a difference below the round-off of numbers is searched as well.
   constexpr std::size_t kShort = 1000;
   if (number_of_nodes(P) <= kShort || !vanishes(P, motion.elsewhere())) {
     const Difference d{{}, P, {}, {}, {}, {}};

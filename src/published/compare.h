@@ -38,21 +38,21 @@ struct Change : ChangedPlace {
 
 struct Comparison {
   Verdict verdict = Verdict::unknown;
-  // if true, the kind of the equation; if false, the nearest true one, unless `in_places`
+  // If true, the kind of the equation; if false, the nearest true one, unless `in_places`.
   std::string what;
   std::optional<Expr> difference;       // if false, left - right less the nearest true equation
   std::optional<WitnessPoint> witness;  // if false
   std::string detail;
   std::vector<Change> changes;       // each of them makes it true
   std::optional<Change> wrong_term;  // if false without changes, the one term that is wrong or lost
-  // if false or unknown, the numbers of the file with which the equation holds, "J = 0.5, c = 0.7"
+  // If false or unknown, the numbers of the file with which the equation holds, "J = 0.5, c = 0.7".
   std::string with_numbers;
-  // if false, true for an equation that is meant as an identity, not as an equation of motion
+  // If false, true for an equation that is meant as an identity, not as an equation of motion.
   bool identity = false;
   bool trivial = false;         // the equation is true of every motion of every system
   bool of_constraints = false;  // the equation is true by the constraints alone
   bool has_value = true;        // if unknown, false for an equation that has no value on the motion
-  // if false, true for an equation that holds up to round-off where all coordinates are positive
+  // If false, true for an equation that holds up to round-off where all coordinates are positive.
   bool in_places = false;
 };
 

@@ -130,7 +130,7 @@ class Comparer::Nearest {
 
  private:
   struct Offer {
-    // of: the number of the derived equation, in the order in which equations are offered
+    // `of` is the number of the derived equation, in the order in which equations are offered.
     std::size_t length, weight, of;
     Expr difference;
     std::string what;

@@ -17,9 +17,9 @@ const char* name(Hypothesis h);
 
 struct ConstraintFacts {
   Hypothesis hypothesis = Hypothesis::dalembert;
-  // the factor of lambda in the power, on the constraint; 0: the constraint does no work
+  // The factor of lambda in the power, on the constraint; 0: the constraint does no work.
   Expr power_factor;
-  // if redundant at the initial state: the constraints of which it is a combination
+  // If redundant at the initial state: the constraints of which it is a combination.
   std::vector<std::size_t> follows_from;
 };
 

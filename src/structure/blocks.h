@@ -20,7 +20,7 @@ std::vector<Block> blocks(const Structure& structure);
 // A hidden constraint on the state: equation i with its derivatives of order k < c_i.
 struct HiddenConstraint {
   std::size_t equation;
-  // the order of the highest derivative of a coordinate in the k-th derivative of the equation; -1: multipliers only
+  // The order of the highest derivative of a coordinate in the k-th derivative of the equation; -1: multipliers only.
   std::vector<int> orders;
 };
 std::vector<HiddenConstraint> hidden_constraints(const System& system, const Structure& structure);

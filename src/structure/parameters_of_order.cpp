@@ -36,7 +36,7 @@ Expr in_free_parameters(const Model& model, Expr e) {
 
 // True if the coefficient, which is 0, gets another value if these parameters change. Other symbols have random values.
 bool changes(const Model& model, Expr coefficient, const std::vector<std::size_t>& parameters) {
-  // the relative error of terms that cancel each other; parameters change by 1 or more
+  // The relative error of terms that cancel each other; parameters change by 1 or more.
   constexpr double kRoundOff = 1e-12;
   Column formulas;
   for (const Parameter& p : model.parameters) formulas.push_back(p.value);

@@ -1,8 +1,8 @@
 // Constraints that follow from others at a state: a choice of independent ones, and multipliers of least norm.
 //
 // If Phi = (dphi_r/dq^(m_r)) has rank r < s, q^(k) and N = Phi^T lambda are unique and lambda is not. The motion is
-// computed with r independent constraints, and the residuals of the others are watched. Of all lambda with the same N
-// the one of least
+// computed with r independent constraints, and the residuals of the others are watched. Of all lambda with the same N,
+// the one of least norm is reported (theory: dae-view, redundant constraints).
 #pragma once
 #include "structure/consistent.h"
 

@@ -18,7 +18,7 @@ struct System {
   std::size_t coordinates = 0;           // n
   std::vector<std::size_t> constraints;  // indices of the model's constraints that take part
   Column equations;                      // n of motion, then one per constraint that takes part
-  // the number of the n equations that belong to the form; the others give lambda
+  // The number of the n equations that belong to the form; the others give lambda.
   std::size_t of_motion = 0;
   std::vector<std::string> equation_names;
   std::vector<std::string> variable_names;  // q_a, then lambda.NAME

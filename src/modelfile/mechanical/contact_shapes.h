@@ -14,7 +14,7 @@ struct Touching {
   Vector slip;                     // the velocity of the material point of the body, relative to the touched surface
   std::vector<Vector> directions;  // two, tangential
   Vector normal;                   // of length 1, away from the touched surface
-  // the angular velocity of a body with an orientation, relative to the touched surface
+  // The angular velocity of a body with an orientation, relative to the touched surface.
   std::optional<Vector> rate;
   std::string shape;        // point, ball, disc, torus or box
   std::vector<Expr> sizes;  // sizes of the shape and of the touched ball or bowl, which are positive
