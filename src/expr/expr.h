@@ -144,7 +144,7 @@ class Graph {
   Expr arctangent2(Expr y, Expr x);
   Expr select(Expr s, Expr a, Expr b);
   Expr lookup(std::uint32_t step_function, Expr argument);
-  // Adds a step function, and returns its index; an equal one keeps its index.
+  // Adds a step function unless an equal one exists, and returns its index.
   std::uint32_t add_step_function(StepFunction f);
   const StepFunction& step_function(std::uint32_t index) const { return step_functions_[index]; }
 

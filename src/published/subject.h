@@ -51,8 +51,8 @@ class Subject {
 
   const Elimination& elimination(bool quasi);
   WithNumbers& with_numbers(const Parameters& of);
-  // Returns numbers of the file with which the difference is proved, no one of which can be left out, from those that
-  // satisfy `may`; empty if all of them do not suffice.
+  // Returns numbers of the file with which the difference is proved, from those that satisfy `may`, without single ones
+  // that are not needed; empty if all of them do not suffice.
   Parameters needed_for(Expr difference, const std::function<bool(const Numbered&)>& may);
   // Returns "J = 0.5, c = 0.7".
   std::string values_of(const Parameters& of);
