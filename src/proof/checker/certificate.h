@@ -1,7 +1,7 @@
 // A certificate: the record of a proof that forms of the equations agree, for an independent checker.
 //
-// A certificate is a straight-line program (each node uses earlier ones only) and claims about its nodes. Every claim is about one
-// expression, the difference
+// A certificate is a straight-line program (each node uses earlier ones only) and claims about its nodes. Every claim
+// is about one expression, the difference
 //
 //     left − Σ coefficient · node                 (the pairs of `right`)
 //

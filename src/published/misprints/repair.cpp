@@ -1,7 +1,7 @@
 // Finds misprints: changes of one place of an equation, and of several places at once, that make a false equation true.
 //
-// Changes are tried numerically at points of the motion (published/misprints/trial.h, together.h); survivors are judged like any
-// other equation. More changes are tried only if fewer do not make the equation true.
+// Changes are tried numerically at points of the motion (published/misprints/trial.h, together.h); survivors are judged
+// like any other equation. More changes are tried only if fewer do not make the equation true.
 #include <algorithm>
 #include <cmath>
 #include <set>
