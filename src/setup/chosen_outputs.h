@@ -9,7 +9,7 @@ struct ChosenOutput {
 };
 
 // Returns the model with these outputs alone; a vector gives one for each component. Throws Failure for an unknown name
-// or a wrong formula. The model has a graph of its own, to which the names in `open` refer.
+// or a wrong formula. The model shares the graph of `open`, in which the formulas are built.
 std::shared_ptr<const Model> with_outputs(const OpenModel& open, const std::vector<ChosenOutput>& outputs);
 
 }  // namespace anholon

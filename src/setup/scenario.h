@@ -59,9 +59,6 @@ struct Scenario {
 // Functions that return numbers or text take a `const Scenario&` and build in a workspace of their own. Functions that
 // take or return expressions, and the parts of a computation, take the `Workspace&` whose graph holds these
 // expressions.
-//
-// Functions that give numbers or text take a `const Scenario&` and build in a workspace of their own. Those that take or
-// give expressions, and the parts of a computation, take the `Workspace&` in which these are.
 struct Workspace : Scenario {
   explicit Workspace(const Scenario& from);
   explicit Workspace(const Workspace& from) : Workspace(static_cast<const Scenario&>(from)) {}
