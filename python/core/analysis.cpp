@@ -6,10 +6,10 @@ namespace {
 
 using MatrixView = nb::ndarray<nb::numpy, const double, nb::ndim<2>>;
 
-// Numbers of `owner`, without a copy.
+// Returns a view of numbers of `owner`, without a copy.
 MatrixView matrix(const Matrix& a, nb::handle owner) { return MatrixView(a.values.data(), {a.rows, a.columns}, owner); }
 
-// The member of a LinearModel as an array that keeps it alive.
+// Returns the member of a LinearModel as an array that keeps the model alive.
 template <Matrix LinearModel::* member>
 MatrixView matrix_of(nb::handle self) {
   return matrix(nb::cast<const LinearModel&>(self).*member, self);

@@ -41,7 +41,7 @@ namespace {
 
 using Doubles = nb::ndarray<nb::numpy, const double, nb::ndim<1>, nb::c_contig>;
 
-// Texts one behind the other, and where each begins; the last place is the end.
+// Texts one after the other, and the beginning of each; the last place is the end.
 struct Texts {
   explicit Texts(const std::vector<std::string>& list) {
     for (const std::string& text : list) all += text, places.push_back(static_cast<std::int64_t>(all.size()));
@@ -61,7 +61,8 @@ std::vector<const void*> buffers_of(const Array& array) {
   return {nullptr, std::get<Doubles>(array).data()};
 }
 
-// The columns of a stream, shared by what it hands out. The arrays are let go with the interpreter's lock.
+// The columns of a stream, shared by the objects that the stream exports. The arrays are released with the
+// interpreter's lock.
 struct Columns {
   std::vector<std::string> names, units;
   std::vector<Array> arrays;
@@ -72,7 +73,7 @@ struct Columns {
 };
 using Shared = std::shared_ptr<const Columns>;
 
-// Metadata of a field in Arrow's encoding: the number of pairs, then each length and text.
+// Returns metadata of a field in Arrow's encoding: the number of pairs, then each length and text.
 std::string metadata(const std::string& key, const std::string& value) {
   std::string out;
   const auto put = [&](std::int32_t n) { out.append(reinterpret_cast<const char*>(&n), sizeof n); };
@@ -174,7 +175,7 @@ void release_stream(ArrowArrayStream* stream) {
   stream->release = nullptr;
 }
 
-// A stream that nobody has taken is released with its capsule.
+// Releases a stream that nobody has taken, with its capsule.
 void release_capsule(void* stream_of_capsule) noexcept {
   auto* stream = static_cast<ArrowArrayStream*>(stream_of_capsule);
   if (stream->release) stream->release(stream);

@@ -1,7 +1,7 @@
-// The binding of the public headers to Python: one file for each header, and what they share.
+// The binding of the public headers to Python: one file for each header, and shared code.
 //
-// The classes here hold the C++ values as they are. What a user of Python sees is written in Python above them
-// (python/anholon): names, defaults, conversions, pictures.
+// The classes here hold the C++ values unchanged. What a user of Python sees is written in Python on top of these
+// classes (python/anholon): names, defaults, conversions, pictures.
 #pragma once
 #include <atomic>
 #include <chrono>
@@ -32,7 +32,7 @@ namespace anholon::python {
 namespace nb = nanobind;
 using namespace nb::literals;
 
-// Numbers come from Python as the texts of exact decimals or formulas.
+// Python passes numbers as the texts of exact decimals or formulas.
 using Numbers = std::map<std::string, std::string>;
 std::map<std::string, Number> numbers(const Numbers& texts);
 using Words = std::vector<std::string>;
@@ -48,12 +48,12 @@ void shown(nb::class_<C>& c, const char* name) {
   });
 }
 
-// An error of the library; it becomes an exception of the Python package.
+// An error of the library, which becomes an exception of the Python package.
 struct Trouble {
   Error error;
 };
 
-// The value, or a Trouble.
+// Returns the value of the result, or throws its error as Trouble.
 template <class T>
 T value_of(Result<T> result) {
   if (!result) throw Trouble{result.error()};
@@ -67,15 +67,15 @@ auto unlocked(const F& f) {
   return f();
 }
 
-// Looks after a computation that runs in a thread of its own, while this thread waits for it with the interpreter's lock
-// released: every 20 ms it lets Python's signal handlers run, of which one raises KeyboardInterrupt, asks `stop`, whose
-// value counts as in Python's `if`, and tells `progress` (functions of the user, or None). Any of them that raises ends
-// the computation, and so does the end of the process.
+// Attends to a computation that runs in a thread of its own, while this thread waits for it with the interpreter's lock
+// released. Every 20 ms it runs Python's signal handlers, one of which raises KeyboardInterrupt, calls `stop`, whose
+// value counts as in Python's `if`, and calls `progress` (functions of the user, or None). If any of them raises, or
+// the process ends, the computation is stopped.
 class Attendant {
  public:
   Attendant(nb::object stop, nb::object progress) : stop_(std::move(stop)), progress_(std::move(progress)) {}
 
-  // For the computation: whether it is to end, and how far it has come. Any thread may call them.
+  // For the computation: cancelled() is true if it is to stop, tell() reports its progress. Any thread may call them.
   bool cancelled() const { return ends_.load(std::memory_order_relaxed) || process_ends(); }
   void tell(double done, std::size_t count) {
     done_.store(done, std::memory_order_relaxed);
@@ -114,7 +114,7 @@ class Attendant {
     if (failed) std::rethrow_exception(failed);
     return *std::move(value);
   }
-  // What a handler, `stop` or `progress` raised, as a Python object; None if nothing was raised.
+  // Returns the object that a handler, `stop` or `progress` raised; None if nothing was raised.
   nb::object raised() const { return raised_; }
 
  private:
@@ -123,18 +123,19 @@ class Attendant {
   bool process_ends() const { return !at_the_end_ && Ending::begun(); }
 
   nb::object stop_, progress_, raised_ = nb::none();
-  std::exception_ptr failed_;                // of look(), where it is no exception of Python
-  const bool at_the_end_ = Ending::begun();  // the functions that are called there may compute
+  std::exception_ptr failed_;                // an exception of look() that is no exception of Python
+  const bool at_the_end_ = Ending::begun();  // functions that are called at the end of the process may compute
   std::atomic<bool> ends_{false};
   std::atomic<double> done_{0};
   std::atomic<std::size_t> count_{0};
 };
 
-// Numbers that `owner` holds, without a copy; the array keeps it alive, and cannot be written to.
+// Returns a view of numbers that `owner` holds, without a copy; the array keeps the owner alive, and cannot be written
+// to.
 using View = nb::ndarray<nb::numpy, const double, nb::ndim<1>>;
 View view(std::span<const double> numbers, nb::handle owner);
 
-// Numbers of their own, which the array owns.
+// Returns an array that owns the numbers.
 template <int dimensions>
 nb::ndarray<nb::numpy, double, nb::ndim<dimensions>> array(std::vector<double> numbers,
                                                            std::initializer_list<std::size_t> shape) {
@@ -161,7 +162,7 @@ auto kept(const V& value) {
     return value;
 }
 
-// Makes a class of numbers and texts one that pickle takes to another process.
+// Makes a class of numbers and texts picklable.
 template <class T, class... Members>
 void picklable(nb::class_<T>& c, Members T::*... members) {
   c.def("__getstate__", [members...](const T& of) { return std::make_tuple(kept(of.*members)...); });

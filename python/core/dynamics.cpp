@@ -13,26 +13,26 @@ std::span<const double> span_of(const Some& numbers) {
   return numbers ? std::span(numbers->data(), numbers->size()) : std::span<const double>();
 }
 
-// How many states an array holds, in its last axes.
+// Returns the number of states that an array holds, in its last axes.
 std::size_t states_of(const Dynamics& f, const In& x) {
   const std::size_t states = f.states().size(), count = states == 0 ? 0 : x.size() / states;
   if (x.size() != states * count) throw nb::value_error("the shape of x does not fit");
   return count;
 }
 
-// So many states that their rates, or their derivatives and outputs, may take a tenth of a second.
+// The number of states for which the rates, or the derivatives and outputs, may take a tenth of a second.
 constexpr std::size_t kManyRates = 16'384, kManyDerivatives = 256;
 
-// An exception follows, and nobody sees the numbers.
+// NaN is not needed, because an exception follows and nobody sees the numbers.
 constexpr bool kNanIfStopped = false;
 
-// Calls f() without the interpreter's lock; if it is of `many` states or more, Ctrl-C ends it.
+// Calls f() without the interpreter's lock. If there are `many` states or more, Ctrl-C ends it.
 template <class F>
 void for_states(std::size_t count, std::size_t many, const F& f) {
   count < many ? unlocked(f) : stoppable(f);
 }
 
-// Without the interpreter's lock where that pays.
+// Computes rates; releases the interpreter's lock if there are many states.
 void rates(const Dynamics& f, double t, const In& x, const Out& out, const Some& u, const Some& p) {
   constexpr std::size_t kLong = 64;
   const std::size_t states = f.states().size(), count = states == 0 ? 0 : x.size() / states;

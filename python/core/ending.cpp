@@ -22,7 +22,7 @@ void Ending::stay() {
 }
 
 void Ending::wait() {
-  constexpr int kInterrupted = 130;  // as a shell tells SIGINT
+  constexpr int kInterrupted = 130;  // the exit status of a shell for SIGINT
   constexpr std::chrono::milliseconds kPatience{300};
   ending_thread = std::this_thread::get_id();
   begun_ = true;
@@ -33,7 +33,7 @@ void Ending::wait() {
       told = true;
     }
     if (PyErr_CheckSignals() != 0) std::_Exit(kInterrupted);
-    // Not Unlocked, for which this loop waits.
+    // Unlocked is not used, because this loop waits for its objects.
     const nanobind::gil_scoped_release release;
     std::this_thread::sleep_for(kPause);
   }
@@ -52,7 +52,7 @@ Unlocked::~Unlocked() {
     --Ending::unlocked_;
     for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
   }
-  // The end may begin now; it waits until this thread has the lock.
+  // If the end begins now, it waits until this thread has the lock.
   PyEval_RestoreThread(state_);
   --Ending::unlocked_;
 }

@@ -1,8 +1,8 @@
 // The end of the process while threads of the user or of the library compute.
 //
-// At the end the interpreter ends every thread that asks for its lock, by unwinding a stack that has C++ on it, which
-// ends the process. The computations are therefore asked to stop before, and threads that wait for them stay where they
-// are, without the lock.
+// At the end the interpreter ends every thread that asks for its lock, by unwinding a stack with C++ frames, which ends
+// the process. The computations are therefore asked to stop before, and threads that wait for them block, without the
+// lock.
 #pragma once
 #include <atomic>
 #include <chrono>
@@ -14,13 +14,13 @@ namespace anholon::python {
 
 class Ending {
  public:
-  // Whether the process has begun to end, and whether another thread than this one ends it.
+  // begun() is true if the process has begun to end; elsewhere() is true if another thread than this one ends it.
   static bool begun() { return begun_; }
   static bool elsewhere();
-  // For the functions that are called at the end, with the interpreter's lock held: waits until no thread of the library
-  // computes and none is without the lock. Says so if that takes long; Ctrl-C then ends the process.
+  // Serves the functions that are called at the end, with the interpreter's lock held: waits until no thread of the
+  // library computes and none is without the lock. Prints a message if that takes long; Ctrl-C then ends the process.
   static void wait();
-  // In the child of a fork, which has one thread.
+  // Is called in the child of a fork, which has one thread.
   static void forget_other_threads();
   // Blocks this thread for good, without the lock. REQUIRES: elsewhere(), with the lock held.
   [[noreturn]] static void stay();
@@ -32,8 +32,8 @@ class Ending {
   static inline std::atomic<int> running_{0}, unlocked_{0};
 };
 
-// Exists as long as a thread of the library computes. Made with the interpreter's lock held, so that the end of the
-// process knows of the thread.
+// Exists as long as a thread of the library computes. It is made with the interpreter's lock held, so that the end of
+// the process knows of the thread.
 class Running {
  public:
   Running() { ++Ending::running_; }
@@ -43,7 +43,7 @@ class Running {
   static int count() { return Ending::running_; }
 };
 
-// Exists while this thread goes without the interpreter's lock. At the end of the process the thread stays within the
+// Exists while this thread runs without the interpreter's lock. At the end of the process the thread blocks within the
 // constructor or the destructor.
 class Unlocked {
  public:

@@ -1,4 +1,4 @@
-// Computations that keep nothing, in threads of their own: Ctrl-C ends them.
+// Computations without partial results, in threads of their own, which Ctrl-C ends.
 #pragma once
 #include <memory>
 
@@ -6,7 +6,7 @@
 
 namespace anholon::python {
 
-// What a computation and the thread that waits for it share.
+// The data that a computation and the thread that waits for it share.
 template <class F>
 struct Interruptible {
   explicit Interruptible(F f) : compute(std::move(f)) {}
@@ -17,9 +17,9 @@ struct Interruptible {
   std::exception_ptr failed;
   std::atomic<bool> asked_to_stop{false};
   bool done = false;
-  const bool at_the_end = Ending::begun();  // of the process, which then does not stop it
+  const bool at_the_end = Ending::begun();  // true at the end of the process, which then does not stop the computation
 
-  // In the thread of the computation.
+  // Runs the computation in its thread.
   void run() {
     const StopRequest request([this] { return asked_to_stop || (!at_the_end && Ending::begun()); });
     try {
@@ -33,7 +33,7 @@ struct Interruptible {
     done = true;
     changed.notify_one();
   }
-  // Waits for a moment without the interpreter's lock; returns whether the computation has ended.
+  // Waits for a moment without the interpreter's lock; returns true if the computation has ended.
   bool wait() {
     constexpr std::chrono::milliseconds kPause{20};
     const Unlocked without_lock;
@@ -42,9 +42,10 @@ struct Interruptible {
   }
 };
 
-// Returns f(), computed without the interpreter's lock. f owns all it reads. Throws nb::python_error if a handler of
-// signals raises, as that of Ctrl-C does: at most 20 ms after the signal the computation is asked to stop, and this
-// function waits until it has stopped. If another signal comes meanwhile, the thread is left to itself.
+// Returns f(), computed without the interpreter's lock. f owns all that it reads. Throws nb::python_error if a handler
+// of signals raises, as that of Ctrl-C does: at most 20 ms after the signal the computation is asked to stop, and this
+// function waits until it has stopped. If another signal comes meanwhile, the function returns without waiting for the
+// thread.
 template <class F>
 auto interruptible(F f) {
   if (Ending::elsewhere()) Ending::stay();
@@ -75,7 +76,7 @@ auto interruptible(F f) {
 }
 
 // Calls f(), which may read arrays of the caller, without the interpreter's lock and in a thread of its own. Throws
-// nb::python_error if a handler of signals raises; f, which looks for a stop often, has ended before.
+// nb::python_error if a handler of signals raises; f, which checks for stop requests often, has ended before.
 template <class F>
 void stoppable(const F& f) {
   if (Ending::elsewhere()) Ending::stay();

@@ -2,7 +2,7 @@
 
 NB_MODULE(_core, m) {
   using namespace nanobind::literals;
-  // What a script holds when it ends, such as an array that reads the numbers of a run, is no leak.
+  // Objects that a script holds at its end, such as an array that reads the numbers of a run, are no leak.
   nanobind::set_leak_warnings(false);
   m.doc() = "The C++ library of Anholon, as its public headers have it.";
   anholon::python::bind_results(m);

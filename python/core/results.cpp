@@ -20,7 +20,7 @@ nb::list diagnostics_of(const Error& error) {
   return list;
 }
 
-// The exceptions are classes of the Python package, which makes them.
+// Translates errors into exceptions, which are classes of the Python package; the package makes them.
 void translate(const std::exception_ptr& thrown, void*) {
   try {
     std::rethrow_exception(thrown);
@@ -104,7 +104,7 @@ void Attendant::look() {
     raised_ = nb::borrow(error.value());
     ends_ = true;
   } catch (...) {
-    // It must not leave this function, as the thread that computes has to be waited for.
+    // The exception must not leave this function, because the computing thread has to be waited for.
     failed_ = std::current_exception();
     ends_ = true;
   }

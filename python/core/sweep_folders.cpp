@@ -7,7 +7,7 @@ namespace anholon::python {
 
 namespace {
 
-// Numbers as an array; words as a pair of the different words and an array of the index of each row.
+// Returns numbers as an array; words as a pair of the different words and an array of the index of each row.
 nb::object column_of(FolderColumn column) {
   if (auto* numbers = std::get_if<std::vector<double>>(&column.values)) {
     const std::size_t size = numbers->size();

@@ -1,4 +1,4 @@
-// What is asked of a sweep, as it comes from Python.
+// The options of a sweep, as they come from Python.
 #pragma once
 #include "core.h"
 

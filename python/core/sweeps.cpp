@@ -20,7 +20,7 @@ SweepOptions options_of(const SweepWords& words) {
   return options;
 }
 
-// Computes f(options) while an attendant looks after it. Returns the sweep, and what was raised in the meantime.
+// Computes f(options) with an attendant. Returns the sweep, and the object that was raised meanwhile.
 template <class F>
 static std::pair<Sweep, nb::object> attended(const SweepWords& words, std::size_t threads, nb::object stop,
                                              nb::object progress, const F& f) {

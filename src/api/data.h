@@ -1,4 +1,4 @@
-// What stands behind the types of the public headers, and how the trouble of the layers becomes theirs.
+// The data behind the types of the public headers, and the conversion of the layers' errors into public ones.
 #pragma once
 #include "anholon/motion.h"
 #include "base/stop.h"
@@ -17,13 +17,13 @@ struct Model::Data {
   std::vector<std::string> cases, mode;
   std::shared_ptr<const inner::Model> model;
   std::vector<Diagnostic> remarks;
-  std::vector<inner::Contact> contacts;  // expressions of the graph of the model; none if a mode was asked for
+  std::vector<inner::Contact> contacts;  // expressions of the graph of the model; empty if a mode is chosen
 
-  // Throws Failure if `what` needs the mode of the contacts, and none was asked for.
+  // Throws Failure if `what` needs a mode of the contacts and none is chosen.
   void without_contacts(const std::string& what) const;
-  // Opens the text again, in the mode that was asked for. Returns nullopt if the diagnostics have errors; throws Failure.
+  // Reads the text again, in the chosen mode. Returns nullopt if the diagnostics have errors. Throws Failure.
   std::optional<inner::OpenModel> open_again(inner::Diagnostics& diagnostics) const;
-  // A copy with an expression graph of its own, in which its holder may build.
+  // Returns a copy with an expression graph of its own, in which the owner of the copy may build expressions.
   std::shared_ptr<const inner::Model> own_copy() const { return inner::clone(*model); }
 };
 
@@ -33,12 +33,13 @@ struct System::Data {
   inner::Scenario scenario;
 };
 
-// The options of a motion that members of MotionOptions give, each with its words on the command line.
+// The options of a motion that members of MotionOptions set, each with its words on the command line.
 using OptionWords = std::vector<std::pair<std::string, std::vector<std::string>>>;
 OptionWords words_of_members(const MotionOptions& asked);
-// The model with one of its scenarios laid over it. Errors: as of read_file.
+// Returns the model with one of its scenarios applied. The errors are those of read_file.
 Result<Model> with_scenario(const Model& model, const std::string& scenario);
-// What `prepare` makes of a model; `start` tells whether it has a consistent start. Throws Failure.
+// Returns the system that `prepare` makes of a model; `start` tells whether the system has a consistent start. Throws
+// Failure.
 std::shared_ptr<const System::Data> system_of(const Model& model, const PrepareOptions& options, inner::Outcome& start);
 
 Severity to_public(inner::Severity severity);
@@ -49,10 +50,10 @@ Outcome to_public(const inner::Outcome& outcome);
 Error error_of(const inner::Diagnostics& diagnostics, const inner::SourceText& source);
 Error error_of(const inner::Failure& failure, const inner::SourceText& source);
 Error error_of(const inner::Outcome& outcome);
-// Of an argument of a call.
+// Returns the error of a mistake in an argument of a call.
 Error mistake(const std::string& message, const std::string& hint = {});
 
-// Calls f, which returns a Result; a Failure that it throws becomes the error, and so does a stop request.
+// Calls f, which returns a Result. A Failure or a stop request that f throws becomes the error of the Result.
 template <class F>
 auto guarded(const inner::SourceText& source, F f) -> decltype(f()) {
   try {
@@ -67,22 +68,24 @@ auto guarded(const inner::SourceText& source, F f) -> decltype(f()) {
   }
 }
 
-// The model of a text, whose base files are in memory if the text brings them.
+// Reads the model from a text; base files are read from memory if the text brings them.
 Result<Model> opened(inner::SourceText source, const ReadOptions& options);
 
-// The number of an option of motions, exact and in SI units. Throws Failure that names the option, also if the number has
-// the unit of another quantity than a time, or than a pure number.
+// Returns the number of an option of motions, exact and in SI units. Throws Failure that names the option, also if the
+// unit of the number is that of another quantity than the option's, which is a time or a pure number.
 inner::Rational option_value(const Number& number, const inner::MotionOption& option);
-// The number as an exact rational in SI units, with the dimension of its unit. Throws Failure that names the argument.
+// Returns the number as an exact rational in SI units, with the dimension of its unit. Throws Failure that names the
+// argument.
 inner::Constant constant(const Number& number, const std::string& argument);
 
-// The form of that name. Throws Failure if there is none; with mechanics also if it does not apply.
+// Returns the form of that name. Throws Failure if no form has the name, or if `mechanics` is given and the form does
+// not apply to it.
 const inner::Formulation& find_form(const std::string& name, const inner::Mechanics* mechanics = nullptr);
 
-// The initial values and eliminations that were asked for. Throws Failure.
+// Returns the initial values and eliminations that the options ask for. Throws Failure.
 inner::StateChoice state_choice(const PrepareOptions& options, const inner::Model& model);
 
-// The prepared system. Throws Failure.
+// Prepares the system. Throws Failure.
 inner::Outcome make_system(std::shared_ptr<const inner::Model> model, const std::string& form,
                            const inner::StateChoice& choice, inner::Scenario& scenario);
 

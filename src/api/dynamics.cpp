@@ -13,9 +13,10 @@
 
 namespace anholon::v1 {
 
-constexpr std::size_t kStatesAtOnce = 64;  // that one thread takes, of outputs and derivatives
+constexpr std::size_t kStatesAtOnce = 64;  // states that one thread takes at once, for outputs and derivatives
 
-// Calls f(), which computes these numbers; NaN if a StopRequest ended it, and the caller wants that.
+// Calls f(), which computes these numbers. If a StopRequest ends f, sets the numbers to NaN if the caller asks for NaN;
+// throws on otherwise.
 template <class F>
 static void or_stopped(std::span<double> numbers, const Dynamics::Given& given, const F& f) {
   try {
@@ -27,16 +28,16 @@ static void or_stopped(std::span<double> numbers, const Dynamics::Given& given, 
 
 struct Dynamics::Data {
   System system;
-  inner::Scenario opened;               // with outputs of its own, or with inputs as parameters
-  const inner::Scenario* scenario;      // of the system, or the opened one
+  inner::Scenario opened;               // a scenario with outputs of its own, or with inputs as parameters
+  const inner::Scenario* scenario;      // that of the system, or the opened one
   std::vector<std::string> inputs;      // names
-  std::vector<inner::NodeId> formulas;  // of the inputs
-  std::vector<inner::NodeId> open;      // the same, with the parameters that are inputs
+  std::vector<inner::NodeId> formulas;  // formulas of the inputs
+  std::vector<inner::NodeId> open;      // the same, in terms of the parameters that are inputs
   std::unique_ptr<const inner::Dynamics> function;
-  std::string obstacle;  // to independent velocities
+  std::string obstacle;  // why there are no independent velocities
   std::vector<StateName> states;
 
-  // The formulas, made when they are asked for first.
+  // Returns the formulas, which are made at the first call.
   const inner::FormulaValues& values() const {
     std::call_once(once_, [&] {
       inner::Workspace own(*scenario);
@@ -45,13 +46,14 @@ struct Dynamics::Data {
     return *values_;
   }
 
-  // States of one call: number i of state k at i * count + k.
+  // The states of one call: number i of state k is at i * count + k.
   struct Batch {
     double t;
     std::span<const double> x;
     std::size_t count;
     const Dynamics::Given& given;
-    // The inputs or parameters of state k, of which there are `size`: all states have the same where only so many are given.
+    // Returns the inputs or parameters of state k, of which there are `size`; if `all` holds no more than `size`
+    // numbers, all states share them.
     std::vector<double> of_state(std::span<const double> all, std::size_t size, std::size_t k) const {
       if (all.size() <= size) return {all.begin(), all.end()};
       std::vector<double> some(size);
@@ -60,13 +62,13 @@ struct Dynamics::Data {
     }
   };
 
-  // Points of some states, with their parameters and what the equations are solved for.
+  // The points of some states, with their parameters and the leading derivatives.
   struct Points {
     std::vector<std::vector<double>> x, parameters;
     std::vector<double> lead;
     std::vector<inner::FormulaPoint> at;
   };
-  // Of the states from..to of a batch.
+  // Returns the points of the states from..to of a batch.
   Points points(const Batch& batch, std::size_t from, std::size_t to, bool with_lead) const {
     const std::size_t n = states.size(), some = to - from;
     Points out;
@@ -94,13 +96,13 @@ struct Dynamics::Data {
       out.at.push_back({batch.t, out.x[k], out.parameters[k], std::span(out.lead).subspan(k * unknowns, unknowns)});
     return out;
   }
-  // u, by the formulas of the model where none is given.
+  // Returns the inputs u as given, or by the formulas of the model if none are given.
   std::vector<double> given_inputs(double t, const std::vector<double>& x, const Given& given) const {
     if (!given.u.empty() || inputs.empty()) return {given.u.begin(), given.u.end()};
     return values().inputs({t, x, parameters(given.p), {}});
   }
   std::size_t p_size() const { return function->free_parameters().size(); }
-  // All parameters of the model.
+  // Returns the values of all parameters of the model.
   std::vector<double> parameters(std::span<const double> p) const {
     std::vector<double> all;
     for (const long double value : function->parameters({{}, p}, 1, 0)) all.push_back(static_cast<double>(value));
@@ -109,8 +111,8 @@ struct Dynamics::Data {
 
   void rates(double t, std::span<const double> x, std::size_t count, std::span<double> rates, const Given& given) const;
 
-  // Calls f(first, points) with the points of pieces of a batch, on several threads if they are many. A state's numbers do
-  // not depend on the others.
+  // Calls f(first, points) with the points of pieces of a batch, on several threads if there are many. The numbers of a
+  // state do not depend on the other states.
   template <class F>
   void in_points(const Batch& batch, bool with_lead, const F& f) const {
     values();
@@ -224,7 +226,7 @@ void Dynamics::Data::rates(double t, std::span<const double> x, std::size_t coun
   inner::InputsAndParameters numbers{given.u, given.p};
   std::vector<double> u;
   if (given.u.empty() && !inputs.empty() && count > 0) {
-    // By the formulas of the model, state by state.
+    // The formulas of the model give the inputs, state by state.
     const std::size_t parameters = function->free_parameters().size();
     u.resize(inputs.size() * count);
     std::vector<double> state(states.size()), p(given.p.empty() ? 0 : parameters);

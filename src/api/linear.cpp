@@ -17,7 +17,7 @@ using Complexes = std::vector<std::complex<double>>;
 
 std::complex<double> in_double(const inner::Complex& z) { return {inner::to_double(z.re), inner::to_double(z.im)}; }
 
-// The text of a number with more digits than a double has; those of the nearest double otherwise.
+// Returns the number with `digits` digits if a double has fewer; else the text of the nearest double.
 std::string text_of(const inner::Multi& x, int digits) {
   return digits > kDoubleDigits ? inner::number_text(x, digits) : inner::number_text(inner::to_double(x));
 }
@@ -69,7 +69,7 @@ inner::LinearRequest request_of(const Model& model, const LinearOptions& options
   state.initial = options.initial, state.eliminate = options.eliminate;
   inner::LinearRequest request;
   request.form = &inner::named_form(options.form);
-  const std::shared_ptr<const inner::Model> own = model.data().own_copy();  // in whose graph the mechanics are
+  const std::shared_ptr<const inner::Model> own = model.data().own_copy();  // its graph holds the mechanics
   const inner::Mechanics m = inner::mechanics(*own);
   inner::must_apply(*request.form, m);
   inner::must_have_motions(*request.form, m);

@@ -12,7 +12,7 @@ namespace anholon::v1 {
 
 namespace {
 
-// Reads the text of the data, which tell how.
+// Reads the model from the source text in the data.
 Result<Model> opened(std::shared_ptr<Model::Data> data) {
   inner::Diagnostics diagnostics;
   const auto model = data->open_again(diagnostics);
@@ -79,7 +79,7 @@ std::vector<Parameter> Model::parameters() const {
   try {
     values = inner::parameter_values<double>(m);
   } catch (const inner::Failure&) {
-    // A parameter without a value: a model for equations alone.
+    // A parameter has no value: the model serves for equations alone.
     values.assign(m.parameters.size(), std::numeric_limits<double>::quiet_NaN());
   }
   std::vector<Parameter> list;

@@ -36,7 +36,7 @@ OptionWords words_of_members(const MotionOptions& asked) {
 
 namespace {
 
-// Keeps the rows, and what their columns hold.
+// Keeps the rows and the meaning of their columns.
 class RowKeeper final : public inner::RowSink {
  public:
   RowKeeper(Run::Data& data, const inner::Model& model) : data_(data), model_(model) {}
@@ -114,7 +114,7 @@ void keep_polynomials(Run::Data& data, const inner::Model& model, inner::Simulat
   };
 }
 
-// The derivative of a polynomial with `order` + 1 coefficients.
+// Returns the k-th derivative at h of the polynomial with these `order` + 1 coefficients.
 double derivative(const double* c, int order, int k, double h) {
   double sum = 0;
   for (int i = order; i >= k; --i) {
@@ -216,7 +216,7 @@ std::vector<double> Run::at(const std::string& name, std::span<const double> tim
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (i % kTimesBetweenLooks == 0 && stop_requested()) return values;
     const double t = times[i];
-    // The first step that ends at t or after it.
+    // The first step that ends at t or after t.
     const auto step =
         std::partition_point(dense.end.begin(), dense.end.end(), [&](double end) { return direction * (end - t) < 0; });
     if (step == dense.end.end() || direction * (t - dense.begin.front()) < 0 || std::isnan(t)) continue;

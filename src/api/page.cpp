@@ -12,7 +12,7 @@ namespace anholon::v1 {
 
 namespace {
 
-// What events set, impacts and friction do not conserve what is an integral between them.
+// Assignments of events, impacts and friction change integrals of the motion, so no integral is shown for such models.
 std::vector<inner::Conserved> conserved_of(const System::Data& of, const inner::Workspace& s) {
   const bool kept = !inner::sets_values(*s.model) && of.model->contacts.empty();
   return kept ? inner::conserved(*s.mechanics) : std::vector<inner::Conserved>();

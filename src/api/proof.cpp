@@ -18,7 +18,7 @@ bool Proof::all_proved() const {
          std::all_of(forms.begin(), forms.end(), [](const FormVerdict& f) { return f.verdict == Verdict::proved; });
 }
 
-// Of those that are not proved to vanish, the first; empty if there is none.
+// Describes the first difference that is not proved to vanish; empty if all are proved.
 static std::string first_not_proved(const std::vector<inner::Difference>& differences) {
   for (const inner::Difference& d : differences)
     if (d.verdict != inner::Verdict::proved) return d.component + ": " + d.detail;

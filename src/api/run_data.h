@@ -1,4 +1,4 @@
-// What stands behind a Run.
+// The data behind a Run.
 #pragma once
 #include "api/data.h"
 #include "result/run_file.h"
@@ -9,8 +9,8 @@ namespace anholon::v1 {
 struct DenseOutput {
   std::vector<std::string> names;  // coordinates, then the model's states
   int order = 0;
-  std::vector<double> begin, end;    // of the steps; a step backwards ends before it begins
-  std::vector<double> coefficients;  // of a step after the other, in it of a name after the other, order + 1 each
+  std::vector<double> begin, end;    // times of the steps; a step backwards ends before it begins
+  std::vector<double> coefficients;  // step by step, in a step name by name, order + 1 coefficients for each name
 };
 
 struct Run::Data {
@@ -19,7 +19,7 @@ struct Run::Data {
   Outcome outcome;
   std::vector<Column> columns;
   std::vector<Event> events;
-  std::vector<std::string> notes;  // on the options
+  std::vector<std::string> notes;  // about the options
   Report report;
   DenseOutput dense;
 };

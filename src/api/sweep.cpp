@@ -33,15 +33,15 @@ struct KeptColumns {
   }
   std::vector<std::string> names;
   std::vector<std::size_t> places;  // among those of the state, then the reductions
-  std::size_t in_state = 0;         // how many columns the state has
-  std::size_t of_state = 0;         // how many of the kept ones are of the state
+  std::size_t in_state = 0;         // the number of columns of the state
+  std::size_t of_state = 0;         // the number of kept columns that belong to the state
 };
 
 // Puts each case into its place.
 class CaseKeeper final : public inner::CaseSink {
  public:
   explicit CaseKeeper(Sweep::Data& data) : data_(data) {}
-  // The cases that follow are those of a piece with these columns; their numbers follow on `before`.
+  // Announces the cases of a piece with these columns; their numbers are counted from `before`.
   void turn_to(const KeptColumns& columns, std::size_t before) { columns_ = &columns, before_ = before; }
   // Makes room for the cases.
   void hold(std::size_t cases) {
@@ -91,11 +91,11 @@ class CaseKeeper final : public inner::CaseSink {
   std::size_t before_ = 0;
 };
 
-// The table in which the command line writes the cases.
+// Returns the table in which the command line writes the cases.
 inner::SweepTable table_of(const PreparedPiece& piece, const KeptColumns& columns, bool chosen) {
   inner::SweepTable table(*piece.scenario->model, piece.options);
   if (chosen) {
-    // Before the state stand the case, what varies, the outcome, the event, t and the steps.
+    // The case, the varied values, the outcome, the event, t and the steps stand before the state.
     const std::size_t outcome = 1 + piece.options.varied.size();
     const bool ends = table.columns().at(outcome + 1).name == "event";
     std::vector<std::size_t> list;
@@ -109,7 +109,7 @@ inner::SweepTable table_of(const PreparedPiece& piece, const KeptColumns& column
   return table;
 }
 
-// The units of the time, of columns and of what is varied, as far as the model tells them.
+// Returns the units of the time, of columns and of varied values, as far as the model tells them.
 std::map<std::string, std::string> units_of(const Model::Data& model, const Sweep::Data& d) {
   std::map<std::string, std::string> units = inner::quantity_units(*model.model, model.contacts);
   const auto is_in = [](const std::vector<std::string>& names, const std::string& name) {

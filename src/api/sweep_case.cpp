@@ -23,11 +23,11 @@ using inner::SweepStore;
 constexpr const char* kOrders[] = {"q", "qdot", "qddot", "qdddot"};
 constexpr const char* kMultipliers[] = {"lambda", "lambdadot"};
 constexpr std::string_view kInitial = "(0)";
-// Begins the names under which Python and C++ keep what varies.
+// The beginning of the names under which Python and C++ keep the varied values.
 constexpr std::string_view kVary = "vary ";
 
-// "a=1 b=8 cm,c=2" as words of one name each; a name ends at = or, of what is drawn, at ~.
-// A comma in brackets belongs to a name: k[1,2].
+// Splits "a=1 b=8 cm,c=2" into words of one name each; a name ends at = or, if it is drawn at random, at ~. A comma in
+// brackets belongs to a name: k[1,2].
 std::vector<std::string> words_of(const std::string& text) {
   std::vector<std::string> words;
   const auto separator = [&](std::size_t at) {
@@ -52,32 +52,32 @@ std::vector<std::string> words_of(const std::string& text) {
 std::string name_in(const std::string& word) { return word.substr(0, word.find_first_of("=~")); }
 std::string value_in(const std::string& word) { return word.substr(std::min(word.find('='), word.size() - 1) + 1); }
 
-// An initial value of a name with primes, as an option: {"qdot", "phi=5"} of phi'.
+// Returns the option that gives an initial value to a name with primes: {"qdot", "phi=5"} for phi'.
 AskedWord initial_word(std::string name, const std::string& value) {
   const auto primes = static_cast<std::size_t>(std::count(name.begin(), name.end(), '\''));
   std::erase(name, '\'');
   return {kOrders[std::min(primes, std::size(kOrders) - 1)], name + "=" + value};
 }
 
-// The parts of a list with commas; a name that holds one is quoted.
+// Splits a list at its commas; a name that holds a comma is quoted.
 std::vector<std::string> listed(const std::string& text) {
   return text.empty() ? std::vector<std::string>() : inner::csv_cells(text);
 }
 
-// The scenarios that --vary case=a,b runs through.
+// Returns the scenarios that --vary case=a,b runs through.
 std::vector<std::string> scenarios_of_command(const SweepStore& store) {
   for (const std::string& word : words_of(store.asked("vary")))
     if (name_in(word) == "case") return listed(value_in(word));
   return {};
 }
 
-// … or a sweep that Python or C++ has made.
+// Returns the scenarios that vary in a sweep of the command line, of Python or of C++.
 std::vector<std::string> varied_scenarios(const SweepStore& store) {
   const std::vector<std::string> of_library = listed(store.asked("vary case"));
   return of_library.empty() ? scenarios_of_command(store) : of_library;
 }
 
-// What varies beside the scenarios.
+// Returns the names that vary beside the scenarios.
 std::vector<std::string> varied(const SweepStore& store) {
   std::vector<std::string> names;
   for (const std::string& word : words_of(store.asked("vary")))
@@ -91,8 +91,8 @@ std::vector<std::string> varied(const SweepStore& store) {
   return names;
 }
 
-// The scenarios that the sweep names for all cases. Their names stand side by side and may hold spaces, so the model
-// tells where each one ends.
+// Returns the scenarios that the sweep applies to all cases. Their names are separated by spaces and may hold spaces,
+// so the names in the model tell where each one ends.
 std::vector<std::string> scenarios(const SweepStore& store) {
   std::string text = store.asked("case");
   // The first scenario that varies is among them.
@@ -115,7 +115,7 @@ std::vector<std::string> scenarios(const SweepStore& store) {
   return list;
 }
 
-// The end of the motions of a sweep that names the times of its rows alone.
+// Returns the end of the motions of a sweep that gives only the times of its rows.
 std::string last_time(const SweepStore& store) {
   std::vector<std::string> times;
   const std::string& text = store.asked("at");
@@ -160,7 +160,7 @@ std::size_t row_of(const inner::ParquetTable& rows, std::size_t number) {
                 "a sweep without --columns keeps the numbers of the cases");
 }
 
-// The word of an option among those of a case; the last one counts.
+// Returns the value of an option among the words of a case; the last one counts.
 std::string word(const std::vector<AskedWord>& words, std::string_view option) {
   std::string text;
   for (const AskedWord& w : words)
@@ -168,12 +168,12 @@ std::string word(const std::vector<AskedWord>& words, std::string_view option) {
   return text;
 }
 
-// Sets what an option gives to the initial state.
+// Sets the part of the initial state that an option gives.
 void give(PrepareOptions& options, const AskedWord& w) {
   const std::string name = name_in(w.word), value = value_in(w.word);
   for (std::size_t order = 0; order < std::size(kOrders); ++order)
     if (w.option == kOrders[order]) {
-      // --qdot "x'=2" means x', too.
+      // --qdot "x'=2" also means x'.
       std::string plain = name;
       if (order > 0) std::erase(plain, '\'');
       options.initial.insert_or_assign(plain + std::string(order, '\''), Number(value));
@@ -183,7 +183,7 @@ void give(PrepareOptions& options, const AskedWord& w) {
       options.initial.insert_or_assign("lambda." + name + std::string(order, '\''), Number(value));
 }
 
-// A word as a shell takes it.
+// Quotes a word for a shell.
 std::string quoted(const std::string& word) {
   if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_=.,+-/:") ==
       std::string::npos)
@@ -213,7 +213,7 @@ std::vector<AskedWord> words_of_sweep(const SweepStore& store) {
   one("t", store.asked("t"));
   for (const char* option : kOrders) each(option);
   for (const char* option : kMultipliers) each(option);
-  // Python names initial values as a model file does.
+  // Python names initial values like a model file.
   std::string initial = store.asked("initial");
   constexpr std::string_view kMultiplier = " as multiplier";
   for (std::size_t at; (at = initial.find(kMultiplier)) != std::string::npos;) {

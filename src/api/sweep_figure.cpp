@@ -16,7 +16,7 @@ using inner::plot::NamedColumn;
 
 constexpr const char* kOutcome = "outcome";
 
-// The columns of a sweep by the names of its table: those of what varies, the outcome, the time, the steps, the others.
+// The columns of a sweep by their names in its table: the varied values, the outcome, the time, the steps, the others.
 class FigureColumns {
  public:
   explicit FigureColumns(const Sweep& sweep) : sweep_(sweep), d_(sweep.data()) {
@@ -38,14 +38,14 @@ class FigureColumns {
     for (const std::size_t k : inner::chosen_columns(all_, names)) list.push_back(all_[k]);
     return list;
   }
-  // The coordinates; all columns if there are none among them.
+  // Returns the coordinates among the columns; all columns if there are none.
   std::vector<std::string> usual() const {
     std::vector<std::string> list;
     for (const inner::Coordinate& q : d_.model->model->coordinates)
       if (std::find(d_.columns.begin(), d_.columns.end(), q.name) != d_.columns.end()) list.push_back(q.name);
     return list.empty() ? d_.columns : list;
   }
-  // The numbers of a column that there is; of outcomes the places among the words.
+  // Returns the numbers of an existing column; for outcomes their indices among the words.
   NamedColumn read(const std::string& name, std::vector<std::string>& words) const {
     const auto at = static_cast<std::size_t>(std::find(varied_.begin(), varied_.end(), name) - varied_.begin());
     if (at < varied_.size()) return {name, unit(d_.names[at]), d_.varied[at]};
@@ -77,7 +77,7 @@ class FigureColumns {
   std::vector<std::string> varied_, all_;
 };
 
-// What x and y name, then what varies, two at most. Throws Failure.
+// Returns the columns that x and y name, then those that vary, two at most. Throws Failure.
 std::vector<std::string> axes_of(const FigureColumns& columns, const SweepFigureOptions& o) {
   std::vector<std::string> axes;
   for (const std::string& given : {o.x, o.y})

@@ -1,4 +1,4 @@
-// A sweep in memory as a file, with the columns and cells of `anholon sweep -o FILE`.
+// Writes a sweep in memory to a file, with the columns and cells of `anholon sweep -o FILE`.
 #include "api/sweep_data.h"
 #include "result/format.h"
 

@@ -17,7 +17,7 @@ struct SweepFolder::Data {
   inner::SweepStore store;
   // Null if the folder was opened by its name alone.
   std::shared_ptr<const PreparedSweep> prepared;
-  // The folder with the generations that it has now. Throws Failure.
+  // Returns the folder with the generations that it holds now. Throws Failure.
   inner::SweepStore now() const {
     inner::SweepStore fresh = store;
     fresh.look_for_generations();
@@ -27,7 +27,7 @@ struct SweepFolder::Data {
 
 namespace {
 
-// The form of the equations; those of the pieces, one after the other, if they differ.
+// Returns the form of the equations; if the pieces have different forms, all of them one after the other.
 std::string forms_of(const PreparedSweep& p) {
   std::vector<std::string> forms;
   for (const PreparedPiece& piece : p.pieces) forms.push_back(piece.system.form());
@@ -35,7 +35,7 @@ std::string forms_of(const PreparedSweep& p) {
   return same ? forms.front() : inner::joined(forms, " ");
 }
 
-// Everything on which the rows depend.
+// Returns everything on which the rows depend.
 std::vector<std::pair<std::string, std::string>> asked_of(const PreparedSweep& p) {
   std::vector<std::pair<std::string, std::string>> all;
   const auto add = [&](const std::string& name, const std::string& text) {
@@ -45,7 +45,7 @@ std::vector<std::pair<std::string, std::string>> asked_of(const PreparedSweep& p
   const PreparedPiece& first = p.pieces.front();
   const System::Data& system = first.system.data();
   const SweepOptions& o = p.asked;
-  // The mode comes first: messages name it before the title that tells it, too.
+  // The mode comes first: messages name the mode before the title, which contains it.
   add("mode", inner::joined(model.mode, " ")), add("title", system.model->model->title),
       add("model", model.source.text);
   for (const PreparedPiece& piece : p.pieces) {
@@ -88,7 +88,7 @@ auto told(const F& f) -> decltype(f()) {
   return guarded(inner::SourceText(), f);
 }
 
-// Adds the values of a column of a part.
+// Appends the values of a column of a part.
 void append(FolderColumn& to, const inner::ParquetColumn& from) {
   if (const auto* numbers = std::get_if<std::vector<double>>(&from.values)) {
     auto& all = std::get<std::vector<double>>(to.values);
@@ -121,7 +121,8 @@ FolderColumn empty_column(const inner::ParquetColumn& like) {
 std::map<std::string, std::vector<double>> SweepFolder::points() const { return points_of_axes(data_->store); }
 std::map<std::string, std::string> SweepFolder::units() const { return units_of_columns(data_->store); }
 const std::string& SweepFolder::path() const { return data_->store.folder(); }
-// A damaged plan is an error of the functions that return a Result; these tell what is there without it.
+// These functions have no way to report an error: if the plan is damaged, they use what was read when the folder was
+// opened.
 std::size_t SweepFolder::cases() const {
   const auto now = told([&]() -> Result<std::size_t> { return data_->now().cases(); });
   return now ? *now : data_->store.cases();
@@ -204,7 +205,7 @@ static const inner::Variation& grid_of(const PreparedSweep& p) {
   return *p.variation();
 }
 
-// The rule by which borders of a sweep with these columns are refined. Throws Failure.
+// Returns the rule by which the borders of a sweep with these columns are refined. Throws Failure.
 static inner::RefineRule rule_for(const PreparedSweep& p, const std::vector<std::string>& columns,
                                   const std::string& word) {
   inner::RefineRule rule;
@@ -265,12 +266,12 @@ Result<std::size_t> SweepFolder::refine(const std::string& word, std::optional<s
 
 using Numbers = std::vector<std::pair<std::string, std::string>>;
 
-// The numbers of a case of a sweep that is prepared. Throws Failure.
+// Returns the numbers of a case of a prepared sweep. Throws Failure.
 static Numbers numbers_in(const PreparedSweep& p, const inner::SweepStore& store, std::size_t number) {
   if (number >= store.cases())
     throw inner::Failure({}, "there is no case " + std::to_string(number),
                          "the cases are numbered from 0 to " + std::to_string(store.cases() - 1));
-  std::size_t place = number;  // in its piece
+  std::size_t place = number;  // the place of the case in its piece
   auto piece = p.pieces.begin();
   if (!p.variation())
     for (; place >= piece->options.cases; ++piece) place -= piece->options.cases;
@@ -283,7 +284,7 @@ static Numbers numbers_in(const PreparedSweep& p, const inner::SweepStore& store
   return list;
 }
 
-// What a case has of its own: exact, from the sweep that is prepared, or else as the folder keeps it. Throws Failure.
+// Returns the words of a case: exact ones if the sweep is prepared, else those that the folder keeps. Throws Failure.
 static std::vector<AskedWord> own_words(const SweepFolder::Data& data, const inner::SweepStore& store,
                                         std::size_t number) {
   if (!data.prepared) return words_of_case(store, number);
@@ -336,7 +337,7 @@ Result<std::string> SweepFolder::judge(const std::function<bool()>& cancelled) c
   });
 }
 
-// Opens the folder for a sweep that is prepared, or makes it.
+// Opens or makes the folder of a prepared sweep.
 static Result<SweepFolder> opened(std::shared_ptr<const PreparedSweep> prepared, const std::string& folder,
                                   std::size_t chunk, const std::string& recipe,
                                   const std::optional<std::string>& refine) {

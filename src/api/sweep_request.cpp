@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kScenarios = "case";  // the name of a Vary that runs through scenarios
 
 [[noreturn]] void refuse(const inner::MistakeInWord& m, const char* option) {
-  // Of a table it tells the line.
+  // A mistake in a table has the line of the table.
   if (!m.file.empty())
     throw inner::Failure({}, m.file + ", line " + std::to_string(m.diagnostic.span.line) + ": " + m.diagnostic.message,
                          m.diagnostic.hint);
@@ -31,7 +31,8 @@ inner::Variation::Draws draws_of(const std::string& name) {
                        "random or sobol");
 }
 
-// What varies, from the options; nothing may vary in a scenario of its own. Throws Failure.
+// Returns the variation that the options ask for; if scenarios vary (`of_scenario`), nothing else has to. Throws
+// Failure.
 inner::Variation variation_of(const SweepOptions& asked, const inner::Model& model, bool of_scenario) {
   inner::Variation v(asked.seed, draws_of(asked.draw));
   if (asked.together) v.together();
@@ -56,7 +57,7 @@ inner::Variation variation_of(const SweepOptions& asked, const inner::Model& mod
   return v;
 }
 
-// Takes the scenarios that vary out of the options, and names them.
+// Removes the scenarios that vary from the options and returns their names.
 std::vector<std::string> take_scenarios(SweepOptions& asked) {
   std::vector<std::string> names;
   const auto removed = std::erase_if(asked.vary, [&](const Vary& v) {
@@ -74,7 +75,7 @@ std::vector<std::string> take_scenarios(SweepOptions& asked) {
   return names;
 }
 
-// Throws Failure if the scenarios of a file are to vary in a system, which has been read already.
+// Throws Failure if scenarios of a file are to vary in a system, which is already read with its scenario.
 void must_not_vary_scenarios(const SweepOptions& asked, const inner::Model& model) {
   const auto named = [](const auto& list) {
     return std::any_of(list.begin(), list.end(), [](const auto& each) { return each.name == kScenarios; });
@@ -133,13 +134,13 @@ PreparedPiece::PreparedPiece(System of, const inner::Outcome& of_system, std::st
   if (!start.ok()) start = inner::scenario_of_cases(options, own_);
 }
 
-// The contacts of the model from whose graph the formulas are; none in one mode.
+// Returns the contacts of the model in whose graph the formulas are; empty if a mode is chosen.
 const std::vector<inner::Contact>& PreparedPiece::moving() const {
   const std::vector<inner::Contact>& of_model = system.data().model->contacts;
   return open_ && !of_model.empty() ? contacts(*open_->names) : of_model;
 }
 
-// The scenario of the system, or one of this piece that has the formulas of the reductions or another start.
+// Returns the scenario of the system, or one of this piece that has the formulas of the reductions or another start.
 const inner::Scenario* PreparedPiece::scenario_for(const std::vector<std::string>& reductions,
                                                    const inner::Outcome& of_system) {
   const System::Data& of = system.data();

@@ -1,4 +1,4 @@
-// A sweep that is asked for, ready to be computed.
+// A sweep that is prepared for its computation.
 #pragma once
 #include <deque>
 
@@ -10,8 +10,8 @@
 
 namespace anholon::v1 {
 
-// The motions of one model: of a system, or of a model with one of its scenarios. Its options point into it, so it stays
-// where it is.
+// The motions of one model: of a system, or of a model with one of its scenarios. Not movable, because its options
+// point into it.
 struct PreparedPiece {
   // `start` tells whether the system has a consistent start. Throws Failure.
   PreparedPiece(System system, const inner::Outcome& start, std::string scenario_name, const SweepOptions& asked);
@@ -20,7 +20,7 @@ struct PreparedPiece {
 
   System system;
   std::string word;      // the name of the scenario; empty if scenarios do not vary
-  inner::Outcome start;  // not ok: neither the model nor one of its first cases has a consistent start
+  inner::Outcome start;  // not ok if neither the model nor one of its first cases has a consistent start
   const inner::Scenario* scenario = nullptr;
   std::optional<inner::Variation> variation;
   inner::MotionSettings settings;
@@ -29,29 +29,29 @@ struct PreparedPiece {
  private:
   const inner::Scenario* scenario_for(const std::vector<std::string>& reductions, const inner::Outcome& of_system);
   const std::vector<inner::Contact>& moving() const;
-  std::optional<inner::OpenModel> open_;  // in whose graph the formulas of the reductions are
-  inner::Scenario own_;                   // with these formulas, or of the first case that has a start
+  std::optional<inner::OpenModel> open_;  // the graph of this model holds the formulas of the reductions
+  inner::Scenario own_;                   // the scenario with these formulas or another start
 };
 
 struct PreparedSweep {
-  std::shared_ptr<const Model::Data> model;  // without the scenarios that vary
-  SweepOptions asked;                        // likewise
-  std::vector<std::string> scenarios;        // that vary; empty: there is one piece
+  std::shared_ptr<const Model::Data> model;  // without the scenarios that vary applied
+  SweepOptions asked;                        // without the scenarios that vary
+  std::vector<std::string> scenarios;        // the scenarios that vary; empty if there is one piece
   std::deque<PreparedPiece> pieces;
   std::size_t cases = 0;
-  // Of the only piece; null if there are several, which are no grid.
+  // Returns the variation of the only piece; nullptr if there are several pieces, which are no grid.
   const inner::Variation* variation() const { return pieces.size() == 1 ? &*pieces.front().variation : nullptr; }
 };
 
-// Errors: mistakes in what is asked; an inconsistent start (an outcome).
+// The errors are mistakes in the request and, as an outcome, an inconsistent start.
 Result<std::shared_ptr<const PreparedSweep>> prepared_sweep(const System& system, const SweepOptions& asked);
 // A Vary named "case" names scenarios.
 Result<std::shared_ptr<const PreparedSweep>> prepared_sweep(const Model& model, const PrepareOptions& prepare,
                                                             const SweepOptions& asked);
 
-// The pieces of a sweep with tables of their own, so that several threads may compute at once.
+// The pieces of a sweep with tables of their own, so that several threads may compute sweeps at once.
 struct TabledPieces {
-  // Throws Failure: there is no such column, or the scenarios have different ones.
+  // Throws Failure if a column does not exist or the scenarios have different columns.
   explicit TabledPieces(const PreparedSweep& sweep);
   TabledPieces(const TabledPieces&) = delete;
   TabledPieces& operator=(const TabledPieces&) = delete;
@@ -61,10 +61,10 @@ struct TabledPieces {
   std::vector<inner::SweepPiece> pieces;
 };
 
-// What varies, as the command line writes it: NAME=A,B, NAME=FROM:TO:COUNT or NAME~LAW(…).
+// Returns the variation as the command line writes it: NAME=A,B, NAME=FROM:TO:COUNT or NAME~LAW(…).
 std::string text_of(const Vary& vary);
 
-// The places of the columns that are asked for; all without a name. Throws Failure.
+// Returns the places of the columns in `asked` among all columns; all places if `asked` is empty. Throws Failure.
 std::vector<std::size_t> chosen_places(const std::vector<std::string>& asked, const std::vector<std::string>& all);
 
 }  // namespace anholon::v1

@@ -49,13 +49,13 @@ static const char* word(Severity s) {
 // A source line of up to this many characters is shown whole; of a longer line the part around the caret is shown.
 static constexpr std::size_t kShownWidth = 160;
 
-// "file:3:9".
+// Returns "file:3:9".
 static std::string place_of(Span span, const SourceText& source) {
   return shown(source.name) +
          (span.line > 0 ? ":" + std::to_string(span.line) + ":" + std::to_string(span.column) : std::string());
 }
 
-// The source line and a caret range.
+// Returns the source line and a caret range.
 static std::string excerpt(Span span, const SourceText& source) {
   if (span.line == 0) return "";
   const std::string number = std::to_string(span.line);
@@ -155,7 +155,7 @@ static std::size_t edit_distance(const std::string& a, const std::string& b) {
   return d[a.size()][b.size()];
 }
 
-// The name in small letters.
+// Returns the name in small letters.
 static std::string small(std::string name) {
   for (char& c : name)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');

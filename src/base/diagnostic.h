@@ -57,13 +57,13 @@ class Diagnostics {
   bool has_errors() const;
   const std::vector<Diagnostic>& list() const { return list_; }
   // Replaces all reports whose message satisfies `is_one` and that differ only in their position by the first of them,
-  // which states their number.
+  // with their number in its message.
   void gather(const std::function<bool(const std::string&)>& is_one);
   // Removes the errors whose message is a consequence of others.
   void leave_out(const std::function<bool(const std::string&)>& is_consequence);
-  // `file:line:col: error: …`, the source line, a caret range, `hint: …`; in order of position.
+  // Returns `file:line:col: error: …`, the source line, a caret range, `hint: …`; in order of position.
   std::string print(const SourceText& source) const;
-  // The other files besides the main one, if the code that reports here has found them.
+  // The files besides the main one, if the code that reports here has found them.
   std::vector<SourceText> others;
 
  private:
@@ -71,12 +71,12 @@ class Diagnostics {
 };
 
 std::string print(const Diagnostic& d, const SourceText& source);
-// `file:line:col:`, the source line, a caret range; empty without a line.
+// Returns `file:line:col:`, the source line, a caret range; empty without a line.
 std::string print_place(Span span, const SourceText& source);
-// "line 12", and the file if it is not the main one.
+// Returns "line 12", and the file if it is not the main one.
 std::string line_of(Span span, const SourceText& source);
 
-// The candidate closest to `name` by edit distance if it is close enough to be a typing error, else "".
+// Returns the candidate closest to `name` by edit distance if it is close enough to be a typing error, else "".
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates);
 
 }  // namespace anholon

@@ -13,8 +13,8 @@ namespace {
 
 constexpr const char* kUnknown = "\uFFFD";
 
-// The character of these bytes; nullopt if they are not UTF-8: too long, beyond U+10FFFF, a surrogate, or an incomplete
-// sequence.
+// Returns the code of the character of these bytes; nullopt if they are not UTF-8: too long, beyond U+10FFFF, a
+// surrogate, or an incomplete sequence.
 std::optional<std::uint32_t> code_point(std::string_view c) {
   const auto byte = [&](std::size_t k) { return static_cast<std::uint32_t>(static_cast<unsigned char>(c[k])); };
   if (c.size() == 1) return byte(0) < 0x80 ? std::optional(byte(0)) : std::nullopt;
@@ -28,7 +28,7 @@ std::optional<std::uint32_t> code_point(std::string_view c) {
 
 bool is_control(std::uint32_t c) { return c < 0x20 || (c >= 0x7F && c < 0xA0); }
 
-// Characters without a visible sign: direction marks, zero width, line separators, tags, noncharacters.
+// True for characters without a visible sign: direction marks, zero width, line separators, tags, noncharacters.
 bool is_hidden(std::uint32_t c) {
   struct Range {
     std::uint32_t first, last;
@@ -42,7 +42,7 @@ bool is_hidden(std::uint32_t c) {
   return (c & 0xFFFE) == 0xFFFE;
 }
 
-// The picture of a control character.
+// Returns the picture of a control character.
 std::string picture(std::uint32_t c) {
   if (c >= 0x80) return kUnknown;
   const std::uint32_t code = c == 0x7F ? 0x2421 : 0x2400 + c;
@@ -50,7 +50,7 @@ std::string picture(std::uint32_t c) {
           static_cast<char>(0x80 | (code & 63))};
 }
 
-// f(bytes of the character, its code if it is valid) returns the replacement.
+// Replaces each character; f(bytes of the character, its code if it is valid) returns the replacement.
 template <class F>
 std::string each(std::string_view text, F f) {
   std::string out;

@@ -11,28 +11,29 @@
 
 namespace anholon {
 
-// One line for a person: a terminal, a message, a cell of a table, a drawing.
+// Escapes one line for a person: a terminal, a message, a cell of a table, a drawing.
 std::string shown(std::string_view text);
-// Lines for a person: line breaks stay, a tab is a space.
+// Escapes lines for a person: line breaks are kept, a tab becomes a space.
 std::string shown_lines(std::string_view text);
 
-// Text between the quotes of JSON and of TOML. Only bytes that are not UTF-8 are lost; a character that shown() would
-// replace is written as a numeric escape.
+// Escape text between the quotes of JSON and of TOML. Only bytes that are not UTF-8 are lost; a character that shown()
+// would replace is written as a numeric escape.
 std::string json_escape(std::string_view text);
 std::string toml_escape(std::string_view text);
-// Text for HTML, MathML and SVG, as content or between the quotes of an attribute. XML allows no control characters.
+// Escapes text for HTML, MathML and SVG, as content or between the quotes of an attribute. XML allows no control
+// characters.
 std::string markup_escape(std::string_view text);
-// As markup_escape(), for a text of several lines: <pre>.
+// Escapes a text of several lines in the same way, for <pre>.
 std::string markup_lines(std::string_view text);
-// Text for LaTeX and pgfplots, outside mathematics and within \mathrm.
+// Escapes text for LaTeX and pgfplots, outside mathematics and within \mathrm.
 std::string latex_escape(std::string_view text);
-// A line for a comment in C or Python: the text can neither end the comment nor continue it in the next line.
+// Escapes a line for a comment in C or Python: the text can neither end the comment nor continue it in the next line.
 std::string comment_line(std::string_view text);
-// Text between the quotes of a string of C or Python, triple quotes included.
+// Escapes text between the quotes of a string of C or Python, triple quotes included.
 std::string code_string(std::string_view text);
-// A cell of CSV, quoted if necessary.
+// Returns a cell of CSV, quoted if necessary.
 std::string csv_cell(std::string_view text);
-// A string of HDF5, which ends at the first NUL and is UTF-8.
+// Returns a string of HDF5, which ends at the first NUL and is UTF-8.
 std::string hdf5_text(std::string_view text);
 
 }  // namespace anholon

@@ -1,23 +1,23 @@
-// Finds what has a hash value: a flat table from hash values to ids, which copies as one block of memory.
+// An index by hash values: a flat table from hash values to ids, which copies as one block of memory.
 #pragma once
 #include <cstdint>
 #include <vector>
 
 namespace anholon {
 
-// The hash value of what has been hashed to `hash` so far and of one more word.
+// Returns the hash value of the words hashed to `hash` so far and of one more word.
 inline std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
   hash ^= word + 0x9e3779b97f4a7c15ULL + (hash << 6) + (hash >> 2);
   hash *= 0xff51afd7ed558ccdULL;
   return hash ^ (hash >> 33);
 }
 
-// Several ids may have the same hash value; the owner of what the ids mean tells them apart.
+// Several ids may have the same hash value; the owner of the ids distinguishes them.
 class HashIndex {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffU;
 
-  // The id that was inserted with this hash value and for which `same(id)` holds, or kNone.
+  // Returns the id that was inserted with this hash value and for which `same(id)` holds, or kNone.
   template <class Same>
   std::uint32_t find(std::uint64_t hash, Same&& same) const {
     if (slots_.empty()) return kNone;
@@ -35,7 +35,7 @@ class HashIndex {
     ++used_;
   }
 
-  // A table of those entries alone whose id is less than `end`.
+  // Returns a table of the entries whose id is less than `end`.
   HashIndex before(std::uint32_t end) const {
     HashIndex part;
     for (const Slot& slot : slots_)

@@ -1,7 +1,7 @@
-// Work on blocks in the order in which they are filled: by the thread that fills them, or by another one beside it.
+// Work on blocks in the order in which they are filled, by the thread that fills them or by another thread in parallel.
 //
-// The results do not depend on which thread works, as the order is the same. What the work throws is thrown again in
-// the thread that fills the blocks.
+// The results do not depend on which thread works, because the order is the same. An exception of the work is thrown
+// again in the thread that fills the blocks.
 #pragma once
 #include <condition_variable>
 #include <exception>
@@ -17,8 +17,8 @@ namespace anholon {
 template <class Block>
 class InOrder {
  public:
-  // `blocks`: as many may be under way, the one that is being filled among them. `work` leaves a block as it can be
-  // filled again.
+  // `blocks`: their number is that of the blocks under way, including the one that is being filled. `work` leaves a
+  // block in a state in which it can be filled again.
   InOrder(std::vector<Block> blocks, std::function<void(Block&)> work)
       : blocks_(std::move(blocks)), work_(std::move(work)) {}
   // Blocks that wait for the other thread are dropped.
@@ -35,7 +35,7 @@ class InOrder {
   InOrder& operator=(const InOrder&) = delete;
 
   Block& filling() { return blocks_[filled_ % blocks_.size()]; }
-  // Works on the block that was filled, or hands it to the other thread, and waits while that thread has no block free.
+  // Works on the filled block, or passes it to the other thread, and waits while that thread has no free block.
   void pass_on() {
     if (!thread_.joinable()) return work_(filling());
     std::unique_lock lock(lock_);
@@ -44,14 +44,14 @@ class InOrder {
     done_something_.wait(lock, [&] { return filled_ - done_ < blocks_.size(); });
     rethrow();
   }
-  // Waits until all blocks are done that were passed on.
+  // Waits until all blocks that were passed on are done.
   void settle() {
     if (!thread_.joinable()) return;
     std::unique_lock lock(lock_);
     done_something_.wait(lock, [&] { return filled_ == done_; });
     rethrow();
   }
-  // From here on another thread works, if the machine has another core and a thread for it.
+  // Lets another thread work from now on, if the machine has another core and a thread for it.
   void work_beside() {
     if (thread_.joinable() || alone_) return;
     alone_ = std::thread::hardware_concurrency() < 2;
@@ -89,8 +89,8 @@ class InOrder {
 
   std::vector<Block> blocks_;
   std::function<void(Block&)> work_;
-  bool alone_ = false;  // no other thread can be had
-  std::mutex lock_;     // of what follows; filled_ changes in the filling thread only
+  bool alone_ = false;  // no other thread is available
+  std::mutex lock_;     // guards the members below; filled_ changes only in the filling thread
   std::condition_variable more_, done_something_;
   std::size_t filled_ = 0, done_ = 0;
   bool stops_ = false;

@@ -6,7 +6,7 @@
 
 namespace anholon {
 
-// "a, b, c"
+// Returns "a, b, c".
 std::string joined(const std::vector<std::string>& parts, std::string_view between = ", ");
 
 }  // namespace anholon

@@ -1,5 +1,5 @@
-// Outcome: how a numerical task ended. It is returned, never thrown: partial results are kept and sweeps go on. Its
-// text holds the remedy.
+// The outcome of a numerical task. It is returned, never thrown: partial results are kept and sweeps continue. Its text
+// contains the remedy.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -25,7 +25,7 @@ struct Outcome {
   OutcomeKind kind = OutcomeKind::finished;
   std::string message;  // what happened, where
   std::string hint;     // what to do
-  Span place = {};      // the element of the model to blame; line 0 where there is none
+  Span place = {};      // the element of the model that caused the outcome; line 0 if there is none
   bool ok() const { return kind == OutcomeKind::finished; }
 };
 

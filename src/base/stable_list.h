@@ -27,8 +27,8 @@ class StableList {
     ++size_;
   }
 
-  // Puts `values` side by side at the end and returns the index of the first one. Where the last block has too little
-  // room for them, its rest stays empty.
+  // Appends `values` side by side and returns the index of the first one. If the last block has too little room for
+  // them, the rest of the block stays empty.
   std::size_t append(std::span<const T> values) {
     if (values.empty()) return size_;
     std::copy(values.begin(), values.end(), &room(values.size()));
@@ -37,12 +37,13 @@ class StableList {
     return first;
   }
 
-  // The `count` elements from `first` on. REQUIRES: one `append` has put them there.
+  // Returns the `count` elements from `first` on. REQUIRES: one call of `append` has added them.
   std::span<const T> part(std::size_t first, std::size_t count) const {
     return count == 0 ? std::span<const T>() : std::span<const T>(&(*this)[first], count);
   }
 
-  // Makes this list the first `count` elements of another one, side by side where they are so there.
+  // Makes this list a copy of the first `count` elements of another one; elements that are side by side there are so
+  // here.
   void assign(const StableList& other, std::size_t count) {
     for (std::size_t k = 0; k < kBlocks; ++k) {
       const std::size_t start = start_of(k), end = std::min(count, start_of(k + 1));
@@ -59,7 +60,7 @@ class StableList {
 
   static std::size_t start_of(std::size_t block) { return (kFirst << block) - kFirst; }
 
-  // The first element of room for `count` elements side by side; `size_` is its index afterwards.
+  // Returns the first element of room for `count` elements side by side; `size_` is its index afterwards.
   T& room(std::size_t count) {
     auto block = static_cast<std::size_t>(std::bit_width(size_ + kFirst)) - kFirstWidth;
     while (size_ + count > start_of(block + 1)) size_ = start_of(++block);

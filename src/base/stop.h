@@ -1,19 +1,19 @@
 // Requests to stop a computation on expressions: reading, derivation, proof, comparison.
 //
-// Whoever waits for the computation opens a StopScope in the thread that computes. Loops that may take long call
+// A caller that waits for the computation opens a StopScope in the thread that computes. Loops that may take long call
 // look_for_stop; it throws StopRequested if an open scope of the thread asks for an end. The layers hold no results
-// that a throw could leave half made: they build in graphs of their own, which are dropped with them.
+// that a throw could leave incomplete: they build in graphs of their own, which are destroyed with them.
 #pragma once
 #include <functional>
 #include <utility>
 
 namespace anholon {
 
-// Derives from nothing, so that no handler of errors takes it for an error.
+// Has no base class, so that no handler of errors catches it as an error.
 struct StopRequested {};
 
-// While it exists, look_for_stop in this thread asks `asked`, which is called often and so has to be cheap. Scopes nest:
-// each of them may stop what is computed in the innermost.
+// While a scope exists, look_for_stop in this thread calls `asked` often, so `asked` has to be cheap. Scopes nest: each
+// of them may stop the computation in the innermost.
 class StopScope {
  public:
   explicit StopScope(std::function<bool()> asked) : asked_(std::move(asked)), outer_(std::exchange(innermost_, this)) {}

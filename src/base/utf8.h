@@ -6,7 +6,7 @@
 
 namespace anholon {
 
-// Number of bytes of the character that starts at s[i] (1 for an invalid byte).
+// Returns the number of bytes of the character that starts at s[i] (1 for an invalid byte).
 inline std::size_t utf8_width(std::string_view s, std::size_t i) {
   const unsigned char c = static_cast<unsigned char>(s[i]);
   const std::size_t n = c < 0x80 ? 1 : c >= 0xF0 ? 4 : c >= 0xE0 ? 3 : c >= 0xC0 ? 2 : 1;

@@ -22,11 +22,12 @@ using Value = Arithmetic::Value;
 using Id = std::uint32_t;
 
 constexpr std::uint32_t kNone = Arithmetic::kNone;
-constexpr long kLargestPower = 4;           // whole powers up to this exponent are products
-constexpr std::size_t kMostFactors = 12;    // of a product that takes in the products among its factors
-constexpr std::size_t kMostPairs = 20'000;  // beyond, products do not look for common pairs
+constexpr long kLargestPower = 4;  // whole powers up to this exponent are products
+// The most factors of a product into which the products among its factors are merged.
+constexpr std::size_t kMostFactors = 12;
+constexpr std::size_t kMostPairs = 20'000;  // the most pairs for which products search common pairs
 
-// Builds the nodes of a tape. Parameters have numbers, so what does not depend on t and x is a number.
+// Builds the nodes of a tape. Parameters have numbers, so expressions that do not depend on t and x are numbers.
 class Builder {
  public:
   Builder(const Tape& tape, std::unordered_map<NodeId, std::string> names) : tape_(tape), names_(std::move(names)) {
@@ -77,7 +78,7 @@ class Builder {
         for (const std::uint32_t k : operands(static_cast<std::uint32_t>(s))) needed_[k] = true, ++uses_[k];
   }
 
-  // Numbers whose operands are rational are rational.
+  // Computes a number exactly if its operands are rational and the result is rational.
   bool exact(std::uint32_t s) {
     const Instruction& in = tape_.code[s];
     if (in.op == Op::constant) {
@@ -111,7 +112,7 @@ class Builder {
     return at->second;
   }
 
-  // A value as an operand of what is not a product or a sum.
+  // Returns a value as an operand of a node that is neither a product nor a sum.
   Id node_of(const Value& v) {
     if (v.node == kNone) return intern({Kind::number, {}, v.coefficient});
     return v.coefficient == 1 ? v.node : intern({Kind::sum, {}, 0, {{v.coefficient, v.node}}});
@@ -150,7 +151,7 @@ class Builder {
     return out;
   }
 
-  // The sum up to a factor: the size of coefficients that occurs most often becomes 1.
+  // Returns the sum up to a factor: the coefficient size that occurs most often becomes 1.
   Value sum(const Rational& constant, const std::vector<Term>& terms) {
     std::vector<Term> merged;
     for (const Term& t : terms) {
@@ -203,7 +204,7 @@ class Builder {
     return whole(intern({Kind::power, {}, exponent, {}, {node_of(v)}}));
   }
 
-  // exp(c*log(x)) as x^c.
+  // Returns exp(c*log(x)) as x^c.
   std::optional<Value> power_of_logarithm(const Value& v) {
     if (v.node == kNone) return std::nullopt;
     const Node& n = out_.nodes[v.node];
@@ -247,12 +248,12 @@ class Builder {
     return {};
   }
 
-  // Puts the factor that most terms share in front of them, as long as two share one.
+  // Takes out of the terms the factor that most of them share, as long as two share one.
   void factor_out(Id id) {
     const std::vector<std::size_t> uses = out_.uses();
     if (uses[id] == 0) return;
     for (;;) {
-      // A product that others use, too, is computed anyway.
+      // A product that also has other users is computed anyway.
       const auto factors = [&](const Term& t) {
         const Node& n = out_.nodes[t.node];
         std::vector<Id> out;
@@ -289,7 +290,7 @@ class Builder {
     }
   }
 
-  // Such sums are left by factor_out.
+  // Removes sums of one term, which factor_out leaves.
   void leave_out_sums_of_one_term() {
     const auto resolve = [&](Rational coefficient, Id& node) {
       for (;;) {
@@ -309,7 +310,8 @@ class Builder {
       if (v.node != kNone) v.coefficient = resolve(v.coefficient, v.node);
   }
 
-  // The coefficient of a root goes into a sum that nobody else uses, if no more coefficients than before are left.
+  // Moves the coefficient of a root into a sum that has no other user, if this does not increase the number of
+  // coefficients.
   void fold_into_sums() {
     const std::vector<std::size_t> uses = out_.uses();
     const auto products = [](const Node& n, const Rational& factor) {
@@ -327,7 +329,7 @@ class Builder {
     }
   }
 
-  // The pair of factors that occurs most often becomes a product of its own, as long as one occurs twice.
+  // Makes the pair of factors that occurs most often a product of its own, as long as one occurs twice.
   void share_pairs() {
     const std::vector<std::size_t> uses = out_.uses();
     std::vector<Id> products;
@@ -350,7 +352,7 @@ class Builder {
       for (const auto& [pair, times] : count)
         if (times > most) best = pair, most = times;
       if (most < 2) return;
-      // A product of this very pair serves the others.
+      // A product of exactly this pair serves the others.
       Id shared = kNone;
       for (const Id i : products)
         if (out_.nodes[i].of == std::vector<Id>{best.first, best.second}) shared = i;
@@ -434,7 +436,7 @@ std::vector<bool> Arithmetic::divisors() const {
 
 Arithmetic arithmetic(const RateFormulas& f, const Column& es) {
   if (es.empty()) return {};
-  // Parameters by their numbers.
+  // Substitutes the numbers of the parameters.
   std::unordered_map<NodeId, Expr> values;
   for (std::size_t i = 0; i < f.p.size(); ++i) values[f.p.symbols[i].id] = f.exact_parameters[i];
   const Column numbers = substitute(es, [&](NodeId id) {

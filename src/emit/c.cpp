@@ -12,8 +12,6 @@ namespace {
 using namespace emit;
 
 // `$` marks the name that the user gave.
-// The Jacobian is computed once (@ONCE) or in each round (@EACH); @SETTLED: the step no longer shrinks, and the bound
-// on its size.
 constexpr const char* kNewton = R"(
 int $_leading(double t, const double *state, const double *p, double *lead)
 {
@@ -89,7 +87,7 @@ class CFile {
   }
 
  private:
-  // Inputs follow the parameters.
+  // Adds the inputs after the parameters.
   std::string with_inputs(std::string text) const {
     if (!inputs_) return text;
     text = replaced(std::move(text), "const double *p, double *", "const double *p, const double *u, double *");
@@ -102,19 +100,20 @@ class CFile {
     return with_inputs("(double t, const double *state, const double *lead, const double *p, double *out)");
   }
 
-  // What precedes the statements of a function of all arguments: its own inputs, and a mention of what it does not read.
+  // Returns the lines before the statements of a function of all arguments: its own inputs, and a mention of each
+  // argument that it does not read.
   std::string before(const Statements& s) const {
     const std::string own = !inputs_       ? ""
                             : s.reads("u") ? "  double own[$_INPUTS];\n  if (!u) $_inputs(t, state, p, own), u = own;\n"
                                            : "  (void)u;\n";
-    const bool all = s.reads("u");  // passed on to the formulas of the inputs
+    const bool all = s.reads("u");  // t, state and p are passed on to the formulas of the inputs
     return own + unused({{"t", all || s.time},
                          {"state", all || s.reads("state")},
                          {"lead", s.reads("lead")},
                          {"p", all || s.reads("p")}});
   }
 
-  // The comment that lists the functions, and the headers.
+  // Returns the comment that lists the functions, and the headers.
   std::string contents() const {
     std::string out = R"( *
  * $_defaults      sets p to the default values
@@ -171,7 +170,7 @@ class CFile {
     return out;
   }
 
-  // The names of all quantities.
+  // Returns tables with the names of all quantities.
   std::string tables() const {
     std::vector<std::string> parameters;
     for (const Parameter& p : system_.model->parameters) parameters.push_back(p.name);
@@ -230,7 +229,7 @@ class CFile {
   }
 
   std::string right_side() const {
-    // Newton's method begins here.
+    // The start of Newton's method.
     std::string out = "\nconst double $_begin[$_UNKNOWNS + 1] = {";
     const bool guess = !m_.linear && options_.start && !options_.start->leading.empty();
     for (std::size_t j = 0; guess && j < system_.size(); ++j) out += number_text(options_.start->leading[j]) + ", ";
@@ -249,7 +248,8 @@ class CFile {
     return out + "  return status;\n}\n";
   }
 
-  // A function of many states. If the equations are not linear, the solution at one is the first guess at the next.
+  // Returns a function of many states. If the equations are not linear, the solution for one state is the first guess
+  // for the next.
   std::string many() const {
     const std::string u = inputs_ ? ", u" : "";
     return with_inputs(
@@ -283,7 +283,7 @@ class CFile {
     return with_inputs("(int k, double t, double *state, const double *lead, double *p)");
   }
 
-  // The function that sets what events set. All formulas of one event use the values before it.
+  // Returns the function with the assignments of events. All formulas of one event use the values before it.
   std::string resets() const {
     if (m_.events.empty()) return {};
     std::size_t most = 1;

@@ -89,8 +89,9 @@ class CasadiFile {
     return out + "\n";
   }
 
-  // Functions that set out[i] to the i-th expression: $_name by constants c, which $_name_constants makes of p. The
-  // constants of the default parameters are written for functions that a null pointer for p reaches.
+  // Returns functions that set out[i] to the i-th expression: $_name with constants c, which $_name_constants computes
+  // from p. The constants of the default parameters are written for functions that may be called with a null pointer
+  // for p.
   enum class Parameters { given, given_or_null };
   std::string function(const std::string& name, const Column& es, Parameters p = Parameters::given_or_null,
                        bool sparse = false) {
@@ -130,8 +131,8 @@ class CasadiFile {
     return all;
   }
 
-  // Gauss's elimination in the given order of pivots, statement by statement. Where a multiplier is large the order does
-  // not hold, and the function says so.
+  // Returns Gaussian elimination in the given order of pivots, statement by statement. If a multiplier is large, the
+  // order is unsuitable, and the function reports it.
   std::string elimination() const {
     const std::size_t n = f_.lead.size();
     const Column given = matrix_and_right();
@@ -174,14 +175,14 @@ static int $_eliminate(const double *e, double *lead)
         if (j != column && !a[row][j].empty()) out += " - " + a[row][j] + "*lead[" + std::to_string(j) + "]";
       out += ")*" + place("d", row) + ";\n";
     }
-    // A matrix in steps has no multipliers.
+    // A triangular matrix has no multipliers.
     if (!f_.pivots.empty() && out.find("  l = ") == std::string::npos) out += "  (void)l;\n";
     return out + (f_.pivots.empty() ? "  (void)e, (void)lead, (void)l, (void)largest;\n  return 1;\n}\n"
                                     : "  return !(largest < 1e3);\n}\n");
   }
 
-  // lead by elimination or, where its pivots do not suit, by one that searches; the factors of the matrix for the
-  // Jacobian.
+  // Returns functions that compute lead by elimination or, if its pivots do not suit, by one that searches pivots; and
+  // the factors of the matrix for the Jacobian.
   std::string solution() const {
     if (f_.explicit_rates()) return {};
     std::string out = R"(typedef struct {
@@ -217,7 +218,7 @@ static int $_leading(double t, const double *x, const double *u, const double *p
     return put(put(out, "@DECLARE", constants_of("equations")), "@SET", set_constants_of("equations"));
   }
 
-  // Statements that declare `lead` and `status`, and solve for it.
+  // Returns statements that declare `lead` and `status`, and solve for `lead`.
   std::string solved() const {
     return f_.explicit_rates() ? "  const double *lead = 0;\n  int status = 0;\n"
                                : "  double lead[$_UNKNOWNS];\n  int status = $_leading(t, x, u, p, lead);\n";
@@ -235,7 +236,8 @@ static int $_leading(double t, const double *x, const double *u, const double *p
 )";
   }
 
-  // Statements that declare the constants of a function: those of p, or of the default values for a null pointer.
+  // Returns statements that declare the constants of a function: those for p, or for the default values if p is a null
+  // pointer.
   static std::string constants_of(const std::string& function) {
     return replaced("  double own_@[$_@_size];\n  const double *c_@ = $_@_defaults;\n", "@", function);
   }
@@ -243,10 +245,10 @@ static int $_leading(double t, const double *x, const double *u, const double *p
     return replaced("  if (p) $_@_constants(p, own_@), c_@ = own_@;\n", "@", function);
   }
 
-  // Partial derivatives of a list by lead, t, x, u and p; those that are not zero, and where they belong.
+  // The nonzero partial derivatives of a list by lead, t, x, u and p, and their places.
   struct Partials {
     Column es;
-    std::vector<std::vector<std::ptrdiff_t>> place;  // by row: of each column, or -1
+    std::vector<std::vector<std::ptrdiff_t>> place;  // by row: the place of each column, or -1
   };
   Partials partials_of(const Column& es) const {
     Column by = f_.lead.symbols;
@@ -262,7 +264,7 @@ static int $_leading(double t, const double *x, const double *u, const double *p
     return out;
   }
 
-  // The Jacobian of the results as values one after the other, block by block.
+  // Returns the Jacobian of the results as values one after the other, block by block.
   std::string partials() {
     Column results;
     for (const Column& r : results_) results.insert(results.end(), r.begin(), r.end());
@@ -270,7 +272,7 @@ static int $_leading(double t, const double *x, const double *u, const double *p
     std::string out =
         function("partials", own.es) + (f_.explicit_rates() ? "" : function("equation_partials", below.es));
     const std::size_t n = f_.lead.size();
-    // d equation / d column occurs; d result / d lead occurs.
+    // These are true if d equation / d column occurs, or if d result / d lead occurs.
     const auto occurs = [&](std::size_t column) {
       return std::any_of(below.place.begin(), below.place.end(), [&](const auto& row) { return row[n + column] >= 0; });
     };
@@ -351,7 +353,7 @@ static int $_leading(double t, const double *x, const double *u, const double *p
     return out + "  default: return " + otherwise + ";\n  }\n}\n";
   }
 
-  // What CasADi asks of a function: names and sparsities of its arguments and results.
+  // Returns the functions that CasADi calls to query a function: names and sparsities of its arguments and results.
   static std::string asked(const std::string& function, const std::vector<std::string>& in,
                            const std::vector<Block>& in_blocks, const std::vector<std::string>& out_names,
                            const std::vector<Block>& out_blocks) {

@@ -10,15 +10,16 @@ namespace anholon::emit {
 
 namespace {
 
-constexpr std::size_t kMostUnknowns = 200;  // of an elimination that is written out
+constexpr std::size_t kMostUnknowns = 200;  // the most unknowns of an elimination that is written out
 constexpr int kSamples = 6;
-constexpr double kAround = 0.3;     // of the samples, in coordinates and velocities
-constexpr double kThreshold = 0.1;  // of a pivot against its column
-constexpr double kLost = 1e-13;  // of a number of size 1; a tenth of the 1e-12 to which programs agree with the motion
+constexpr double kAround = 0.3;     // radius of the samples, in coordinates and velocities
+constexpr double kThreshold = 0.1;  // the least ratio of a pivot to the largest entry of its column
+// Lost digits of a number of size 1: a tenth of the 1e-12 to which programs agree with the motion.
+constexpr double kLost = 1e-13;
 
 using Table = std::vector<std::vector<double>>;
 
-// The matrix at states around the start at which it has finite entries.
+// Returns the matrix at states near the start at which it has finite entries.
 std::vector<Table> samples_of(const System& s, const Motion& m, const EmitOptions::Start& start) {
   const std::size_t n = m.jacobian.size();
   const Tape tape = compile(entries(m.jacobian));
@@ -140,7 +141,7 @@ std::vector<double> solved(Table a, std::vector<double> b, const Pivots& pivots)
   return x;
 }
 
-// Whether one correction of a solution with numbers of size 1 is more than kLost in a sample.
+// True if one correction of a solution with numbers of size 1 exceeds kLost in a sample.
 bool loses_digits(const std::vector<Table>& samples, const Pivots& pivots) {
   const std::size_t n = pivots.size();
   const auto missing = [&](const Table& a, const std::vector<double>& b, const std::vector<double>& x) {
@@ -218,7 +219,7 @@ class PythonElimination {
     }
   }
 
-  // What the elimination makes of a right side; empty entries vanish.
+  // Returns a right side after the elimination; empty entries vanish.
   std::vector<std::string> reduced(std::vector<std::string> b, const char* kind) {
     for (const auto& [row, column] : e_.pivots)
       for (const auto& [i, l] : multipliers_[row]) {
@@ -229,7 +230,7 @@ class PythonElimination {
     return b;
   }
 
-  // The solution, by its unknowns.
+  // Returns the solution, by its unknowns.
   std::vector<std::string> substituted(const std::vector<std::string>& b, const char* kind) {
     std::vector<std::string> x(n_);
     for (std::size_t k = n_; k-- > 0;) {
@@ -249,7 +250,7 @@ class PythonElimination {
   const EliminationNames& names_;
   std::size_t n_;
   std::vector<std::string> a_;
-  std::vector<std::string> inverse_;  // of pivots that are divided by more than once, by row
+  std::vector<std::string> inverse_;  // reciprocals of pivots that divide more than once, by row
   std::vector<std::vector<std::pair<std::size_t, std::string>>> multipliers_;  // by row of the pivot: row, name
   std::string out_, suits_;
 };

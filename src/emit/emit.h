@@ -7,9 +7,10 @@
 // The state is x_j^(k), k < d_j, all of order 0 first; the hidden constraints E_i^(k), k < c_i, are a function of their
 // own, so that an integrator that ignores them can be checked.
 //
-// Inputs are an array u of their own: without one, the formulas of the model give them. Outputs y and the formulas of
-// events are functions of state and lead; what events set is a function that changes state and parameters (modes are
-// parameters). What holds derivatives beyond lead is left out, and the head of the text says so.
+// Inputs are an array u of their own: without it, the formulas of the model give the inputs. Outputs y and the formulas
+// of events are functions of state and lead. The assignments of events are a function that changes state and parameters
+// (modes are parameters). Outputs and events with derivatives beyond lead are left out, and the head of the text says
+// so.
 //
 // A derivative that does not truly occur (structure.h) is set to zero.
 #pragma once
@@ -35,16 +36,17 @@ struct EmitOptions {
   struct Start {
     double t = 0;
     std::vector<std::vector<double>> values;  // by variable: its derivatives below the leading one
-    std::vector<double> leading;              // where Newton's method begins; empty: at zero
+    std::vector<double> leading;              // start of Newton's method; empty: zero
   };
   std::optional<Start> start;  // an initial state
   std::vector<InputFormula> inputs;
   std::vector<std::pair<std::string, Expr>> outputs;  // names and values
-  const RateFormulas* rates = nullptr;                // of independent velocities, for Python
-  std::vector<std::string> of_order;                  // parameters that decide the order of the equations
+  const RateFormulas* rates = nullptr;                // rates of independent velocities, for Python
+  std::vector<std::string> of_order;                  // parameters that determine the order of the equations
 };
 
-// Both throw Failure for an expression that cannot be written: an unknown function of time, a number beyond double.
+// Both return the text, and throw Failure for an expression that cannot be written: an unknown function of time, a
+// number beyond double.
 std::string emit_c(const System& system, const Structure& structure, const EmitOptions& options);
 std::string emit_python(const System& system, const Structure& structure, const EmitOptions& options);
 

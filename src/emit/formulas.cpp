@@ -59,7 +59,7 @@ for lead first; where LINEAR is false, equations() takes lead, too, and the solu
   }
 
  private:
-  // A list with these entries.
+  // Returns a list with these entries.
   std::string list(const std::string& name, const Column& formulas) {
     const Column es = with_guarded_branches(formulas);
     std::vector<std::string> targets;

@@ -23,7 +23,7 @@ void refuse_unknown_functions(const System& s) {
   }
 }
 
-// The state: the derivatives of each variable below its leading one.
+// Adds the state: the derivatives of each variable below its leading one.
 void add_state(const System& s, const Structure& structure, Motion& m) {
   const std::size_t n = s.size();
   int largest_d = 0;
@@ -38,7 +38,8 @@ void add_state(const System& s, const Structure& structure, Motion& m) {
         derivative_name(s.variable_names[j], static_cast<unsigned>(structure.d[j]), Format::text));
 }
 
-// The leading derivatives that occur in equation i, which is differentiated c times; zero for each other variable.
+// Returns the leading derivatives that occur in equation i, which is differentiated c times; zero for each other
+// variable.
 Column leading_derivatives(const System& s, const Structure& structure, std::size_t i) {
   Column leading;
   for (std::size_t j = 0; j < s.size(); ++j) {
@@ -50,7 +51,7 @@ Column leading_derivatives(const System& s, const Structure& structure, std::siz
   return leading;
 }
 
-// Residual, Jacobian and hidden constraints of equation i.
+// Adds residual, Jacobian and hidden constraints of equation i.
 void add_equation(const System& s, const Structure& structure, std::size_t i, Motion& m) {
   Graph& g = *s.model->graph;
   // Derivatives that do not truly occur are set to zero before further differentiation.
@@ -86,8 +87,8 @@ bool is_linear(const System& s, const Structure& structure, const std::vector<Co
   return true;
 }
 
-// The values of the parameters. Parameters may refer to each other in any order: values are substituted until only free
-// parameters are left.
+// Adds the values of the parameters. Parameters may refer to each other in any order: values are substituted until only
+// free parameters are left.
 void add_parameters(const Model& model, Motion& m) {
   for (const Parameter& p : model.parameters) m.parameters.push_back(p.value);
   if (m.parameters.empty()) return;
@@ -103,12 +104,12 @@ void add_parameters(const Model& model, Motion& m) {
     });
 }
 
-// The symbols that formulas of a program may hold: the time, state and lead, parameters and inputs.
+// The symbols that formulas of a program may contain: the time, state and lead, parameters and inputs.
 class Known {
  public:
   Known(const System& s, const Motion& m) : s_(s), m_(m) {}
 
-  // Without masses and inputs that are formulas; multipliers of redundant constraints are zero.
+  // Returns e with the formulas of masses and inputs substituted; multipliers of redundant constraints are zero.
   Expr written(Expr e) const {
     Graph& g = *s_.model->graph;
     e = put_masses(*s_.model, put_state_rates(*s_.model, e, 2));
@@ -132,7 +133,7 @@ class Known {
     });
   }
 
-  // Nullopt if it holds what a program does not know.
+  // Returns an event; nullopt if it contains symbols that a program does not know.
   std::optional<Motion::Event> event(std::size_t k) const {
     const Event& e = s_.model->events[k];
     const Graph& g = *s_.model->graph;

@@ -23,29 +23,29 @@ struct Motion {
   Column input_values;               // by their formulas
   Column parameters;                 // values in terms of the independent parameters
   bool linear = true;                // the equations are linear in the leading derivatives
-  std::vector<int> orders;           // of the leading derivatives, by variable
+  std::vector<int> orders;           // orders of the leading derivatives, by variable
   Column outputs;
   struct Event {
     std::size_t index;  // in the model
     Expr when;
-    std::vector<std::string> targets;  // "state[3]", "p[0]": what it sets
+    std::vector<std::string> targets;  // "state[3]", "p[0]": the places that the event sets
     Column values;
-    bool moves = false;  // sets coordinates or velocities
+    bool moves = false;  // true if it sets coordinates or velocities
   };
   std::vector<Event> events;
-  std::vector<std::string> output_names, left_out;  // left_out: outputs and events that hold derivatives beyond lead
+  std::vector<std::string> output_names, left_out;  // left_out: outputs and events with derivatives beyond lead
   std::vector<std::string> state_names, leading_names, equation_names, hidden_names, input_names;
 
-  // The index of x_j^(k), k < d_j, in the state.
+  // Returns the index of x_j^(k), k < d_j, in the state.
   std::size_t place(std::size_t variable, unsigned order) const;
 };
 
-// Throws Failure for functions without a formula.
+// Returns the motion. Throws Failure for functions without a formula.
 Motion motion(const System& system, const Structure& structure, const EmitOptions& options);
 // Returns the motion without outputs and events.
 Motion motion_between_events(const System& system, const Structure& structure, std::span<const InputFormula> inputs);
 
-// The initial state in the order of the state.
+// Returns the initial state in the order of the state.
 std::vector<double> start_state(const Motion& motion, const EmitOptions::Start& start);
 
 }  // namespace anholon::emit

@@ -21,7 +21,7 @@ class LocalNames {
   };
   const std::vector<std::string>& arrays() const { return arrays_; }
   const std::string& symbol(NodeId id) const { return symbols_.at(id); }
-  // Null for the time, which is an argument of its own.
+  // Returns nullptr for the time, which is an argument of its own.
   const Place* place(NodeId id) const;
   bool taken(const std::string& name) const { return taken_.count(name) > 0; }
 
@@ -35,7 +35,7 @@ class LocalNames {
   std::unordered_map<NodeId, Place> places_;
 };
 
-// An identifier like this text; empty text gives `otherwise`.
+// Returns an identifier similar to this text; `otherwise` for an empty text.
 std::string identifier(const std::string& text, const std::string& otherwise);
 
 }  // namespace anholon::emit

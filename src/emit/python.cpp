@@ -74,7 +74,7 @@ std::string scalars() {
   std::string functions;
   for (const FunctionInfo& f : elementary_functions()) {
     const std::string numpy = std::string(f.numpy).substr(kPrefix);
-    if (numpy == "abs" || numpy == "sign") continue;  // not of math
+    if (numpy == "abs" || numpy == "sign") continue;  // not in the module math
     functions += "    " + numpy + " = math." + f.c + "\n";
   }
   return replaced(kScalars, "@FUNCTIONS", functions);
@@ -148,7 +148,7 @@ std::vector<std::string> targets(std::size_t count, std::size_t columns = 0) {
   return out;
 }
 
-// The arguments of a function as arrays.
+// Returns the arguments of a function as arrays.
 std::string arrays(const Statements& b) {
   std::string out;
   if (b.time) out += "    t = np.asarray(t, dtype=float)[()]\n";
@@ -174,7 +174,7 @@ class PythonModule {
   }
 
  private:
-  // Inputs are the last argument of a function and are passed on.
+  // Inputs are the last argument of a function, and are passed on.
   std::string u_argument() const { return inputs_ ? ", u=None" : ""; }
   std::string u() const { return inputs_ ? ", u" : ""; }
 
@@ -196,7 +196,7 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
     return options_.start ? out : put(out, "START", "start");
   }
 
-  // The names of all quantities.
+  // Returns tables with the names of all quantities.
   std::string tables() const {
     std::vector<std::string> parameters;
     for (const Parameter& p : system_.model->parameters) parameters.push_back(p.name);
@@ -289,7 +289,8 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
 
   std::string rates() const { return options_.rates ? python_rates(*options_.rates) : ""; }
 
-  // The matrix and the right side by names, then the elimination: a function of the library for numbers.
+  // Returns the matrix and the right side by names, then the elimination: a function that takes the library for numbers
+  // as an argument.
   std::string elimination() {
     if (!elimination_) return {};
     Graph& g = *system_.model->graph;
@@ -351,7 +352,7 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
     return out + "    return out\n";
   }
 
-  // Outputs, events and what they set.
+  // Returns the functions of outputs, events and their assignments.
   std::string results() {
     std::string out;
     const auto function = [&](const std::string& name, const std::string& told, const char* count, const Column& es) {
@@ -393,7 +394,7 @@ With SciPy: solve_ivp(rhs, (T0, T1), START, args=(p,), rtol=1e-10, atol=1e-10)
     return out;
   }
 
-  // What the module does as a program.
+  // Returns the code of the module as a program.
   std::string demonstration() const {
     if (!options_.start) return {};
     return R"(

@@ -17,15 +17,15 @@ using Term = Arithmetic::Term;
 using Id = std::uint32_t;
 
 constexpr std::uint32_t kNone = Arithmetic::kNone;
-constexpr std::size_t kLongest = 100;  // of the text of an operand; a longer one gets a name
+constexpr std::size_t kLongest = 100;  // the longest text of an operand; a longer one gets a name
 
 std::string number_of(const Rational& r) { return number_text(from_rational<double>(r)); }
 std::string number_of(const Node& n) { return n.text.empty() ? number_of(n.number) : "float(\"" + n.text + "\")"; }
 
-// The name without "np.".
+// Returns the name without "np.".
 std::string short_name(Function f) { return std::string(info(f).numpy).substr(3); }
 
-// Its text and how it binds: a sum, a product, or something that needs no parentheses.
+// A text and its binding strength: a sum, a product, or an atom that needs no parentheses.
 struct Text {
   std::string s;
   enum class Bond : std::uint8_t { sum, product, atom } bond = Bond::atom;
@@ -125,7 +125,8 @@ class OfOne {
   std::vector<Text> text_;
 };
 
-// Rows of w are given to results and taken back after their last use. The rows of `out` hold roots.
+// Writes the statements for many states. Rows of w are assigned to results and reused after the last use of the result.
+// The rows of `out` hold roots.
 class OfMany {
  public:
   explicit OfMany(const Arithmetic& a) : a_(a), left_(a.uses()), divisor_(a.divisors()), place_(a.nodes.size()) {}
@@ -159,7 +160,7 @@ class OfMany {
   void line(const std::string& s) { text_ += "    " + s + "\n"; }
   const std::string& at(Id i) const { return place_[i]; }
 
-  // A row that nobody uses.
+  // Returns an unused row.
   std::string take() {
     if (!idle_.empty()) {
       const std::string row = idle_.back();
@@ -180,7 +181,7 @@ class OfMany {
     for (const Id k : a_.operands(i)) used(k);
   }
 
-  // By the sine or the cosine, whichever comes first: the two of one angle.
+  // Returns the pairs of sine and cosine of one angle, by that of the two that comes first.
   std::map<Id, std::pair<Id, Id>> sines_and_cosines() const {
     std::map<Id, std::pair<Id, Id>> of_angle, out;
     for (Id i = 0; i < a_.nodes.size(); ++i) {
@@ -252,7 +253,7 @@ class OfMany {
   }
 
   void sum(const Node& n, const std::string& to) {
-    // A term whose product needs no row of its own begins, then come those to add, then those to subtract.
+    // The sum begins with a term whose product needs no row of its own; added terms follow, then subtracted ones.
     std::vector<Term> terms;
     const auto rank = [](const Rational& c) { return abs(c) != 1 ? 0 : c == 1 ? 1 : 2; };
     for (int k = 0; k < 3; ++k)
@@ -306,7 +307,7 @@ class OfMany {
       line(to + "[:] = " + at(v.node));
   }
 
-  // Names of the rows that are used.
+  // Returns names of the rows that are used.
   std::string arguments() const {
     std::string out;
     const auto row = [&](const std::string& name, const std::string& list, std::size_t k) {

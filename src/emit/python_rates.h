@@ -7,7 +7,7 @@
 
 namespace anholon::emit {
 
-// REQUIRES: the rates are explicit, and no symbol is an input.
+// Returns the text. REQUIRES: the rates are explicit, and no symbol is an input.
 std::string python_rates(const RateFormulas& formulas);
 
 }  // namespace anholon::emit

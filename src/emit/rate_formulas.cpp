@@ -15,13 +15,14 @@ bool varies(Expr e) {
   return std::any_of(list.begin(), list.end(), [&](NodeId id) { return e.graph->node(id).kind != Kind::parameter; });
 }
 
-// A number at which a function that is not defined everywhere has a value: 1/2 or 2.
+// Returns a number at which a function that is not defined everywhere has a value: 1/2 or 2.
 Rational defined_at(Function f, Graph& g) {
   PointValues at([](const Node&) { return 0.0; });
   return std::isfinite(at(g.apply(f, g.number({1, 2})))) ? Rational(1, 2) : Rational(2);
 }
 
-// What may have no value in a branch, each with a number at which it has one: radicands, divisors and arguments.
+// Returns the parts of a branch that may have no value, each with a number at which it has one: radicands, divisors and
+// arguments.
 std::unordered_map<NodeId, Rational> risks(Expr branch) {
   std::unordered_map<NodeId, Rational> list;
   const Graph& g = *branch.graph;

@@ -1,7 +1,7 @@
-// The motion as formulas  x' = f(t, x, u, p),  y = h(t, x, u, p)  for programs of others.
+// The motion as formulas  x' = f(t, x, u, p),  y = h(t, x, u, p)  for other programs.
 //
-// Rates are explicit in independent velocities (theory: quasi-velocities). Otherwise they hold further unknowns `lead`:
-// accelerations, multipliers and rates of states, of which  equations(t, x, u, p, lead) = 0.
+// Rates are explicit in independent velocities (theory: quasi-velocities). Otherwise they contain further unknowns
+// `lead`: accelerations, multipliers and rates of states, which satisfy  equations(t, x, u, p, lead) = 0.
 #pragma once
 #include <memory>
 
@@ -20,19 +20,20 @@ struct RateFormulas {
     }
   };
 
-  std::shared_ptr<const Model> model;  // whose graph has the expressions, and whose names print them
+  std::shared_ptr<const Model> model;  // its graph holds the expressions, and its names print them
   std::string title;
   Symbols x, u, p, lead;              // p: the parameters that do not follow from others
   Column exact_parameters;            // the values of p in the model
-  std::vector<std::string> meanings;  // of x: what an independent velocity is; empty for the others
-  Column rates;                       // of x, one by one
+  std::vector<std::string> meanings;  // for x: the meaning of an independent velocity; empty for the others
+  Column rates;                       // rates of x, one by one
   Column equations;                   // one for each of lead
-  bool linear = true;                 // in lead
-  Column input_formulas;              // u as the model has it, in t, x, p; empty where some hold what is solved for
-  Column open_input_formulas;         // the same, with u where a formula holds other inputs
+  bool linear = true;                 // true if the equations are linear in lead
+  // The inputs u by the formulas of the model, in t, x, p; empty if some contain solved unknowns.
+  Column input_formulas;
+  Column open_input_formulas;  // the same, with u where a formula contains other inputs
   std::vector<std::string> output_names;
   Column outputs;
-  std::vector<std::string> left_out;  // outputs that hold multipliers, which independent velocities do not have
+  std::vector<std::string> left_out;  // outputs with multipliers, which independent velocities do not have
 
   // An order of pivots of the matrix, row and column, that suits the start: one for each of lead.
   std::vector<std::pair<std::size_t, std::size_t>> pivots;
@@ -41,22 +42,23 @@ struct RateFormulas {
   std::vector<double> start, parameters, inputs;
 
   bool explicit_rates() const { return lead.size() == 0; }
-  // d equations / d lead, row by row, and  right = -equations at lead = 0:  matrix lead = right. Nonlinear equations:
-  // right = -equations, so that  matrix correction = right  is a step of Newton's method.
+  // matrix() returns d equations / d lead, row by row, and right() -equations at lead = 0:  matrix lead = right. For
+  // nonlinear equations right = -equations, so that  matrix correction = right  is a step of Newton's method.
   std::vector<Column> matrix() const;
   Column right() const;
 };
 
-// The same values where branches keep what they do not take from having none: sqrt(x) in the branch of x >= 0 is
-// sqrt(x where x >= 0, else 1) there. Libraries that compute both branches then have derivatives, too.
+// Returns expressions with the same values in which branches that are not taken have values as well: sqrt(x) in the
+// branch of x >= 0 becomes sqrt(x where x >= 0, else 1). Libraries that compute both branches then have derivatives as
+// well.
 Column with_guarded_branches(const Column& es);
 
-// The rates as a Python module, whose functions take the library for arrays as an argument: NumPy, JAX, or what stands for
-// CasADi, SymPy and mpmath.
+// Returns the rates as a Python module, whose functions take the library for arrays as an argument: NumPy, JAX, or a
+// replacement for CasADi, SymPy and mpmath.
 std::string emit_formulas(const RateFormulas& formulas);
 
-// The rates as a C file: name_rhs(t, x, u, p, dx), and name with its Jacobian jac_name in CasADi's external interface,
-// (t, x, u, p) -> (dx, y). REQUIRES: the equations are linear.
+// Returns the rates as a C file: name_rhs(t, x, u, p, dx), and name with its Jacobian jac_name in CasADi's external
+// interface, (t, x, u, p) -> (dx, y). REQUIRES: the equations are linear.
 std::string emit_casadi(const RateFormulas& formulas, const std::string& name, const std::string& made_by);
 
 }  // namespace anholon

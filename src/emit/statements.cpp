@@ -20,7 +20,7 @@ constexpr int kSum = 1, kProduct = 2, kPower = 3, kAtom = 4;
 
 const char* function_name(Function f, Language language) { return language == Language::c ? info(f).c : info(f).numpy; }
 
-// The number of times that the text of a power contains its base.
+// Returns how often the text of a power contains its base.
 std::size_t bases(const Rational& exponent) {
   const Rational r = abs(exponent);
   if (r.is_integer() && r <= kLargestProduct) return r.get_num().get_ui();
@@ -107,7 +107,7 @@ std::vector<Writer::Use> Writer::read_by(NodeId id) {
   return list;
 }
 
-// The nodes that are read, operands first.
+// Returns the nodes that are read, operands first.
 std::vector<NodeId> Writer::needed(const Column& es) {
   std::vector<NodeId> ids;
   std::vector<bool> seen(g_.size(), false);

@@ -1,4 +1,5 @@
-// Expressions as statements of C or Python, by one sweep from the leaves up without recursion, so the depth is not limited.
+// Expressions as statements of C or Python, by one sweep from the leaves up without recursion, so the depth is not
+// limited.
 #pragma once
 #include <map>
 #include <set>
@@ -17,8 +18,8 @@ enum class Language : std::uint8_t { c, python };
 // or is long, gets a variable.
 struct Statements {
   std::string text;
-  bool time = false;             // whether it reads t
-  std::set<std::string> arrays;  // the other arguments that it reads
+  bool time = false;             // true if the function reads t
+  std::set<std::string> arrays;  // the other arguments that the function reads
   bool reads(const std::string& array) const { return arrays.count(array) > 0; }
 };
 
@@ -26,7 +27,7 @@ class Writer {
  public:
   Writer(const Graph& graph, const LocalNames& names, Language language)
       : g_(graph), names_(names), language_(language) {}
-  // targets[i] = es[i], after the variables; structural zeros are left out if `sparse`.
+  // Writes targets[i] = es[i], after the variables; structural zeros are left out if `sparse`.
   Statements body(const Column& es, const std::vector<std::string>& targets, bool sparse = false);
   bool used_sign() const { return used_sign_; }
 
@@ -44,14 +45,16 @@ class Writer {
   std::vector<Piece> pieces(NodeId id);
   std::vector<Piece> sum(NodeId id);
   std::vector<Piece> product(NodeId id);
-  // A node that a text holds, to this power.
+  // A node that occurs in a text, to this power.
   struct Use {
     NodeId node;
     Rational exponent;
   };
-  // exp(n*log(x)) is pow(x, n), which has a value for x <= 0 where n is a whole number. null: `id` is no power.
+  // Returns exp(n*log(x)) as pow(x, n), which has a value for x <= 0 if n is a whole number; nullptr if `id` is no
+  // power.
   const GeneralPowers* powers(NodeId id);
-  // The factors of a product without such powers, and without whole powers of their bases, which go to `out`.
+  // Returns the factors of a product without such powers, and without whole powers of their bases; both are added to
+  // `out`.
   std::vector<Term> without_powers(NodeId product, GeneralPowers& out);
   std::vector<Use> read_by(NodeId id);
   std::vector<NodeId> needed(const Column& es);
@@ -69,8 +72,8 @@ class Writer {
   Language language_;
   std::unordered_map<NodeId, Text> text_;
   std::unordered_map<NodeId, std::size_t> uses_;
-  std::map<std::pair<NodeId, Rational>, std::size_t> power_uses_;  // of roots and reciprocals
-  std::map<std::pair<NodeId, Rational>, std::string> powers_;      // those that have a variable
+  std::map<std::pair<NodeId, Rational>, std::size_t> power_uses_;  // uses of roots and reciprocals
+  std::map<std::pair<NodeId, Rational>, std::string> powers_;      // the powers that have a variable
   std::unordered_map<NodeId, std::optional<GeneralPowers>> general_;
   std::size_t next_ = 0;
   bool used_sign_ = false;

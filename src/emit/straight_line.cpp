@@ -26,7 +26,7 @@ const std::string kZero = "0.0";
 
 std::string element(const char* array, std::size_t i) { return std::string(array) + "[" + std::to_string(i) + "]"; }
 
-// The name of a value that begins at `at`, "s12"; empty if another word is there.
+// Returns the name of a value that begins at `at`, "s12"; empty if another word is there.
 std::string value_name(const std::string& text, std::size_t at) {
   const auto in_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
   if (text[at] != 's' || (at > 0 && in_word(text[at - 1]))) return {};
@@ -35,8 +35,8 @@ std::string value_name(const std::string& text, std::size_t at) {
   return end == at + 1 || (end < text.size() && in_word(text[end])) ? "" : text.substr(at, end - at);
 }
 
-// The statements, one a line, without values that no later one reads: a constant factor that moved outwards has left
-// them behind.
+// Returns the statements, one a line, without values that no later statement reads, which constant factors leave behind
+// when they move outwards.
 std::string without_unread(const std::string& statements) {
   std::vector<std::string> lines;
   for (std::size_t from = 0, to; from < statements.size(); from = to) {
@@ -120,7 +120,7 @@ void StraightLine::find_uses(const std::unordered_map<std::uint32_t, std::string
   }
 }
 
-// What the constants are made of, and then the constants.
+// Writes the operands of the constants, and then the constants.
 void StraightLine::write_constants() {
   std::vector<bool> read(tape_.code.size(), false);
   for (const Coefficient& c : constants_)
@@ -185,7 +185,7 @@ void StraightLine::write_rates() {
   }
 }
 
-// A slot that does not vary, as far as it is a product of powers.
+// Returns a slot that does not vary, as a product of powers as far as possible.
 StraightLine::Coefficient StraightLine::constant(std::uint32_t s) const {
   const Instruction& in = tape_.code[s];
   const Coefficient itself{{{{s, 1}}, 1}};
@@ -216,7 +216,7 @@ StraightLine::Coefficient StraightLine::constant(std::uint32_t s) const {
   }
 }
 
-// The power of a slot; that of a sum has the slot as its base.
+// Returns the power of a slot; the power of a sum has the slot as its base.
 StraightLine::Coefficient StraightLine::constant_power(std::uint32_t s, long exponent) const {
   const Coefficient base = constant(s);
   if (base.size() != 1) return {{{{s, exponent}}, 1}};
@@ -245,7 +245,7 @@ bool StraightLine::is_sign(const Coefficient& c) {
   return c.size() == 1 && c.begin()->first.empty() && abs(c.begin()->second) == 1;
 }
 
-// A form times a constant takes no more operations than its value times the constant.
+// True if a form times a constant takes no more operations than its value times the constant.
 bool StraightLine::scales_freely(const Form& f) {
   return std::count_if(f.begin(), f.end(), [](const Term& t) { return is_sign(t.coefficient); }) <= 1;
 }
@@ -277,7 +277,7 @@ StraightLine::Form StraightLine::sum_of(const Instruction& in) {
   return out;
 }
 
-// The value of a slot as one term.
+// Returns the value of a slot as one term.
 StraightLine::Term StraightLine::term_of(std::uint32_t s) {
   if (uses_[s].varies && forms_[s].size() == 1 && !forms_[s][0].text.empty()) return forms_[s][0];
   return {operand(s), kOne};
@@ -332,7 +332,7 @@ std::string StraightLine::place_of(const Coefficient& c) {
   return element("c", place->second);
 }
 
-// A term that is subtracted is one operation; a leading minus is one more.
+// Returns the text of a sum. A term that is subtracted is one operation; a leading minus is one more.
 std::string StraightLine::sum_text(Form f) {
   if (f.empty()) return kZero;
   const auto rank = [](const Term& t) { return t.coefficient == kOne ? 0 : is_sign(t.coefficient) ? 2 : 1; };
@@ -400,7 +400,7 @@ std::vector<double> StraightLine::default_constants() const {
   return out;
 }
 
-// A number that is written where it is used.
+// True for a number that is written at its place of use.
 bool StraightLine::is_literal(std::uint32_t s) const {
   const Instruction& in = tape_.code[s];
   return in.op == Op::constant || in.op == Op::pi || (in.op == Op::linear && in.count == 0);

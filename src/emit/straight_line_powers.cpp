@@ -1,4 +1,4 @@
-// exp(n*log(x)) as pow(x, n), which has a value for x <= 0 where n is a whole number.
+// Writes exp(n*log(x)) as pow(x, n), which has a value for x <= 0 if n is a whole number.
 #include "emit/straight_line.h"
 #include "emit/text.h"
 
@@ -13,7 +13,7 @@ std::string StraightLine::power_of(const std::string& base, const Coefficient& e
   return name;
 }
 
-// The slot of a logarithm that varies, and what it is multiplied by.
+// Returns the slot of a logarithm that varies, and its factor.
 std::optional<std::pair<std::uint32_t, StraightLine::Coefficient>> StraightLine::logarithm(std::uint32_t s) const {
   const Instruction& in = tape_.code[s];
   std::uint32_t varying = in.a;

@@ -115,7 +115,7 @@ std::string number(const Rational& r) {
   mpz_class quotient, rest;
   mpz_tdiv_qr(quotient.get_mpz_t(), rest.get_mpz_t(), top.get_mpz_t(), below.get_mpz_t());
   std::string digits = quotient.get_str();
-  const long exponent = static_cast<long>(digits.size()) - shift;  // of 0.d
+  const long exponent = static_cast<long>(digits.size()) - shift;  // the exponent of 0.d
   const bool cut = digits.size() > kDigits && digits.find_first_not_of('0', kDigits) != std::string::npos;
   const bool terminates = rest == 0 && !cut;
   digits.resize(std::min(digits.size(), kDigits));
@@ -126,7 +126,7 @@ std::string number(const Rational& r) {
                   "a number near " + sign + digits.substr(0, 1) + "e" + std::to_string(exponent - 1) +
                       " occurs: double cannot hold it",
                   "choose units in which numbers lie between 1e-300 and 1e300");
-  // A short decimal is written as such, and so is a quotient of exact numbers: either is rounded once.
+  // A short decimal is written as such, and so is a quotient of exact numbers, because both are rounded once.
   if (!(terminates && digits.size() <= 17) && abs(num) < exact_limit && den < exact_limit)
     return num.get_str() + ".0/" + den.get_str() + ".0";
   if (exponent > 9 || exponent < -3) {
@@ -195,7 +195,7 @@ std::vector<std::string> head(const System& s, const Structure& structure, const
     out.push_back(kept);
   };
   const auto count = [](std::size_t n) { return "[" + std::to_string(n) + "]"; };
-  // "  0  x": the numbers of an array, each with its meaning.
+  // Lists the numbers of an array, each with its meaning: "  0  x".
   const auto list = [&](const std::vector<std::string>& meanings) {
     for (std::size_t i = 0; i < meanings.size(); ++i) {
       const std::string index = std::to_string(i);

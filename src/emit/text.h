@@ -7,43 +7,43 @@
 
 namespace anholon::emit {
 
-// A rational number as a number of both languages: 2.5, 2.0/3.0, 1e-9.
+// Returns a rational number as a number of both languages: 2.5, 2.0/3.0, 1e-9.
 std::string number(const Rational& r);
 
-// The value of a step function at x as an expression of C.
+// Returns the value of a step function at x as an expression of C.
 std::string c_lookup(const StepFunction& f, const std::string& x);
 
-// The same of Python.
+// Returns the same as an expression of Python.
 std::string python_lookup(const StepFunction& f, const std::string& x);
 
-// Values and the places that they are assigned to.
+// Values and the places to which they are assigned.
 struct Assignments {
   Column values;
   std::vector<std::string> targets;  // p[0], p[1], …
 };
 
-// The parameters that are given, and those that follow from them.
+// The given parameters, and those that follow from them.
 struct ParameterAssignments {
   Assignments free, derived;
 };
 ParameterAssignments parameter_assignments(const Motion& motion);
 
-// The Jacobian row by row.
+// Returns the Jacobian row by row.
 Column entries(const std::vector<Column>& jacobian);
 
-// The time derivative of entry i of the state: lead[j] or state[k].
+// Returns the time derivative of entry i of the state: lead[j] or state[k].
 std::string rate_of_state(const Structure& structure, const Motion& motion, std::size_t i);
 
-// The functions $_factor and $_solve of linear equations in C, of $_UNKNOWNS; `$` marks the prefix of names.
+// Returns the functions $_factor and $_solve of linear equations in C, of $_UNKNOWNS; `$` marks the prefix of names.
 const char* c_solver();
 
-// The text with all of `from` replaced.
+// Returns the text with all of `from` replaced.
 std::string replaced(std::string text, const std::string& from, const std::string& to);
 
-// The text with its first `mark` replaced.
+// Returns the text with its first `mark` replaced.
 std::string put(std::string text, const std::string& mark, const std::string& by);
 
-// The lines of a comment that describe the arrays.
+// Returns the lines of a comment that describe the arrays.
 std::vector<std::string> head(const System& system, const Structure& structure, const Motion& motion,
                               const EmitOptions& options);
 

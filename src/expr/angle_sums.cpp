@@ -8,7 +8,7 @@ namespace anholon::arrangement {
 
 namespace {
 
-// r X - r X c^2 = r X s^2: one term for two, as long as there are such pairs.
+// Replaces r X - r X c^2 by r X s^2, one term for two, as long as there are such pairs.
 void shorten_squares(Sum& s, std::size_t kept, std::size_t other) {
   for (bool found = true; found;) {
     found = false;

@@ -8,7 +8,7 @@ namespace anholon {
 
 namespace {
 
-// An expression of more nodes than this is not integrated: the result would be too long to read.
+// An expression with more nodes is not integrated: the result would be too long to read.
 constexpr std::size_t kLongest = 200;
 constexpr int kMostParts = 20;  // the highest power that is integrated by parts
 
@@ -17,7 +17,7 @@ bool holds(Expr e, Expr z) {
   return std::binary_search(found.begin(), found.end(), z.id);
 }
 
-// e written without z, if it can be.
+// Returns e written without z, if that is possible.
 std::optional<Expr> without(Expr e, Expr z) {
   if (!holds(e, z)) return e;
   if (reachable({&e, 1}).size() > kLongest) return std::nullopt;
@@ -32,7 +32,7 @@ Expr divided(Expr a, Expr b) {
   return expanded(q).value_or(q);
 }
 
-// The antiderivative of f(u)^k by u. Nodes are made in sequence: their order must not depend on the compiler.
+// Returns the antiderivative of f(u)^k by u. Nodes are made in sequence: their order must not depend on the compiler.
 std::optional<Expr> of_function(Function f, Expr u, const Rational& k) {
   if (k == 1) {
     constexpr std::nullopt_t none = std::nullopt;
@@ -52,7 +52,7 @@ std::optional<Expr> of_function(Function f, Expr u, const Rational& k) {
   return std::nullopt;
 }
 
-// r with r^2 = e, where e is a product of even powers.
+// Returns r with r^2 = e, where e is a product of even powers.
 std::optional<Expr> square_root(Expr e) {
   Graph& g = *e.graph;
   std::vector<std::pair<Expr, Rational>> half;
@@ -81,7 +81,7 @@ std::optional<Expr> square_root(Expr e) {
   return factor * g.product(half);
 }
 
-// The antiderivative of 1/(a z^2 + b) with b/a = r^2: atan(z/r)/(a r).
+// Returns the antiderivative of 1/(a z^2 + b) with b/a = r^2: atan(z/r)/(a r).
 std::optional<Expr> arctangent(Expr base, Expr z) {
   const std::optional<Expr> a = without(Rational(1, 2) * partial(partial(base, z), z), z);
   if (!a || is_zero(*a)) return std::nullopt;
@@ -99,7 +99,7 @@ struct Factor {
   Expr value() const { return pow(base, exponent); }
 };
 
-// A term without z in front of the factors that hold z.
+// A term as a factor without z and the factors that hold z.
 struct Split {
   Expr constant;
   std::vector<Factor> factors;
@@ -125,7 +125,7 @@ Split split(Expr term, Expr z) {
   return s;
 }
 
-// The terms of a sum, or of a product that contains a sum, multiplied out once.
+// Returns the terms of a sum, or of a product that contains a sum, multiplied out once.
 std::vector<Expr> terms_of(Expr e, Expr z) {
   Graph& g = *e.graph;
   const auto of_sum = [&](NodeId sum, Expr rest) {
@@ -174,7 +174,7 @@ std::optional<Expr> of_term(Expr term, Expr z, int parts) {
     if (!c) continue;
     if (const std::optional<Expr> F = of_function(static_cast<Function>(n.index), u, f.exponent)) return *c * *F;
   }
-  // By parts: the power of z decreases.
+  // Integrates by parts, which lowers the power of z.
   if (parts >= kMostParts) return std::nullopt;
   for (const Factor& f : s.factors) {
     if (!(f.base == z) || !f.exponent.is_integer() || f.exponent < 1) continue;

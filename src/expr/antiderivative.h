@@ -14,13 +14,13 @@
 
 namespace anholon {
 
-// F with dF/dz = e, all other symbols held.
+// Returns F with dF/dz = e, all other symbols held.
 std::optional<Expr> antiderivative(Expr e, Expr z);
 
-// f with df/dz_a = form_a for all a; nullopt if there is none (the form is not closed) or it is not elementary.
+// Returns f with df/dz_a = form_a for all a; nullopt if there is none (the form is not closed) or f is not elementary.
 std::optional<Expr> potential(const Column& form, const Column& z);
 
-// exp(e), with logarithms in e turned into powers: exp(2*log(x) - y) is x^2*exp(-y).
+// Returns exp(e), with logarithms in e turned into powers: exp(2*log(x) - y) is x^2*exp(-y).
 Expr exponential(Expr e);
 
 }  // namespace anholon

@@ -28,7 +28,7 @@ constexpr std::array kParity = {
 
 Parity parity(Function f) { return kParity[static_cast<std::size_t>(f)]; }
 
-// The value at a rational argument, if it is rational and known.
+// Returns the value at a rational argument, if it is rational and known.
 std::optional<Rational> exact_value(Function f, const Rational& x) {
   const auto at = [&](int argument, int value) {
     return x == argument ? std::optional<Rational>(value) : std::nullopt;
@@ -50,7 +50,7 @@ bool negative(const Graph& g, NodeId id) {
   return n.kind == Kind::sum && g.rational(g.terms(id)[0].weight) < 0;
 }
 
-// x = rest + turns * pi.
+// The expression x = rest + turns * pi.
 struct Turned {
   Rational turns;
   Expr rest;
@@ -69,7 +69,7 @@ std::optional<Turned> turned(Graph& g, NodeId x) {
   return std::nullopt;
 }
 
-// sin(k pi/12) for k = 0 to 3: the others follow from these.
+// Returns sin(k pi/12) for k = 0 to 3; the others follow from these.
 std::optional<Expr> sine_of_twelfths(Graph& g, unsigned long k) {
   switch (k) {
   case 0:
@@ -83,7 +83,7 @@ std::optional<Expr> sine_of_twelfths(Graph& g, unsigned long k) {
   }
 }
 
-// cos(k pi/12) for k = 0 to 3.
+// Returns cos(k pi/12) for k = 0 to 3.
 std::optional<Expr> cosine_of_twelfths(Graph& g, unsigned long k) {
   switch (k) {
   case 0:
@@ -97,12 +97,14 @@ std::optional<Expr> cosine_of_twelfths(Graph& g, unsigned long k) {
   }
 }
 
-// sin x, or cos x = sin(x + pi/2), for an x with a multiple of pi as a term: what is left of that term is between -pi/4
-// and pi/4, so sin(x + pi/2) is cos x and sin(x + pi/3) is cos(x - pi/6). Returns nullopt where nothing is to be taken out.
+// Returns sin x, or cos x = sin(x + pi/2), for an x with a multiple of pi as a term: the remainder of that term is
+// between -pi/4 and pi/4, so sin(x + pi/2) becomes cos x and sin(x + pi/3) becomes cos(x - pi/6). Returns nullopt if
+// nothing can be taken out.
 std::optional<Expr> sine_of_turned(Graph& g, bool cosine, Expr x) {
   const std::optional<Turned> t = turned(g, x.id);
   if (!t) return std::nullopt;
-  // The nearest whole number, of two the one next to 0: -x has the same one with the other sign, and parity leads nowhere.
+  // Of two nearest whole numbers, the one next to 0 is taken: -x then has the same one with the other sign, so parity
+  // does not change the form.
   const Rational nearest = -floor(Rational(1, 2) - 2 * abs(t->turns)), quarters = t->turns < 0 ? -nearest : nearest;
   const Rational left = t->turns - quarters / 2;
   const Rational four = 4, k = quarters + (cosine ? 1 : 0);
@@ -116,7 +118,7 @@ std::optional<Expr> sine_of_turned(Graph& g, bool cosine, Expr x) {
       if (v) return (quarter % 2 == 0 && left < 0 ? -sign : sign) * *v;
     }
   }
-  // cos(x + pi/4) is -sin(x - pi/4): of two ways to write it one is taken.
+  // cos(x + pi/4) is -sin(x - pi/4): one of the two ways to write it is chosen.
   if (quarter % 2 == 1 && abs(left) == Rational(1, 4))
     return (left > 0 ? -sign : sign) * g.apply(Function::sin, t->rest - left * g.pi());
   if (quarters == 0) return std::nullopt;

@@ -9,16 +9,16 @@ namespace anholon {
 
 namespace {
 
-// A product of more factors than this is one factor of a larger product: what a deep chain of functions
-// makes of its derivative stays linear in size. Products up to here are flat and so canonical.
+// A product of more factors is one factor of a larger product, so that derivatives of a deep chain of functions stay
+// linear in size. Shorter products are flat and therefore canonical.
 constexpr std::uint32_t kOpenedFactors = 64;
-// Likewise a sum of more terms is one term of a larger sum: the position of link i of a long chain.
+// A sum of more terms is one term of a larger sum: the position of link i of a long chain.
 constexpr std::uint32_t kOpenedTerms = 32;
 
-// A sum of more terms than this is computed through the partial sum it grew from.
+// A sum of more terms is computed through the partial sum it grew from.
 constexpr std::size_t kShortWayFrom = 8;
 
-// The rational content of a sum, with the sign that makes its first coefficient positive.
+// Returns the rational content of a sum, with the sign that makes its first coefficient positive.
 Rational content(const Graph& g, NodeId id) {
   const std::span<const Term> terms = g.terms(id);
   const bool negative = g.rational(terms[0].weight) < 0;
@@ -39,7 +39,7 @@ struct Part {
   Rational coefficient;
 };
 
-// The lists of a sum under construction, whose memory the next sum uses again.
+// The lists of a sum under construction, whose storage the next sum uses again.
 struct SumLists {
   std::vector<Part> parts, merged;
   std::vector<Term> flat, view;
@@ -61,7 +61,7 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
   for (const auto& [factor, e] : operands)
     most += nodes_[e.id].kind == Kind::sum && nodes_[e.id].count <= kOpenedTerms ? nodes_[e.id].count : 1;
   parts.reserve(most);
-  NodeId longest = zero_;  // the operand sum with most terms, candidate for the short way
+  NodeId longest = zero_;  // the operand sum with the most terms, candidate for the chain
   Rational longest_factor;
   for (const auto& [factor, e] : operands) {
     if (factor == 0) continue;
@@ -94,7 +94,7 @@ Expr Graph::sum(std::span<const std::pair<Rational, Expr>> operands) {
   for (const Part& p : merged) flat.push_back({rational_index(p.coefficient), p.node});
 
   if (longest != zero_ && flat.size() > kShortWayFrom) {
-    // The short way holds if the longest operand survives whole: flat = factor * longest + rest.
+    // The chain is usable if the longest operand is kept whole: flat = factor * longest + rest.
     view.push_back({rational_index(longest_factor), longest});
     std::size_t matched = 0;
     const std::span<const Term> inner = terms(longest);
@@ -121,8 +121,8 @@ class Graph::Product {
  public:
   explicit Product(Graph& g) : g_(g) {}
 
-  // Opens the operands one level at a time: c*x inside a product gives up c, a product its factors. Returns false if
-  // the product is zero.
+  // Opens the operands one level at a time: from c*x inside a product the factor c is taken, from a product its
+  // factors. Returns false if the product is zero.
   bool open(std::span<const std::pair<Expr, Rational>> operands) {
     for (auto it = operands.rbegin(); it != operands.rend(); ++it) {
       ANHOLON_ASSERT(it->first.graph == &g_);
@@ -165,7 +165,7 @@ class Graph::Product {
   }
 
   Expr result() {
-    // A number, negative sum or product whose exponents joined may open up: sqrt(2)*sqrt(2) = 2.
+    // If exponents were joined, a number, negative sum or product may open: sqrt(2)*sqrt(2) = 2.
     if (has_joined_ && std::any_of(powers_.begin(), powers_.end(), [&](const Power& p) { return opens(p); })) {
       std::vector<std::pair<Expr, Rational>> factors;
       for (const Power& p : powers_) factors.push_back({Expr{&g_, p.node}, p.exponent});
@@ -210,8 +210,8 @@ class Graph::Product {
     return true;
   }
 
-  // A positive content comes out of any power, a sign out of a whole one. A long sum stays as it is: what is scaled by
-  // its content would be one term, which gives the factor back.
+  // A positive content is taken out of any power, a sign out of a whole power. A long sum is unchanged: the sum scaled
+  // by its content would be one term, which returns the factor.
   void open_sum(Power p, const Node& n, bool integer) {
     const Rational c = n.count == 1             ? g_.rational(g_.terms_[n.first].weight)
                        : n.count > kOpenedTerms ? Rational(1)

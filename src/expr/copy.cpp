@@ -10,7 +10,7 @@ class Copier {
 
   Expr operator[](NodeId id) const { return image_.at(id); }
 
-  // Operands are there already.
+  // REQUIRES: the operands have been added.
   void add(NodeId id) { image_[id] = made(id); }
 
  private:

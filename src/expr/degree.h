@@ -7,8 +7,8 @@
 
 namespace anholon {
 
-// The degree k of e in the symbols x for which `in` holds, so that sum x de/dx = k e by Euler's theorem. nullopt if the
-// structure does not show it; another form of e may.
+// Returns the degree k of e in the symbols x for which `in` holds, so that sum x de/dx = k e by Euler's theorem.
+// Returns nullopt if the structure does not show the degree; another form of e may show it.
 std::optional<Rational> homogeneous_degree(Expr e, const std::function<bool(const Node&)>& in);
 
 }  // namespace anholon

@@ -43,7 +43,7 @@ Expr derivative(Function f, [[maybe_unused]] Expr u, [[maybe_unused]] Expr v) {
   return {};
 }
 
-// The partial derivatives of a node with respect to its summands, in their order.
+// Computes the partial derivatives of a node with respect to its summands, in their order.
 static void local_partials(Graph& g, NodeId id, Column& out) {
   out.clear();
   const Node n = g.node(id);
@@ -67,7 +67,8 @@ static void local_partials(Graph& g, NodeId id, Column& out) {
     out.push_back(derivative(static_cast<Function>(n.index), Expr{&g, terms[0].node}, Expr{&g, id}));
     return;
   case Kind::atan2: {
-    // Each node is made by a statement of its own: the order of terms is that of their creation, for every compiler.
+    // Each node is made by a statement of its own: the order of terms is the order of their creation, which must not
+    // depend on the compiler.
     const Expr y{&g, terms[0].node}, x{&g, terms[1].node}, y2 = y * y, x2 = x * x, r2 = x2 + y2;
     out.push_back(x / r2);
     out.push_back(-(y / r2));
@@ -129,7 +130,7 @@ static Expr rate_of_symbol(Graph& g, const Node& n) {
   return g.zero();
 }
 
-// The nodes below `es` (and they themselves) whose rate is not known yet, operands before users.
+// Returns the nodes of `es` and below whose rate is not known yet, operands before users.
 static std::vector<NodeId> without_rate(Graph& g, std::span<const Expr> es) {
   std::vector<NodeId> found;
   std::unordered_set<NodeId> seen;

@@ -21,29 +21,29 @@ Column total_derivative(std::span<const Expr> es);
 Expr total_derivative(Expr e);
 Expr total_derivative(Expr e, unsigned times);
 
-// All partial derivatives of e with respect to `symbols` by one reverse sweep.
+// Returns all partial derivatives of e with respect to `symbols` by one reverse sweep.
 Column gradient(Expr e, std::span<const Expr> symbols);
 Expr partial(Expr e, Expr symbol);
 
-// sum_c seeds[c] * d outputs[c] / d symbols[a] for every a, by one reverse sweep: the gradient of
-// sum_c seeds[c] * outputs[c] with the seeds held.
+// Returns sum_c seeds[c] * d outputs[c] / d symbols[a] for every a, by one reverse sweep: the gradient of sum_c
+// seeds[c] * outputs[c] with the seeds held.
 Column pullback(std::span<const Expr> outputs, std::span<const Expr> seeds, std::span<const Expr> symbols);
 
 // Replaces symbols: `replacement(symbol id)` gives the new expression, or a handle with graph ==
 // nullptr to keep the symbol.
 Column substitute(std::span<const Expr> es, const std::function<Expr(NodeId)>& replacement);
 
-// As above: to[k] in place of the symbol from[k].
+// Replaces the symbol from[k] by to[k].
 Column put(std::span<const Expr> es, const Column& from, const Column& to);
 Expr put(Expr e, const Column& from, const Column& to);
 
-// As above for any nodes: replaces those in the table, whatever their operands.
+// Replaces the nodes in the table, whatever their operands.
 Column replace_nodes(std::span<const Expr> es, const std::unordered_map<NodeId, Expr>& replacement);
 
-// The symbols (leaves that are not numbers) on which the expressions depend, ascending.
+// Returns the symbols (leaves that are not numbers) on which the expressions depend, ascending.
 std::vector<NodeId> symbols(std::span<const Expr> es);
 
-// Highest order k of a jet q_a^(k) that occurs; -1 if none does.
+// Returns the highest order k of a jet q_a^(k) that occurs; -1 if none does.
 int jet_order(Expr e);
 
 // Operators on columns, so that a formulation reads like the paper's equation. An empty column is an

@@ -10,8 +10,8 @@ namespace anholon {
 
 namespace {
 
-// Numbers of more machine words than the first cost more than one unit of work; numbers of more than the second are
-// refused.
+// Numbers with more machine words than the first limit cost more than one unit of work; numbers with more than the
+// second are refused.
 constexpr std::size_t kShortNumber = 16, kLongestNumber = 8'000;
 
 }  // namespace
@@ -73,7 +73,7 @@ void Graph::allow(std::uint64_t work) {
 }
 
 void Graph::spend(std::uint64_t work) {
-  if (frozen_) return;  // nothing is constructed, and many threads may look things up
+  if (frozen_) return;  // nothing is constructed, and many threads may search the graph
   work_ += work;
   if (work_ > most_work_)
     throw Failure(Span{}, "the expressions grow out of all proportion",
@@ -81,7 +81,7 @@ void Graph::spend(std::uint64_t work) {
 }
 
 std::uint32_t Graph::rational_index(const Rational& r) {
-  if (one_ != 0 && r == 1) return nodes_[one_].index;  // most of them
+  if (one_ != 0 && r == 1) return nodes_[one_].index;  // the most frequent number
   // Arithmetic with long numbers and their text take time that grows with their square.
   if (!r.fits_long()) {
     const std::size_t limbs = r.limbs();

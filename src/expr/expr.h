@@ -5,7 +5,7 @@
 //   sums      c0 + c1 x1 + c2 x2 + …   exact rational coefficients, flattened, sorted by id
 //   products  x1^r1 x2^r2 …            exact rational exponents, flattened, sorted by id
 //   f(x)                               one of elementary.def; atan2(y, x)
-//   (s >= 0 ? a : b), step functions   what goes on as something else at a point (a kink)
+//   (s >= 0 ? a : b), step functions   continue as another function at a point (a kink)
 //   leaves    number, pi, and symbols  t, q_a^(k), parameters, frozen masses mu_i, lambda_r^(k), u_a^(k), z_i^(k)
 //
 // Invariants
@@ -18,8 +18,8 @@
 //   (4) Nodes, terms, numbers and step functions never move: a reference or a span that the graph gives is valid as long
 //       as the graph, also while it grows.
 //
-// Thread safety: a graph may be read by many threads while none builds. A frozen graph cannot be built in, so any number
-// of threads may use it; whoever has to build beside it does so in a clone.
+// Thread safety: many threads may read a graph while none builds in it. No thread can build in a frozen graph, so any
+// number of threads may use it; code that has to build does so in a clone.
 #pragma once
 #include <compare>
 #include <cstdint>
@@ -56,12 +56,12 @@ enum class Kind : std::uint8_t {
   lookup,    // step function `index` of one operand
 };
 
-// Constant between its knots: values[k] where k knots are at or below the argument. Tables are polynomials between
-// knots, whose coefficients are such functions.
+// A function that is constant between its knots: values[k] if k knots are at or below the argument. Tables are
+// polynomials between knots, whose coefficients are such functions.
 struct StepFunction {
   std::string name;
   std::vector<Rational> knots, values;  // ascending; values.size() = knots.size() + 1
-  // Of a table: the power of the argument whose coefficient this is (-1: where the polynomial is measured from), and
+  // For a coefficient of a table: its power of the argument (-1: the point from which the polynomial is measured), and
   // how many derivatives of the table are continuous (-1: the table itself jumps).
   int power = 0, smooth = 100;
   friend bool operator==(const StepFunction& a, const StepFunction& b) = default;
@@ -77,12 +77,12 @@ struct FunctionInfo {
   const char* name;
   const char* latex;
   const char *c, *numpy;  // names in exported programs
-  const char* undefined;  // where, in words; empty if defined everywhere
-  bool hides;             // may be almost constant where its series are known, and vary farther away
+  const char* undefined;  // where the function is undefined, in words; empty if it is defined everywhere
+  bool hides;             // may be almost constant where its series is known, and vary farther away
 };
 const FunctionInfo& info(Function f);
 std::span<const FunctionInfo> elementary_functions();
-// The function of that name, or -1.
+// Returns the index of the function of that name, or -1.
 int find_function(const std::string& name);
 
 using NodeId = std::uint32_t;
@@ -105,7 +105,7 @@ struct Node {
   std::uint8_t order = 0;                        // derivative order of a symbol
   std::uint32_t index = 0;                       // symbol, function or rational index
   std::uint32_t first = 0, count = 0;            // flat terms
-  std::uint32_t view_first = 0, view_count = 0;  // terms of the short way (sums)
+  std::uint32_t view_first = 0, view_count = 0;  // terms by the chain (sums)
 };
 
 // Exact exponent p/q written as {p, q} or as an integer.
@@ -144,29 +144,29 @@ class Graph {
   Expr arctangent2(Expr y, Expr x);
   Expr select(Expr s, Expr a, Expr b);
   Expr lookup(std::uint32_t step_function, Expr argument);
-  // Returns the index of an equal one if there is one.
+  // Adds a step function unless an equal one exists, and returns its index.
   std::uint32_t add_step_function(StepFunction f);
   const StepFunction& step_function(std::uint32_t index) const { return step_functions_[index]; }
 
-  // The total derivative of a node, kept once it is known: expressions that share parts (the links of a chain) are
-  // differentiated once. A handle with graph == nullptr while it is not.
+  // Returns the total derivative of a node, if it is known already: expressions that share parts (the links of a chain)
+  // are differentiated once. Returns a handle with graph == nullptr if it is not known.
   Expr rate(NodeId id) { return id < rates_.size() && rates_[id] != kUnknown ? Expr{this, rates_[id]} : Expr{}; }
   void set_rate(NodeId id, NodeId rate);
 
-  // After `freeze` the graph never changes again: what it has is found as before, and to ask for a node, a number, a
-  // rate or a step function that it does not have is a broken invariant.
+  // After `freeze` the graph never changes: nodes, numbers, rates and step functions that it has are still found, and a
+  // request for another one is a broken invariant.
   void freeze() { frozen_ = true; }
   bool frozen() const { return frozen_; }
-  // The same nodes under the same ids in a graph that can be built in: what is built there next gets the ids that it
-  // would get here. `nodes`: the first so many, as this graph was when it had no more.
+  // Returns a graph with the same nodes under the same ids in which expressions can be built: new nodes get the ids
+  // that they would get here. `nodes`: copies only the first so many nodes.
   std::unique_ptr<Graph> clone() const { return clone(nodes_.size()); }
   std::unique_ptr<Graph> clone(std::size_t nodes) const;
-  // The same expression in this graph, of which `e` is one or which is a clone of that of `e`, directly or through other
-  // clones. REQUIRES: `e` is older than the clone.
+  // Returns the same expression in this graph. `e` belongs to this graph or to a graph of which this one is a clone,
+  // directly or through other clones. REQUIRES: `e` is older than the clone.
   Expr own(Expr e);
 
-  // Construction costs one unit for every operand of a sum or product, more for long numbers. From here on it may cost
-  // `work`; beyond that it throws Failure. So a short formula that unfolds without end is refused in time.
+  // Limits the work of construction: every operand of a sum or product costs one unit, long numbers cost more. After
+  // `work` further units construction throws Failure, so a short formula that unfolds without end is refused in time.
   void allow(std::uint64_t work);
   std::uint64_t work() const { return work_; }
 
@@ -174,7 +174,7 @@ class Graph {
   std::size_t size() const { return nodes_.size(); }
   const Node& node(NodeId id) const { return nodes_[id]; }
   std::span<const Term> terms(NodeId id) const { return terms_.part(nodes_[id].first, nodes_[id].count); }
-  // Terms of a sum by the short way, operands of anything else: use this for every sweep.
+  // Returns the terms of a sum by its chain, or the operands of any other node: use this for every sweep.
   std::span<const Term> summands(NodeId id) const { return terms_.part(nodes_[id].view_first, nodes_[id].view_count); }
   const Rational& rational(std::uint32_t index) const { return rationals_[index]; }
   const Rational& value(NodeId number) const { return rationals_[nodes_[number].index]; }
@@ -183,11 +183,11 @@ class Graph {
  private:
   static constexpr NodeId kUnknown = 0xffffffffU;
 
-  // A graph that this one is a clone of. The identity outlives the graph, so no other graph is taken for it.
+  // A graph of which this one is a clone. The identity outlives the graph, so no other graph is mistaken for it.
   using Identity = std::shared_ptr<const char>;
   struct Ancestor {
     Identity identity;
-    std::size_t nodes;  // that are common to both
+    std::size_t nodes;  // the number of nodes that are common to both
   };
 
   class Product;
@@ -236,7 +236,7 @@ Expr sum(std::span<const Expr> terms);  // all at once
 Expr atan2(Expr y, Expr x);
 Expr select(Expr s, Expr a, Expr b);  // a where s >= 0, else b
 
-// All nodes on which `roots` depend, by the short way, ascending (operands before users).
+// Returns all nodes on which `roots` depend, by the chains of sums, ascending (operands before users).
 std::vector<NodeId> reachable(std::span<const Expr> roots);
 
 }  // namespace anholon

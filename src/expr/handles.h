@@ -1,5 +1,5 @@
-// The handles (Expr) that a value holds, wherever they are in it. A value is copied to a clone of its graph by copying
-// it and giving each of these handles the new graph.
+// The handles (Expr) that a value holds in any of its members. A value is copied to a clone of its graph by copying it
+// and setting the graph of each of these handles to the new graph.
 //
 // A type that holds handles has an overload of for_each_expression, which names all of its members by a structured
 // binding: a member that is added to the type later and forgotten there does not compile. So does a member whose type has
@@ -61,7 +61,7 @@ void for_each_expression(std::pair<A, B>& value, const ExprVisitor& f) {
   for_each_expression(value.second, f);
 }
 
-// Those of all members.
+// Visits the handles of all members.
 template <class... Members>
 void for_each_expression_of(const ExprVisitor& f, Members&... members) {
   (for_each_expression(members, f), ...);

@@ -1,4 +1,4 @@
-// Monomials: the terms of polynomials over Q, without the ring they are computed in.
+// Monomials: the terms of polynomials over Q, without the ring in which they are computed.
 #pragma once
 #include <vector>
 

@@ -49,7 +49,7 @@ inline bool trivial(const Exponents& e) {
 
 inline bool one(const Sum& s) { return s.size() == 1 && trivial(s.begin()->first) && s.begin()->second == 1; }
 
-// The rational content with the sign of the first coefficient; s is divided by it.
+// Returns the rational content with the sign of the first coefficient; s is divided by it.
 inline Rational take_content(Sum& s) {
   Rational content = 0;
   for (const auto& [exponents, c] : s) content = gcd(content, c);
@@ -63,15 +63,16 @@ struct Angle {
   Expr value;
 };
 
-// A sum of monomials with the expressions of its generators; it grows by sines and cosines of sums of angles.
+// A fraction of sums of monomials with the expressions of its generators; sines and cosines of sums of angles are added
+// as generators.
 struct Written {
   std::vector<Expr> generators;
   std::vector<Angle> angles;
   Sum numerator, denominator;
 };
 
-// Writes squares of sines and cosines in the shorter way, and products as sines and cosines of sums of angles if that
-// joins terms.
+// These write squares of sines and cosines in the shorter way, and products as sines and cosines of sums of angles if
+// that joins terms.
 void choose_squares(Sum& s, const std::vector<Angle>& angles);
 void join_angles(Written& w, Sum& s);
 

@@ -79,7 +79,7 @@ class Normalizer {
     return p.terms();
   }
 
-  // The expression of each generator.
+  // Returns the expression of each generator.
   std::vector<Expr> meanings() {
     std::vector<std::pair<NodeId, unsigned long>> roots;
     std::vector<Expr> meaning(static_cast<std::size_t>(std::max<long>(1, generators_)), g_.one());
@@ -106,7 +106,7 @@ class Normalizer {
 
   bool whole(NodeId id) const { return whole_.names && whole_.names->count(id) > 0; }
 
-  // Collects the relevant nodes, ascending: none below a function or below a part that is not expanded.
+  // Collects the relevant nodes, ascending; nodes below a function or below a part that is not expanded are left out.
   void find_nodes() {
     std::vector<bool> seen(g_.size(), false);
     ids_.push_back(root_.id);
@@ -203,7 +203,7 @@ class Normalizer {
     return r;
   }
 
-  // sin and cos of an angle as polynomials: (c + i s)^k for each independent angle.
+  // Returns sin and cos of an angle as polynomials: (c + i s)^k for each independent angle.
   std::pair<Poly, Poly> sine_cosine(NodeId x) {
     Poly s = constant(0), c = constant(1);
     for (const auto& [node, coefficient] : angle(x)) {
@@ -225,7 +225,7 @@ class Normalizer {
     return {s, c};
   }
 
-  // x^(1/k) as a generator r with r^k = x; for x = n/d, r^k = n d^(k-1) and the root is r/d.
+  // Returns x^(1/k) as a generator r with r^k = x; for x = n/d, r^k = n d^(k-1) and the root is r/d.
   Fraction root(NodeId node, unsigned long k) {
     const Poly r = generator(root_generator_.at({node, k}));
     const Fraction& x = fractions_.at(node);
@@ -238,7 +238,7 @@ class Normalizer {
     return {r, x.den};
   }
 
-  // 1/x^(1/k) as a generator; if x is a monomial m, the product of both generators is 1.
+  // Returns 1/x^(1/k) as a generator; if x is a monomial m, the product of both generators is 1.
   Fraction reciprocal(NodeId node, unsigned long k) {
     const Poly r = generator(reciprocal_.at({node, k}));
     const Fraction& x = fractions_.at(node);

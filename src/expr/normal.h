@@ -27,17 +27,18 @@ struct NormalForm {
   Monomials numerator, denominator;                         // in lowest terms, if short
 };
 
-// Which subexpressions stay as the user wrote them: sines of sums (and tangents), denominators, named subexpressions.
+// The subexpressions that stay as the user wrote them: sines of sums (and tangents), denominators, named
+// subexpressions.
 struct Whole {
   bool angles = false, fractions = false;
   const std::unordered_map<NodeId, std::string>* names = nullptr;
 };
 
-// The expression as a fraction; nullopt if that takes more than `most_work` products of terms.
+// Returns the expression as a fraction; nullopt if that takes more than `most_work` products of terms.
 std::optional<NormalForm> normal_form(Expr e, const Whole& whole, long most_work);
 
 Expr expression(const Monomials& terms, const std::vector<Expr>& generators);
-// The fraction as an expression; nullopt if it is longer than anybody reads.
+// Returns the fraction as an expression; nullopt if it is too long to be read.
 std::optional<Expr> expression(const NormalForm& f);
 
 }  // namespace anholon

@@ -24,8 +24,8 @@ Relations::Rule Relations::rule(Poly relation) const {
 void Relations::add(Poly relation) { rules_.push_back(rule(std::move(relation))); }
 void Relations::add_first(Poly relation) { rules_.insert(rules_.begin(), rule(std::move(relation))); }
 
-// The rules that may divide a term of p or of a tail that a division introduces. The other rules never do: leaving them
-// out changes only the time that FLINT spends on comparing every term with every relation.
+// Returns the rules that may divide a term of p or of a tail that a division introduces. The other rules never do:
+// without them FLINT only spends less time on comparing every term with every relation.
 std::vector<const Relations::Rule*> Relations::needed(const std::vector<long>& degrees) const {
   std::vector<bool> wanted(rules_.size()), open(degrees.size());
   for (bool more = true; more;) {
@@ -43,8 +43,8 @@ std::vector<const Relations::Rule*> Relations::needed(const std::vector<long>& d
   return out;
 }
 
-// An estimate of the number of terms that a reduction makes: each relation g^k = (a tail of T terms) expands g^(mk + …)
-// into as many terms as the m-th power of its tail has, at most binomial(m + T - 1, m).
+// Charges an estimate of the number of terms that a reduction makes: each relation g^k = (a tail of T terms) expands
+// g^(mk + …) into as many terms as the m-th power of its tail has, at most binomial(m + T - 1, m).
 void Relations::pay(const Poly& p, const std::vector<const Rule*>& rules) const {
   // In large rings each term is compared with many relations, over exponents of many words.
   const std::size_t words = 1 + static_cast<std::size_t>(ring_->generators()) / 8;

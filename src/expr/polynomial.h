@@ -1,5 +1,5 @@
 // Polynomials over Q with exact arithmetic, on FLINT, for the normal form and for the arrangement of expressions in
-// print. Every product counts towards a limit, so that no expression takes long.
+// print. Every product counts towards a limit, which bounds the time of a computation.
 #pragma once
 #include <algorithm>
 #include <cstdlib>
@@ -17,9 +17,9 @@ namespace anholon {
 
 struct TooLarge {};
 
-// A product of more terms ends the test.
+// A product with more terms ends the test.
 inline constexpr long kNormalTermLimit = 2'000'000;
-// Coefficients of more bits end the test.
+// A coefficient with more bits ends the test.
 inline constexpr long kLargestCoefficient = 4000;
 // The limit of products of terms in one test.
 inline constexpr long kMostWork = 10'000'000;
@@ -116,7 +116,7 @@ class Poly {
     fmpq_mpoly_mul(r.p_, a.p_, b.p_, a.ring_->context());
     return r;
   }
-  // The greatest common divisor (1 if FLINT finds none), and the quotient by a divisor.
+  // These return the greatest common divisor (1 if FLINT finds none), and the quotient by a divisor.
   friend Poly common(const Poly& a, const Poly& b) {
     Poly r(*a.ring_);
     if (!fmpq_mpoly_gcd(r.p_, a.p_, b.p_, a.ring_->context())) return constant(*a.ring_, 1);
@@ -127,7 +127,7 @@ class Poly {
     if (!fmpq_mpoly_divides(r.p_, a.p_, divisor.p_, a.ring_->context())) throw TooLarge{};
     return r;
   }
-  // Irreducible factors with their exponents; their product is this up to a rational factor.
+  // Returns the irreducible factors with their exponents; their product is this polynomial up to a rational factor.
   std::vector<std::pair<Poly, unsigned long>> factors() const {
     std::vector<std::pair<Poly, unsigned long>> out;
     fmpq_mpoly_factor_t f;

@@ -32,7 +32,7 @@ class FieldPoint {
         for (const auto& [atom, c] : angle(id)) q_ = lcm(q_, c.get_den());
   }
 
-  // Throws if a part has no value.
+  // True if the expression vanishes at the point. Throws NoValue if a part has no value.
   bool zero_at(std::uint32_t point) {
     point_ = point;
     values_.resize(ids_.size());
@@ -46,7 +46,7 @@ class FieldPoint {
     Word sin, cos;
   };
 
-  // Collects the nodes ascending, with the root last, and none below a function.
+  // Collects the nodes ascending, with the root last, without nodes below a function.
   void find_nodes() {
     ids_.push_back(root_.id);
     at_.emplace(root_.id, 0);
@@ -92,7 +92,7 @@ class FieldPoint {
     return {f_.add(f_.multiply(a.sin, b.cos), f_.multiply(a.cos, b.sin)),
             f_.subtract(f_.multiply(a.cos, b.cos), f_.multiply(a.sin, b.sin))};
   }
-  // The point of the circle for the atom divided by q.
+  // Returns the point of the circle for the atom divided by q.
   Circle base(NodeId atom) {
     const auto [it, fresh] = circle_.try_emplace(atom);
     if (fresh) {

@@ -9,7 +9,7 @@
 
 namespace anholon {
 
-// False proves nothing.
+// True proves that the normal form does not show e to be zero; false proves nothing.
 bool refuted(Expr e);
 
 }  // namespace anholon

@@ -18,11 +18,11 @@ namespace {
 
 using Numbers = std::vector<Rational>;
 
-// Second derivatives at the knots, from a tridiagonal, diagonally dominant system. They are exact as long as they have few
-// digits, which grow with every knot; of more, a hundred and twenty are kept.
+// Returns second derivatives at the knots, from a tridiagonal, diagonally dominant system. They are exact as long as
+// they have few digits, whose number grows with every knot; otherwise a hundred and twenty digits are kept.
 Numbers natural_spline(const Numbers& x, const Numbers& y) {
   const std::size_t n = x.size();
-  constexpr std::uint64_t kMostBits = 800;  // of numerator and denominator
+  constexpr std::uint64_t kMostBits = 800;  // the limit of numerator and denominator
   const auto rounded = [](const Rational& r) {
     if (r.bits() <= kMostBits) return r;
     mpz_class scaled = (r.get_num() << 400) / r.get_den();
@@ -40,7 +40,7 @@ Numbers natural_spline(const Numbers& x, const Numbers& y) {
   return m;
 }
 
-// Slopes at the knots that keep the function monotone in every interval.
+// Returns slopes at the knots that keep the function monotone in every interval.
 Numbers monotone_slopes(const Numbers& x, const Numbers& y) {
   const std::size_t n = x.size();
   Numbers m, d(n, 0);
@@ -57,7 +57,7 @@ Numbers monotone_slopes(const Numbers& x, const Numbers& y) {
   return d;
 }
 
-// c0..c3 of the interval i, measured from its left knot.
+// The coefficients c0..c3 of an interval, measured from its left knot.
 using Cubic = std::vector<Rational>;
 
 std::vector<Cubic> stretches(const Table& t) {

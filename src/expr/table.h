@@ -18,7 +18,7 @@ enum class Fit : std::uint8_t {
   monotone,  // cubic, one continuous derivative, no overshoot (Fritsch & Carlson 1980, Butland's harmonic mean)
   spline,    // cubic, two continuous derivatives, natural (second derivative 0 at the ends)
 };
-// The value beyond the first and the last knot: the value there, the tangent there, or an error.
+// The rule beyond the first and the last knot: the value there, the tangent there, or an error.
 enum class Outside : std::uint8_t { hold, linear, error };
 
 struct Table {
@@ -39,14 +39,14 @@ class TableFunction {
   std::vector<std::uint32_t> coefficients_;
 };
 
-// Whether `member` names a piece of a table f, f.knot or f.c0, f.c1, …, which is a step function.
+// True if `member` names a piece of a table f, f.knot or f.c0, f.c1, …, which is a step function.
 bool is_piece_of_table(std::string_view member);
 
-// The number of continuous derivatives of a fit; -1 if the fit jumps.
+// Returns the number of continuous derivatives of a fit; -1 if the fit jumps.
 int smoothness(Fit fit);
 
-// The name of a table in e whose derivative of this order would be wrong because lower ones are not continuous; nullopt
-// if there is none.
+// Returns the name of a table in e whose derivative of this order would be wrong because lower ones are not continuous;
+// nullopt if there is none.
 std::optional<std::string> too_rough(Expr e, int derivative);
 
 }  // namespace anholon

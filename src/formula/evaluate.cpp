@@ -29,7 +29,7 @@ const char* type_name(const Value& v) {
 
 namespace {
 
-// Derivatives of higher order are refused.
+// Derivatives of a higher order are refused.
 constexpr int kHighestDerivative = 20;
 
 Expr* number(Value& v) { return std::get_if<Expr>(&v); }
@@ -40,7 +40,7 @@ Rotation* rotation(Value& v) { return std::get_if<Rotation>(&v); }
   throw Failure(at, std::string(what) + " of " + type_name(a) + " and " + type_name(b), std::move(hint));
 }
 
-// The hint for the one of both values that is a body.
+// Returns the hint for that of both values which is a body.
 std::string body_hint(const Value& a, const Value& b, const Names& names) {
   const std::string of_a = body_hint(a, names);
   return of_a.empty() ? body_hint(b, names) : of_a;
@@ -70,7 +70,7 @@ Value divide(Value a, Value b, Span at, Names& names) {
   mismatch("quotient", a, b, at, body_hint(a, names));
 }
 
-// A product of more different factors is refused: its derivative has as many terms, each of that length.
+// A product of more different factors is refused: its derivative has as many terms, each with that number of factors.
 constexpr std::uint32_t kMostFactors = 500;
 
 Value multiply(Value a, Value b, Syntax::Op sign, Span at, Names& names) {
@@ -187,7 +187,7 @@ struct Arguments {
   }
 };
 
-// a if s >= 0, else b, for two numbers or two vectors.
+// Returns a if s >= 0, else b, for two numbers or two vectors.
 Value branch(Expr s, Value a, Value b, Span at, Names& names) {
   a = as_point(std::move(a), names, at);
   b = as_point(std::move(b), names, at);
@@ -201,7 +201,7 @@ Value branch(Expr s, Value a, Value b, Span at, Names& names) {
   mismatch("a choice", a, b, at);
 }
 
-// piecewise(c1, v1, c2, v2, …, else): the value of the first condition that holds.
+// Evaluates piecewise(c1, v1, c2, v2, …, else): the value of the first condition that holds.
 Value piecewise(const Syntax& call, Names& names) {
   const std::size_t n = call.args.size();
   if (n < 3 || n % 2 == 0)
@@ -213,7 +213,7 @@ Value piecewise(const Syntax& call, Names& names) {
     if (c.op != Syntax::Op::compare) throw Failure(c.span, "a condition is expected here", "such as x > 0");
     const Expr left = evaluate_number(c.args[0], names), right = evaluate_number(c.args[1], names);
     Value then = evaluate(call.args[k - 1], names);
-    // x >= 0 and its opposite x < 0; x <= 0 and its opposite x > 0.
+    // The choice is by x >= 0 with its opposite x < 0, or by x <= 0 with its opposite x > 0.
     const bool greater = c.text[0] == '>', or_equal = c.text.size() > 1;
     const Expr gap = greater == or_equal ? left - right : right - left;
     value = or_equal ? branch(gap, then, value, c.span, names) : branch(gap, value, then, c.span, names);
@@ -221,8 +221,8 @@ Value piecewise(const Syntax& call, Names& names) {
   return value;
 }
 
-// choose(k, v1, v2, …): v_k, with k a mode or another whole number; the first value for k below 1, the last value for k
-// above their number.
+// Evaluates choose(k, v1, v2, …): v_k, with k a mode or another whole number; the first value for k below 1, the last
+// value for k above their number.
 Value choose(const Arguments& in) {
   const std::size_t n = in.values.size();
   if (n < 2)
@@ -244,7 +244,7 @@ void answer_habits(const Syntax& s, Names& names) {
   try {
     value = names.name(s.text, s.span);
   } catch (const Failure&) {
-    return;  // nor a name
+    return;  // it is no name either
   }
   if (!number(*value)) return;
   const bool of_time = s.args[0].op == Syntax::Op::name && s.args[0].text == "t";
@@ -342,7 +342,7 @@ Value call(const Syntax& s, Names& names) {
                 near.empty() ? "a product is written with '*'" : "");
 }
 
-// Numbers and vectors are summed at once, so that a long sum is linear work.
+// Evaluates a sum. All its terms are added at once, so that a long sum takes linear work.
 Value sum_of(const Syntax& s, Names& names) {
   std::vector<Value> values;
   for (const Syntax& a : s.args) values.push_back(evaluate(a, names));
@@ -457,7 +457,8 @@ std::string body_hint(const Value& v, const Names& names) {
   return b ? "a body is not a point: write " + names.body_name(*b) + ".center" : std::string();
 }
 
-// A failure below without a position of its own (division by zero, too long a number) gets this one.
+// A failure inside that has no position of its own (division by zero, too long a number) gets the position of this
+// formula.
 Value evaluate(const Syntax& s, Names& names) {
   try {
     return value_of(s, names);

@@ -22,8 +22,8 @@ namespace anholon {
 
 struct Indices;  // formula/indices.h
 
-// Maps an offset (in characters) of a formula to its position in the file: the text of a TOML string may start
-// anywhere, hold escapes or span several lines.
+// Maps an offset (in characters) of a formula to its position in the file, because the text of a TOML string may start
+// anywhere, contain escapes or span several lines.
 class FormulaText {
  public:
   FormulaText() = default;
@@ -82,12 +82,12 @@ struct Syntax {
 // Parses one formula; parse_equation parses the sides of an equation. Throws Failure.
 Syntax parse_formula(const FormulaText& text);
 std::vector<Syntax> parse_equation(const FormulaText& text);  // one side or two
-std::vector<Syntax> parse_plain(const FormulaText& text);     // as parse_equation(), without substituting indices
+std::vector<Syntax> parse_plain(const FormulaText& text);     // the same without substituting indices
 
-// The formula again, with brackets where they are needed.
+// Returns the formula as text, with brackets if they are needed.
 std::string print(const Syntax& s);
 
-// The spelling under which a name is known: Greek letters become their names.
+// Returns the spelling under which a name is known: Greek letters become their names.
 std::string normal_name(std::string_view name);
 bool is_identifier(std::string_view name);  // after normal_name
 
@@ -99,8 +99,8 @@ struct Vector {
   const Expr& operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
 };
 
-// A rotation with its angular velocity relative to the observer, in the observer's axes and in its own. Both are built
-// up turn by turn, so they stay short.
+// A rotation with its angular velocity relative to the observer, by components along the observer's axes and along its
+// own axes. Both are built up turn by turn, so they stay short.
 struct Rotation {
   Vector columns[3];     // the new axes in the observer's axes
   Vector rate;           // angular velocity, components along the observer's axes
@@ -132,7 +132,7 @@ Rotation operator*(const Rotation& a, const Rotation& b);
 Rotation identity_rotation(Graph& g);
 Rotation turn(int axis, Expr angle);  // rotx, roty, rotz: axis 0, 1, 2
 Rotation turn(const Vector& unit_axis, Expr angle);
-// The rotation with the given axes; its rate is 1/2 sum_k u_k x u_k' (theory: weighted-points).
+// Returns the rotation with the given axes; its rate is 1/2 sum_k u_k x u_k' (theory: weighted-points).
 Rotation rotation_from_axes(const Vector& x, const Vector& y, const Vector& z);
 
 // A body named in a formula. A particle can be used as a point, and a body with an orientation as a frame
@@ -159,22 +159,22 @@ struct Names {
                                     const Syntax& syntax) = 0;
   virtual Value member(const Value& object, const Syntax& syntax) = 0;
   virtual std::vector<std::string> functions() const = 0;  // for "did you mean"
-  // The point, or the frame, that a body stands for; nullopt if the body has none.
+  // These return the point, or the frame, that a body represents; nullopt if the body has none.
   virtual std::optional<Vector> point(const BodyName& /*body*/, Span /*use*/) { return std::nullopt; }
   virtual std::optional<Rotation> frame(const BodyName& /*body*/, Span /*use*/) { return std::nullopt; }
   virtual std::string body_name(const BodyName& /*body*/) const { return "B"; }
-  // Whether the model declares this name.
+  // True if the model declares this name.
   virtual bool declares(const std::string& /*name*/) const { return false; }
-  // The expression as a function of time, before a formula is differentiated by time.
+  // Returns the expression as a function of time, before a formula is differentiated by time.
   virtual Expr in_time(Expr e) { return e; }
-  // Is called for each quat(…): it is a rotation only if its norm is 1.
+  // Is called for each quat(…), because it is a rotation only if its norm is 1.
   virtual void quaternion(const std::array<Expr, 4>& /*components*/, const Syntax& /*call*/) {}
 };
 
 // Replaces a body by its point (or frame), if it has one; other values are unchanged.
 Value as_point(Value v, Names& names, Span use);
 Value as_frame(Value v, Names& names, Span use);
-// The hint for a body that is neither point nor frame: "write shell.center for its point".
+// Returns the hint for a body that is neither point nor frame: "write shell.center for its point".
 std::string body_hint(const Value& v, const Names& names);
 
 Value evaluate(const Syntax& s, Names& names);

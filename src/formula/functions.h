@@ -7,13 +7,13 @@
 
 namespace anholon {
 
-// How the dimension of a call follows from those of its arguments.
+// The rule by which the dimension of a call follows from those of its arguments.
 enum class DimensionRule : std::uint8_t {
   pure,                  // pure numbers to a pure number
   same,                  // that of the argument
   number,                // a pure number for an argument of any dimension
-  root,                  // its square root
-  square,                // its square, of a vector
+  root,                  // the square root of that of the argument
+  square,                // the square of that of a vector
   length,                // that of a vector, as a number
   direction,             // a vector of pure numbers
   alike,                 // that of arguments of one dimension

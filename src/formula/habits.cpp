@@ -50,7 +50,7 @@ const std::map<std::string, const char*>& other_names() {
   return list;
 }
 
-// The order of diff(x, t, 2) and diff(x, t, t); 0 if the call is not a derivative by time.
+// Returns the order of diff(x, t, 2) and diff(x, t, t); 0 if the call is not a derivative by time.
 int order_of(const Syntax& call) {
   const std::vector<Syntax>& a = call.args;
   const auto is_time = [](const Syntax& s) { return s.op == Syntax::Op::name && s.text == "t"; };
@@ -61,7 +61,7 @@ int order_of(const Syntax& call) {
   return std::all_of(a.begin() + 1, a.end(), is_time) ? static_cast<int>(a.size()) - 1 : 0;
 }
 
-// The formula that replaces a call with these arguments.
+// Returns the formula that replaces a call with these arguments.
 std::string rewritten(const Syntax& s) {
   const std::string& f = s.text;
   const std::vector<Syntax>& a = s.args;

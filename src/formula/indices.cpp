@@ -34,7 +34,7 @@ std::string element(const Syntax& index, const Indices* indices) {
   return member_name(index.text, values);
 }
 
-// T[2], and f.c0 for a member of a name.
+// Returns the name T[2], or f.c0 for a member of a name.
 std::string name_of_function(const Syntax& s, const Indices* indices) {
   if (s.op != Syntax::Op::member) return element(s, indices);
   return print(with_indices(s.args[0], indices)) + "." + s.text;
@@ -47,7 +47,7 @@ std::string letters(const Indices* indices) {
   return list;
 }
 
-// sum(k, e): k is a letter with a range; returns e once for each value of k.
+// Expands sum(k, e), where k is a letter with a range: e occurs once for each value of k.
 Syntax repeated(const Syntax& s, const Indices* indices) {
   const bool sum = s.text == "sum";
   const std::string usage = s.text + "(k, …) with k = \"1..n\" under [index]";

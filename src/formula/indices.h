@@ -32,20 +32,20 @@ struct Indices {
 
 // Substitutes the values of the indices in a formula. If `indices` is null, P[0] is a name and there are no letters.
 Syntax with_indices(Syntax s, const Indices* indices);
-// The value of an integer formula: + - * and brackets of whole numbers, index integers and bound letters. Throws
-// Failure.
+// Returns the value of an integer formula: + - * and brackets of whole numbers, index integers and bound letters.
+// Throws Failure.
 long index_value(const Syntax& s, const Indices* indices);
-// The letters in a formula that have a range and no value, except those that a sum or product binds; they are appended
-// to the letters found before.
+// Appends to `letters` the letters in a formula that have a range and no value, except those that a sum or product
+// binds.
 using Letters = std::vector<std::pair<std::string, IndexRange>>;
 void free_letters(const Syntax& s, const Indices& indices, Letters& letters);
-// An equation as written; for a member of a family, with the values of its letters.
+// Returns an equation as written; for a member of a family, with the values of its letters.
 std::string equation_text(const FormulaText& text, const std::vector<Syntax>& sides);
-// "P[2]", "c[1,-1]" of a name and the values in its bracket.
+// Returns the name "P[2]" or "c[1,-1]" of a family and the values in its bracket.
 std::string member_name(const std::string& family, const std::vector<long>& values);
-// An identifier, or one with whole numbers in a bracket: P, P[2], c[1,2].
+// True for an identifier, or one with whole numbers in a bracket: P, P[2], c[1,2].
 bool is_element_name(std::string_view name);
-// "; P has 0..10" for a name P[11] if other members are among the known names; else an empty string.
+// Returns "; P has 0..10" for a name P[11] if other members are among the known names; else an empty string.
 std::string members_known(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace anholon

@@ -38,7 +38,7 @@ bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0;
 struct Sign {
   std::string_view spelling;
   Token token;
-  std::string_view text = {};  // of the lexeme, if it differs from the spelling
+  std::string_view text = {};  // text of the lexeme, if it differs from the spelling
 };
 constexpr Sign kSigns[] = {
     {"+", Token::plus},
@@ -98,7 +98,7 @@ class Lexer {
   }
 
  private:
-  // The byte at i; 0 beyond the end.
+  // Returns the byte at i; 0 beyond the end.
   char byte(std::size_t i) const { return i < s_.size() ? s_[i] : '\0'; }
   std::size_t after_digits(std::size_t i) const {
     while (is_digit(byte(i))) ++i;
@@ -142,7 +142,7 @@ class Lexer {
     push(Token::name, end - at_, characters, normal_name(s_.substr(at_, end - at_)));
   }
 
-  // "zxz": the axis letters of euler(…) may be quoted.
+  // Reads a quoted text, "zxz": the axis letters of euler(…) may be quoted.
   void quoted() {
     const std::size_t close = s_.find('"', at_ + 1);
     if (close == std::string::npos)
@@ -169,7 +169,7 @@ class Lexer {
                   habit_of_sign(std::string(c)));
   }
 
-  // Whether a name ends here, in which case a '.' is followed by a member.
+  // True if a name ends here, in which case a '.' is followed by a member.
   bool after_name() const {
     return !lexemes_.empty() && lexemes_.back().token == Token::name &&
            lexemes_.back().offset + lexemes_.back().length == offset_;

@@ -33,7 +33,7 @@ struct Lexeme {
   std::size_t offset = 0, length = 1;  // in characters
 };
 
-// The last one is Token::end. Throws Failure at a character without meaning.
+// Returns the tokens, the last of which is Token::end. Throws Failure at a character without meaning.
 std::vector<Lexeme> lexemes(const FormulaText& source);
 
 }  // namespace anholon

@@ -15,7 +15,7 @@ namespace {
 
 // Nesting deeper than this is refused; it also bounds the recursion of parser and evaluator.
 constexpr int kDeepest = 400;
-// Longest formula read, in bytes.
+// The longest formula that is read, in bytes.
 constexpr std::size_t kLongestFormula = 1 << 20;
 
 class Parser {
@@ -26,7 +26,7 @@ class Parser {
     lexemes_ = lexemes(source);
   }
 
-  // Whether the formula contains brackets after names, P[2], or calls of pieces, f.c0(x).
+  // True if the formula contains brackets after names, P[2], or calls of pieces, f.c0(x).
   bool indexed() const { return indexed_; }
 
   Syntax formula() {
@@ -212,7 +212,8 @@ class Parser {
 
   const Lexeme& ahead(std::size_t k) const { return lexemes_[std::min(at_ + k, lexemes_.size() - 1)]; }
 
-  // A name after a number and a blank is a unit, and so is 1/ before the name of one; a call or a member of a family is not.
+  // True if a unit follows: a name after a number and a blank, or 1/ before the name of a unit. A call or a member of a
+  // family is no unit.
   bool unit_follows(const Lexeme& number) const {
     const std::size_t k = reciprocal_unit() ? 2 : 0;
     const Lexeme &name = ahead(k), &after = ahead(k + 1);
@@ -220,18 +221,18 @@ class Parser {
            after.token != Token::left;
   }
 
-  // 1/s; in 1/t t is the time.
+  // True for 1/s; in 1/t, t is the time.
   bool reciprocal_unit() const {
     return peek().token == Token::number && peek().text == "1" && ahead(1).token == Token::over && touches(at_ + 1) &&
            touches(at_ + 2) && ahead(2).text != "t" && find_unit(ahead(2).text);
   }
 
-  // A unit contains no blanks: "2 m/s * t" is a product with t.
+  // True if lexeme k follows without a blank. A unit contains no blanks: "2 m/s * t" is a product with t.
   bool touches(std::size_t k) const {
     return k > 0 && k < lexemes_.size() && lexemes_[k - 1].offset + lexemes_[k - 1].length == lexemes_[k].offset;
   }
 
-  // The number and the unit after it: names of units with whole powers, joined by * · and /, and perhaps 1/ before them.
+  // Reads the unit after a number: names of units with whole powers, joined by * · and /, and perhaps 1/ before them.
   Syntax quantity(Syntax number) {
     const std::size_t first = at_;
     constexpr std::size_t kLongestUnit = 200;
@@ -338,7 +339,7 @@ class Parser {
     }
   }
 
-  // f.c0(x), T[2].knot(x)
+  // Makes the call f.c0(x) or T[2].knot(x).
   Syntax call_of_piece(Syntax piece, const Lexeme& at) {
     std::vector<Syntax> all = one(std::move(piece));
     for (Syntax& a : arguments(Token::close, ")")) all.push_back(std::move(a));
@@ -356,7 +357,7 @@ class Parser {
     fail(peek(), "an operator is missing before '('", "write " + print(s) + "*(…) for a product");
   }
 
-  // The hint for a missing operator.
+  // Returns the hint for a missing operator.
   std::string hint_for_missing(const Lexeme& before, const Lexeme& at) const {
     if (before.token == Token::prime && at_ > 1)
       return "write " + lexemes_[at_ - 2].text + before.text + "*" + at.text + " for a product";

@@ -5,10 +5,10 @@ namespace anholon {
 namespace {
 
 struct Sides {
-  Expr condition, above, below;  // where the condition is >= 0, and elsewhere
+  Expr condition, above, below;  // the value where the condition is >= 0, and elsewhere
 };
 
-// The values of a term on both sides; nullopt of a term without sides.
+// Returns the values of a term on both sides; nullopt if the term has no sides.
 std::optional<Sides> sides_of(Graph& g, NodeId term) {
   const Node& n = g.node(term);
   const std::span<const Term> operands = g.terms(term);
@@ -19,7 +19,8 @@ std::optional<Sides> sides_of(Graph& g, NodeId term) {
   return std::nullopt;
 }
 
-// The same of a sum, by each of its terms that has sides; of anything else, by itself. Stops at sides of which one is 0.
+// Returns sides of which one is 0: for a sum, by its first term that leads to such sides; for anything else, its own
+// sides.
 std::optional<Sides> with_a_zero_side(Expr base) {
   Graph& g = *base.graph;
   const auto zero_side = [](const std::optional<Sides>& s) { return s && (is_zero(s->above) || is_zero(s->below)); };

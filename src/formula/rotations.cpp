@@ -17,8 +17,8 @@ void must_be(Expr e, int value, Span at) {
 }  // namespace
 
 Rotation quaternion(Expr e0, Expr e1, Expr e2, Expr e3) {
-  // Products are made one after the other: nodes are numbered in the order of their creation, so that all compilers
-  // number them alike.
+  // Products are made one after the other: nodes are numbered in the order of their creation, which must not depend on
+  // the compiler.
   const Expr e00 = e0 * e0, e11 = e1 * e1, e22 = e2 * e2, e33 = e3 * e3;
   const Expr e01 = e0 * e1, e02 = e0 * e2, e03 = e0 * e3, e12 = e1 * e2, e13 = e1 * e3, e23 = e2 * e3;
   Vector columns[3];

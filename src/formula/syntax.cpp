@@ -1,4 +1,4 @@
-// Syntax trees as text.
+// Prints syntax trees.
 #include "formula/formula.h"
 
 namespace anholon {
@@ -84,7 +84,7 @@ std::string print(const Syntax& s) {
   case Syntax::Op::add:
   case Syntax::Op::multiply: {
     const int own = strength(s);
-    // A minus sign goes without brackets only at the beginning.
+    // A minus sign has no brackets only at the beginning.
     std::string out = bracketed(s.args[0], own);
     for (std::size_t i = 1; i < s.args.size(); ++i) {
       const bool minus = s.args[i].op == Syntax::Op::negate;

@@ -14,7 +14,7 @@ namespace anholon {
 using Dimension = std::array<Rational, 7>;  // m, kg, s, A, K, mol, cd
 
 struct Unit {
-  Rational factor = 1;  // to SI
+  Rational factor = 1;  // factor to SI
   int pi = 0;           // exponent of the factor pi
   Dimension dimension;
 };
@@ -34,12 +34,12 @@ const std::vector<UnitRow>& unit_table();
 std::optional<Unit> find_unit(const std::string& name);
 // Reads "m^3/s^2", "kg*m^2", "1/s", as written after a number; nullopt if the text is not a unit.
 std::optional<Unit> read_unit(const std::string& text);
-// The names of the table and common ones with prefixes, for "did you mean".
+// Returns the names of the table and common ones with prefixes, for "did you mean".
 std::vector<std::string> unit_names();
 
-// "kg*m/s^2"; "1" for a pure number.
+// Returns "kg*m/s^2", or "1" for a pure number.
 std::string print(const Dimension& d);
-// "a force (N)", "a length (m)", "a pure number", "a quantity in kg*m".
+// Returns "a force (N)", "a length (m)", "a pure number" or "a quantity in kg*m".
 std::string describe(const Dimension& d);
 
 }  // namespace anholon

@@ -53,7 +53,7 @@ Rotation turn(int axis, Expr angle) {
   return r;
 }
 
-// Rodrigues: R v = v cos + (a x v) sin + a (a.v)(1 - cos).
+// Rodrigues' formula: R v = v cos + (a x v) sin + a (a.v)(1 - cos).
 Rotation turn(const Vector& a, Expr angle) {
   Graph& g = *angle.graph;
   Rotation r = identity_rotation(g);

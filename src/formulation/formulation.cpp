@@ -38,7 +38,7 @@ std::string order_obstacle(const Formulation& form, const Mechanics& M, unsigned
   return {};
 }
 
-// Mićević was read as Mišević.
+// These aliases contain a misspelling of Mićević.
 constexpr std::pair<const char*, const char*> kAliases[] = {
     {"misevic-rusov", "micevic-rusov"},
     {"misevic-rusov-maggi", "micevic-rusov-maggi"},

@@ -27,7 +27,7 @@ enum class Unknowns : std::uint8_t {
 inline constexpr unsigned kHighestM = 12;
 
 struct Formulation {
-  const char* name;  // as --form accepts it
+  const char* name;  // the name that --form accepts
   const char* title;
   const char* equation;  // number in its source; empty for the classics
   const char* source;
@@ -35,9 +35,9 @@ struct Formulation {
   // Returns an empty string if the form applies to the model, else the reason why it does not.
   std::string (*obstacle)(const Mechanics&);
   Equations (*equations)(const Mechanics&, const Elimination&);
-  // The quantities from which the equations are built, for `derive --steps`; null if nothing is listed.
+  // Returns the quantities from which the equations are built, for `derive --steps`; null if nothing is listed.
   Quantities (*quantities)(const Mechanics&, const Elimination&) = nullptr;
-  // The highest order m that can be asked for; 0: the equations do not depend on an order.
+  // The highest order m that can be requested; 0: the equations do not depend on an order.
   unsigned highest_m = 0;
 
   bool eliminates() const { return unknowns == Unknowns::coordinates || unknowns == Unknowns::quasi_velocities; }
@@ -52,23 +52,23 @@ inline constexpr const char* kMicevicRusov =
 
 // Obstacles that several forms share.
 std::string no_obstacle(const Mechanics&);
-// For the forms of first order: holonomic constraints are lifted to order 1; constraints of higher order are an
-// obstacle.
+// The obstacle of the forms of first order: a constraint of order 2 or more. Holonomic constraints are lifted to order
+// 1.
 std::string first_order_only(const Mechanics& M);
 
-// The reason why a form does not apply to a model: its own obstacle, or a constraint that is maintained by an input and
-// so has no ideal reaction to eliminate. Empty if the form applies.
+// Returns the reason why a form does not apply to a model: its own obstacle, or a constraint that is maintained by an
+// input and so has no ideal reaction to eliminate. Empty if the form applies.
 std::string obstacle(const Formulation& form, const Mechanics& M);
 
-// The reason why an applicable form is not available with this order m; empty if it is. Constraints and
-// quasi-velocities of lower order are lifted to m; the equations of forms with multipliers hold for every m, those of
-// the others from the highest order of the constraints on.
+// Returns the reason why an applicable form is not available with this order m; empty if it is. Constraints and
+// quasi-velocities of lower order are lifted to m. The equations of forms with multipliers hold for every m, those of
+// the other forms from the highest order of the constraints on.
 std::string order_obstacle(const Formulation& form, const Mechanics& M, unsigned m);
 
-// All forms, sorted by name; the build generates the list from the files in forms/.
+// Returns all forms, sorted by name; the build generates the list from the files in forms/.
 const std::vector<const Formulation*>& formulations();
 const Formulation* find_formulation(const std::string& name);
-// "(2.7) of Luo & Zhao, …"
+// Returns "(2.7) of Luo & Zhao, …".
 std::string citation(const Formulation& form);
 
 }  // namespace anholon

@@ -12,24 +12,24 @@ using Labels = std::vector<Label>;
 // The accent of a letter: T~ is reduced by coordinates, T* by quasi-velocities, Tbar by solved constraints of order 1.
 enum class Over : std::uint8_t { nothing, tilde, star, bar };
 
-// A letter, or a word used as one, as SymbolNames would write it.
+// Returns a letter, or a word used as a letter, as SymbolNames would write it.
 Label letter(const std::string& name);
-// T~^(2): the second derivative of T, reduced. For k = 0 without an order.
+// Returns T~^(2), the second derivative of T, reduced. If k = 0, the label has no order.
 Label energy(const std::string& name, unsigned k = 0, Over over = Over::nothing);
-// Q.x, phi.edge, v.bead.y: a letter without a subscript gets one; its parts are written separately.
+// Returns Q.x, phi.edge, v.bead.y: `text` and its parts become the subscript.
 Label indexed(const Label& of, const std::string& text, const std::vector<Label>& parts);
-// f^k: "QR", Q^R.
+// Returns f^k: "QR", Q^R.
 Label with_superscript(const std::string& text, const Label& base, const Label& upper);
 Label minus(const Label& of);
 Label operator-(const Label& a, const Label& b);
 
 Label name_of(const Model& model, const std::string& name);
-// The derivative of order k of the quantity called `name`.
+// Returns the derivative of order k of the quantity called `name`.
 Label derivative_of(const Model& model, const std::string& name, unsigned k);
-// q^(k) of all coordinates.
+// Returns q^(k) of all coordinates.
 Labels jet_labels(const Mechanics& M, unsigned k);
-// The free quantities u: q^(m) of the independent coordinates, or quasi-velocities with their own order; differentiated
-// `more` times.
+// Returns the free quantities u: q^(m) of the independent coordinates, or quasi-velocities with their own order;
+// differentiated `more` times.
 Labels free_labels(const Mechanics& M, const Elimination& E, unsigned more = 0);
 Labels pick(const Labels& all, const std::vector<std::size_t>& which);
 

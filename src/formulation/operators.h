@@ -4,11 +4,12 @@
 
 namespace anholon {
 
-// The given and the inertial forces and the reactions sum lambda dphi/dq^(m)  [L 2.7], right side
+// The right side: the given and the inertial forces and the reactions sum lambda dphi/dq^(m)  [L 2.7]
 Column right_side(const Mechanics& M);
-// The highest order of the constraints, at least 1. A constraint of lower order can be lifted to it without changing N.
+// Returns the highest order of the constraints, at least 1. A constraint of lower order can be lifted to it without
+// changing N.
 unsigned highest_order(const Mechanics& M);
-// The order m of the forms with multipliers: the one asked for, else the highest order of the constraints.
+// Returns the order m of the forms with multipliers: the requested order, else the highest order of the constraints.
 unsigned order_of(const Mechanics& M, const Elimination& E);
 // T^(k) = D^k T/Dt^k
 Expr T(const Mechanics& M, unsigned k);

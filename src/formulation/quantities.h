@@ -20,17 +20,17 @@ using Quantities = std::vector<Quantity>;
 Quantities listed(std::initializer_list<Quantities> lists);
 
 Quantities named(const Label& name, Expr value);
-// All entries, including zeros.
+// Names all entries, including zeros.
 Quantities named(const Labels& names, const Column& values);
-// d of/d by, without zeros.
+// Names d of/d by, without zeros.
 Quantities partials(const Labels& of, const Labels& by, const Rows& values);
-// As partials(), for d/dt d of/d by.
+// Names d/dt d of/d by, without zeros.
 Quantities rates_of_partials(const Labels& of, const Labels& by, const Rows& values);
 
-// D/Dt of each quantity, with these values.
+// Names D/Dt of each quantity, with these values.
 Quantities frozen_rates(const Quantities& of, const Column& values);
 
-// F, and its derivatives by q^(k).
+// These name F with its derivatives by q^(k), and the derivatives alone.
 Quantities with_partials(const Mechanics& M, const Label& name, Expr F, unsigned k);
 Quantities partials_of(const Mechanics& M, const Label& name, Expr F, unsigned k);
 
@@ -47,7 +47,7 @@ Quantities of_appell(const Mechanics& M);
 
 // Quantities that the forms without multipliers share.
 //
-// , S*.~, S*.
+// Names F with the dependent derivatives substituted: T~, S~, T*, S*.
 Quantities reduced(const Elimination& E, const Label& name, Expr F);
 // dF/dq_b^(k) of the dependent coordinates, F not reduced.
 Quantities dependent_partials(const Mechanics& M, const Elimination& E, const Label& name, Expr F, unsigned k);
@@ -55,12 +55,12 @@ Quantities dependent_partials(const Mechanics& M, const Elimination& E, const La
 Quantities f_by_lower(const Mechanics& M, const Elimination& E);
 Quantities rates_of_f_by_u(const Mechanics& M, const Elimination& E);
 Quantities f_rate_by_u(const Mechanics& M, const Elimination& E);
-// The velocities (or the quantity `of`) of all weighted points, component by component: v.NAME.x; for the axes of a
-// body v.NAME.1.x.
+// Returns labels of the velocities (or the quantity `of`) of all weighted points, component by component: v.NAME.x; for
+// the axes of a body v.NAME.1.x.
 Labels point_labels(const Mechanics& M, const Label& of);
 // sum_s G_s B_sa, the forces along the constraints: G.x, G.u1
 Quantities forces_along(const Mechanics& M, const Elimination& E);
-// As above, for any column of forces.
+// Names the same contraction of any column of forces.
 Quantities along(const Mechanics& M, const Elimination& E, const Label& of, const Column& X);
 
 }  // namespace anholon

@@ -5,7 +5,7 @@ namespace anholon {
 ReactionFormulas reaction_formulas(const Mechanics& M, const Formulation& form, const Elimination& E) {
   Graph& g = M.graph();
   const auto here = [&](const Column& X) { return form.eliminates() ? E.on(X) : X; };
-  // A constraint that an input keeps has no multiplier here: the input itself acts.
+  // A constraint that an input keeps has no multiplier here, because the input itself acts.
   const auto kept_by_inputs = [&](NodeId id) {
     const Node& n = g.node(id);
     if (n.kind != Kind::multiplier || !M.model->constraints[n.index].by) return Expr{};

@@ -23,7 +23,7 @@ struct ReactionFormulas {
   std::vector<Load> loads;  // on each body
 };
 
-// `E`: the form's own elimination of the ideal constraints if it has one, else any by coordinates.
+// `E`: the form's own elimination of the ideal constraints if it has one, else any elimination by coordinates.
 ReactionFormulas reaction_formulas(const Mechanics& M, const Formulation& form, const Elimination& E);
 
 }  // namespace anholon

@@ -8,7 +8,7 @@
 
 namespace anholon {
 
-// The output in the unit of its column.
+// Returns the output in the unit of its column.
 static Expr in_its_unit(const OutputQuantity& output, Expr value) {
   const std::optional<Unit> unit = output.unit.empty() ? std::nullopt : read_unit(output.unit);
   if (!unit) return value;
@@ -16,7 +16,7 @@ static Expr in_its_unit(const OutputQuantity& output, Expr value) {
   return value * g.number(Rational(1 / unit->factor)) * pow(g.pi(), Rational(-unit->pi));
 }
 
-// ", nor what 'ref' does by it": the inputs that the formula of an input holds.
+// Lists the inputs that the formula of an input contains: ", nor what 'ref' does by it".
 static std::string others_in(const Model& model, const Control& control) {
   std::string list;
   std::vector<const Control*> seen{&control};
@@ -41,7 +41,7 @@ std::shared_ptr<const Model> with_signals(const Model& model, Signals& signals) 
     if (!control.value || control.constraint) continue;
     const Expr u = g.parameter(static_cast<std::uint32_t>(m->parameters.size()));
     m->parameters.push_back({control.name, g.zero(), "", control.span});
-    // The formulas of other inputs hold the sum, too.
+    // The formulas of other inputs also contain the sum.
     Expr& formula = control.open.graph ? control.open : *control.value;
     formula = formula + u;
     signals.inputs.push_back(control.name);
@@ -67,7 +67,7 @@ void note_rates(const Scenario& scenario, Signals& signals) {
                             "D do not hold what it does");
 }
 
-// The initial positions where conditions determine some; empty if they have no solution.
+// Returns the initial positions if conditions determine some; empty if the conditions have no solution.
 static std::vector<GivenValue> positions_by_conditions(const Model& model) {
   if (model.initial.conditions.empty() || !model.unknown_functions.empty()) return {};
   const std::shared_ptr<Model> own = clone(model);
@@ -128,7 +128,7 @@ std::vector<std::size_t> without_influence(const Scenario& scenario) {
       return n.kind == Kind::jet && n.order > 0 ? g.zero() : Expr{};
     });
   } catch (const Failure&) {
-    // A formula divides by a velocity. What occurs in it may then have influence.
+    // A formula divides by a velocity, so everything in it may have influence.
   }
   const std::vector<NodeId> met = symbols(conditions);
   std::vector<std::size_t> list;

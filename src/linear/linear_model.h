@@ -22,7 +22,7 @@ namespace anholon {
 struct Signals {
   std::vector<std::string> inputs, outputs;
   Column u, y;
-  std::vector<std::string> notes;  // about them
+  std::vector<std::string> notes;  // notes about the signals
 };
 
 // z' = A z + B u,  y = C z + D u.
@@ -34,8 +34,8 @@ struct LinearModel {
     unchecked,  // perhaps steady; the check found no other point of the motion
   };
   Motion motion = Motion::unchecked;
-  std::string why;                     // unsteady, unchecked: the reason
-  std::vector<std::string> eliminate;  // unsteady: coordinates without whose velocities the motion is steady, if any
+  std::string why;                     // the reason, if unsteady or unchecked
+  std::vector<std::string> eliminate;  // if unsteady: coordinates without whose velocities the motion is steady, if any
   Multi t{0};
   std::vector<std::string> states;     // names of z: x, …, x', …
   std::vector<std::string> dependent;  // entries of the state that follow from z
@@ -45,7 +45,7 @@ struct LinearModel {
   std::vector<std::string> notes;    // signals that do not occur in the model
   std::vector<std::size_t> cyclic;   // indices of z: coordinates, states of [state] that influence nothing
   std::vector<std::size_t> core;     // the others
-  std::vector<Eigenvalue> spectrum;  // of A over the core; vectors over the core
+  std::vector<Eigenvalue> spectrum;  // eigenvalues of A over the core, with vectors over the core
 };
 const char* name(LinearModel::Motion motion);
 

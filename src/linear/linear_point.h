@@ -8,7 +8,7 @@
 
 namespace anholon {
 
-// 10^-(fraction of the working digits): a smaller number, relative to its neighbours, is round-off.
+// Returns 10^-(fraction of the working digits): a smaller number, relative to its neighbours, is round-off.
 inline Multi round_off(double part) {
   Multi u(1);
   mpfr_div_2ui(u.raw(), u.raw(), static_cast<unsigned long>(part * static_cast<double>(Multi::working_bits())),
@@ -29,12 +29,12 @@ inline Multi largest(const std::vector<Multi>& v) {
 // One point of a motion: its entries, and the relations between their variations.
 class LinearPoint {
   static constexpr int kMostNewton = 30;
-  // Pivots at least this large, relative to the largest, are taken in the order of the coordinates.
+  // Pivots that are at least this large, relative to the largest, are taken in the order of the coordinates.
   static constexpr double kNearlyLargest = 0.5;
-  static constexpr double kPreferred = 0.02;  // pivots of preferred or already taken coordinates: from this size on
+  static constexpr double kPreferred = 0.02;  // least relative size of pivots of preferred or already taken coordinates
 
  public:
-  // `eliminate`: the coordinates that follow from others, as far as that can be.
+  // `eliminate`: the coordinates that shall follow from others, as far as possible.
   LinearPoint(const VariedEquations& l, std::vector<std::size_t> eliminate, const std::vector<Multi>& parameters)
       : l_(l), eliminate_(std::move(eliminate)), machine_(l.tape, 0, parameters), x(l.entries.size(), Multi(0)) {}
 
@@ -45,7 +45,7 @@ class LinearPoint {
       if (const Multi* known = state.value(node(e))) x[e] = *known;
   }
 
-  // Gives a machine of formulas its inputs.
+  // Sets the inputs of a machine of formulas.
   void set(Machine<Multi>& machine) const {
     bind(machine, *l_.scenario.model->graph, [&](const Node& n, NodeId symbol) {
       if (n.kind == Kind::time) return t;
@@ -56,7 +56,7 @@ class LinearPoint {
     });
   }
 
-  // Values of all equations, and the partial derivatives; false if a formula has no value here.
+  // Computes the values of all equations and the partial derivatives; returns false if a formula has no value here.
   bool evaluate() {
     set(machine_);
     machine_.evaluate();
@@ -90,7 +90,7 @@ class LinearPoint {
     return true;
   }
 
-  // Newton's method for all entries that depend on the independent ones.
+  // Solves by Newton's method for all entries that depend on the independent ones.
   bool settle() {
     const Multi small = round_off(kNewtonPart);
     for (int k = 0; k < kMostNewton; ++k) {
@@ -105,7 +105,7 @@ class LinearPoint {
     return false;
   }
 
-  // z' = A z, and z' on the motion.
+  // Computes A, B, C, D, and z' on the motion.
   void linear(LinearModel& out) const {
     std::vector<std::size_t> where(x.size(), x.size()),
         independent;  // index of an entry among the dependent or independent ones
@@ -116,7 +116,7 @@ class LinearPoint {
     std::stable_sort(independent.begin(), independent.end(),
                      [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
     const std::size_t n = independent.size(), inputs = l_.signals.u.size(), outputs = l_.signals.y.size();
-    // Dependent entries as functions of independent ones and of inputs.
+    // The dependent entries as functions of the independent ones and of inputs.
     Matrix<Multi> follow(dependent_.size(), n + inputs);
     std::vector<Multi> column(l_.rows.size(), Multi(0)), solution;
     for (std::size_t c = 0; c < n + inputs; ++c) {
@@ -162,7 +162,7 @@ class LinearPoint {
   }
 
   std::size_t independent(std::size_t i) const { return independent_[i]; }
-  // Whether it is a coordinate or a state of the model: no velocity and no multiplier.
+  // True if entry i is a coordinate or a state of the model, and no velocity or multiplier.
   bool position(std::size_t i) const {
     const auto& e = l_.entries[independent_[i]];
     const System& s = l_.scenario.system;

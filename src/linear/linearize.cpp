@@ -13,14 +13,14 @@ namespace {
 
 constexpr int kMostSteps = 300;
 constexpr int kExactDigits = 40;   // digits of a parameter value between the given ones
-constexpr int kMostHalvings = 12;  // of an interval whose crossings do not add up
+constexpr int kMostHalvings = 12;  // halvings of an interval whose crossings do not add up
 constexpr int kMostSlow = 3;       // steps that do not halve the interval, before the first bisection
 constexpr int kMostSides = 4;      // distances at which an eigenvalue may be off the axis
 constexpr double kNarrow = 1e-20;  // relative width of the interval in which a crossing is found
-// A real part that is continuous, be it as the fourth root of the parameter, is smaller than this over such an interval,
-// in relation to its values at the ends.
+// A continuous real part, even if it varies as the fourth root of the parameter, is smaller than this over such an
+// interval, in relation to its values at the ends.
 constexpr double kJump = 1e-3;
-// Relative distance from a jump at which the start of a search, in doubles, does not tell one branch from the other.
+// The relative distance from a jump at which the start of a search, in doubles, does not distinguish the branches.
 constexpr double kBeside = 1e-12;
 
 Rational rational_of(const Multi& x) { return *parse_rational(number_text(x, kExactDigits)); }
@@ -30,7 +30,7 @@ int unstable(const LinearModel& m) {
       std::count_if(m.spectrum.begin(), m.spectrum.end(), [](const Eigenvalue& e) { return e.value.re > Multi(0); }));
 }
 
-// All eigenvalues of A: each coordinate without influence adds a 0 to those of the others.
+// Returns all eigenvalues of A: each coordinate without influence adds a 0 to those of the others.
 std::vector<Complex> eigenvalues_of(const LinearModel& m) {
   std::vector<Complex> list(m.cyclic.size());
   for (const Eigenvalue& e : m.spectrum) list.push_back(e.value);
@@ -43,8 +43,8 @@ int zeros(const LinearModel& m) {
       std::count_if(list.begin(), list.end(), [](const Complex& e) { return e.re == Multi(0) && e.im == Multi(0); }));
 }
 
-// The m-th largest real part (m = 1, 2, …), without the `always` eigenvalues nearest to 0, which are 0 over the whole
-// range. Returns nullopt if there are fewer eigenvalues.
+// Returns the eigenvalue with the m-th largest real part (m = 1, 2, …), without the `always` eigenvalues nearest to 0,
+// which are 0 over the whole range. Returns nullopt if there are fewer eigenvalues.
 std::optional<Complex> ranked(const LinearModel& m, int rank, int always) {
   std::vector<Complex> list = eigenvalues_of(m);
   if (list.size() < static_cast<std::size_t>(rank + always)) return std::nullopt;
@@ -55,8 +55,8 @@ std::optional<Complex> ranked(const LinearModel& m, int rank, int always) {
   return list[static_cast<std::size_t>(rank) - 1];
 }
 
-// Whether the equations of two values of the parameter have the same unknowns and derivatives, so that formulas made for
-// one of them hold for the other. Divisors of an elimination are chosen by numbers.
+// True if the equations for two values of the parameter have the same unknowns and derivatives, so that formulas made
+// for one of them hold for the other. Divisors of an elimination must be chosen anew for each value.
 bool same_structure(const Scenario& a, const Scenario& b) {
   const auto routh = [](const Scenario& s) {
     return std::make_tuple(s.routh ? s.routh->variable_names : std::vector<std::string>(), s.routh_structure.c,
@@ -73,7 +73,7 @@ class Values {
   Values(ScenarioAt scenario_at, const StateChoice& choice, bool in_exponents, const Signals& signals)
       : scenario_at_(std::move(scenario_at)), choice_(choice), in_exponents_(in_exponents), signals_(signals) {}
 
-  // `check`: whether it is found out if the motion is steady.
+  // `check`: true if the steadiness of the motion is decided.
   LinearResult at(const Rational& value, bool check = true) {
     LinearResult r;
     Scenario scenario;
@@ -118,12 +118,12 @@ class Values {
 
   const ScenarioAt scenario_at_;
   const StateChoice& choice_;
-  const bool in_exponents_;  // the value stands in the equations as a number
+  const bool in_exponents_;  // the value is substituted in the equations as a number
   const Signals& signals_;
-  std::unique_ptr<Made> made_;  // of the last value
+  std::unique_ptr<Made> made_;  // scenario and linearizer of the last value
 };
 
-// What stands at one end of an interval of the parameter.
+// One end of an interval of the parameter.
 struct End {
   Rational value;
   const LinearModel& model;
@@ -133,7 +133,7 @@ class Search {
  public:
   explicit Search(Values& values) : values_(values) {}
 
-  // The crossings between two values, a < b.
+  // Finds the crossings between two values, a < b.
   void crossings(const End& a, const End& b, Linearization& out) {
     std::vector<Crossing> found;
     between(a, b, kMostHalvings, found, out.notes);
@@ -195,15 +195,15 @@ class Search {
     else if (!lost && change != after - before)
       note(place + " the number of unstable eigenvalues changes from " + std::to_string(before) + " to " +
            std::to_string(after) + ", which the crossings that were found do not explain");
-    // A branch of equilibria ends with an eigenvalue 0, which crosses nothing.
+    // A branch of equilibria ends with an eigenvalue 0, which is no crossing.
     for (const Multi& jump : jumps)
       std::erase_if(found, [&](const Crossing& c) { return abs(Multi(c.value - jump)) < Multi(kBeside) * abs(jump); });
     out.insert(out.end(), found.begin(), found.end());
   }
 
-  // The zero of f(p), the m-th largest real part, between a and b, by false position with halving of a retained value
-  // (Illinois); by bisection if that makes no progress, the sooner the more often it makes none, as at a jump, or if f
-  // does not change its sign but leaves 0, as for undamped systems.
+  // Finds the zero of f(p), the m-th largest real part, between a and b by false position with halving of a retained
+  // value (Illinois). If that makes no progress, bisection follows, and earlier each time; this happens at a jump, or
+  // if f does not change its sign but leaves 0, as for undamped systems.
   Root root(const End& from, const End& to, int m, int always, Crossing& c) {
     const Multi first(from.value), second(to.value);
     Multi a = first, b = second;
@@ -213,7 +213,7 @@ class Search {
     const bool leaves_zero = fa == Multi(0) || fb == Multi(0);
     const bool a_positive = fa > Multi(0);
     const Multi size = std::max(abs(fa), abs(fb));
-    // the crossing eigenvalue, at the end where it is on the right
+    // The crossing eigenvalue, at the end where it is on the right.
     Complex e = a_positive ? *at_a : *at_b;
     Multi p = b;
     const Multi narrow = Multi(kNarrow) * (abs(a) + abs(b)), half = narrow / Multi(2);
@@ -222,7 +222,7 @@ class Search {
       const Multi width = b - a;
       if (leaves_zero || slow >= patience)
         p = (a + b) / Multi(2), slow = 0, patience = std::max(0, patience - 1);
-      else  // not so near to an end that the other one would stay where it is
+      else  // not so near to an end that the other end would never move
         p = std::min(Multi(b - half), std::max(Multi(a + half), Multi((a * fb - b * fa) / (fb - fa))));
       const LinearResult& r = unchecked_at(p);
       const auto found = r.outcome.ok() ? ranked(r.model, m, always) : std::nullopt;
@@ -251,8 +251,8 @@ class Search {
     return continuous(before, after, m, always, size, c.unstable_above);
   }
 
-  // Whether the eigenvalue is real where it has left the axis, on the side of `end`: where two of them meet at 0, they may
-  // be a pair on one side alone.
+  // True if the eigenvalue is real where it has left the axis, on the side of `end`: if two eigenvalues meet at 0, they
+  // may be a pair on one side alone.
   bool real_beside(const Multi& end, const Multi& p, const Multi& narrow, int m, int always) {
     Multi away = narrow;
     for (int k = 0; k < kMostSides; ++k, away *= Multi(1000)) {
@@ -264,8 +264,8 @@ class Search {
     return false;
   }
 
-  // Whether f is small on both sides of its zero, which are so near to each other that only a jump makes it large, and
-  // the states are the same. `unstable_at_b`: how many eigenvalues are unstable at b.
+  // Decides whether f is small on both sides of its zero, which are so near to each other that only a jump makes f
+  // large, and the states are the same. `unstable_at_b`: the number of unstable eigenvalues at b.
   Root continuous(const Multi& a, const Multi& b, int m, int always, const Multi& size, int& unstable_at_b) {
     std::vector<Multi> before;
     std::vector<std::string> states;
@@ -282,7 +282,8 @@ class Search {
     return Root::found;
   }
 
-  // The linear model at a value between the given ones. Eigenvalues that jump together are searched for at the same values.
+  // Returns the linear model at a value between the given ones. Eigenvalues that jump together are searched at the same
+  // values.
   const LinearResult& unchecked_at(const Multi& p) {
     const Rational exact = rational_of(p);
     const auto [place, is_new] = known_.try_emplace(to_string(exact));
@@ -291,10 +292,10 @@ class Search {
   }
 
   Values& values_;
-  std::map<std::string, LinearResult> known_;  // in the present interval
+  std::map<std::string, LinearResult> known_;  // results in the present interval
 };
 
-// The order in which the values of the parameter grow.
+// Returns the indices of the values in increasing order.
 std::vector<std::size_t> growing(const std::vector<Rational>& values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -6,7 +6,7 @@
 // zero is bracketed. If the crossings that are found there do not add up to the change of u, the interval is halved.
 // Two opposite crossings between neighbours are not detected: the values must be close enough together.
 //
-// Where the motion itself jumps, the real parts jump with it, and no crossing is told.
+// If the motion itself jumps, the real parts jump with it, and no crossing is reported.
 #pragma once
 #include <functional>
 
@@ -20,39 +20,40 @@ struct ParameterRange {
 };
 
 struct LinearResult {
-  std::string value;  // of the parameter, as exact text; empty without a range
+  std::string value;  // value of the parameter, as exact text; empty without a range
   Outcome outcome;
   LinearModel model;  // if the outcome is ok
 };
 
 struct Crossing {
-  Multi value{0};             // of the parameter
-  Multi frequency{0};         // of the eigenvalue there; 0: the eigenvalue is real
+  Multi value{0};             // value of the parameter
+  Multi frequency{0};         // frequency of the eigenvalue there; 0: the eigenvalue is real
   int eigenvalues = 1;        // number that crosses: 2 for a pair
-  bool destabilizes = false;  // for growing values of the parameter the eigenvalue moves to the right
+  bool destabilizes = false;  // true if the eigenvalue moves to the right for growing values of the parameter
   int unstable_above = 0;     // eigenvalues with a positive real part at a slightly larger value
-  bool steady = true;         // false: the eigenvalues belong to states that are not steady, and decide nothing
+  // False if the eigenvalues belong to states that are not steady, and do not decide stability.
+  bool steady = true;
 };
-// "stable above", or what else the crossing means for larger values of the parameter.
+// Returns "stable above", or another meaning of the crossing for larger values of the parameter.
 std::string meaning(const Crossing& crossing);
 
 struct Linearization {
   std::vector<LinearResult> results;
   std::vector<Crossing> crossings;
-  std::vector<std::string> notes;  // crossings that were not found, and jumps
+  std::vector<std::string> notes;  // about crossings that were not found, and jumps
 };
 
 // Makes the scenario of a value of the parameter.
 using ScenarioAt = std::function<Outcome(const Rational& value, Scenario& scenario)>;
 
-// In a working precision that the caller has set (PrecisionScope). The signals are expressions of the model that the
-// scenarios are made of.
+// Linearizes in the working precision that the caller has set (PrecisionScope). The signals are expressions of the
+// model of the scenarios.
 Linearization linearize(const Scenario& scenario, const StateChoice& choice, const Signals& signals = {});
-// Each value of the range has a scenario of its own: a mass that is 0 there changes the order of the equations.
-// `in_exponents`: the value stands in exponents, where it may be put in as a whole number.
+// Linearizes over a range. Each value has a scenario of its own, because a mass that is 0 there changes the order of
+// the equations. `in_exponents`: the parameter occurs in exponents, where whole numbers may be substituted.
 Linearization linearize(const ScenarioAt& scenario_at, const StateChoice& choice, const ParameterRange& range,
                         bool in_exponents, const Signals& signals = {});
-// The scenarios are made of the model that this one was made of.
+// Linearizes over a range; the scenarios are made of the model of `scenario`.
 Linearization linearize(const Scenario& scenario, const StateChoice& choice, const ParameterRange& range,
                         const Signals& signals = {});
 

@@ -42,7 +42,7 @@ Outcome Linearizer::look_for_kinks(const LinearPoint& point, const std::vector<M
   return {};
 }
 
-// Outputs without a derivative at the point.
+// Removes outputs without a derivative at the point.
 static void leave_out(const std::vector<std::string>& rough, LinearModel& m) {
   for (std::size_t o = rough.size(); o-- > 0;) {
     if (rough[o].empty()) continue;

@@ -12,7 +12,7 @@ bool no_influence(const LinearModel& m, std::size_t column, const std::vector<bo
   return true;
 }
 
-// Drops coordinates and states of the model without influence on the remaining ones, until none is left.
+// Removes coordinates and states of the model without influence on the remaining ones, until none is left.
 std::vector<bool> without_cyclic(const LinearModel& m, const LinearPoint& p, std::vector<bool> may, const Multi& zero) {
   std::vector<bool> kept(m.states.size(), true);
   for (bool again = true; again;) {
@@ -23,11 +23,12 @@ std::vector<bool> without_cyclic(const LinearModel& m, const LinearPoint& p, std
   return kept;
 }
 
-// A rate below this, in relation to the state, may come from numbers that were copied with sixteen digits.
+// A smaller rate, in relation to the state, may come from numbers that were copied with sixteen digits.
 constexpr double kCopied = 1e-13;
 
-// How one looks: `moving`: the other point lies along the motion, else the coordinates without influence have other values
-// there also if they rest. What is smaller than `nothing`, in relation to its neighbours, is zero.
+// How the motion is examined. `moving`: the other point lies along the motion; else the coordinates without influence
+// have other values there even if they rest. A number that is smaller than `nothing`, in relation to its neighbours, is
+// zero.
 struct Look {
   bool check, moving;
   Multi nothing;
@@ -42,7 +43,8 @@ void tell(LinearModel& m, LinearModel::Motion motion, std::string why) {
 void look_for_steadiness(const LinearPoint& point, const Look& look, LinearModel& out) {
   const auto& [check, moving, nothing] = look;
   const std::size_t n = out.states.size();
-  // Irrational: the periods of excitations and roads are often simple fractions, and half of one of them looks like rest.
+  // These numbers are irrational, because the periods of excitations and roads are often simple fractions, and half of
+  // a period looks like rest.
   const Multi later = sqrt(Multi(2)) / Multi(4), away = sqrt(Multi(3)) / Multi(25);
   const Multi zero = nothing * (Multi(1) + largest(out.A.data)), still = nothing * (Multi(1) + largest(point.x));
   std::vector<bool> kept(n, true), may(n, true);
@@ -92,7 +94,8 @@ void look_for_steadiness(const LinearPoint& point, const Look& look, LinearModel
   }
 }
 
-// A heading that rests may have other values in the same motion only if no state is a velocity along fixed axes.
+// Examines the motion at a point beside it, then along it. A heading that rests may have other values in the same
+// motion only if no state is a velocity along fixed axes.
 void look_for_steadiness(const LinearPoint& point, bool check, const Multi& nothing, LinearModel& out) {
   look_for_steadiness(point, {check, false, nothing}, out);
   if (out.motion != LinearModel::Motion::unsteady) return;
@@ -101,7 +104,7 @@ void look_for_steadiness(const LinearPoint& point, bool check, const Multi& noth
   if (along.motion != LinearModel::Motion::unsteady) out = std::move(along);
 }
 
-// The state that ought to rest and moves most, by no more than a rounded number makes it move.
+// Returns the state that moves most of those that should rest, if a rounded number explains its motion.
 std::optional<std::size_t> creeping(const LinearModel& m, const LinearPoint& point) {
   std::optional<std::size_t> most;
   for (const std::size_t i : m.core)

@@ -10,7 +10,7 @@ using Coordinates = std::vector<std::size_t>;
 
 constexpr std::size_t kMostTries = 60;  // all pairs of ten coordinates, and each of them
 
-// The coordinates that no equation holds, only their velocities.
+// Returns the coordinates that occur in no equation; only their velocities do.
 Coordinates absent(const VariedEquations& l) {
   std::vector<bool> occurs(l.scenario.system.coordinates, false);
   for (const auto& [row, column] : l.partials)
@@ -36,7 +36,7 @@ class Trials {
   }
 
  private:
-  // Those that accelerate here, each coordinate, each pair.
+  // Returns the choices: the coordinates that accelerate here, each coordinate, each pair.
   std::vector<Coordinates> choices() const {
     std::vector<Coordinates> list(1);
     const Multi still = round_off(kZeroPart) * (Multi(1) + largest(chosen_.x));
@@ -49,19 +49,19 @@ class Trials {
     return list;
   }
 
-  // The coordinates to name: those whose velocities vary if they are enough, else those that were wished for.
+  // Returns the coordinates to name: those whose velocities vary if they suffice, else the wished ones.
   Coordinates tried(const Coordinates& wished) const {
     LinearPoint point(equations_, wished, parameters_);
     LinearModel model;
     if (wished.empty() || !follow(point, wished) || !steady(point, model)) return {};
-    // The forms that eliminate want as many coordinates as there are constraints.
+    // Forms that eliminate need as many coordinates as there are constraints.
     if (equations_.scenario.system.form->eliminates()) return dependent(point);
     const Coordinates vary = varying(point, model);
     LinearPoint again(equations_, vary, parameters_);
     return !vary.empty() && follow(again, vary) && steady(again, model) ? vary : wished;
   }
 
-  // Puts the point to the state that is known; false if one of the velocities remains independent.
+  // Sets the point to the known state; returns false if one of the velocities remains independent.
   bool follow(LinearPoint& point, const Coordinates& wished) const {
     point.t = chosen_.t, point.x = chosen_.x;
     if (!point.evaluate() || !point.choose() || !point.settle()) return false;
@@ -83,7 +83,7 @@ class Trials {
     return list;
   }
 
-  // The dependent velocities that are others later in the steady motion.
+  // Returns the coordinates of the dependent velocities that have other values later in the steady motion.
   Coordinates varying(const LinearPoint& point, const LinearModel& model) const {
     LinearPoint there = point;
     const Multi later = sqrt(Multi(2)) / Multi(4);  // irrational, so that no turn ends there

@@ -53,7 +53,7 @@ ParameterRange read_range(const std::string& word, const Model& model) {
   return range;
 }
 
-// The scenario of the model; of an equilibrium with the coordinates held that have no influence.
+// Makes the scenario of the model; for an equilibrium, the coordinates that have no influence are held.
 Outcome LinearStudy::make(const Model& model, Scenario& scenario) const {
   const std::shared_ptr<const Model> own = clone(model);
   const Outcome start = make_scenario(own, *request_.form, request_.choice, scenario);
@@ -70,7 +70,7 @@ LinearStudy::LinearStudy(std::shared_ptr<const Model> model, LinearRequest reque
   model = with_signals(*model, signals_);
   if (request_.equilibrium) model = searched_from(*model, request_.choice);
   if (const auto d = not_integrated(*model)) throw Failure(*d);
-  // Signals are varied.
+  // Signals are varied, so they must not be substituted.
   request_.choice.open_parameters.emplace();
   for (std::size_t i = parameters; i < model->parameters.size(); ++i) request_.choice.open_parameters->push_back(i);
   model_ = model;
@@ -107,7 +107,7 @@ std::vector<std::vector<std::complex<double>>> curves(const Linearization& l) {
   std::size_t most = 0;
   for (const LinearResult& r : l.results) most = std::max(most, r.model.spectrum.size());
   std::vector<Values> list(most, Values(l.results.size(), {none, none}));
-  Values last, before;  // of each curve, at the value before and at the one before that
+  Values last, before;  // for each curve, at the previous value and at the one before it
   for (std::size_t k = 0; k < l.results.size(); ++k) {
     const Values here = spectrum(l.results[k]);
     if (here.empty()) continue;
@@ -119,7 +119,7 @@ std::vector<std::vector<std::complex<double>>> curves(const Linearization& l) {
     std::vector<Pair> pairs;
     for (std::size_t c = 0; c < most; ++c)
       for (std::size_t i = 0; i < here.size(); ++i) {
-        // The distance from the point at which the curve would go straight on.
+        // The distance from the linear continuation of the curve.
         const double distance = std::abs(here[i] - (2.0 * last[c] - before[c]));
         pairs.push_back({std::isnan(distance) ? std::numeric_limits<double>::infinity() : distance, c, i});
       }

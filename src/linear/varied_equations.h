@@ -1,12 +1,12 @@
-// The equations of a scenario with their derivatives by all that they hold, made once for all states and parameters.
+// The equations of a scenario with their derivatives by all entries in them, made once for all states and parameters.
 #pragma once
 #include "linear/linear_model.h"
 
 namespace anholon {
 
-// The precision of the thread must be that of its construction.
+// The varied equations. REQUIRES: the precision of the thread is that at the construction.
 struct VariedEquations {
-  // Inputs and outputs of which the linear model would need rates are left out, with a note.
+  // Inputs and outputs whose rates the linear model would need are left out, with a note.
   VariedEquations(Workspace& of, Signals wanted);
 
   struct Entry {
@@ -24,11 +24,11 @@ struct VariedEquations {
   Signals signals;
   std::vector<std::string> notes;
   std::vector<Entry> entries;                     // x_j^(k), k <= d_j
-  std::vector<std::size_t> first;                 // of each variable
+  std::vector<std::size_t> first;                 // the first entry of each variable
   std::vector<std::pair<std::size_t, int>> rows;  // E_i^(k), k <= c_i
   std::vector<Partial> partials;
   Tape tape;       // values of the rows, outputs, then the partial derivatives
-  OneSided sides;  // of the rows and outputs
+  OneSided sides;  // sides of the rows and outputs
 };
 
 }  // namespace anholon

@@ -8,7 +8,7 @@
 namespace anholon {
 
 namespace {
-// Pivots are at least this part of the largest candidate.
+// A pivot is at least this part of the largest candidate.
 constexpr double kPivot = 1e-2;
 }  // namespace
 
@@ -19,7 +19,7 @@ bool AdmissibleVelocities::solve(const Column& constraints) {
   return true;
 }
 
-// Returns nullopt if the constraint is not linear in what is free.
+// Returns nullopt if the constraint is not linear in the free velocities.
 std::optional<AdmissibleVelocities::Row> AdmissibleVelocities::row(Expr constraint) {
   Row r{constraint, tidy_(solved(constraint)), {}, {}, g_.zero()};
   const Expr phi = written_out(r.by_names);
@@ -37,7 +37,7 @@ std::optional<AdmissibleVelocities::Row> AdmissibleVelocities::row(Expr constrai
 }
 
 std::optional<AdmissibleVelocities::Row::Pair> AdmissibleVelocities::pair_of(const Row& r) {
-  // Of more than two, later constraints clear the poles, unless there is a part without velocities.
+  // If there are more than two velocities and no part without velocities, later constraints clear the poles.
   if (r.cost == 0 || (r.in.size() > 2 && is_zero(r.rest))) return std::nullopt;
   for (std::size_t k = 0; k < r.in.size(); ++k)
     for (std::size_t l = k + 1; l < r.in.size(); ++l) {
@@ -82,7 +82,7 @@ void AdmissibleVelocities::solve(const Row& r) {
       return is_zero(others) ? along : tidy_(along - a[i] * others / square);
     };
     const Expr of_v = beside(a[w] * u, v), of_w = beside(-a[v] * u, w);
-    // The later one first: it moves what comes after it.
+    // The later one is removed first, because removal moves the ones after it.
     remove(w, of_w);
     remove(v, of_v);
     free.push_back(u);
@@ -102,7 +102,7 @@ void AdmissibleVelocities::solve(const Row& r) {
   remove(r.best, tidy_(-sum(terms) / a[r.best]));
 }
 
-// Where X and Y stand as they are.
+// Returns the direction if X and Y occur unchanged in phi.
 std::optional<AdmissibleVelocities::Direction> AdmissibleVelocities::direction(Expr phi) const {
   if (g_.node(phi.id).kind != Kind::sum || g_.terms(phi.id).size() != 2) return std::nullopt;
   std::vector<std::pair<Expr, Expr>> parts;
@@ -125,7 +125,8 @@ std::optional<AdmissibleVelocities::Direction> AdmissibleVelocities::direction(E
   return Direction{parts[0].first, parts[0].second, parts[1].first, parts[1].second};
 }
 
-// X = b u, Y = -a u from now on, also in the velocities of points that are reached from this one.
+// Names the speed u, with X = b u, Y = -a u from now on, also in the velocities of points that are reached from this
+// one.
 void AdmissibleVelocities::name_speed(const Direction& d) {
   const Expr u = new_name(), speed = tidy_(solved(d.b * d.X - d.a * d.Y) / (pow(d.a, 2) + pow(d.b, 2)));
   named.push_back(u);
@@ -134,7 +135,7 @@ void AdmissibleVelocities::name_speed(const Direction& d) {
   points_.push_back({d.Y, -d.a * u});
 }
 
-// The latest point first.
+// Substitutes velocities of points, the latest point first.
 Expr AdmissibleVelocities::by_points(Expr e) const {
   if (points_.empty()) return e;
   std::unordered_map<NodeId, Expr> image;
@@ -145,7 +146,7 @@ Expr AdmissibleVelocities::by_points(Expr e) const {
   return replace_nodes({&e, 1}, image)[0];
 }
 
-// A sum less another one that it contains, term by term.
+// Returns a sum less another one that it contains, term by term; nullopt if it does not contain it.
 std::optional<Expr> AdmissibleVelocities::without(NodeId whole, NodeId part) const {
   const std::span<const Term> terms = g_.terms(whole), taken = g_.terms(part);
   std::vector<std::pair<Rational, Expr>> rest;
@@ -163,7 +164,7 @@ Expr AdmissibleVelocities::eliminated(Expr e) const {
   return e;
 }
 
-// Without names.
+// Returns e without names.
 Expr AdmissibleVelocities::written_out(Expr e) const {
   for (std::size_t i = named.size(); i-- > 0;) e = put(e, {named[i]}, {eliminated(definitions[i])});
   return e;

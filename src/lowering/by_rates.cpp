@@ -28,7 +28,7 @@ class Writer {
     const std::size_t n = derived_.coordinates;
     q_ = jets(*c_.model, 0), qd_ = jets(*c_.model, 1);
     const Expr held = kinetic_energy();
-    // The same of T with V held. Momenta that depend on the place are differentiated by their series.
+    // Lagrange's operator of T with V held. Momenta that depend on the place are differentiated by their series.
     Column rows = -gradient(held, q_);
     const Column momenta = gradient(held, qd_);
     for (std::size_t a = 0; a < n; ++a)
@@ -50,8 +50,8 @@ class Writer {
   }
 
  private:
-  // The derivative of this order, by the series; constant factors in front. Sums are not taken apart: of those that
-  // bodies of a chain have in common one series serves all.
+  // Returns the derivative of this order, by the series, with constant factors in front. Sums are not split: one series
+  // serves all bodies of a chain that share a sum.
   Expr rate(Expr of, unsigned order) {
     if (is_symbol(of)) return total_derivative(of, order);
     std::vector<std::pair<Expr, Rational>> constant, varying;
@@ -70,7 +70,7 @@ class Writer {
     return true;
   }
 
-  // T with the velocities of mass centres by their places, as far as that is worth a series; what remains is held.
+  // Returns T with the velocities of mass centres by their places, if a series is worth it; the rest is held.
   Expr kinetic_energy() {
     std::vector<std::pair<Rational, Expr>> held;
     for (const CopiedMechanics::Point& p : c_.points) {
@@ -90,7 +90,8 @@ class Writer {
     return g_.sum(held);
   }
 
-  // u' times the sine or cosine of u is a derivative of the other one: where that is asked for anyway.
+  // Finds products of u' with the sine or cosine of u: they are derivatives of the other function, if its series is
+  // needed anyway.
   void find_rates(const Column& es) {
     for (NodeId id : reachable(es)) {
       if (g_.node(id).kind != Kind::product || by_rate_.count(id)) continue;
@@ -120,8 +121,8 @@ class Writer {
     return replace_nodes(es, by_rate_);
   }
 
-  // sum lambda dphi/dq^(m). Of constraints on velocities the rates are held first, and what falls to them acts on what
-  // they are rates of.
+  // Returns sum lambda dphi/dq^(m). For constraints on velocities, the rates are held first, and the forces on a rate
+  // act on the expression whose rate it is.
   Column reactions() {
     Column sum(q_.size(), g_.zero()), velocity_constraints, multipliers;
     for (std::size_t i = 0; i < derived_.constraints.size(); ++i) {

@@ -40,7 +40,7 @@ CopiedMechanics copied_mechanics(const Mechanics& m, const System& derived, std:
   const Column images = copied(all, *c.model->graph);
   std::size_t i = 0;
   visit([&](Expr& e) { e = images[i++]; });
-  // A place with a series of its own, or with a velocity that is differentiated, takes its inputs with it.
+  // A place that has a series of its own, or whose velocity is differentiated, contains its inputs as formulas.
   for (CopiedMechanics::Point& p : c.points) {
     const Column put = put_controls(*c.model, Column{p.speed2, p.place.x, p.place.y, p.place.z});
     p.speed2 = put[0], p.place = {put[1], put[2], put[3]};

@@ -1,5 +1,5 @@
-// What equations are made of, copied to a graph of its own: whoever writes them anew there leaves the graph of the
-// model as it was.
+// The ingredients of equations, copied to a graph of their own, so that rewriting them leaves the graph of the model
+// unchanged.
 #pragma once
 #include "system/system.h"
 
@@ -9,7 +9,7 @@ struct CopiedMechanics {
   struct Point {
     Expr weight, speed2;
     Vector place;
-    bool of_mass;  // no axis vector
+    bool of_mass;  // true for a mass point, false for an axis vector
   };
   std::vector<Point> points;
   Column forces, constraints, state_rates, others;  // constraints: those of the system

@@ -10,7 +10,7 @@ namespace anholon {
 
 namespace {
 
-// With more, the energy is not short in any velocities.
+// With more velocities, the energy is not short in any choice of them.
 constexpr std::size_t kMostVelocities = 4;
 
 class Writer {
@@ -41,13 +41,13 @@ class Writer {
     why_ = std::move(why);
     return std::nullopt;
   }
-  // Of a constraint of the derived system.
+  // Returns the name of a constraint of the derived system.
   const std::string& name_of(std::size_t k) const { return derived_.model->constraints[derived_.constraints[k]].name; }
 
   Expr p(std::size_t i) { return g_.state(static_cast<std::uint32_t>(c_.state_rates.size() + i), 0); }
 
-  // What is used more than once gets a series of its own: otherwise products would be taken apart, and made anew each
-  // time.
+  // Gives an expression that is used more than once a series of its own: otherwise products would be split, and
+  // computed anew each time.
   Expr one_series(Expr e) {
     const Node& n = g_.node(e.id);
     const bool simple = n.kind != Kind::product && n.kind != Kind::sum;
@@ -58,7 +58,7 @@ class Writer {
   }
   bool stands_for(const Node& n) const { return n.kind == Kind::jet && n.index >= n_; }
 
-  // Velocities with a name, in those that are free. False where they are not homogeneous.
+  // Expresses named velocities in the free ones. Returns false if a velocity is not homogeneous in them.
   bool use_names() {
     const std::size_t l = v_.free.size();
     for (std::size_t i = 0; i < l; ++i) used_by_free_.push_back(Column(l, zero_)), used_by_free_[i][i] = g_.one();
@@ -74,7 +74,7 @@ class Writer {
     return true;
   }
 
-  // Velocities of the weighted points, component by component, in used_.
+  // Reads the velocities of the weighted points, component by component, in used_.
   void read_points() {
     for (const CopiedMechanics::Point& point : c_.points) {
       if (is_zero(point.weight)) continue;
@@ -89,7 +89,7 @@ class Writer {
   Rows mass_matrix() {
     const std::size_t l = v_.free.size(), n = used_.size();
     Rows M(l, Column(l, zero_)), local(n, Column(n, zero_));
-    // What squares of sines and cosines make one is within one point.
+    // Squares of sines and cosines sum to one within one point.
     std::size_t first = 0;
     for (const std::size_t end : bounds_) {
       for (std::size_t s = 0; s < n; ++s)
@@ -126,7 +126,7 @@ class Writer {
     for (std::size_t i = 0; i < l; ++i)
       ps.push_back(p(i)), c_.model->names.states.push_back("p" + std::to_string(i + 1));
     r.of_state = v_.in_velocities(energy_.p_by_v);
-    // Short formulas alone are better taken apart.
+    // If all formulas are short, splitting them costs less than series.
     const bool apart = rates_.empty();
     const Column free = energy_.v_in(ps, [&](Expr e) { return apart ? e : one_series(e); });
     Column values = free;
@@ -140,7 +140,7 @@ class Writer {
       on_velocities_.first.push_back(g_.state(static_cast<std::uint32_t>(i), 1)),
           on_velocities_.second.push_back(rates[i]);
     const Rows A = gyroscopic(r.velocities);
-    // Forces on what is used first, where sines and cosines meet.
+    // Forces on the used velocities come first, because there sines and cosines combine.
     Column forces = pullback(velocity_, put(put_masses(*c_.model, c_.forces), qd_, r.velocities), used_);
     for (Expr& f : forces) f = tidy_(f);
     const Column Q = forces * used_by_free_ * energy_.v_by_p;
@@ -159,7 +159,7 @@ class Writer {
     return r;
   }
 
-  // q' = velocities, and the rates of the states.
+  // Makes the system q' = velocities with the rates of the states.
   System first_order_system(const Column& velocities, const Column& rates) const {
     System s = derived_;
     s.model = c_.model;
@@ -177,7 +177,7 @@ class Writer {
     return s;
   }
 
-  // Quasi-velocities are measured as the velocities that they stand for, apart from coordinates.
+  // Quasi-velocities have the scales of the velocities that they represent, apart from coordinates.
   std::vector<std::uint32_t> scales() const {
     const std::size_t states = c_.state_rates.size(), all = derived_.scales.size();
     std::vector<std::uint32_t> list(derived_.scales.begin(),
@@ -204,7 +204,7 @@ class Writer {
 
   Expr on_velocities(Expr e) const { return put(e, on_velocities_.first, on_velocities_.second); }
 
-  // Row i: A_ij, then sum_c m_c e_ci . e_c0'.
+  // Returns in row i: A_ij, then sum_c m_c e_ci . e_c0'.
   Rows gyroscopic(const Column& velocities) {
     const std::size_t l = v_.free.size();
     Rows used_by_p;
@@ -235,7 +235,7 @@ class Writer {
     Rows A(l, Column(l + 1, zero_));
     for (std::size_t i = 0; i < l; ++i) {
       for (std::size_t j = i + 1; j < l; ++j) {
-        // What is simpler is differentiated.
+        // The simpler expression is differentiated.
         const auto length = [&](std::size_t k) {
           std::size_t all = 0;
           for (const auto& [weight, e] : points)
@@ -262,12 +262,12 @@ class Writer {
   Expr zero_;
   AdmissibleVelocities v_;
   ShortEnergy energy_;
-  Column velocity_, used_;  // q' in used_: what is free, and names
+  Column velocity_, used_;  // q' in terms of used_: the free velocities, and names
   Rows used_by_free_;
   std::vector<std::pair<Expr, Linear>> points_;
-  std::vector<std::size_t> bounds_;          // of each weighted point's among them
-  std::pair<Column, Column> on_velocities_;  // q' and z', and what they are
-  Column rates_;                             // jets of coordinates n + k stand for these
+  std::vector<std::size_t> bounds_;          // the end of each weighted point among points_
+  std::pair<Column, Column> on_velocities_;  // q' and z', and their expressions
+  Column rates_;                             // jets of coordinates n + k represent these expressions
   std::vector<double> value_of_;
   std::unordered_map<NodeId, std::size_t> series_;
 };

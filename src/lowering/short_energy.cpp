@@ -6,10 +6,10 @@ namespace anholon {
 
 namespace {
 
-// A matrix of longer entries is not eliminated.
+// A matrix with longer entries is not eliminated.
 constexpr std::size_t kLongest = 100;
 
-// e = constant varying^2; `whole`: without a root.
+// The square root `varying` in e = constant varying^2; `whole`: it contains no root.
 struct Root {
   Expr constant, varying;
   bool whole;
@@ -47,7 +47,7 @@ bool ShortEnergy::diagonalize(Rows M, const Column& v, PointValues& at, Tidy& ti
   for (std::size_t i = 0; i < l; ++i) left[i] = i;
   std::vector<Root> roots;
   while (!left.empty()) {
-    // Constant ones first, then squares, then others.
+    // Constant pivots come first, then squares, then others.
     std::size_t best = left.size();
     std::pair<int, std::size_t> cost{3, SIZE_MAX};
     Root root{zero, zero, false};

@@ -12,18 +12,18 @@ namespace anholon {
 // T = 1/2 v^T M v = 1/2 sum inertia_i p_i^2, inertia constant, p_i = r_i (v_k + sum_j L_jk v_j), k the i-th pivot.
 class ShortEnergy {
  public:
-  // `v`: symbols. What a varying root is called from then on: `named`. False where M is not positive or its elimination
-  // does not stay short.
+  // `v`: symbols. `named` returns the name by which a varying root is used from then on. Returns false if M is not
+  // positive or its elimination does not stay short.
   bool diagonalize(Rows M, const Column& v, PointValues& at, Tidy& tidy, const std::function<Expr(Expr)>& named);
 
   Rows v_by_p;    // v_k = sum_i v_by_p[k][i] p_i
-  Column p_by_v;  // p in v
+  Column p_by_v;  // p in terms of v
   Column inertia;
   Column pivots;  // D
-  // v in p, one by the other; `named`: what each of them is called.
+  // Returns v in terms of p, one by the other; `named` returns the name of each.
   Column v_in(const Column& p, const std::function<Expr(Expr)>& named) const;
 
-  // k of p_i.
+  // Returns the index k of p_i.
   std::size_t pivot(std::size_t i) const { return order_[i]; }
 
  private:

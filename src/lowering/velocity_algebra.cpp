@@ -7,7 +7,7 @@
 namespace anholon {
 
 namespace {
-// Formulas of so many nodes are looked at, with so many products of terms.
+// The least and largest number of nodes of formulas that are rewritten, and the limit of products of terms.
 constexpr std::size_t kShort = 6, kLong = 64;
 constexpr long kWork = 400;
 }  // namespace

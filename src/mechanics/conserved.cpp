@@ -38,7 +38,7 @@ bool each(const Vector& v, Test test) {
   return test(v.x) && test(v.y) && test(v.z);
 }
 
-// Values between -2 and 2 that depend on the symbol and the point alone; parameters and masses are positive.
+// Returns values between -2 and 2 that depend on the symbol and the point alone; parameters and masses are positive.
 PointValues random_point(std::uint64_t point) {
   return PointValues([point](const Node& n) {
     const double unit = generic_value(n, point);
@@ -56,8 +56,8 @@ bool small_at_points(Expr e) {
   return true;
 }
 
-// Whether e is far from zero at a point where it has a value: many roots defeat the exact refutation, and the normal
-// form of a nonzero expression may be long.
+// True if e is far from zero at a point where it has a value. This test is needed because many roots defeat the exact
+// refutation, and the normal form of a nonzero expression may be long.
 bool nonzero_at_a_point(Expr e) {
   constexpr double kFar = 1e-3;
   for (std::uint64_t k = 1; k <= 3; ++k) {
@@ -71,8 +71,8 @@ bool vanishes(Expr e) { return is_zero(e) || (!nonzero_at_a_point(e) && proved_z
 
 // ---- energy ------------------------------------------------------------------------------------
 
-// A potential of a force F that is homogeneous of degree k in its position r: U = -F.r/(k + 1). Constant forces,
-// springs and inverse squares are tried; the proof is power + dU/dt = 0.
+// Returns a potential of a force F that is homogeneous of degree k in its position r: U = -F.r/(k + 1). Constant
+// forces, springs and inverse squares are tried; the proof is power + dU/dt = 0.
 std::optional<Expr> homogeneous_potential(Expr product, Expr power) {
   for (const Rational& factor : {Rational(-1), Rational(-1, 2), Rational(1)}) {
     const Expr u = factor * product;
@@ -81,7 +81,7 @@ std::optional<Expr> homogeneous_potential(Expr product, Expr power) {
   return std::nullopt;
 }
 
-// Whether the reaction N of constraint r has no power on the motion: its power is lambda times dphi/dt if phi depends
+// True if the reaction N of constraint r has no power on the motion: its power is lambda times dphi/dt if phi depends
 // on q alone, and times degree * phi if phi is homogeneous in q'.
 bool without_power(const Mechanics& m, std::size_t r) {
   if (m.order[r] == 0 && free_of(m.phi[r], {Kind::time, Kind::given, Kind::state, Kind::control, Kind::mass}))
@@ -98,7 +98,7 @@ bool without_power(const Mechanics& m, std::size_t r) {
   return false;
 }
 
-// Power and potential of one force; false if it is not conservative.
+// Adds the potential of one force; returns false if the force is not conservative.
 bool add_force(const Mechanics& m, const Force& f, Column& potentials) {
   Graph& g = m.graph();
   const Model& model = *m.model;
@@ -157,8 +157,8 @@ bool add_gravity(const Body& body, Column& potentials) {
   return u.has_value();
 }
 
-// The torque of a field that varies over the body has the potential -1/2 sum e u.(dg/dr u) if the centre does not move
-// through the field.
+// Adds the potential -1/2 sum e u.(dg/dr u) of the torque of a field that varies over the body; returns false if the
+// centre moves through the field.
 bool add_gravity_gradient(const Body& body, Column& potentials) {
   if (body.gravity_gradient.empty()) return true;
   Graph& g = *body.mass.graph;
@@ -208,7 +208,7 @@ std::optional<Conserved> energy(const Mechanics& m) {
     if (!add_gravity(body, parts) || !add_gravity_gradient(body, parts)) return std::nullopt;
   for (const Force& f : model.forces)
     if (!add_force(m, f, parts)) return std::nullopt;
-  // Any other force would make the balance fail.
+  // A force without a potential would violate the balance.
   const Power balance = power(m);
   const Expr rate =
       balance.noncons + total_derivative(put_masses(model, sum(parts.empty() ? Column{m.graph().zero()} : parts)));
@@ -274,8 +274,8 @@ Expr rate_along(const Mechanics& m, const Rates& r, const Column& field) {
   return terms.empty() ? m.graph().zero() : sum(terms);
 }
 
-// Solutions x of A x = 0, one for each column that is a combination of the columns before it; its entries in other such
-// columns are 0.
+// Returns solutions x of A x = 0, one for each column that is a combination of the columns before it; its entries in
+// other such columns are 0.
 std::vector<std::vector<double>> kernel(std::vector<std::vector<double>> a, std::size_t columns) {
   std::vector<std::size_t> pivots, free;
   std::size_t row = 0;
@@ -324,7 +324,7 @@ std::optional<Rational> as_fraction(double x) {
   return std::nullopt;
 }
 
-// The affine fields that are candidates.
+// Returns the affine fields that are candidates.
 std::vector<Column> fields(const Mechanics& m, const Rates& r) {
   const std::size_t n = m.q.size();
   Graph& g = m.graph();
@@ -393,7 +393,8 @@ std::string name_of(const Model& model, const Column& field) {
                                               : "momentum along " + name;
 }
 
-// By a component that is a number, or a coordinate times a number.
+// Sets the coordinates that determine the unit of c, from a component of the field that is a number, or a coordinate
+// times a number.
 void find_units(const Model& model, const Column& field, Conserved& c) {
   Graph& g = *model.graph;
   for (std::size_t a = 0; a < field.size(); ++a) {
@@ -431,7 +432,7 @@ std::string unit_of(const Model& model, const Conserved& c) {
 
 Expr momentum_rate(const Mechanics& m, const Column& field) { return rate_along(m, rates(m), field); }
 
-// Whether a potential may jump where a motion along the field goes: a pulse of its force acts there.
+// True if a potential may jump where a motion along the field leads: there its force is a pulse.
 static bool meets_jump(const Model& model, const Mechanics& m, const Column& field) {
   return std::any_of(model.potentials.begin(), model.potentials.end(), [&](const Potential& p) {
     return may_jump(model, put_controls(model, {&p.value, 1})[0], [&](Expr s) {
@@ -442,7 +443,7 @@ static bool meets_jump(const Model& model, const Mechanics& m, const Column& fie
   });
 }
 
-// Whether a constraint may change by a jump: velocities then jump, and energy is lost.
+// True if a constraint may jump: velocities then jump, and energy is lost.
 static bool constraints_may_jump(const Mechanics& m) {
   const auto jumps = [&](Expr e) { return may_jump(*m.model, put_controls(*m.model, {&e, 1})[0]); };
   for (const Expr& phi : m.phi)

@@ -12,8 +12,8 @@
 // in q, which include cyclic coordinates, translations and rotations of the whole or of parts. Candidates are found by
 // linear algebra at random points; each result is proved by the exact zero test.
 //
-// The proofs hold where all formulas have derivatives. A continuous integral goes on through kinks; one that may jump,
-// such as an energy whose potential has a sign(x), is marked.
+// The proofs hold where all formulas have derivatives. A continuous integral stays constant at kinks; one that may
+// jump, such as an energy whose potential has a sign(x), is marked.
 #pragma once
 #include "mechanics/mechanics.h"
 
@@ -24,21 +24,22 @@ struct Conserved {
   std::string because;  // in words
   Expr value;           // masses substituted
   Column terms;         // the terms of the sum
-  bool jumps = false;   // it may change where a formula in it jumps: it is constant between
-  // Of a momentum: coordinates whose units tell its unit, J*s*[by]/[along]; none where no component tells it.
+  bool jumps = false;   // the value may change where a formula in it jumps, and is constant between the jumps
+  // For a momentum: the coordinates that determine its unit, J*s*[by]/[along]; nullopt if no component determines it.
   std::optional<std::size_t> along, by;
 };
 
 std::vector<Conserved> conserved(const Mechanics& m);
 
-// Its unit, where those of the coordinates tell it; else empty. Nothing has a unit in a model without units.
+// Returns the unit of the integral if the units of the coordinates determine it; else empty. In a model without units
+// the result is empty.
 std::string unit_of(const Model& model, const Conserved& c);
 
 // The handles of an integral (expr/handles.h).
 void for_each_expression(Conserved& c, const ExprVisitor& f);
 
-// For tests: dp/dt or d(h + U)/dt along motions by the right sides above, multipliers left out; zero for what
-// `conserved` gives back.
+// For tests: dp/dt or d(h + U)/dt along motions by the right sides above, without multipliers; zero for the integrals
+// that `conserved` returns.
 Expr momentum_rate(const Mechanics& m, const Column& field);
 
 }  // namespace anholon

@@ -1,7 +1,7 @@
 // The constraints solved for highest derivatives (theory: elimination).
 //
-// All constraints are lifted to one order m, the highest among them or a higher one that is asked for (N does not
-// change). On their manifold the highest derivatives are functions of the lower ones and of n - s free quantities u:
+// All constraints are lifted to one order m, the highest among them or a higher requested one (N does not change). On
+// their manifold the highest derivatives are functions of the lower ones and of n - s free quantities u:
 //
 //   q^(m) = g(q, …, q^(m-1), u, t)
 //
@@ -24,11 +24,11 @@ namespace anholon {
 // The choice of eliminated and of free quantities.
 struct EliminationChoice {
   std::vector<std::size_t> constraints;  // the constraints that take part; they are independent
-  std::vector<std::size_t> dependent;    // as many coordinates, dphi/dq_D^(m) regular
+  std::vector<std::size_t> dependent;    // as many coordinates as constraints, dphi/dq_D^(m) regular
   bool by_quasi = false;                 // u are quasi-velocities, n - s of them; else u = q_I^(m)
   std::vector<QuasiVelocity> quasi;
-  bool solve = true;  // if the constraints can be solved
-  unsigned m = 0;     // the common order asked for; 0: the highest order of the constraints and quasi-velocities
+  bool solve = true;  // solves the constraints, if they can be solved
+  unsigned m = 0;     // the requested common order; 0: the highest order of the constraints and quasi-velocities
 };
 
 // The free quantities u, n - s of them.
@@ -37,8 +37,8 @@ struct FreeQuantities {
   std::vector<unsigned> orders;    // u_k is the derivative of order orders[k] of names[k]
   Column u, rate;                  // u': symbols; u: symbols if solved, else functions of q, …, q^(m)
   Column value, rate_value;        // u, u' in coordinates
-  Column named;                    // of quasi-velocities: what names[k] itself is in coordinates
-  // The index of a name; nullopt if it is not among them.
+  Column named;                    // for quasi-velocities: names[k] itself in coordinates
+  // Returns the index of a name; nullopt if the name is not among the free quantities.
   std::optional<std::size_t> index_of(const std::string& name) const;
 };
 
@@ -64,52 +64,53 @@ class Elimination {
   Elimination(const Mechanics& mechanics, const EliminationChoice& choice, std::shared_ptr<PointValues> at);
 
   unsigned m = 1;      // common order of the lifted constraints, at least 1
-  unsigned asked = 0;  // m, if it was asked for
+  unsigned asked = 0;  // m, if it was requested
   std::vector<std::size_t> constraints, dependent, independent;
   Column phi;           // lifted constraints, masses substituted
-  Rows Phi_D_inverse;   // of dphi/dq_D^(m), s x s
+  Rows Phi_D_inverse;   // inverse of dphi/dq_D^(m), s x s
   bool solved = false;  // g is known as a formula
   FreeQuantities free;
   std::optional<QuasiBasis> quasi;  // if u are quasi-velocities
 
-  // X on the manifold.
+  // Returns X on the manifold.
   Expr on(Expr X) const;
   Column on(const Column& X) const;
   Rows on(const Rows& X) const;
-  // d/dt along the manifold (frozen masses stay frozen).
+  // Returns d/dt X along the manifold (frozen masses stay frozen).
   Column rate(const Column& X) const { return on(total_derivative(X)); }
   Rows rate(const Rows& X) const;
-  // Partial derivatives of X, on the manifold and with the other free quantities held, with respect to
+  // These return partial derivatives of X, on the manifold and with the other free quantities held, with respect to
   Column by_u(Expr X) const;            // u                    (n - s)
   Column by_u_rate(Expr X) const;       // u'                   (n - s)
   Column by(unsigned k, Expr X) const;  // q^(k), k < m         (n)
-  // As above for g and g' = dg/dt: row s is the gradient of g_s.
+  // The same derivatives of g and g' = dg/dt: row s is the gradient of g_s.
   const Column& g() const { return top_.values; }
   const Rows& g_by_u() const { return top_.by_u; }  // B of [N 4.3], n x (n - s)
   const Rows& g_by(unsigned k) const;               // n x n
   const Rows& g_rate_by_u() const { return next_.by_u; }
-  // f_b,nu and similar derivatives: the rows of the dependent coordinates, the columns of the independent ones.
+  // These return f_b,nu and similar derivatives: the rows of the dependent coordinates, the columns of the independent
+  // ones.
   Rows f_by_u() const;
   Rows f_by(unsigned k) const;
   Rows f_rate_by_u() const;
 
-  // C = -Phi_D^-1 Phi_I of [L 3.7], dependent by independent.
+  // Returns C = -Phi_D^-1 Phi_I of [L 3.7], dependent by independent.
   Rows C() const;
-  // A^-1, with pivots that are not small near the state.
+  // Returns A^-1, computed with pivots that are not small near the state.
   Rows inverted(const Rows& A) const { return pivots_.inverse(A, Wanted::brief); }
   // The divisors; near a zero of one of them another elimination is better.
   const Column& pivots() const { return pivots_.divisors(); }
-  // sum_s X_s B_sa: X_nu + sum_b X_b f_b,nu.
+  // Returns sum_s X_s B_sa, which is X_nu + sum_b X_b f_b,nu.
   Column contract(const Column& X) const;
-  // The entries of the independent and of the dependent coordinates.
+  // Return the entries of the independent and of the dependent coordinates.
   Column I(const Column& X) const { return pick(X, independent); }
   Column D(const Column& X) const { return pick(X, dependent); }
 
-  // Writes quasi-velocities and all their derivatives in coordinates again.
+  // Expresses quasi-velocities and all their derivatives in coordinates again.
   Column in_coordinates(const Column& X) const;
 
-  // The same of `copy`, a copy of the mechanics, with values of its own near the state; the handles are left as they
-  // are.
+  // Returns the same elimination for `copy`, a copy of the mechanics, with values of its own near the state. The
+  // handles still refer to the old graph.
   Elimination of(const Mechanics& copy) const;
   // The handles of the elimination (expr/handles.h), without those of its mechanics.
   friend void for_each_expression(Elimination& e, const ExprVisitor& f);
@@ -120,12 +121,12 @@ class Elimination {
   void by_quasi_velocities(const std::vector<QuasiVelocity>& list, bool solve);
   void differentiate();
   void differentiate_implicitly();
-  // w = (u, phi) in coordinates, whose Jacobian is W.
+  // Returns w = (u, phi) in coordinates, whose Jacobian is W.
   Column all_values() const;
 
   const Mechanics* mechanics_ = nullptr;
   OnManifold top_, next_;           // q^(m) = g, q^(m+1) = g'
-  Rows W_inverse_;                  // not solved: n x n
+  Rows W_inverse_;                  // if not solved, n x n
   mutable std::vector<Rows> g_by_;  // those computed so far
   mutable PivotChoice pivots_;
 };

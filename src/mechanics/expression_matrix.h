@@ -10,23 +10,23 @@ namespace anholon {
 
 using Rows = std::vector<Column>;
 
-// sum_b X_b Y_b,a: the sums over dependent coordinates of [L 3.13] and its kin.
+// Returns sum_b X_b Y_b,a: the sums over dependent coordinates of [L 3.13] and similar equations.
 Column operator*(const Column& X, const Rows& Y);
 Rows operator-(const Rows& a, const Rows& b);
 Rows operator+(const Rows& a, const Rows& b);
 Rows operator*(const Rational& c, const Rows& a);
 
-// An expression of more nodes than this is not rewritten.
+// An expression with more nodes is not rewritten.
 inline constexpr std::size_t kShortEnough = 200;
-// e, or its expanded form if that is shorter.
+// Returns e, or its expanded form if that is shorter.
 Expr shorter(Expr e, std::size_t longest = kShortEnough);
-// A short form of e: common factors of fractions are cancelled, also those hidden by sin^2 + cos^2 = 1.
+// Returns a short form of e: common factors of fractions are cancelled, also those hidden by sin^2 + cos^2 = 1.
 Expr shortest(Expr e);
 
-// The result is for a reader, and is simplified with more work; or it is an intermediate one.
+// The purpose of a result: `readable` is for a reader and simplified with more work, `brief` is an intermediate result.
 enum class Wanted : std::uint8_t { readable, brief };
-// A^-1 by elimination on the graph, each entry in the shorter of its forms. Pivots are entries that are not small at
-// the point; pivots that can vanish elsewhere are added to `divisors`.
+// Returns A^-1 by elimination on the graph, each entry in the shorter of its forms. Pivots are entries that are not
+// small at the point; pivots that can vanish elsewhere are added to `divisors`.
 Rows inverse(const Rows& A, PointValues& at, Column& divisors, Wanted wanted);
 
 // Inverts matrices with pivots that are not small near a state, and records the pivots that can vanish elsewhere.
@@ -40,7 +40,7 @@ class PivotChoice {
   // The pivots recorded so far: the divisors of all inverses.
   const Column& divisors() const { return divisors_; }
 
-  // The same with values of its own.
+  // Returns a copy with values of its own.
   PivotChoice copy() const;
   // The handles of the divisors (expr/handles.h).
   friend void for_each_expression(PivotChoice& p, const ExprVisitor& f);

@@ -13,7 +13,7 @@ namespace anholon {
 
 namespace {
 
-// A vector field of more nodes is not differentiated: the flag is then undecided.
+// A vector field with more nodes is not differentiated: the flag is then undecided.
 constexpr std::size_t kLongestField = 1'200;
 
 struct GaveUp {
@@ -23,10 +23,10 @@ struct GaveUp {
 // The forms of a model, and a basis of their kernel.
 struct Pfaffian {
   FormSpace space;
-  Rows forms;  // of holonomic constraints first, then of `constraints`
+  Rows forms;  // forms of holonomic constraints first, then of `constraints`
   std::size_t holonomic = 0;
   std::vector<std::size_t> constraints;
-  std::vector<std::size_t> pivots;  // as many columns as forms
+  std::vector<std::size_t> pivots;  // pivot columns, as many as forms
   Rows inverse;                     // inverse of the pivot columns
   Rows kernel;                      // vector fields X with w(X) = 0
   Column phi;                       // the holonomic constraints
@@ -35,8 +35,8 @@ struct Pfaffian {
   Column of(std::size_t i) const { return forms[holonomic + i]; }
 };
 
-// (A, b) of a linear constraint. A does not depend on velocities; if its formula contains them all the same, they may
-// have any values except 0, for which the formula may be 0/0.
+// Returns (A, b) of a linear constraint. A does not depend on velocities; if its formula contains velocities
+// nevertheless, they may have any values except 0, for which the formula may be 0/0.
 Column coefficients(const Mechanics& m, std::size_t r) {
   Graph& g = m.graph();
   Column row = put_masses(*m.model, m.Phi[r]);
@@ -85,7 +85,7 @@ std::vector<std::size_t> pivots_of(const Pfaffian& p, FormPoint& at, Prefer pref
   return pivots;
 }
 
-// The kernel with these pivots: X_i = d_i - sum C_si d_s, C = A_D^-1 A_I.
+// Computes the kernel with these pivots: X_i = d_i - sum C_si d_s, C = A_D^-1 A_I.
 void solve(Pfaffian& p, std::vector<std::size_t> pivots, FormPoint& at) {
   Graph& g = *p.space.z[0].graph;
   p.pivots = std::move(pivots);
@@ -156,7 +156,7 @@ Pfaffian pfaffian(const Mechanics& m, const std::vector<std::size_t>& linear, bo
       p.constraints.push_back(from[i]);
   }
   p.forms = kept;
-  // Of several choices of pivots the one with the shortest basis of ker I is taken: brackets of brackets grow with it.
+  // Of several choices of pivots, the one with the shortest basis of ker I is taken: brackets of brackets grow with it.
   constexpr std::size_t kShortKernel = 500;  // characters: sharing of nodes hides the length of a formula
   std::optional<Pfaffian> best;
   std::size_t shortest = SIZE_MAX;
@@ -183,7 +183,7 @@ struct FieldValues {
   }
 };
 
-// w_r([X, Y]) at the point, for all forms.
+// Returns w_r([X, Y]) at the point, for all forms.
 std::vector<Multi> on_bracket(const Matrix<Multi>& forms, const FieldValues& x, const FieldValues& y) {
   const std::size_t n = x.X.size();
   std::vector<Multi> bracket(n, Multi(0)), out(forms.rows, Multi(0));
@@ -197,8 +197,8 @@ std::vector<Multi> on_bracket(const Matrix<Multi>& forms, const FieldValues& x, 
   return out;
 }
 
-// V reduced by the fields before it, with 1 in the component that becomes its pivot: the same span with short formulas,
-// which brackets of brackets need.
+// Returns V reduced by the fields before it, with 1 in the component that becomes its pivot: the same span with short
+// formulas, which brackets of brackets need.
 Column reduced(Column V, const Rows& before, std::vector<std::size_t>& pivots, FormPoint& at) {
   for (std::size_t k = 0; k < before.size(); ++k) {
     const Expr factor = V[pivots[k]];
@@ -207,7 +207,7 @@ Column reduced(Column V, const Rows& before, std::vector<std::size_t>& pivots, F
       if (!is_zero(before[k][a]))
         V[a] = a == pivots[k] ? factor.graph->zero() : simplified(V[a] - factor * before[k][a]);
   }
-  // Takes the shortest of the components that are not small.
+  // The pivot is the shortest of the components that are not small.
   constexpr double kPivot = 1e-3;
   const Matrix<Multi> v = values_at({V}, at);
   Multi largest(0);
@@ -226,8 +226,9 @@ Column reduced(Column V, const Rows& before, std::vector<std::size_t>& pivots, F
   return V;
 }
 
-// D^(0), D^(1), … until stable: the dimensions of the flag, and the brackets independent of the kernel, in reduced
-// echelon form with their pivots. Only these brackets become formulas; for the others values at the point suffice.
+// Computes D^(0), D^(1), … until stable: the dimensions of the flag, and the brackets independent of the kernel, in
+// reduced echelon form with their pivots. Only these brackets become formulas; for the others values at the point
+// suffice.
 Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vector<int>& flag,
                   std::vector<std::size_t>& pivots, bool& special) {
   const std::size_t s = p.s();
@@ -272,9 +273,9 @@ Rows derived_flag(const Pfaffian& p, FormPoint& at, FormPoint& generic, std::vec
   return formulas;
 }
 
-// The forms that annul the kernel and the brackets V, in reduced echelon form. They are built from w_s = dz_s - sum_i
-// X_i,s dz_i of the pivot columns: for each s that is not the pivot of a V_k, w_s less V_k,s times the form of the
-// pivot of V_k.
+// Returns the forms that annul the kernel and the brackets V, in reduced echelon form. They are built from w_s = dz_s -
+// sum_i X_i,s dz_i of the pivot columns: for each s that is not the pivot of a V_k, the form is w_s less V_k,s times
+// the form of the pivot of V_k.
 Rows annihilator(const Pfaffian& p, const Rows& brackets, const std::vector<std::size_t>& pivots) {
   Graph& g = *p.space.z[0].graph;
   const auto unit = [&](std::size_t s) {
@@ -324,7 +325,7 @@ void decide(const Mechanics& m, const std::vector<std::size_t>& linear, PointVal
     for (const Column& V : brackets) on_brackets.push_back(applied(p.of(r), V));
     if (on_brackets.empty() || rank(values_at({on_brackets}, at)) == 0) own.push_back(p.of(r));
   }
-  // The coefficients of w as a combination of the constraints.
+  // Returns the coefficients of w as a combination of the constraints.
   const auto made_of = [&](const Column& w) {
     Column on_pivots, all(m.phi.size(), m.graph().zero());
     for (std::size_t c : p.pivots) on_pivots.push_back(w[c]);

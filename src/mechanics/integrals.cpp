@@ -32,7 +32,7 @@ struct Tried {
     v = values_at(d, at);
   }
   Multi curl(std::size_t a, std::size_t b) const { return v(a, b) - v(b, a); }
-  // Whether dw = 0 in all variables but z_a; a = n: in all.
+  // True if dw = 0 in all variables but z_a, or in all variables if a = n.
   bool closed_without(std::size_t a) const {
     for (std::size_t b = 0; b < v.rows; ++b)
       for (std::size_t c = 0; c < b; ++c)
@@ -41,7 +41,7 @@ struct Tried {
   }
 };
 
-// exp of the integral of mu'/mu over one variable; nullopt if mu'/mu depends on others.
+// Returns exp of the integral of mu'/mu over one variable; nullopt if mu'/mu depends on others.
 std::optional<Expr> integrating_factor(const FormSpace& space, const Column& w, const Tried& t, std::size_t a) {
   if (!t.closed_without(a)) return std::nullopt;
   std::optional<Multi> ratio;
@@ -129,7 +129,7 @@ bool any_form(const Rows& forms, FormPoint& at, const std::function<bool(const C
   return false;
 }
 
-// f = c solved for one variable in which f is linear, and substituted in the forms.
+// The level f = c solved for one variable in which f is linear, and substituted in the forms.
 class Level {
  public:
   Level(const FormSpace& space, Expr f, Expr c, FormPoint& at) {
@@ -175,7 +175,7 @@ class Level {
   Expr symbol_, value_;
 };
 
-// A maximal independent subset of the forms.
+// Returns a maximal independent subset of the forms.
 Rows independent_of(const Rows& forms, FormPoint& at) {
   Rows out;
   for (std::size_t i : choose_rows(values_at(forms, at), Multi(kIndependent)).independent) out.push_back(forms[i]);

@@ -9,13 +9,13 @@
 
 namespace anholon {
 
-// Independent functions f, each proved: X f = 0 for all X of `kernel`, the fields that the forms of all constraints
-// annul. `forms`: a basis of a span closed under d, which contains the differentials of `holonomic`. `own`: further
-// forms of that span, which are tried first.
+// Returns independent functions f, each proved: X f = 0 for all X of `kernel`, the fields that the forms of all
+// constraints annul. `forms`: a basis of a span closed under d, which contains the differentials of `holonomic`. `own`:
+// further forms of that span, which are tried first.
 std::vector<Expr> first_integrals(const FormSpace& space, Rows forms, Rows own, const Column& holonomic,
                                   const Rows& kernel, FormPoint& at);
 
-// A constant multiple of the integral, without constant denominators and common factors, for a reader.
+// Returns a constant multiple of the integral, without constant denominators and common factors, for a reader.
 Expr readable(const FormSpace& space, Expr f, const SymbolNames& names);
 
 // Proves dw = 0 modulo the forms, for each of them: dw(X, Y) = 0 on the fields with w(X) = 0 for all forms.

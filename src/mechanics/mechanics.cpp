@@ -127,8 +127,8 @@ Mechanics mechanics(const Model& model) {
 
 Column forces(const Mechanics& m) { return m.Q + m.QR + m.QD + m.Qomega + m.minus_dVO + m.minus_dVomega + m.Gamma; }
 
-// The partial derivative by explicit time, with coordinates, velocities and masses held; unknown given functions f(t),
-// states and inputs count as explicit time.
+// Returns the partial derivative by explicit time, with coordinates, velocities and masses held; unknown given
+// functions f(t), states and inputs count as explicit time.
 static Expr by_time(Expr e) {
   Graph& g = *e.graph;
   Expr rate = partial(e, g.time());

@@ -12,7 +12,7 @@ namespace anholon {
 struct WeightedPoint {
   Expr weight;         // frozen mass or axis weight
   Vector place;        // rho (or the axis vector u_k)
-  bool uniform_field;  // whether a0 and gravity act on it: true for mass points, false for axes
+  bool uniform_field;  // true if a0 and gravity act on it: for mass points, not for axes
   std::size_t body;
   Expr speed2, acceleration2;  // |v|^2, |a|^2
 };
@@ -49,7 +49,7 @@ Mechanics mechanics(const Model& model);
 // The handles of the mechanics (expr/handles.h), without those of its model.
 void for_each_expression(Mechanics& m, const ExprVisitor& f);
 
-// Q + QR + QD + Qomega - d(V_O + V_omega)/dq + Gamma: the given and the inertial forces.
+// Returns Q + QR + QD + Qomega - d(V_O + V_omega)/dq + Gamma: the given and the inertial forces.
 Column forces(const Mechanics& m);
 
 // Energy and its rate, with masses substituted (theory: certificate).
@@ -61,10 +61,10 @@ struct Power {
 };
 Power power(const Mechanics& m);
 
-// d^2 T / dq' dq', masses substituted; row by row.
+// Returns d^2 T / dq' dq' row by row, masses substituted.
 std::vector<Column> mass_matrix(const Mechanics& m);
 
-// Newton's left side sum m a . drho/dq by the points themselves, independent of T and S.
+// Returns Newton's left side sum m a . drho/dq, computed from the points themselves, independently of T and S.
 Column newton_left_side(const Mechanics& m);
 
 }  // namespace anholon

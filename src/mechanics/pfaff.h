@@ -16,14 +16,14 @@ namespace anholon {
 struct FormSpace {
   Column z;  // q_1..q_n and, with time, t
   bool time = false;
-  // df as a form.
+  // Returns df as a form.
   Column differential(Expr f) const;
 };
 
-// w(X), or X f with w = df.
+// Returns w(X), which is X f if w = df.
 Expr applied(const Column& w, const Column& X);
 
-// e, or its normal form if that is shorter and found with little work.
+// Returns e, or its normal form if that is shorter and found with little work.
 Expr simplified(Expr e);
 
 // A vector field with the differentials of its components.
@@ -48,7 +48,7 @@ class FormPoint {
   // own.
   FormPoint(const Mechanics& m, PointValues& near, std::uint64_t seed, bool other_parameters);
   Multi operator()(Expr e) { return (*values_)(e); }
-  // The point in double, for the choice of pivots.
+  // Returns the point in double, for the choice of pivots.
   PointValues rough() const;
 
  private:
@@ -56,7 +56,7 @@ class FormPoint {
   std::unique_ptr<ValuesAt<Multi>> values_;
 };
 
-// The values of the rows; entries that are round-off are set to zero. Throws NoValue.
+// Returns the values of the rows; entries that are round-off are set to zero. Throws NoValue.
 Matrix<Multi> values_at(const Rows& rows, FormPoint& at);
 std::size_t rank(const Matrix<Multi>& a);
 
@@ -72,7 +72,7 @@ class Echelon {
   std::vector<std::size_t> pivots_;
 };
 
-// e with the values of the parameters substituted.
+// Returns e with the values of the parameters substituted.
 Expr parameters_put(const Model& model, Expr e);
 
 }  // namespace anholon

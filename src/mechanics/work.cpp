@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kHighestDegree = 4;
 
-// The sort key of a formula: whether it contains velocities, and its printed length.
+// Returns the sort key of a formula: whether it contains velocities, and its printed length.
 std::pair<bool, std::size_t> burden(Expr e, const SymbolNames& names) {
   return {jet_order(e) > 0, print(e, names, Format::text).size()};
 }

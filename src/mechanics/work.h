@@ -9,7 +9,7 @@
 
 namespace anholon {
 
-// The factor of lambda_r in the power of constraint r; the node 0 if it is proved to do no work.
+// Returns the factor of lambda_r in the power of constraint r; the node 0 if the constraint is proved to do no work.
 Expr power_factor(const Mechanics& mechanics, std::size_t r);
 
 }  // namespace anholon

@@ -8,10 +8,10 @@ namespace anholon {
 
 namespace {
 
-constexpr int kLargestExponent = 1000;  // that a formula may have
+constexpr int kLargestExponent = 1000;  // the largest exponent that a formula may have
 
-// e with the values of parameters, however they follow from one another, and these parameters. nullopt if e holds another
-// symbol.
+// Returns e with the values of parameters substituted repeatedly, and collects these parameters in `used`. Returns
+// nullopt if e contains another symbol.
 std::optional<Expr> with_values(const Model& model, Expr e, std::set<std::size_t>& used) {
   const Graph& g = *model.graph;
   for (std::size_t depth = 0; depth <= model.parameters.size(); ++depth) {
@@ -26,10 +26,10 @@ std::optional<Expr> with_values(const Model& model, Expr e, std::set<std::size_t
   return std::nullopt;
 }
 
-// An exponent of parameters that nothing changes along a motion.
+// An exponent whose parameters no event changes.
 struct FixedExponent {
   Expr value;
-  std::set<std::size_t> in_it, follows_from;  // parameters
+  std::set<std::size_t> in_it, follows_from;  // parameters in the exponent; these and those that they follow from
 };
 
 std::optional<FixedExponent> fixed(const Model& model, Expr exponent) {
@@ -48,7 +48,7 @@ bool whole(Expr e) {
   return is_number(e) && number_value(e).is_integer() && !(abs(number_value(e)) > kLargestExponent);
 }
 
-// base^exponent with an exponent of parameters.
+// The power base^exponent, whose exponent depends on parameters alone.
 struct FixedPower {
   Expr base, exponent;
 };

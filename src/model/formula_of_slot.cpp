@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kLongestFormula = 120;
 
-// Long formulas are cut to keep the message one sentence long.
+// Returns the formula of a slot; long ones are cut to keep the message one sentence long.
 std::string short_text(const Tape& tape, const Model& model, std::uint32_t slot) {
   const NodeId node = tape.nodes[slot];
   if (node == Tape::kNoNode) return {};
@@ -30,7 +30,7 @@ struct Described {
   std::uint32_t argument;  // the slot whose value explains the fault
 };
 
-// The power whose logarithm a slot is, as the user wrote it; empty if it is none.
+// Returns the power whose logarithm the slot is, as the user wrote it; empty if the slot is not such a logarithm.
 std::string power_of_log(const Tape& tape, const Model& model, std::uint32_t slot) {
   const Instruction& in = tape.code[slot];
   if (in.op != Op::function || in.index != static_cast<std::uint32_t>(Function::log)) return {};
@@ -51,7 +51,7 @@ std::string power_of_log(const Tape& tape, const Model& model, std::uint32_t slo
   return {};
 }
 
-// The formula of a slot, and its argument.
+// Returns the formula of a slot, and the slot of its argument.
 Described described(const Tape& tape, const Model& model, std::uint32_t slot) {
   const Instruction& in = tape.code[slot];
   const auto name = [&](std::uint32_t of) {
@@ -94,7 +94,7 @@ void add(Formulas& list, const Vector& v) {
   for (int i = 0; i < 3; ++i) add(list, v[i]);
 }
 
-// Calls visit(title, formulas) for each element that the equations of motion come from.
+// Calls visit(title, formulas) for each element that contributes to the equations of motion.
 template <class Visit>
 void for_each_element(const Model& model, const Visit& visit) {
   const auto show = [&](const std::string& kind, const std::string& name, const Formulas& formulas) {
@@ -119,7 +119,7 @@ void for_each_element(const Model& model, const Visit& visit) {
   }
 }
 
-// The element whose formulas hold the node, "the force 'spring'"; empty if there is none or several.
+// Returns the element whose formulas hold the node, "the force 'spring'"; empty if there is none or several.
 std::string element_with(const Model& model, NodeId node) {
   std::string found;
   int elements = 0;
@@ -132,7 +132,8 @@ std::string element_with(const Model& model, NodeId node) {
   return elements == 1 ? found : std::string();
 }
 
-// The element from which a formula or, if derivatives have changed it, its argument comes: " in the force 'spring'".
+// Returns the element with the formula of the slot or, if derivation has changed the formula, with its argument: " in
+// the force 'spring'".
 std::string in_element(const Tape& tape, const Model& model, std::uint32_t slot, std::uint32_t argument) {
   for (const std::uint32_t s : {slot, argument}) {
     if (tape.nodes[s] == Tape::kNoNode || tape.code[s].op == Op::input) continue;

@@ -1,4 +1,4 @@
-// Names the formula of a tape that has no value, or no derivatives, in words of the model.
+// Describes in words of the model a formula of a tape that has no value or no derivatives.
 #pragma once
 #include <functional>
 
@@ -8,8 +8,9 @@
 
 namespace anholon {
 
-// `not_a_number`, with the formula of the slot, the element of the model that alone holds it, and the value of its
-// argument: "sqrt(x - 1) in the force 'spring' has no value, where x - 1 = -0.25". `value`: that of a slot at order 0; where it is finite, the formula has no derivatives.
+// Returns the outcome `not_a_number`, whose text has the formula of the slot, the only element of the model that holds
+// the formula, and the value of its argument: "sqrt(x - 1) in the force 'spring' has no value, where x - 1 = -0.25".
+// `value` returns the value of a slot at order 0; if the value of this slot is finite, the formula has no derivatives.
 Outcome without_value(const Tape& tape, const Model& model, std::uint32_t slot,
                       const std::function<double(std::uint32_t)>& value);
 

@@ -3,7 +3,7 @@
 
 namespace anholon {
 
-// Names of nodes by their ids, which a clone of the graph has, too.
+// SymbolNames refer to nodes by their ids, which are the same in a clone of the graph.
 template <>
 inline constexpr bool kHoldsNoExpressions<SymbolNames> = true;
 template <>

@@ -13,9 +13,9 @@ namespace anholon {
 
 namespace {
 
-// Choices inside of choices are taken one after the other, up to this depth.
+// The depth to which nested choices are followed.
 constexpr int kDeepest = 16;
-// Products of terms for a proof; a longer one is given up, and the expression is said to jump.
+// The limit of a proof, in products of terms; beyond it, the expression is said to jump.
 constexpr long kMostOfProof = 1'000'000;
 
 bool varies(Expr e) {
@@ -30,14 +30,14 @@ bool is_function(const Node& n, Function f) {
   return n.kind == Kind::function && n.index == static_cast<std::uint32_t>(f);
 }
 
-// What decides between two formulas in a node; a handle with graph == nullptr if nothing does.
+// Returns the condition of a choice or the argument of a sign; a handle with graph == nullptr if the node is neither.
 Expr decides(Expr e) {
   const Graph& g = *e.graph;
   const Node& n = g.node(e.id);
   return n.kind == Kind::select || is_function(n, Function::sign) ? operand(g, e, 0) : Expr{};
 }
 
-// 1 or -1 if a is a positive or negative multiple of b; else 0.
+// Returns 1 or -1 if a is a positive or negative multiple of b; else 0.
 int same_sign(Expr a, Expr b) {
   if (a == b) return 1;
   if (a == -b) return -1;
@@ -45,7 +45,7 @@ int same_sign(Expr a, Expr b) {
   return ratio && is_number(*ratio) ? sgn(number_value(*ratio)) : 0;
 }
 
-// e where s has that sign.
+// Returns the form that e has where s has the sign `side`.
 Expr on_side(Expr e, Expr s, int side) {
   Graph& g = *e.graph;
   for (int depth = 0; depth < kDeepest; ++depth) {
@@ -74,7 +74,7 @@ std::optional<Expr> denominator(Expr e) {
   return f ? std::optional(expression(f->denominator, f->generators)) : std::nullopt;
 }
 
-// e with the choices that parameters alone decide.
+// Returns e with the choices made that the values of parameters decide.
 Expr chosen(Expr e, const std::vector<double>& parameters) {
   constexpr double kOnIt = 1e-9;
   Graph& g = *e.graph;
@@ -95,7 +95,7 @@ Expr chosen(Expr e, const std::vector<double>& parameters) {
   return e;
 }
 
-// e where s = 0, by a symbol in which s is linear with a coefficient of parameters.
+// Returns e at s = 0, by substituting a symbol in which s is linear with a coefficient of parameters.
 std::optional<Expr> where_zero(Expr e, Expr s) {
   const Graph& g = *e.graph;
   for (NodeId id : symbols({&s, 1})) {
@@ -123,7 +123,7 @@ bool vanishes_with(Expr difference, Expr s, const std::vector<double>& parameter
   return more && !varies(*more);
 }
 
-// e on both sides of a zero of s; nullopt if it has no value on one of them.
+// The values of e on both sides of a zero of s; nullopt if e has no value on one of them.
 struct Sides {
   Expr above, below;
 };
@@ -148,7 +148,7 @@ std::vector<double> parameters_of(const Model& model) {
 
 double generic(const Node& n, std::uint64_t seed) { return 4 * generic_value(n, seed) - 2; }
 
-// A generic point; the symbol `moved`, if there is one, has the value x.
+// Returns a generic point, in which the symbol `moved`, if given, has the value x.
 PointValues point(std::uint64_t seed, const std::vector<double>& parameters, const Node* moved = nullptr,
                   double x = 0) {
   const std::optional<Node> other = moved ? std::optional(*moved) : std::nullopt;
@@ -160,7 +160,8 @@ PointValues point(std::uint64_t seed, const std::vector<double>& parameters, con
   });
 }
 
-// A point at which s vanishes, found by Newton's method along one of its symbols from a generic point; nullopt if there
+// Returns a point at which s vanishes, found by Newton's method along one of its symbols from a generic point; nullopt
+// if none is found.
 // is none.
 std::optional<PointValues> zero_of(Expr s, Expr along, std::uint64_t seed, const std::vector<double>& parameters) {
   constexpr int kMostSteps = 40;

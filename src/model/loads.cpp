@@ -17,7 +17,7 @@ std::vector<Load> given_loads(const Model& model) {
   std::vector<Load> loads(model.bodies.size(), Load{zero_vector(g), zero_vector(g)});
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     if (!is_zero(model.bodies[b].gravity)) loads[b].force = model.bodies[b].mass * model.bodies[b].gravity;
-  // Where the field varies over the body it turns it: sum e_k u_k x (dg/dr u_k), to first order in the body's size.
+  // A field that varies over the body turns the body: sum e_k u_k x (dg/dr u_k), to first order in the body's size.
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const std::vector<Vector>& by = model.bodies[b].gravity_gradient;
     if (by.empty()) continue;
@@ -67,7 +67,7 @@ std::vector<Load> reactive_loads(const Model& model) {
 
 namespace {
 
-// The load that a body's motion takes.
+// Returns the force and torque that the body's motion requires.
 Load of_motion(const Model& model, const Body& body) {
   Graph& g = *model.graph;
   const Vector &omega = model.observer.spin, &a0 = model.observer.origin_acceleration;

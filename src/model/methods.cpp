@@ -8,8 +8,8 @@ namespace anholon {
 
 using Use = MethodInfo::Use;
 
-// The least tolerance is the round-off of f in double; that of BDF, of order 5 at most, is one that it reaches in a
-// bearable time.
+// The least tolerance of Runge-Kutta is the round-off of f in double; that of BDF, whose order is 5 at most, is one
+// that it reaches in acceptable time.
 static constexpr MethodInfo kMethods[] = {
     // use, name, title, citation, wide numbers, resumes, encloses, order can be chosen, order, least tolerance, raised
     {Use::motion, "auto", "Taylor", "", true, true, true, true, 0, 0, true},

@@ -50,7 +50,7 @@ void put_inputs(Model& model) {
 void put_inputs_into_inputs(Model& model, const std::set<std::size_t>& given) {
   for (std::size_t k = 0; k < model.controls.size(); ++k)
     if (Control& u = model.controls[k]; u.open.graph && !given.count(k)) u.value = u.open;
-  // The reader has seen to it that this comes to an end.
+  // The reader has checked that inputs do not depend on each other in a circle.
   for (std::size_t depth = 0; depth < model.controls.size(); ++depth)
     for (std::size_t k = 0; k < model.controls.size(); ++k)
       if (Control& u = model.controls[k]; u.open.graph && u.value && !given.count(k))
@@ -60,7 +60,7 @@ void put_inputs_into_inputs(Model& model, const std::set<std::size_t>& given) {
 Expr put_state_rates(const Model& model, Expr e, unsigned from) {
   Graph& g = *model.graph;
   if (model.states.empty()) return e;
-  // A rate may hold rates of other states; the reader has seen to it that this comes to an end.
+  // A rate may contain rates of other states; the reader has checked that they do not depend on each other in a circle.
   for (std::size_t depth = 0; depth <= model.states.size() * 4; ++depth) {
     bool any = false;
     e = substitute({&e, 1}, [&](NodeId id) {
@@ -91,7 +91,7 @@ std::string automatic_name(const Model& model, const std::string& wanted) {
            std::any_of(n.defined.begin(), n.defined.end(), [&](const auto& d) { return d.second == name; }) ||
            std::any_of(model.quasi.begin(), model.quasi.end(), [&](const QuasiVelocity& u) { return u.name == name; });
   };
-  // Names with a number must not be those of other masses and velocities, either.
+  // Names with a number must also differ from the names of other masses and velocities.
   const auto wanted_by_others = [&](const std::string& name) {
     return std::any_of(model.masses.begin(), model.masses.end(),
                        [&](const VaryingMass& m) { return name == "m_" + m.name; }) ||

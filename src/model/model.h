@@ -1,8 +1,8 @@
-// The checked model: what the user wrote, with every name resolved and every element keeping its
-// place in the source. Immutable once built; the graph that holds its expressions goes with it.
+// The checked model: the contents of the model file, with every name resolved and the place of every element in the
+// source. Immutable once built; the model owns the graph that holds its expressions.
 //
-// All vectors are components along the observer's axes (theory: weighted-points). Masses and weights
-// that vary stand as frozen symbols mu_i; `masses` says what each one is.
+// All vectors are components along the observer's axes (theory: weighted-points). Masses and weights that vary are
+// frozen symbols mu_i; `masses` has the formula of each.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -31,7 +31,7 @@ struct Parameter {
   Expr value;  // exact, in terms of numbers and other parameters
   std::string doc;
   Span span;
-  bool mode = false;  // [mode]: constant between events, `value` is where it starts
+  bool mode = false;  // [mode]: constant between events; `value` is its value at the start
 };
 
 // The observer's frame: moving components of its angular velocity and of the inertial acceleration
@@ -46,17 +46,17 @@ struct Observer {
 // A mass or axis weight that varies with t, q, q': its frozen symbol is graph.mass(index).
 struct VaryingMass {
   std::string name;
-  bool weight = false;  // of an axis: may be negative (products of inertia)
+  bool weight = false;  // true for the weight of an axis, which may be negative (products of inertia)
   Expr value;
   Span span;
 };
 
-// A second-moment axis vector u with weight e (theory: weighted-points): moves like a mass point but
-// feels no uniform field. `frame_axis` k >= 0: u is axis k of the body's orientation.
+// A second-moment axis vector u with weight e (theory: weighted-points). It contributes like a mass point but feels no
+// uniform field. `frame_axis` k >= 0: u is axis k of the body's orientation.
 struct Axis {
   Expr weight;  // frozen form
   Vector vector;
-  std::vector<Expr> own;  // components along the body's own axes, where these are orthonormal identically
+  std::vector<Expr> own;  // components along the body's own axes, if these are orthonormal identically
 };
 
 struct Body {
@@ -70,7 +70,7 @@ struct Body {
   std::optional<Vector> expelled_velocity;  // u: leaving or joining matter minus exit point
   Vector exit_point;                        // position of that material point
   Vector gravity;                           // field at the centre
-  std::vector<Vector> gravity_gradient;     // its derivatives by x, y, z; empty where it has no torque on the body
+  std::vector<Vector> gravity_gradient;     // its derivatives by x, y, z; empty if it has no torque on the body
   std::optional<Shape> shape;
 };
 
@@ -85,7 +85,7 @@ struct Force {
   Span span;
   Kind kind = Kind::vector;
   Place on;
-  std::optional<Place> from;  // where the opposite acts
+  std::optional<Place> from;  // place of the opposite force
   Vector vector;              // force or torque
   Expr tension;
   std::vector<std::pair<std::size_t, Expr>> generalized;  // coordinate, component
@@ -115,7 +115,7 @@ struct Constraint {
       std::nullopt;  // kept by this input, which takes the place of lambda (servo constraint)
 };
 
-// An unknown function of the user's with z' = rate: propellant, controller, actuator.
+// An unknown function z of the user with z' = rate: propellant, controller, actuator.
 struct StateVariable {
   std::string name;
   Expr rate, initial;
@@ -123,19 +123,19 @@ struct StateVariable {
   Expr open_rate = {};  // see put_inputs
 };
 
-// A control: a formula of anything, held as a symbol of its own while equations are derived. Of a servo constraint it
-// is the multiplier.
+// A control: a formula of anything, represented by a symbol of its own while equations are derived. The control of a
+// servo constraint is its multiplier.
 struct Control {
   std::string name;
   std::optional<Expr> value;
-  std::optional<std::size_t> constraint = std::nullopt;  // that it keeps
+  std::optional<std::size_t> constraint = std::nullopt;  // the constraint that it keeps
   Span span;
   Expr open = {};  // see put_inputs
-  // An element in which its formula stands in place of the symbol, "the potential 'V'"; empty if there is none.
+  // An element in which the formula replaces the symbol, such as "the potential 'V'"; empty if there is none.
   std::string put_into = {};
 };
 
-// A number or vector to be recorded.
+// A number or vector that runs record.
 struct OutputQuantity {
   std::string name, unit, doc;
   std::vector<Expr> values;  // one, or the three components
@@ -143,14 +143,14 @@ struct OutputQuantity {
   Span span;
 };
 
-// What an event sets: a mode (parameter), a state, a coordinate or one of its derivatives.
+// The assignment of an event to a mode (parameter), a state, a coordinate or one of its derivatives.
 struct Assignment {
-  Expr symbol, value;  // the value by those before
+  Expr symbol, value;  // the value, in which earlier assignments hold
   Span span;
   Expr open = {};  // see put_inputs
 };
 
-// The strict change of sign of a formula along the motion.
+// A strict change of sign of a formula along the motion, and its effect.
 struct Event {
   std::string name;
   Expr when;
@@ -170,7 +170,7 @@ struct QuasiVelocity {
   Span span;
 };
 
-// A number to be watched along the motion.
+// A number that runs watch along the motion.
 struct Monitor {
   std::string name;
   Expr value;
@@ -178,7 +178,8 @@ struct Monitor {
   Expr open = {};  // see put_inputs
 };
 
-// What must stay positive: a table's argument within its knots, where nothing else was said.
+// A formula that must stay positive: the distance of the argument of a table from an end of its knots, if nothing tells
+// how the table continues.
 struct Bound {
   Expr inside;
   std::string fault;
@@ -197,7 +198,7 @@ struct Condition {
   Span span;
 };
 
-// Which solution is meant where a constraint that is nonlinear in its highest derivatives has several.
+// The choice of one solution, if a constraint that is nonlinear in its highest derivatives has several.
 struct BranchChoice {
   std::size_t constraint = 0;
   bool positive = true;  // lambda > 0
@@ -211,7 +212,7 @@ struct InitialData {
   std::vector<BranchChoice> branches;
 };
 
-// What the reader did on its own, as components that it dropped; or the modes in which the equations hold.
+// A note on what the reader did unasked, such as dropping components, or on the modes in which the equations hold.
 struct ModelNote {
   enum class About : std::uint8_t { reading, open_contacts, modes_of_start };
   ModelNote(std::string what, About of = About::reading)
@@ -250,10 +251,10 @@ struct Model {
   View view;
   SymbolNames names;
   std::vector<std::string> cases;  // scenarios of the file, [case.NAME]
-  // Where the file has units: those of coordinates and parameters, empty where nothing tells.
+  // If the file has units: those of coordinates and parameters; an empty text if the unit is unknown.
   std::vector<std::string> coordinate_units, parameter_units;
-  // Coordinates, then states, by their dimension: those with one number have the same, as far as the formulas tell. Empty if
-  // all have number 0.
+  // The dimensions of the coordinates, then of the states, as numbers: entries with the same number have the same
+  // dimension, as far as the formulas tell. Empty if all have number 0.
   std::vector<std::uint32_t> scales;
   std::vector<ModelNote> notes;
 };
@@ -261,39 +262,43 @@ struct Model {
 // The handles of the model (expr/handles.h).
 void for_each_expression(Model& model, const ExprVisitor& f);
 void for_each_expression(QuasiVelocity& u, const ExprVisitor& f);
-// The same model with a clone of its graph, in which its holder may build. `nodes`: with the first so many nodes alone.
+// Returns the same model with a clone of its graph, in which the owner may build expressions. `nodes`: clones only the
+// first so many nodes.
 std::shared_ptr<Model> clone(const Model& model);
 std::shared_ptr<Model> clone(const Model& model, std::size_t nodes);
 
-// mu -> m(t, q, q'): puts the masses in, after which derivatives are no longer frozen; inputs likewise.
+// Substitutes the masses, mu -> m(t, q, q'), after which derivatives are no longer frozen; substitutes inputs as well.
 Column put_masses(const Model& model, std::span<const Expr> es);
 Expr put_masses(const Model& model, Expr e);
 
-// Masses alone, and inputs alone.
+// These substitute masses alone, and inputs alone.
 Column put_varying_masses(const Model& model, std::span<const Expr> es);
 Column put_controls(const Model& model, std::span<const Expr> es);
 
-// Monitors, rates of states, events and inputs are read with the formulas of the inputs put in. Beside such a formula
-// stands its open form, in which inputs are symbols; it has no graph if the formula holds no input that has a formula.
+// Returns the open form of a formula. Monitors, rates of states, events and inputs hold the formulas of the inputs.
+// Beside such a formula stands its open form, in which inputs are symbols; the open form has no graph if the formula
+// contains no input that has a formula.
 Expr open_form(const Model& model, Expr as_read);
-// Puts the inputs into monitors, rates and events anew, after the formulas of inputs were changed. Inputs without a
-// formula stay symbols.
+// Substitutes the inputs into monitors, rates and events anew, after the formulas of inputs were changed. Inputs
+// without a formula stay symbols.
 void put_inputs(Model& model);
-// Writes the formulas of the inputs that are not among `given` by those of the others anew.
+// Expresses the inputs that are not in `given` by the formulas of the other inputs anew.
 void put_inputs_into_inputs(Model& model, const std::set<std::size_t>& given);
-// z^(k) -> D^(k-from) of the rate, k >= from >= 1: no derivative of a state beyond `from` - 1 is left.
+// Substitutes z^(k) -> D^(k-from) of the rate, k >= from >= 1, so that no derivative of a state beyond `from` - 1 is
+// left.
 Expr put_state_rates(const Model& model, Expr e, unsigned from);
 
-// The unknown that keeps constraint r: "lambda.rolling", or the input's name where the constraint is kept by one.
+// Returns the name of the unknown that keeps constraint r: "lambda.rolling", or the name of the input that keeps the
+// constraint.
 std::string multiplier_name(const Model& model, std::size_t r);
 
-// A name that the equations give to a quantity on their own, "m_p" or "u_x": with a number after it where the model has
-// the name already.
+// Returns a name for a quantity that the equations introduce, such as "m_p" or "u_x"; a number is appended if the model
+// has the name already.
 std::string automatic_name(const Model& model, const std::string& wanted);
-// The same of mass i, "m_p".
+// Returns the automatic name of mass i, "m_p".
 std::string mass_name(const Model& model, std::size_t i);
 
-// Coordinates q, q', q'', … as columns of symbols.
+// Returns the coordinates q, q', q'', … as columns of symbols.
 Column jets(const Model& model, unsigned order);
 
 }  // namespace anholon

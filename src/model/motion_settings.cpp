@@ -175,7 +175,7 @@ const MotionOption& motion_option(const std::string& name) {
 
 namespace {
 
-// Sets one member, by its type.
+// Sets one member, according to its type.
 class Setter {
  public:
   Setter(MotionSettings& settings, const MotionOption& option, const OptionValue& value, const std::string& called)
@@ -209,7 +209,7 @@ class Setter {
     settings_.*member = *times;
     std::stable_sort((settings_.*member).begin(), (settings_.*member).end(),
                      [](const WrittenTime& a, const WrittenTime& b) { return a.value < b.value; });
-    // A time that is given twice has one row, in a run as in a sweep.
+    // A time that is given twice has one row, in runs and in sweeps.
     const auto end = std::unique((settings_.*member).begin(), (settings_.*member).end(),
                                  [](const WrittenTime& a, const WrittenTime& b) { return a.value == b.value; });
     (settings_.*member).erase(end, (settings_.*member).end());
@@ -287,7 +287,7 @@ MotionSettings merged(const MotionSettings& asked, const MotionSettings& file) {
   if (!asked.form) all.form_span = file.form_span;
   if (!asked.at.empty()) all.to = asked.to, all.every = asked.every;
   if (asked.at.empty() && asked.every) all.at.clear();
-  // The file's tolerance is meant for the file's numbers.
+  // The tolerance in the file is meant for the number type in the file.
   if (asked.digits.value_or(16) > 16 || asked.numbers == "quad") all.tolerance = asked.tolerance;
   return all;
 }

@@ -1,5 +1,6 @@
-// What somebody asks of a motion, in the file, on the command line or in a program: one row for each option. A row is an
-// option of `simulate` with its help, a key of [simulate], an entry of saved runs and one of the provenance of results.
+// The settings of a motion from the file, the command line or a program, with one row of a table for each option. A row
+// is an option of `simulate` with its help, a key of [simulate], an entry of saved runs and an entry of the provenance
+// of results.
 #pragma once
 #include <functional>
 #include <optional>
@@ -14,53 +15,53 @@ namespace anholon {
 
 struct WrittenTime {
   Rational value;
-  std::string text;  // as it is to be printed; empty: as a number
+  std::string text;  // the text to be printed; if empty, the number is printed
 };
 
-// Empty where nothing is asked for.
+// The settings of a motion; a member is empty if it is not set.
 struct MotionSettings {
   std::optional<Rational> to, every, tolerance;
   std::vector<WrittenTime> at;  // ascending
   std::optional<int> digits, order, most_steps;
   std::optional<std::string> form, numbers, method, integrator, rigorous, error_estimate;
-  Span form_span;  // of a form that the file names
+  Span form_span;  // place of the form in the file
 };
 
 struct MotionOption {
   using Member = std::variant<std::optional<Rational> MotionSettings::*, std::optional<int> MotionSettings::*,
                               std::optional<std::string> MotionSettings::*, std::vector<WrittenTime> MotionSettings::*>;
-  // What commands ask for together: the times of a motion, how it is computed, and how it is judged.
+  // The group of an option: the times of a motion, how it is computed, how it is judged, or the form of its equations.
   enum class Part : std::uint8_t { times, accuracy, judgement, form };
   const char* name;     // "error-estimate" for --error-estimate
-  const char* key;      // in [simulate]: "error_estimate"
-  const char* value;    // what the help calls its value: "WHEN"
-  const char* help;     // of the command line
-  const char* in_file;  // of [simulate]
+  const char* key;      // key in [simulate]: "error_estimate"
+  const char* value;    // name of its value in the help: "WHEN"
+  const char* help;     // text of the command line
+  const char* in_file;  // text of [simulate]
   Part part;
   Member member;
-  const char* in_sweep = nullptr;                     // its help for sweeps; nullptr if they do not take it
-  bool kept = false;                                  // a saved run goes on with the same value
-  const std::vector<std::string>& (*choices)() = {};  // of a word; any other word is refused
-  bool also_number = false;                           // a word that may be a number
-  int least = 0, most = 0;                            // of a whole number
-  // What a number has to be, if it is not: "is a positive time"; nullptr if it is.
+  const char* in_sweep = nullptr;                     // its help for sweeps; nullptr if sweeps do not take the option
+  bool kept = false;                                  // a saved run is continued with the same value
+  const std::vector<std::string>& (*choices)() = {};  // the allowed words; nullptr if the value is no word
+  bool also_number = false;                           // the value may be a number instead of a word
+  int least = 0, most = 0;                            // bounds of a whole number
+  // Returns what is required of the number if it is wrong: "is a positive time"; nullptr if the number is right.
   const char* (*mistake)(const Rational&) = {};
 };
 const std::vector<MotionOption>& motion_options();
-// The row of a name, which must be there.
+// Returns the option of that name, which must exist.
 const MotionOption& motion_option(const std::string& name);
 
 using OptionValue = std::variant<Rational, std::string, std::vector<WrittenTime>>;
 // Sets an option. Throws Failure without a place if its value makes no sense; `called` is its name in the message.
 void set(MotionSettings& settings, const MotionOption& option, const OptionValue& value, const std::string& called);
-// As above, from words as they are typed. `number` reads a number, and throws Failure.
+// Sets an option from words as they are typed. `number` reads a number, and throws Failure.
 void set(MotionSettings& settings, const MotionOption& option, const std::vector<std::string>& words,
          const std::string& called, const std::function<Rational(const std::string&)>& number);
 bool is_set(const MotionSettings& settings, const MotionOption& option);
-// The value as words from which it can be set again; empty if the option is not set.
+// Returns the value as words from which it can be set again; empty if the option is not set.
 std::vector<std::string> words(const MotionSettings& settings, const MotionOption& option);
-// What is asked for, and what the file says where nothing is asked for. The file's end is void if times of rows are asked
-// for, and its tolerance if more digits are.
+// Returns the settings in `asked`, and those of the file where `asked` has none. The end in the file is ignored if
+// `asked` has times of rows, and the tolerance in the file if `asked` has more digits.
 MotionSettings merged(const MotionSettings& asked, const MotionSettings& file);
 
 }  // namespace anholon

@@ -1,5 +1,5 @@
-// The picture of a model: what is drawn beside its bodies, and from where it is looked at. All vectors are components
-// along the observer's axes; nothing here has a part in the motion.
+// The picture of a model: the elements that are drawn beside its bodies, and the camera. All vectors are components
+// along the observer's axes; the motion does not depend on the picture.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,10 +11,10 @@
 
 namespace anholon {
 
-// The homogeneous solid that a body has the inertia of, or is drawn as.
+// The homogeneous solid whose inertia a body has, or as which a body is drawn.
 struct Shape {
   std::string kind;         // "disc", "ball", …
-  std::vector<Expr> sizes;  // of numbers and parameters
+  std::vector<Expr> sizes;  // formulas of numbers and parameters
 };
 
 struct View {
@@ -22,21 +22,22 @@ struct View {
   struct Element {
     std::string name;
     Kind kind = Kind::solid;
-    std::string color;           // "#a33" or "#aa3333"; empty: of the page
+    std::string color;           // "#a33" or "#aa3333"; if empty, the page chooses
     std::optional<Shape> shape;  // of a solid
     std::vector<Vector>
-        places;  // a line's corners; else where it is (a solid named as a body: none, that is where the body is)
+        places;  // corners of a line, or the place of another element; empty for a solid named like a body, which is
+                 // drawn at the body
     std::optional<Rotation> axes;  // of a solid
     std::optional<Vector> vector;
     Span span;
   };
   std::vector<Element> elements;
-  std::vector<std::pair<std::string, Vector>> points;  // of [point], in the order of the file
-  std::optional<Vector> camera, target;                // from where, and whereto
-  std::optional<Vector> up;                            // a constant direction; without it z
+  std::vector<std::pair<std::string, Vector>> points;  // points of [point], in the order of the file
+  std::optional<Vector> camera, target;                // place of the camera, and the point it looks at
+  std::optional<Vector> up;                            // a constant direction; z if absent
   std::optional<Expr> floor;                           // height of a plane z = const
   bool no_floor = false;                               // floor = false
-  std::string follow;                                  // the body or point that stays in the middle
+  std::string follow;                                  // the body or point that stays in the centre of the picture
   std::vector<std::string> hidden;                     // bodies and points that are not drawn
 };
 

@@ -4,10 +4,10 @@
 
 namespace anholon {
 
-// names: those of open_model(). The expressions belong to the graph of its model.
+// Returns the contacts. `names` are those of open_model(). The expressions belong to the graph of its model.
 const std::vector<Contact>& contacts(const Names& names);
 
-// The model of the names, whose holder may put a mode of the contacts into it; no thread may read it meanwhile.
+// Returns the model of the names, in which the caller may set a mode of the contacts; no thread may read it meanwhile.
 Model& model_of(Names& names);
 
 }  // namespace anholon

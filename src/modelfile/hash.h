@@ -1,5 +1,5 @@
-// The hash by which certificates, pages, results and saved runs name a model: of its text, of its base files, and of the
-// data files of its tables with their names.
+// The hash that identifies a model in certificates, pages, results and saved runs: the hash of its text, of its base
+// files, and of the data files of its tables with their names.
 #pragma once
 #include "base/diagnostic.h"
 #include "base/hash.h"

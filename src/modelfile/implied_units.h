@@ -7,8 +7,8 @@
 
 namespace anholon {
 
-// The SI unit of each coordinate and parameter whose unit follows: {"x": "m", "m": "kg"}. Reads the text of the model
-// again, without its cases. Empty if the text cannot be read or its formulas contradict one another.
+// Returns the SI unit of each coordinate and parameter whose unit follows: {"x": "m", "m": "kg"}. Reads the text of the
+// model again, without its cases. Empty if the text cannot be read or its formulas contradict one another.
 std::map<std::string, std::string> implied_units(const Model& model);
 
 }  // namespace anholon

@@ -42,7 +42,7 @@ namespace {
 constexpr Span kTop{1, 1, 1};
 
 // The limit of the work that a file's expressions may cost: a formula that expands without end is refused at its place.
-// The chain of a thousand links takes a tenth of this.
+// A chain of a thousand links takes a tenth of this.
 constexpr std::size_t kWork = 700'000, kWorkPerByte = 1000, kWorkPerMember = 1000, kWorkLater = std::size_t{1} << 48;
 class Reader {  // its references are used only while it runs
  public:
@@ -64,7 +64,7 @@ class Reader {  // its references are used only while it runs
     if (!read) return false;
     scenarios(root);
     const Families families = write_out_families(root, overrides_, diagnostics_);
-    // One mistake in an index or a case would be repeated in every element.
+    // A mistake in an index or a case would be repeated in every element.
     if (diagnostics_.has_errors()) return false;
     scope_.reserve(families.letters);
     index_overrides_ = families.used;
@@ -155,7 +155,7 @@ class Reader {  // its references are used only while it runs
       guard([&] { observer_ = read_observer(*o, scope_, model_, diagnostics_); }, o->span);
   }
 
-  // The model that is read is the one in which all contacts are open.
+  // Notes the contacts: the reader returns the model in which all contacts are open.
   void note_contacts() {
     if (contacts_.empty()) return;
     std::string names;
@@ -186,7 +186,7 @@ class Reader {  // its references are used only while it runs
       }
   }
 
-  // Reports an unknown name once, and not at all if an unknown section declares it, as "C" in [let].
+  // Reports an unknown name once, and not at all if an unknown section declares it, such as "C" in [let].
   void gather_errors(const Item& root) {
     const std::vector<std::string> known = known_keys(language_section(""));
     std::set<std::string> declared;
@@ -320,13 +320,13 @@ class Reader {  // its references are used only while it runs
       }
   }
 
-  // A value of the file, and the one from outside that replaces it.
+  // A value of the file, and the value from outside that replaces it.
   struct Replaced {
     std::string before, given, called;
   };
 
-  // Throws if a value from outside has the unit of another quantity than the one that it replaces. A value that clashes
-  // with a formula is reported there.
+  // Throws if a value from outside has the unit of another quantity than the value that it replaces. A clash with a
+  // formula is reported at the formula.
   static void must_have_unit_of(const Replaced& r) {
     const auto dimension = [](const std::string& text) -> std::optional<Dimension> {
       try {

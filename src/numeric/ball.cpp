@@ -13,7 +13,7 @@ slong& Ball::working_bits() {
 
 namespace {
 
-// A dyadic number is written out if its exponent is within this many bits.
+// A dyadic number is converted to a Rational if its exponent is within this number of bits.
 constexpr slong kLargestExponent = 1 << 20;
 
 std::optional<Rational> exactly(const arf_t x) {

@@ -74,7 +74,7 @@ class Ball {
   }
 
   static Ball pi();
-  // The whole real line: the enclosure of an undefined value.
+  // Returns the whole real line, the enclosure of an undefined value.
   static Ball unknown();
 
   bool is_finite() const { return arb_is_finite(v_) != 0; }
@@ -85,19 +85,19 @@ class Ball {
   bool contains_inside(const Ball& o) const { return arb_contains_interior(v_, o.v_) != 0; }  // o in the open ball
   bool overlaps(const Ball& o) const { return arb_overlaps(v_, o.v_) != 0; }
 
-  // The midpoint as a ball of radius 0, and the ball around 0 of the same radius.
+  // center() is the midpoint as a ball of radius 0; spread() is the ball around 0 of the same radius.
   Ball center() const;
   Ball spread() const;
-  // The ball around 0 that holds this one and its mirror image.
+  // Returns the ball around 0 that contains this one and its mirror image.
   Ball symmetric() const;
-  // The exact value as a dyadic number; nullopt if it is not finite or its exponent is out of bounds.
+  // Return the exact value as a dyadic number; nullopt if it is not finite or its exponent is out of bounds.
   std::optional<Rational> midpoint() const;
   std::optional<Rational> radius() const;
   Multi midpoint_multi() const;  // rounded to Multi's precision
-  // "0.3333", "1.2e-30"; the radius is rounded upwards.
+  // Return "0.3333", "1.2e-30"; the radius is rounded upwards.
   std::string midpoint_text(int digits = 16) const;
   std::string radius_text() const;
-  // A bound of the absolute value, rounded upwards: "3.14e-15", "0", or "inf" for an unbounded ball.
+  // Returns a bound of the absolute value, rounded upwards: "3.14e-15", "0", or "inf" for an unbounded ball.
   std::string bound_text() const;
 
   // Replaces a ball whose exponent exceeds a machine word by unknown(), so that no chain of operations can exhaust the

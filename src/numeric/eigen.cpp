@@ -27,7 +27,7 @@ Multi least_change_of(const Multi& largest) {
 
 Complex minus(const Complex& a, const Complex& b) { return {a.re - b.re, a.im - b.im}; }
 
-// Eigenvalues, and eigenvectors if `vectors` is given, in the order of the iteration.
+// Computes eigenvalues, and eigenvectors if `vectors` is given, in the order of the iteration.
 bool solve(const Matrix<Multi>& a, std::vector<Complex>& values, std::vector<std::vector<Complex>>* vectors) {
   const auto n = static_cast<slong>(a.rows);
   const slong bits = Multi::working_bits() + 16;

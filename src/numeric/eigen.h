@@ -21,12 +21,13 @@ struct Complex {
 struct Eigenvalue {
   Complex value;
   int multiplicity = 1;
-  Multi radius{0};              // how far the last digits of A move it
+  Multi radius{0};              // the distance by which the last digits of A move it
   std::vector<Complex> vector;  // largest entry 1
 };
 
-// Sorted by decreasing real part, then by increasing frequency, + before -. There are as many eigenvalues as A has
-// rows: a multiple one is listed several times. Returns false if the iteration does not converge or A holds a NaN.
+// Computes the eigenvalues, sorted by decreasing real part, then by increasing frequency, + before -. There are as many
+// eigenvalues as A has rows: a multiple one is listed several times. Returns false if the iteration does not converge
+// or A contains a NaN.
 bool eigenvalues(const Matrix<Multi>& a, std::vector<Eigenvalue>& out);
 
 Multi modulus(const Complex& z);

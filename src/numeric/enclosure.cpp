@@ -6,12 +6,12 @@ namespace anholon {
 
 namespace {
 
-// Gives the floating-point numbers between balls the precision of the balls.
+// Gives floating-point numbers the precision of the balls.
 struct SamePrecision : PrecisionScope {
   SamePrecision() : PrecisionScope(static_cast<int>(static_cast<double>(Ball::working_bits()) * 0.30103) + 1) {}
 };
 
-// f'(x)^-1 at the center of the Jacobian, as good as floating point makes it.
+// Returns f'(x)^-1 at the center of the Jacobian, to the accuracy of floating point.
 std::optional<Matrix<Multi>> inverse(std::size_t n, const std::vector<Ball>& jacobian) {
   Matrix<Multi> a(n, n);
   for (std::size_t i = 0; i < n * n; ++i) {

@@ -24,13 +24,14 @@ struct SquareSystem {
   std::function<std::vector<Ball>(const Box&)> jacobian;  // row-major, encloses all derivatives on the box
 };
 
-// K(X); nullopt if the derivatives are not defined on all of X, or if no approximate inverse is found.
+// Returns K(X); nullopt if the derivatives are not defined on all of X, or if no approximate inverse is found.
 std::optional<Box> krawczyk(const SquareSystem& f, const Box& box);
 
-// If the box contains exactly one root: a box around the root, as small as the precision allows.
+// Returns a box around the root, as small as the precision allows, if the box is proved to contain exactly one root;
+// else nullopt.
 std::optional<Box> prove_root(const SquareSystem& f, const Box& box);
 
-// A box with a proof that it contains exactly one root, near an approximate root.
+// Returns a box that is proved to contain exactly one root, near an approximate root; else nullopt.
 std::optional<Box> enclose_root(const SquareSystem& f, const std::vector<Multi>& approximate);
 std::optional<Box> enclose_root(const SquareSystem& f, const std::vector<long double>& approximate);
 

@@ -10,7 +10,7 @@ namespace anholon {
 template <Number N>
 std::string exact_text(const N& x);
 
-// Returns nullopt if the text is no number. A Multi has the working precision.
+// Reads a number; nullopt if the text is no number. A Multi has the working precision.
 template <Number N>
 std::optional<N> parse_exact(const std::string& text);
 

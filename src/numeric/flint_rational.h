@@ -1,4 +1,4 @@
-// Rational numbers as FLINT's functions take them.
+// Rational numbers as arguments of FLINT's functions.
 #pragma once
 #include <cstddef>
 #include <type_traits>

@@ -32,8 +32,9 @@ struct Scales {
   std::vector<N> row, column;
 };
 
-// An estimate of the smallest singular value of the scaled matrix R^-1 A C, by `sweeps` of inverse iteration from
-// `direction`, in the unknowns of A, which is kept for the next call. `lu`: solves with A by solve_once and solve_transposed.
+// Returns an estimate of the smallest singular value of the scaled matrix R^-1 A C, by `sweeps` steps of inverse
+// iteration from `direction`, in the unknowns of A, which is kept for the next call. `lu`: solves with A by solve_once
+// and solve_transposed.
 template <Number N, class Factors>
 N smallest_singular_value_by(const Factors& lu, const Scales<N>& scales, std::vector<N>& direction, int sweeps) {
   const std::size_t n = scales.row.size();
@@ -66,19 +67,20 @@ N smallest_singular_value_by(const Factors& lu, const Scales<N>& scales, std::ve
   return sigma;
 }
 
-// P A = L U of a square matrix. The pivot in a column is the entry that is largest relative to its row.
+// The factorization P A = L U of a square matrix. The pivot in a column is the entry that is largest relative to its
+// row.
 template <Number N>
 class Lu {
  public:
   // Returns false if a pivot vanishes or is NaN; the factors are then unusable.
   bool factor(const Matrix<N>& a) { return regular_ = eliminate(a); }
 
-  // Whether these are the factors of `a`.
+  // True if these are the factors of `a`.
   bool factors(const Matrix<N>& a) const { return regular_ && a.data == original_.data; }
 
   std::size_t size() const { return order_.size(); }
 
-  // x := A^-1 b, without refinement.
+  // Computes x := A^-1 b, without refinement.
   void solve_once(const std::vector<N>& b, std::vector<N>& x) const {
     const std::size_t n = size();
     x.resize(n);
@@ -96,7 +98,7 @@ class Lu {
     }
   }
 
-  // x := A^-1 b with one step of iterative refinement.
+  // Computes x := A^-1 b with one step of iterative refinement.
   void solve(const std::vector<N>& b, std::vector<N>& x) const {
     solve_once(b, x);
     residual_ = b;
@@ -107,7 +109,7 @@ class Lu {
     for (std::size_t i = 0; i < n; ++i) x[i] += correction_[i];
   }
 
-  // x := A^-T b.
+  // Computes x := A^-T b.
   void solve_transposed(const std::vector<N>& b, std::vector<N>& x) const {
     const std::size_t n = size();
     std::vector<N> y(n);
@@ -122,8 +124,8 @@ class Lu {
     for (std::size_t i = 0; i < n; ++i) x[order_[i]] = y[i];
   }
 
-  // An estimate of the smallest singular value of A with rows divided by their largest entry, or scaled as told, by
-  // `sweeps` of inverse iteration from `direction`, which is kept for the next call.
+  // Returns an estimate of the smallest singular value of A with rows divided by their largest entry, or with the given
+  // scales, by `sweeps` steps of inverse iteration from `direction`, which is kept for the next call.
   N smallest_singular_value(std::vector<N>& direction, const Scales<N>& scales = {}, int sweeps = 3) const {
     return smallest_singular_value_by(*this, scales.row.empty() ? Scales<N>{row_scale_, {}} : scales, direction,
                                       sweeps);
@@ -201,7 +203,7 @@ class Lu {
       }
   }
 
-  // The same for doubles, which fit into vectors, as far as whole vectors go; returns the first column that is left.
+  // Does the same for doubles, which fit into vectors, for whole vectors; returns the first column that is left.
   std::size_t update_side_by_side(double* row, std::size_t first, std::size_t last, std::size_t j, std::size_t end) {
     constexpr std::size_t kWidth = 4, kVectors = 2;
     using Packed [[gnu::vector_size(kWidth * sizeof(double))]] = double;

@@ -1,4 +1,4 @@
-// How many digits a hint suggests where those of a number type are too few.
+// The number of digits that a hint suggests if those of a number type are too few.
 #pragma once
 #include <limits>
 
@@ -6,13 +6,13 @@
 
 namespace anholon {
 
-// Whether N has more digits than the numbers of the machine: more digits were asked for.
+// True if N has more digits than long double, because the user requested more digits.
 template <Number N>
 bool has_many_digits() {
   return significand_bits<N>() > std::numeric_limits<long double>::digits;
 }
 
-// The N of `--digits N` to suggest: 30, and about twice the digits of N if it has many.
+// Returns the N of `--digits N` to suggest: 30, or about twice the digits of N if it has many.
 template <Number N>
 int more_digits() {
   constexpr double kDigitsOfBit = 0.30103;

@@ -87,7 +87,7 @@ class Multi {
   double to_double() const { return mpfr_get_d(v_, MPFR_RNDN); }
   long double to_long_double() const { return mpfr_get_ld(v_, MPFR_RNDN); }
   bool finite() const { return mpfr_number_p(v_) != 0; }
-  // Scientific notation with `digits` significant digits.
+  // Returns scientific notation with `digits` significant digits.
   std::string to_string(int digits) const;
 
   mpfr_ptr raw() { return v_; }

@@ -8,7 +8,7 @@
 
 namespace anholon {
 
-// k times a rational number, rounded once.
+// Computes k times a rational number, rounded once.
 template <Number N>
 class Multiples {
  public:
@@ -30,7 +30,7 @@ class Multiples {
 
  private:
   Rational of_;
-  long num_ = 0, den_ = 0;  // of the number; both are 0 if one of them is too large
+  long num_ = 0, den_ = 0;  // those of the number; both are 0 if one of them is too large
 };
 
 }  // namespace anholon

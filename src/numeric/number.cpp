@@ -28,7 +28,7 @@ std::string number_text(Quad x, int digits) {
   mpfr_inits2(kQuadBits, v, back, static_cast<mpfr_ptr>(nullptr));
   set_mpfr(v, x);
   std::string s;
-  // Without a given number: the fewest digits, from those a Quad always holds on, that read back to x.
+  // If no number of digits is given, the result has the fewest digits, at least kQuadDigits, that read back to x.
   for (int n = digits > 0 ? digits : kQuadDigits;; ++n) {
     char* text = nullptr;
     mpfr_asprintf(&text, "%.*Rg", n, v);

@@ -24,7 +24,7 @@ template <class N>
 concept Number =
     std::same_as<N, double> || std::same_as<N, long double> || std::same_as<N, Quad> || std::same_as<N, Multi>;
 
-// Bits of the significand.
+// Returns the number of bits of the significand.
 template <Number N>
 long significand_bits() {
   if constexpr (std::same_as<N, Multi>)
@@ -35,7 +35,7 @@ long significand_bits() {
     return std::numeric_limits<N>::digits;
 }
 
-// The unit round-off: half the distance from 1 to the next number.
+// Returns the unit round-off: half the distance from 1 to the next number.
 template <Number N>
 N unit_roundoff() {
   if constexpr (std::same_as<N, Multi>) {
@@ -49,7 +49,7 @@ N unit_roundoff() {
   }
 }
 
-// The number nearest to r.
+// Returns the number nearest to r.
 template <Number N>
 N from_rational(const Rational& r) {
   if constexpr (std::same_as<N, Multi>) {
@@ -62,7 +62,7 @@ N from_rational(const Rational& r) {
         if (const long num = r.to_long(), den = r.long_denominator(); num <= kHeld && num >= -kHeld && den <= kHeld)
           return static_cast<N>(num) / static_cast<N>(den);
     }
-    // mpq_get_d truncates, and long double has no conversion: go through MPFR, which rounds.
+    // mpq_get_d truncates, and there is no conversion to long double: the conversion uses MPFR, which rounds.
     mpfr_t v;
     mpfr_init2(v, significand_bits<N>());
     mpfr_set_q(v, r.get_mpq().get_mpq_t(), MPFR_RNDN);
@@ -108,7 +108,7 @@ N pi() {
   }
 }
 
-// acc += a * b, rounded after the product and after the sum in every type.
+// Computes acc += a * b, rounded after the product and after the sum in every type.
 template <Number N>
 inline void addmul(N& acc, const N& a, const N& b) {
   if constexpr (std::same_as<N, Multi>) {
@@ -147,14 +147,14 @@ To convert(const From& x) {
   }
 }
 
-// A decimal text that reads back to the same number (built-in types and Quad), or `digits` significant
-// digits (Multi, or when digits > 0).
+// Returns a decimal text that reads back to the same number (built-in types and Quad), or one with `digits` significant
+// digits (Multi, or if digits > 0).
 std::string number_text(double x, int digits = 0);
 std::string number_text(long double x, int digits = 0);
 std::string number_text(Quad x, int digits = 0);
 std::string number_text(const Multi& x, int digits = 0);
-// The number of digits that the user asked for, plus two, up to the digits of a Quad; all digits if at most 16 were
-// asked for.
+// Returns a text with two digits more than `digits`, the digits that the user requested, up to the digits of a Quad;
+// all digits if `digits` is at most 16.
 std::string quad_text(Quad x, int digits);
 
 }  // namespace anholon

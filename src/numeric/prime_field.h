@@ -28,7 +28,7 @@ class PrimeField {
     return z;
   }
   Word power(Word a, Word exponent) const;
-  Word inverse(Word a) const { return power(a, p_ - 2); }  // of a ≠ 0
+  Word inverse(Word a) const { return power(a, p_ - 2); }  // REQUIRES: a ≠ 0
   bool is_square(Word a) const { return a == 0 || power(a, (p_ - 1) / 2) == 1; }
   std::optional<Word> from(const Rational& r) const;  // nullopt if p divides the denominator
 

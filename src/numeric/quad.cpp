@@ -6,7 +6,7 @@ namespace anholon {
 
 namespace {
 
-// A number of MPFR of 113 bits.
+// An MPFR number of 113 bits.
 struct Exact {
   mpfr_t v;
   Exact() { mpfr_init2(v, kQuadBits); }
@@ -26,7 +26,7 @@ Quad apply(Rounded f, Quad x) {
 
 }  // namespace
 
-// Two long doubles of 64 bits hold the 113 of a Quad, in the same range of exponents.
+// Two long doubles of 64 bits hold the 113 bits of a Quad, in the same range of exponents.
 void set_mpfr(mpfr_ptr to, Quad x) {
   const long double high = static_cast<long double>(x);
   mpfr_set_ld(to, high, MPFR_RNDN);

@@ -1,8 +1,8 @@
 // Quadruple precision: the compiler's number of 113 bits, with the functions that the language lacks for it.
 //
-// Sums, products and quotients are the compiler's own (whole numbers underneath, correctly rounded). Elementary
-// functions go through MPFR: correctly rounded too, the same bits with every compiler, and a motion needs them at order
-// 0 of its Taylor series only.
+// The compiler's own sums, products and quotients (whole numbers underneath) are correctly rounded. Elementary
+// functions use MPFR: they are correctly rounded as well, have the same bits with every compiler, and a motion needs
+// them only at order 0 of its Taylor series.
 #pragma once
 #include <mpfr.h>
 
@@ -14,8 +14,8 @@ inline constexpr int kQuadBits = 113;
 inline constexpr int kQuadDigits = 33;      // decimal digits that a Quad always holds
 inline constexpr int kQuadTextDigits = 36;  // digits that distinguish any two Quads
 
-// Stores x, exactly if `to` has at least 113 bits; the other function returns the Quad nearest to a number of at most
-// 113 bits.
+// set_mpfr stores x, exactly if `to` has at least 113 bits; quad_of returns the Quad nearest to a number of at most 113
+// bits.
 void set_mpfr(mpfr_ptr to, Quad x);
 Quad quad_of(mpfr_srcptr x);
 

@@ -80,7 +80,7 @@ std::string Rational::get_str(int base) const {
 }
 
 std::uint64_t Rational::hash() const {
-  // Two numbers whose remainders are equal are told apart by a comparison.
+  // A comparison distinguishes two numbers with equal remainders.
   constexpr std::uint64_t kPrime = (std::uint64_t{1} << 61) - 1;
   const auto part = [](const long& n) {
     return in_place(n) ? static_cast<std::uint64_t>(n) : fmpz_fdiv_ui(&n, kPrime);

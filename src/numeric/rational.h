@@ -14,9 +14,9 @@
 namespace anholon {
 
 // An exact rational number in lowest terms with a positive denominator. A numerator or denominator of at most 62 bits,
-// as almost all of those in formulas, is stored in place and takes no memory of its own; FLINT has the longer ones and
-// the arithmetic with them. The members named `get_…` are called as those of GMP's classes. Division by zero is a broken
-// invariant.
+// like most of those in formulas, is stored in place and needs no memory of its own; FLINT stores the longer ones and
+// does the arithmetic with them. The members named `get_…` have the names of members of GMP's classes. Division by zero
+// is a broken invariant.
 class Rational {
  public:
   Rational() = default;
@@ -33,9 +33,9 @@ class Rational {
   }
   Rational(const mpz_class& n);
   Rational(const mpz_class& p, const mpz_class& q);
-  // The number that the floating-point number is.
+  // Converts the floating-point number exactly.
   explicit Rational(double x);
-  // "p" or "p/q" in decimal digits.
+  // Reads "p" or "p/q" in decimal digits.
   explicit Rational(const char* text);
   static Rational from(const mpq_class& r);
 
@@ -67,17 +67,17 @@ class Rational {
   bool has_even_denominator() const;
   bool is_one() const { return num_ == 1 && den_ == 1; }
   bool is_minus_one() const { return num_ == -1 && den_ == 1; }
-  // Whether numerator and denominator are numbers of type `long`.
+  // True if numerator and denominator are numbers of type `long`.
   bool fits_long() const;
-  // The numerator, and the denominator. REQUIRES: it is a number of type `long`.
+  // Return the numerator, and the denominator. REQUIRES: it is a number of type `long`.
   long to_long() const { return in_place(num_) ? num_ : get_num().get_si(); }
   long long_denominator() const { return in_place(den_) ? den_ : get_den().get_si(); }
-  // Numerator and denominator modulo p.
+  // Returns numerator and denominator modulo p.
   std::pair<std::uint64_t, std::uint64_t> modulo(std::uint64_t p) const;
-  // The bits, and the machine words, of numerator and denominator together.
+  // Return the number of bits, and of machine words, of numerator and denominator together.
   std::uint64_t bits() const;
   std::size_t limbs() const;
-  // The nearest double towards zero.
+  // Returns the nearest double towards zero.
   double get_d() const;
   std::string get_str(int base = 10) const;
   mpq_class get_mpq() const;
@@ -118,9 +118,9 @@ class Rational {
   friend int cmp(const Rational& a, const Rational& b) {
     return are_whole(a, b) ? (a.num_ > b.num_) - (a.num_ < b.num_) : a.compare(b);
   }
-  // The greatest rational of which both are integer multiples; 0 for two zeros.
+  // Returns the greatest rational of which both are integer multiples; 0 for two zeros.
   friend Rational gcd(const Rational& a, const Rational& b);
-  // The greatest integer that is not greater.
+  // Returns the greatest integer that is not greater than a.
   friend Rational floor(const Rational& a);
 
   friend bool operator==(const Rational& a, const Rational& b) {
@@ -140,8 +140,8 @@ class Rational {
  private:
   friend struct FlintRational;
 
-  // FLINT's rule: bit 62 without bit 63 marks the place of a longer number. The functions above that need none of the
-  // functions below are compiled in place: the compiler module, which is not linked with FLINT, asks some of them.
+  // FLINT's rule: bit 62 without bit 63 marks the place of a longer number. The functions above that do not use the
+  // functions below are inline, because the compiler module, which is not linked with FLINT, calls some of them.
   static constexpr bool in_place(long n) { return n >> 62 != 1; }
   static constexpr long kMost = (1L << 62) - 1;
   static constexpr bool fits_in_place(long n) { return -kMost <= n && n <= kMost; }
@@ -170,20 +170,20 @@ Rational gcd(const Rational& a, const Rational& b);
 Rational floor(const Rational& a);
 std::ostream& operator<<(std::ostream& out, const Rational& r);
 
-// "3", "-0.25", "1e-3", "22/7" exactly; nullopt if the text is not a number, or if it or its exponent is too large for
-// a value of reasonable size.
+// Reads "3", "-0.25", "1e-3", "22/7" exactly; nullopt if the text is not a number, or if it or its exponent is too
+// large for a value of reasonable size.
 std::optional<Rational> parse_rational(std::string_view text);
 
-// "3", "-1/4".
+// Returns "3" or "-1/4".
 std::string to_string(const Rational& r);
 
-// ln r of a positive r of any size.
+// Returns ln r of a positive r of any size.
 double natural_logarithm(const Rational& r);
 
-// The exact root r^(1/n), if it is rational.
+// Returns the exact root r^(1/n), if it is rational.
 std::optional<Rational> exact_root(const Rational& r, unsigned long n);
 
-// base^exponent for an integer exponent; nullopt for 0^negative or a result of unreasonable size.
+// Returns base^exponent for an integer exponent; nullopt for 0^negative or a result of unreasonable size.
 std::optional<Rational> exact_power(const Rational& base, long exponent);
 
 }  // namespace anholon

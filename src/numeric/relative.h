@@ -7,11 +7,11 @@
 
 namespace anholon {
 
-// The error of a sum in units of the round-off of its terms: some hundred operations lead to it.
+// The error of a sum in units of the round-off of its terms, to which some hundred operations contribute.
 inline constexpr int kRoundoffsOfSum = 256;
 
-// `made_of`: a function that returns the size of the numbers behind the terms. It is called only if the terms alone do
-// not show that `miss` is small.
+// Returns the relative residual. `made_of`: a function that returns the size of the numbers behind the terms. It is
+// called only if the terms alone do not show that `miss` is small.
 template <Number N, class MadeOf>
 N relative_miss(const N& miss, const N& terms, MadeOf made_of) {
   constexpr int kFew = 4;

@@ -17,7 +17,7 @@ using namespace arrangement;
 constexpr long kMostProducts = 300'000;      // products of terms in one normal form
 constexpr std::size_t kArrangedTerms = 800;  // monomials that are grouped
 
-// Which parts of an expression can be left whole.
+// The parts of an expression that can be left whole.
 struct Features {
   bool sums_of_angles = false, fractions = false, names = false;
 };

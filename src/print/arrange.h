@@ -13,7 +13,8 @@ namespace anholon {
 // Names in `names.defined` are kept if e contains them. Large expressions get less effort.
 Expr arranged(Expr e, const SymbolNames& names);
 
-// Both forms, for callers that need `expanded(e)` as well: it is the expression of the returned form, if both exist.
+// written_out() and arranged() together serve callers that also need `expanded(e)`: it is the expression of the
+// returned form, if both exist.
 std::optional<NormalForm> written_out(Expr e);
 Expr arranged(Expr e, const SymbolNames& names, const std::optional<NormalForm>& plain);
 

@@ -17,21 +17,21 @@ constexpr std::size_t kFactoredVariables = 12;  // its variables
 constexpr unsigned long kFactoredDegree = 10;   // and its total degree
 constexpr std::size_t kComparedTerms = 100;     // monomials that are compared in pairs
 constexpr long kMostSteps = 2'000;              // sums that are put into groups
-constexpr long kMostComparisons = 1'000'000;    // of a monomial with a factor of others
+constexpr long kMostComparisons = 1'000'000;    // comparisons of a monomial with a factor of others
 constexpr std::size_t kNestedBrackets =
-    3;                                 // what brackets around n levels of brackets cost: this times n^2 characters,
-constexpr std::size_t kRepeated = 12;  // and an acceleration in a second place
+    3;                                 // the cost of brackets around n levels of brackets: this times n^2 characters,
+constexpr std::size_t kRepeated = 12;  // the cost of an acceleration in a second place
 constexpr int kDeepest = 12;           // groups within groups
 
 using Mask = std::vector<bool>;
 
-// An expression with an estimate of its printed length; nested brackets, and an acceleration that occurs in two places
-// of a sum, add to it.
+// An expression with an estimate of its printed length, to which nested brackets, and an acceleration that occurs in
+// two places of a sum, add.
 struct Built {
   Expr e;
   std::size_t length;
   bool is_sum;
-  std::size_t depth = 0;            // of brackets
+  std::size_t depth = 0;            // depth of brackets
   std::uint64_t accelerations = 0;  // the first 64 that occur, one bit each
 };
 
@@ -113,8 +113,8 @@ class Grouping {
     return t;
   }
 
-  // The shortest arrangement that is found, as a sum or, with brackets, as a factor of a product. Groups are nested at
-  // most kDeepest deep.
+  // Returns the shortest arrangement that is found, as a sum or, with brackets, as a factor of a product. Groups are
+  // nested at most kDeepest deep.
   Built build(const Sum& s, int depth, bool factor) {
     if (s.size() == 1) return monomial(s.begin()->first, s.begin()->second);
     if (depth > kDeepest || ++steps_ > kMostSteps) return flat(s);
@@ -137,7 +137,8 @@ class Grouping {
   }
 
   Built product(const Sum& a, const Sum& b, int depth) {
-    // One after the other: what is made first stands first in a product, and the steps are counted in this order.
+    // The factors are built one after the other: what is made first stands first in a product, and the steps are
+    // counted in this order.
     const Built second = build(b, depth + 1, !one(a)), first = build(a, depth + 1, !one(b));
     return times(first, second);
   }
@@ -154,7 +155,7 @@ class Grouping {
     return times(monomial(front, c), other);
   }
 
-  // A product of irreducible factors; nullopt if there is only one.
+  // Returns a product of irreducible factors; nullopt if there is only one.
   std::optional<Built> factored(const Sum& s, int depth) {
     if (s.size() > kFactoredTerms) return std::nullopt;
     // The polynomial is taken in the generators that occur.
@@ -196,8 +197,8 @@ class Grouping {
     return product;
   }
 
-  // sum_k C_k (sum_j r_kj M_j): monomials M in the generators of the mask with the same coefficient C, up to a number,
-  // form one group. `swapped`: M is in the generators outside the mask.
+  // Returns sum_k C_k (sum_j r_kj M_j): monomials M in the generators of the mask with the same coefficient C, up to a
+  // number, form one group. `swapped`: M is in the generators outside the mask.
   std::optional<Built> gathered(const Sum& s, const Mask& mask, bool swapped, int depth) {
     std::map<Exponents, Sum, std::greater<>> coefficients;
     for (const auto& [exponents, c] : s) {
@@ -211,7 +212,7 @@ class Grouping {
       const Rational c = take_content(coefficient);
       groups[coefficient].emplace(in, c);
     }
-    // Each term would be alone, or all terms together as before.
+    // The groups are useless if each holds one term, or one holds all terms.
     if (groups.size() == s.size() || groups.begin()->second.size() == s.size()) return std::nullopt;
     std::vector<Built> parts;
     for (const auto& [coefficient, monomials] : groups) parts.push_back(product(coefficient, monomials, depth));
@@ -224,7 +225,7 @@ class Grouping {
     std::map<Sum, Sum> groups;  // the sum in brackets -> its factors
     Sum rest = s;
     while (rest.size() > 1 && comparisons_ < kMostComparisons) {
-      std::map<Exponents, std::size_t> shared;  // factor -> terms that hold it
+      std::map<Exponents, std::size_t> shared;  // factor -> number of terms that contain it
       for (auto i = rest.begin(); i != rest.end(); ++i, look_for_stop())
         for (auto j = std::next(i); j != rest.end(); ++j) {
           Exponents factor = common(i->first, j->first);

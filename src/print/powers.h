@@ -14,27 +14,27 @@ struct FactorOfExponent {
   std::vector<std::pair<NodeId, Rational>> of;
 };
 
-// base^(constant + the sum of terms)
+// The power base^(constant + the sum of terms).
 struct GeneralPower {
   NodeId base;
   Rational constant;
   std::vector<FactorOfExponent> terms;
 };
 
-// The powers times exp(constant + rest), a sum of nodes with their coefficients.
+// The powers, times exp(constant + rest), where rest is a sum of nodes with their coefficients.
 struct GeneralPowers {
   std::vector<GeneralPower> powers;
   Rational constant = 0;
   std::vector<std::pair<NodeId, Rational>> rest;
 
-  // The nodes of which these are made, each as often as it occurs.
+  // Returns the nodes of these powers, each as often as it occurs.
   std::vector<NodeId> operands() const;
 };
 
-// The node exp(…) as powers; nullopt if none of them has a formula as its exponent.
+// Returns the node exp(…) as powers; nullopt if no power has a formula as its exponent.
 std::optional<GeneralPowers> general_powers(const Graph& g, NodeId id);
 
-// Powers of one node in place of their product: base^b base^k is base^(b + k).
+// Replaces a product of powers of one node by one power: base^b base^k is base^(b + k).
 void join_powers(std::vector<GeneralPower>& powers, GeneralPower more);
 
 // The part c b log(a) of an exponent, with a factor c and powers b of nodes; nullopt if `node`, which has the
@@ -45,7 +45,7 @@ struct PowerParts {
   std::vector<std::pair<NodeId, Rational>> exponent;
 };
 std::optional<PowerParts> power_parts(const Graph& g, NodeId node, const Rational& c);
-// The parts of a node exp(c b log(a)).
+// Returns the parts of a node exp(c b log(a)).
 std::optional<PowerParts> parts_of_power(const Graph& g, NodeId id);
 
 }  // namespace anholon

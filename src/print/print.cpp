@@ -85,7 +85,7 @@ class Printer : Spelling {
  private:
   std::span<const Term> operands(NodeId id) const { return names_.short_sums ? g_.summands(id) : g_.terms(id); }
 
-  // exp(n*log(x)) as x^n, which is read as the same node; null if `id` is printed as it is.
+  // Returns exp(n*log(x)) as x^n, which is read as the same node; nullptr if `id` is printed unchanged.
   const GeneralPower* power_of(NodeId id) {
     const Node& n = g_.node(id);
     if (n.kind != Kind::function || static_cast<Function>(n.index) != Function::exp) return nullptr;
@@ -95,7 +95,7 @@ class Printer : Spelling {
     return p && p->powers.size() == 1 && p->rest.empty() && p->constant == 0 ? &p->powers[0] : nullptr;
   }
 
-  // The nodes whose texts the text of a node holds.
+  // Returns the nodes whose texts the text of a node contains.
   std::vector<NodeId> read_by(NodeId id) {
     if (power_of(id)) return powers_.at(id)->operands();
     std::vector<NodeId> list;
@@ -106,7 +106,7 @@ class Printer : Spelling {
   // The sort key of a node among its neighbours.
   struct Rank {
     int kind, order;       // highest derivative
-    bool inside = false;   // it stands within brackets
+    bool inside = false;   // the derivative is within brackets
     bool constant = true;  // parameters and masses only
   };
   Rank rank(NodeId id) {
@@ -173,7 +173,7 @@ class Printer : Spelling {
     return rank_[id] = r;
   }
 
-  // The spelling given by [notation], or by the rules for names.
+  // Returns the spelling given by [notation], or by the rules for names.
   std::string written(const std::string& name) const {
     const auto chosen = names_.notation.find(name);
     if (chosen == names_.notation.end() || format_ == Format::text) return written_name(name, format_);
@@ -252,7 +252,7 @@ class Printer : Spelling {
     return {};
   }
 
-  // piecewise(s >= 0, a, b)
+  // Prints piecewise(s >= 0, a, b).
   Printed branches(NodeId id) const {
     const std::span<const Term> t = g_.terms(id);
     const std::string &s = done_.at(t[0].node).text, &a = done_.at(t[1].node).text, &b = done_.at(t[2].node).text;
@@ -265,7 +265,7 @@ class Printer : Spelling {
     return {cut("piecewise(" + s + " >= 0, " + a + ", " + b + ")")};
   }
 
-  // c * term without its sign.
+  // Returns c * term without its sign.
   std::string weighted(const Rational& c, NodeId id) const {
     if (g_.is_number(id) && g_.value(id) == 1) return number(c).text;
     return Spelling::weighted(c, done_.at(id));

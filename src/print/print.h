@@ -18,13 +18,13 @@ namespace anholon {
 
 inline constexpr std::size_t kLongestPrint = 1 << 18;
 
-// The names of symbols; each returns the base name, derivative marks are added by the printer.
+// The names of symbols. Each is the base name; the printer adds marks of derivatives.
 struct SymbolNames {
   std::vector<std::string> coordinates, parameters, masses, multipliers, given;
   // Names given to subexpressions ([define]): node -> name.
   std::unordered_map<NodeId, std::string> defined;
   std::vector<std::string> quasi, states, controls;
-  bool short_sums = false;  // long sums in the short form (expr.h), which may have names of their own
+  bool short_sums = false;  // long sums are printed by their chains (expr.h), which may have names of their own
   // [notation]: the spelling of a name, instead of latex_name and mathml_name.
   struct Written {
     std::string latex, mathml;

@@ -28,8 +28,8 @@ std::optional<std::pair<std::string, std::string>> indexed_name(const std::strin
   return std::pair{name.substr(0, open) + name.substr(close + 1), name.substr(open + 1, close - open - 1)};
 }
 
-// The parts of a subscript: "left_wheel" is "left" and "wheel" on one level, since deeper levels are too small to read.
-// An underscore at an end, or beside another, divides nothing.
+// Returns the parts of a subscript: "left_wheel" is "left" and "wheel" on one level, since deeper levels are too small
+// to read. An underscore at an end, or beside another, divides nothing.
 static std::vector<std::string> parts_of(const std::string& subscript) {
   std::vector<std::string> parts;
   std::size_t begin = 0;
@@ -102,7 +102,7 @@ std::string mathml_name(const std::string& name) {
   return "<mi mathvariant=\"normal\">" + markup_escape(name) + "</mi>";
 }
 
-// The end of the first element of `mathml`.
+// Returns the end of the first element of `mathml`.
 static std::size_t first_element(const std::string& mathml) {
   std::size_t at = 0;
   int depth = 0;
@@ -118,9 +118,9 @@ static std::size_t first_element(const std::string& mathml) {
   return at;
 }
 
-// A derivative of order 1 to 3 as dots over the letter, not over its index. A name of several letters has primes
-// instead, because dots would stand over one of its letters. With accent="true" browsers set the dots onto the letter,
-// where they are not read; without, the dots have their size by `scriptlevel`.
+// Prints a derivative of order 1 to 3 as dots over the letter, not over its index. A name of several letters has primes
+// instead, because dots would be over one of its letters. With accent="true" browsers place the dots on the letter,
+// where they cannot be read; without it, `scriptlevel` gives the dots their size.
 static std::string with_dots(const std::string& name, unsigned order) {
   static const char* const kDots[] = {"˙", "¨", "⃛"};
   static const char* const kPrimes[] = {"′", "″", "‴"};

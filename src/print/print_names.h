@@ -9,15 +9,16 @@
 
 namespace anholon {
 
-// "theta" -> "\theta", "x1" -> "x_{1}", "front_wheel" -> "\mathrm{front\_wheel}".
+// Converts "theta" -> "\theta", "x1" -> "x_{1}", "front_wheel" -> "\mathrm{front\_wheel}".
 std::string latex_name(const std::string& name);
-// "theta" -> <mi>θ</mi>, "x1" -> <msub><mi>x</mi><mn>1</mn></msub>.
+// Converts "theta" -> <mi>θ</mi>, "x1" -> <msub><mi>x</mi><mn>1</mn></msub>.
 std::string mathml_name(const std::string& name);
-// The name of the k-th derivative: "x''", "D(x,4)"; "\ddot{x}", "x^{(4)}".
+// Returns the name of the k-th derivative: "x''", "D(x,4)"; "\ddot{x}", "x^{(4)}".
 std::string derivative_name(const std::string& name, unsigned order, Format format);
 
 inline std::string row(const std::string& mathml) { return "<mrow>" + mathml + "</mrow>"; }
-// "th[3]" is th with the index 3, "rolling[2].x" is rolling.x with the index 2; nullopt if there is no bracket.
+// Splits a name: "th[3]" is th with the index 3, "rolling[2].x" is rolling.x with the index 2; nullopt if there is no
+// bracket.
 std::optional<std::pair<std::string, std::string>> indexed_name(const std::string& name);
 
 }  // namespace anholon

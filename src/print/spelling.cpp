@@ -4,7 +4,7 @@
 
 namespace anholon {
 
-// "\\sin" -> "sin", "\\operatorname{sgn}" -> "sgn".
+// Converts "\\sin" -> "sin", "\\operatorname{sgn}" -> "sgn".
 static std::string function_name(const std::string& latex) {
   const std::size_t brace = latex.find('{');
   return brace == std::string::npos ? latex.substr(1) : latex.substr(brace + 1, latex.size() - brace - 2);
@@ -15,7 +15,7 @@ static bool ends_with_long_name(const std::string& mathml) {
   return last != std::string::npos && is_long_name(std::string_view(mathml).substr(last));
 }
 
-// Scripts, accents and rows begin with what they begin with.
+// True if the text begins with a long name; scripts, accents and rows begin with their first child.
 static bool begins_with_long_name(std::string_view mathml) {
   for (bool goes_on = true; goes_on;) {
     goes_on = false;
@@ -82,7 +82,7 @@ std::string Spelling::weighted(const Rational& c, const Printed& p) const {
   return top + "/" + c.get_den().get_str();
 }
 
-// A term of an exponent without its sign.
+// Returns a term of an exponent without its sign.
 static Printed term_of_exponent(const Spelling& s, const std::unordered_map<NodeId, Printed>& of,
                                 const FactorOfExponent& f) {
   const Rational c = abs(f.factor);

@@ -8,7 +8,7 @@
 
 namespace anholon {
 
-// How strongly a text holds together.
+// The binding strength of a text, which decides about brackets.
 enum Strength : int { kSum = 1, kProduct = 2, kPower = 3, kAtom = 4 };
 
 struct Printed {
@@ -25,13 +25,13 @@ class Spelling {
 
   bool latex() const { return format_ == Format::latex; }
   bool mathml() const { return format_ == Format::mathml; }
-  // The sign of subtraction.
+  // Returns the sign of subtraction.
   std::string minus() const { return mathml() ? "<mo>−</mo>" : "-"; }
   std::string plus_between() const { return mathml() ? "<mo>+</mo>" : " + "; }
   std::string minus_between() const { return mathml() ? minus() : " - "; }
   std::string whole(const mpz_class& n) const { return mathml() ? "<mn>" + n.get_str() + "</mn>" : n.get_str(); }
 
-  // "…" in place of a text that is too long.
+  // Returns "…" in place of a text that is too long.
   std::string cut(std::string s) const;
   std::string brackets(const std::string& s) const;
   std::string wrap(const std::string& text, int its_strength, int strength) const {
@@ -44,7 +44,7 @@ class Spelling {
   Printed negated(Printed p) const { return {minus() + p.text, kSum, std::move(p.text), p.strength}; }
   Printed number(const Rational& r) const;
   Printed power(const Printed& base, const Rational& exponent) const;
-  // c * p without its sign.
+  // Returns c * p without its sign.
   std::string weighted(const Rational& c, const Printed& p) const;
 
  protected:
@@ -54,7 +54,7 @@ class Spelling {
   std::size_t longest_;
 };
 
-// x^(n + 1). `of` has the texts of the operands.
+// Returns the text of a power such as x^(n + 1). `of` has the texts of the operands.
 Printed text_of(const Spelling& spelling, const std::unordered_map<NodeId, Printed>& of, const GeneralPower& power);
 
 }  // namespace anholon

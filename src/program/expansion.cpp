@@ -14,7 +14,8 @@ constexpr int kMostProjections = 4;
 constexpr int kSingularRoundoffs = 50;
 }  // namespace
 
-// The orders of the series: those of the state and the leading derivative, the stages, and one beyond.
+// Returns the number of orders of the series: those of the state and the leading derivative, the stages, and one
+// beyond.
 static std::size_t length_of_series(const Program& program, int stages) {
   return static_cast<std::size_t>(stages + *std::max_element(program.d.begin(), program.d.end()) + 2);
 }
@@ -163,8 +164,8 @@ Outcome Expansion<N>::singular() const {
           "at theta = 0)"};
 }
 
-// The sizes of the terms of equation i at derivative order c_i - level, including those that result from the unknowns
-// by J.
+// Returns the size of the terms of equation i at derivative order c_i - level, including those that result from the
+// unknowns by J.
 template <Number N>
 N Expansion<N>::terms_of(std::size_t i, int level) const {
   const Program& p = *program_;
@@ -193,8 +194,9 @@ N Expansion<N>::moved_by_unknowns(std::size_t i, int level) const {
   return moved;
 }
 
-// The largest x_j^(d_j - level), or the largest force that causes one, as measured by the balanced J. If a whole level
-// is round-off of the levels above and below (the velocities of a motion at rest), the size of that round-off counts.
+// Returns the largest x_j^(d_j - level), or the largest force that causes one, as measured by the balanced J. If a
+// whole level is round-off of the levels above and below (the velocities of a motion at rest), the size of that
+// round-off counts.
 template <Number N>
 const N& Expansion<N>::balanced_size(int level) const {
   const Program& p = *program_;
@@ -229,7 +231,7 @@ N Expansion<N>::size_of_leading(std::size_t j) const {
   return size * N(jacobian_.balance().column[j]);
 }
 
-// Residuals of the equations at derivative order c_i - level, as right sides for J.
+// Computes the residuals of the equations at derivative order c_i - level, as right sides for J.
 template <Number N>
 bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
   const Program& p = *program_;
@@ -258,8 +260,8 @@ bool Expansion<N>::residual(int level, std::vector<N>& r, N& worst) {
   return any;
 }
 
-// The distance of the state from the hidden constraints of a level, relative to its size: residuals r relative to their
-// rows of J. `equation`: the one that is missed by it.
+// Returns the distance of the state from the hidden constraints of a level, relative to its size: residuals r relative
+// to their rows of J. `equation`: the equation with this distance.
 template <Number N>
 N Expansion<N>::displacement(int level, const std::vector<N>& r, std::size_t& equation) const {
   const Program& p = *program_;

@@ -58,16 +58,16 @@ class Expansion {
   Outcome prepare();
   // Values at the point only.
   void evaluate() { sweep_known(0); }
-  // As evaluate() and evaluate_quadratures(), of these slots alone (tape/tape.h: precedents).
+  // Computes what evaluate() and evaluate_quadratures() do, for these slots alone (tape/tape.h: precedents).
   void evaluate(const std::vector<std::uint32_t>& slots);
   // Solves J y = r; by default with the LU of prepare().
   using Solver = std::function<void(const std::vector<N>& r, std::vector<N>& y)>;
   // Corrects the state by least change so that all hidden constraints hold to round-off.
   Outcome project();
   Outcome project(const Solver& solver);
-  // Only measures the residuals of the hidden constraints, after prepare().
+  // Measures the residuals of the hidden constraints, after prepare(), without a projection.
   void measure();
-  // Newton's method for the leading derivatives.
+  // Solves for the leading derivatives by Newton's method.
   Outcome solve();
   Outcome solve(const Solver& solver);
   template <Number M>
@@ -98,42 +98,42 @@ class Expansion {
   // other series with the coefficients of stage 0.
   void cut_to(const std::vector<N>& leading);
 
-  // Worst hidden-constraint residual |E_i^(k)| (k < c_i) relative to its terms (numeric/relative.h), at the state as
-  // last measured or projected.
+  // Returns the worst hidden-constraint residual |E_i^(k)| (k < c_i) relative to its terms (numeric/relative.h), at the
+  // state as last measured or projected.
   const N& constraint_residual() const { return constraint_residual_; }
-  // The distance of the state from the hidden constraints found by project(), relative to the size of the state, and the
-  // equation that is missed by it.
+  // Returns the distance of the state from the hidden constraints found by project(), relative to the size of the
+  // state, and the equation with this distance.
   const N& drift() const { return drift_; }
   std::size_t most_missed() const { return most_missed_; }
-  // The residual of derivative k < c_i of equation i alone.
+  // Returns the residual of derivative k < c_i of equation i.
   const N& hidden_residual(std::size_t i, int k) const { return hidden_(i, k); }
-  // Residual of the equations at the computed leading derivatives, relative to their terms.
+  // Returns the residual of the equations at the computed leading derivatives, relative to their terms.
   const N& equation_residual() const { return equation_residual_; }
-  // The largest of all terms at derivative order c_i - level, in the units of equation i, after prepare(). The residual
-  // may be of the size of its round-off, even if all terms of equation i vanish: the error comes from the other numbers
-  // of the same solution.
+  // Returns the largest of all terms at derivative order c_i - level, in the units of equation i, after prepare(). The
+  // residual may be of the size of the round-off of this term, even if all terms of equation i vanish: the error comes
+  // from the other numbers of the same solution.
   N size_of_level(int level, std::size_t i) const;
-  // How large the leading derivative of unknown j can be by the terms of all equations.
+  // Returns how large the leading derivative of unknown j can be by the terms of all equations.
   N size_of_leading(std::size_t j) const;
   N smallest_singular_value() { return jacobian_.smallest_singular_value(direction_); }
-  // The change of the unknowns to which J is least sensitive; the next call continues its iteration.
+  // Returns the change of the unknowns to which J is least sensitive; the next call continues its iteration.
   const std::vector<N>& weakest_direction() const { return direction_; }
   void set_weakest_direction(const std::vector<N>& direction) { direction_ = direction; }
 
   const N& time() const { return t_; }
-  // x_j^(k) at the point (k <= d_j), or its Taylor coefficient of order k.
+  // These return x_j^(k) at the point (k <= d_j), and the Taylor coefficient of order k.
   N derivative(std::size_t j, int k) const { return x_.derivative(j, k); }
   const N& coefficient(std::size_t j, int k) const { return x_(j, k); }
   void state(std::vector<N>& out) const;
   void leading(std::vector<N>& out) const;
-  // E_i^(c_i) at the loaded leading derivatives, after evaluate(): the residual that solve() makes zero.
+  // Computes E_i^(c_i) at the loaded leading derivatives, after evaluate(): the residual that solve() makes zero.
   void equations(std::vector<N>& out) const;
-  // The quadratures at the point itself, order 0; extend() computes all orders.
+  // Computes the quadratures at the point itself, order 0; extend() computes all orders.
   void evaluate_quadratures() { sweep_quadratures(0); }
-  // The Taylor series (ascending) of quadrature i, orders 0..stages().
+  // Returns the Taylor series (ascending) of quadrature i, orders 0..stages().
   const N* quadrature(std::size_t i) const { return machine_.series(program_->tape.roots[program_->unknowns() + i]); }
 
-  // The magnitude of the terms of the quadrature's value.
+  // Returns the magnitude of the terms of the quadrature's value.
   N quadrature_terms(std::size_t i) const { return machine_.magnitude(program_->tape.roots[program_->unknowns() + i]); }
 
  private:
@@ -163,8 +163,8 @@ class Expansion {
   N constraint_residual_{0}, drift_{0}, equation_residual_{0};
   std::size_t most_missed_ = 0;  // the equation of drift_
   HiddenResiduals<N> hidden_;
-  mutable std::vector<std::optional<N>> size_;  // of each level, balanced, at the current point
-  mutable std::vector<std::vector<N>> moved_;   // of each level, by a sparse J: moved_by_unknowns for all equations
+  mutable std::vector<std::optional<N>> size_;  // size of each level, balanced, at the current point
+  mutable std::vector<std::vector<N>> moved_;   // for each level, by a sparse J: moved_by_unknowns for all equations
 };
 
 extern template class Expansion<double>;

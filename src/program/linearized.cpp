@@ -8,10 +8,11 @@ namespace anholon {
 
 namespace {
 
-// The operations of the sparse elimination may be so large a part of those of a full J.
+// The largest number of operations of the sparse elimination as a part of those of a full J.
 constexpr double kMuchCheaper = 0.1;
 
-// A number between 1/2 and 2 that stands for a partial derivative: no two sums of them cancel by chance.
+// Returns a number between 1/2 and 2, of either sign, that represents a partial derivative: no two sums of such numbers
+// cancel by chance.
 double stand_in(std::uint32_t k) {
   const std::uint32_t draw = (k + 1) * 2654435761U;
   const double size = 0.5 + 1.5 * static_cast<double>(draw >> 8) / 16777216.0;
@@ -116,7 +117,7 @@ SparseElimination Linearized::eliminated(const std::vector<double>& values) cons
 
 namespace {
 
-// Carries numbers of the unknowns through the slots to the equations; `factor` gives that of a term.
+// Carries numbers of the unknowns through the slots to the equations; `factor` returns that of a term.
 template <Number N, class Factor>
 void carry(const Linearized& l, const std::vector<N>& x, std::vector<N>& y, Factor factor) {
   const std::uint32_t slots = l.slots();
@@ -159,7 +160,7 @@ void multiply_sizes_transposed(const Linearized& l, const Partials<N>& partials,
 
 std::vector<std::vector<double>> largest_of_rows(const Linearized& l, const Partials<double>& partials,
                                                  const std::vector<int>& of_class) {
-  constexpr std::uint32_t kColumns = 16;  // at a time
+  constexpr std::uint32_t kColumns = 16;  // columns that are computed at a time
   const std::uint32_t slots = l.slots(), n = l.unknowns();
   const int classes = *std::max_element(of_class.begin(), of_class.end()) + 1;
   std::vector<std::vector<double>> most(static_cast<std::size_t>(classes), std::vector<double>(n, 0));
@@ -168,7 +169,7 @@ std::vector<std::vector<double>> largest_of_rows(const Linearized& l, const Part
   double own[kColumns];
   for (std::uint32_t from = 0; from < n; from += kColumns) {
     const std::uint32_t end = std::min(from + kColumns, n);
-    // The row of a column of the matrix, nullptr if it is zero.
+    // Returns the row of a column of the matrix, nullptr if it is zero.
     const auto row = [&](std::uint32_t column) -> const double* {
       if (column < slots) return zero[column] ? nullptr : &tangent[std::size_t{column} * kColumns];
       if (column - slots < from || column - slots >= end) return nullptr;

@@ -13,14 +13,14 @@
 
 namespace anholon {
 
-// The places of the entries; it has no numbers. Threads may share it.
+// The places of the entries, without numbers. Threads may share them.
 class Linearized {
  public:
   // A partial derivative of slot `tainted[k]` of the program.
   enum class Source : std::uint8_t { rational, by_a, by_b };
   struct Term {
-    std::uint32_t column;  // of the operand
-    std::uint32_t index;   // of the rational, or k
+    std::uint32_t column;  // column of the operand
+    std::uint32_t index;   // index of the rational, or k
     Source source;
   };
 
@@ -37,26 +37,26 @@ class Linearized {
   static constexpr std::uint32_t kNone = 0xffffffffU;
   std::uint32_t root(std::uint32_t i) const { return roots_[i]; }
 
-  // The matrix by columns; its entries are minus the terms, in their order within a column, and ones.
+  // Returns the matrix by columns; its entries are minus the terms, in their order within a column, and ones.
   const SparseColumns& columns() const { return columns_; }
-  // For every entry of columns(): the term, or kNone for a one.
+  // Returns for every entry of columns() its term, or kNone for a one.
   const std::vector<std::uint32_t>& term_of() const { return term_of_; }
 
-  // An order of elimination with little fill, found at the first call. It depends on the places of the entries and on
-  // their rational numbers alone. Empty if the elimination is not much cheaper than that of a full J.
+  // Returns an order of elimination with little fill, found at the first call. It depends on the places of the entries
+  // and on their rational numbers alone. Empty if the elimination is not much cheaper than that of a full J.
   const EliminationOrder& order() const;
-  // An order with little fill for these numbers of the entries of columns(); empty if J is singular.
+  // Returns an order with little fill for these numbers of the entries of columns(); empty if J is singular.
   EliminationOrder order_for(const std::vector<double>& values) const;
 
  private:
   void make_columns();
   EliminationOrder make_order() const;
-  // `values`: of the entries of columns().
+  // `values`: those of the entries of columns().
   SparseElimination eliminated(const std::vector<double>& values) const;
 
   std::vector<std::uint32_t> first_, roots_;
   std::vector<Term> terms_;
-  std::vector<double> sample_;  // of each term: its number, or a number of its size that stands for any
+  std::vector<double> sample_;  // for each term: its number, or a number of typical size that represents any value
   SparseColumns columns_;
   std::vector<std::uint32_t> term_of_;
   mutable std::once_flag once_;
@@ -67,22 +67,22 @@ class Linearized {
 template <Number N>
 using Partials = std::vector<N>;
 
-// y := J x.
+// Computes y := J x.
 template <Number N>
 void multiply(const Linearized& l, const Partials<N>& partials, const std::vector<N>& x, std::vector<N>& y);
 
-// y_i := sum of |products of partials| |x_j| over all ways from unknown j to equation i: the sizes of the terms that the
-// unknowns cause in an equation.
+// Computes y_i := sum of |products of partials| |x_j| over all paths from unknown j to equation i: the sizes of the
+// terms that the unknowns cause in an equation.
 template <Number N>
 void multiply_sizes(const Linearized& l, const Partials<N>& partials, const std::vector<N>& x, std::vector<N>& y);
 
-// The same with the transposed matrix.
+// Computes the same with the transposed matrix.
 template <Number N>
 void multiply_sizes_transposed(const Linearized& l, const Partials<N>& partials, const std::vector<N>& y,
                                std::vector<N>& x);
 
-// The largest |J_ij| of each equation i over the unknowns j of class `of_class[j]` and above, for all classes: entry
-// [class][i]. Makes a few columns of J at a time. Entries that are not finite give infinity.
+// Returns the largest |J_ij| of each equation i over the unknowns j of class `of_class[j]` and above, for all classes:
+// entry [class][i]. Makes a few columns of J at a time. Entries that are not finite give infinity.
 std::vector<std::vector<double>> largest_of_rows(const Linearized& l, const Partials<double>& partials,
                                                  const std::vector<int>& of_class);
 

@@ -20,9 +20,9 @@ Outcome Expansion<N>::solve(const Solver& solver) {
   return newton(solver, false);
 }
 
-// Whether no residual of the equations exceeds the rounding error of its evaluation. Terms that vanish together count
-// with the size at which they were computed: a small factor may precede a difference of large accelerations, and products
-// of velocities that are no terms of the equation may cancel within one of them.
+// True if no residual of the equations exceeds the rounding error of its evaluation. Terms that vanish together count
+// with the size at which they were computed: a small factor may precede a difference of large accelerations, and
+// products of velocities that are no terms of the equation may cancel within one of them.
 template <Number N>
 bool Expansion<N>::left_is_roundoff() const {
   const Program& p = *program_;
@@ -79,7 +79,7 @@ Outcome Expansion<N>::newton(const Solver& solver, bool own) {
     if (!is_finite(worst)) return fault_outcome(*program_, machine_, 0);
     equation_residual_ = worst;
     const bool holds = !(worst > eps * N(kQuietRoundoffs));
-    // The steps no longer shrink.
+    // The residual shrinks no further, and is round-off.
     const bool stalls = !holds && left >= N(0) && !(worst < left * N(0.5)) && left_is_roundoff();
     left = worst;
     solver(r_, y_);

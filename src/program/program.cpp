@@ -6,11 +6,12 @@
 
 namespace anholon {
 
-// From so many unknowns on, J may be sparse.
+// From this number of unknowns on, J may be sparse.
 static constexpr std::size_t kMany = 64;
 
-// Whether nonlinear equations may have several solutions. Accelerations and multipliers follow from the mechanical
-// equations alone where these hold no rate of a state; if they are linear in them, the rates follow, whatever their formulas.
+// True if nonlinear equations may have several solutions. If the mechanical equations contain no rate of a state,
+// accelerations and multipliers follow from them alone; if these equations are linear in them, the rates follow,
+// whatever their formulas.
 static bool may_have_several_solutions(const Program& p, const std::vector<std::uint32_t>& nonlinear) {
   const std::size_t mechanical = p.system->mechanical();
   const auto roots = p.tape.roots.begin();
@@ -22,7 +23,7 @@ static bool may_have_several_solutions(const Program& p, const std::vector<std::
                      [&](const ProgramInput& in) { return in.leading && in.variable >= mechanical && needs(in.slot); });
 }
 
-// Multipliers that are no states are not measured.
+// Groups the unknowns by their scales. Multipliers that are no states have none.
 static std::vector<std::vector<std::uint32_t>> scales(const System& system, const std::vector<int>& d) {
   std::vector<std::vector<std::uint32_t>> list;
   for (std::uint32_t j = 0; j < d.size(); ++j) {

@@ -16,7 +16,7 @@ struct ProgramInput {
   enum class Kind : std::uint8_t { time, variable, other } kind = Kind::other;
   std::uint32_t slot = 0;
   std::size_t variable = 0;
-  int order = 0;         // of the derivative
+  int order = 0;         // order of the derivative
   bool leading = false;  // order + lead == d: the unknown of each stage
 };
 
@@ -39,19 +39,20 @@ struct Program {
   std::size_t quadratures = 0;                     // roots after the equations
   std::vector<std::vector<std::uint32_t>> scales;  // the unknowns that are measured against one size (system/system.h)
   bool nonlinear = false;                          // leading derivatives enter nonlinearly: J depends on them
-  bool several_solutions = false;                  // and not in rates of the model's states alone
-  std::shared_ptr<const Linearized> linearized;    // of programs with many unknowns
+  // Leading derivatives other than rates of the model's states enter nonlinearly.
+  bool several_solutions = false;
+  std::shared_ptr<const Linearized> linearized;  // set for programs with many unknowns
 
   static constexpr std::uint32_t kUntainted = 0xffffffffU;
   std::size_t unknowns() const { return d.size(); }
 };
 
-// `quadratures`: expressions whose Taylor series follow from the solution (powers to integrate, energies to monitor).
-// `shared`: the option of the tape (tape/tape.h).
+// Makes the program. `quadratures`: expressions whose Taylor series follow from the solution (powers to integrate,
+// energies to monitor). `shared`: the option of the tape (tape/tape.h).
 Program program(const System& system, const Structure& structure, std::span<const Expr> quadratures = {},
                 bool shared = false);
 
-// The places of the entries of J (program/linearized.h); the program does not hold them yet.
+// Returns the places of the entries of J (program/linearized.h), which the program does not hold yet.
 std::shared_ptr<const Linearized> linearized(const Program& program);
 
 // Counts for tests and `--show program`.

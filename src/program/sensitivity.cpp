@@ -5,7 +5,7 @@
 namespace anholon {
 
 namespace {
-constexpr std::size_t kColumns = 16;  // at a time
+constexpr std::size_t kColumns = 16;  // columns that are computed at a time
 }  // namespace
 
 template <Number N>
@@ -30,7 +30,7 @@ void Sensitivity<N>::jacobian(const Machine<N>& machine, Matrix<N>& all) {
     columns(machine, from, std::min(kColumns, p.unknowns() - from), all);
 }
 
-// The derivatives with respect to the unknowns [first, first + count).
+// Computes the derivatives with respect to the unknowns [first, first + count).
 template <Number N>
 void Sensitivity<N>::columns(const Machine<N>& machine, std::size_t first, std::size_t count, Matrix<N>& all) {
   const Program& p = *program_;

@@ -7,8 +7,8 @@
 
 namespace anholon {
 
-// to! / from!. A quotient of factorials would be rounded in the same way at every step, and the errors of a motion
-// would add up; this product is exact.
+// Returns to! / from!. A quotient of factorials would be rounded in the same way at every step, and the errors of a
+// motion would add up; this product is exact.
 template <Number N>
 N rising(std::size_t from, std::size_t to) {
   N product(1);
@@ -23,9 +23,9 @@ class Sensitivity {
 
   // Takes the partial derivatives of the slots at the values of the machine; `add` uses them.
   void take(const Machine<N>& machine);
-  // Those of the slot `tainted[k]`.
+  // Returns the partial derivatives of the slot `tainted[k]`.
   const typename Machine<N>::Partials& partials(std::size_t k) const { return partials_[k]; }
-  // The system Jacobian for the partial derivatives that were taken.
+  // Computes the system Jacobian from the partial derivatives that were taken.
   void jacobian(const Machine<N>& machine, Matrix<N>& j);
   // Adds to all slots, at this stage, the effect of a change of the unknowns. The change and the new value of each input
   // are given by functions of the unknown and the order of its coefficient.
@@ -48,14 +48,14 @@ class Sensitivity {
 
   const Program* program_;
   // A row for each slot that depends on leading derivatives: its derivatives with respect to a few unknowns at a time,
-  // as all would take slots times unknowns of memory.
+  // because all of them would take slots times unknowns of memory.
   Matrix<N> tangent_;
-  std::vector<unsigned char> zero_;  // the rows without an entry; what they hold is of no use
+  std::vector<unsigned char> zero_;  // true for rows without an entry, whose content is unused
   struct Operand {
     const N* row;
     N factor;
   };
-  std::vector<Operand> operands_;  // of the present slot
+  std::vector<Operand> operands_;  // operands of the present slot
   std::vector<typename Machine<N>::Partials> partials_;
   std::vector<N> delta_;  // the change of each slot
 };

@@ -8,7 +8,7 @@ namespace anholon {
 namespace {
 // Numbers beyond this size or its reciprocal would lose digits in double.
 constexpr double kLargest = 1e290;
-// A solution may miss a side by so many round-offs of the terms of the product: factors with large growth miss it by more.
+// The largest residual of a solution, in round-offs of the terms of the product: factors with large growth exceed it.
 constexpr int kMostRoundoffs = 1 << 20;
 
 bool held_by_double(double x) {

@@ -31,13 +31,13 @@ constexpr Order kOthers[] = {{kAll, Order::Tie::first_row}, {kAll, Order::Tie::l
 constexpr Order kAlong{3, Order::Tie::first_row};
 constexpr std::size_t kMuchFillAlong = 30;
 
-// The numbers of rows and columns.
+// The new numbers of rows and columns.
 struct Numbers {
   std::vector<std::uint32_t> row, column;
 };
 
-// Numbers by the distance from one end (reverse Cuthill-McKee on the graph of rows and columns): entries are near the
-// diagonal then.
+// Numbers rows and columns by the distance from one end (reverse Cuthill-McKee on the graph of rows and columns), so
+// that entries are near the diagonal.
 Numbers numbers_along(std::uint32_t n, std::span<const SampledEntry> entries) {
   std::vector<std::vector<std::uint32_t>> near(2 * std::size_t{n});  // rows, then columns
   for (const SampledEntry& e : entries) near[e.row].push_back(n + e.column), near[n + e.column].push_back(e.row);
@@ -45,7 +45,7 @@ Numbers numbers_along(std::uint32_t n, std::span<const SampledEntry> entries) {
     std::sort(list.begin(), list.end(), [&](std::uint32_t a, std::uint32_t b) {
       return std::pair(near[a].size(), a) < std::pair(near[b].size(), b);
     });
-  // Adds all that is connected with a node to `order`; returns the one that is farthest.
+  // Adds all nodes that are connected with a node to `order`; returns the farthest one.
   std::vector<bool> seen(near.size(), false);
   const auto spread = [&](std::uint32_t start, std::vector<std::uint32_t>& order) {
     std::size_t next = order.size();
@@ -146,13 +146,14 @@ class Eliminated {
         if (best_.found) ++looked;
       }
       if (!best_.found && one_sign_) {
-        // Then takes any pivot that is not small, even if it passes through zero somewhere.
+        // The next attempt takes any pivot that is not small, even if it passes through zero somewhere.
         one_sign_ = false;
         --k;
         continue;
       }
       if (!best_.found && !small_) {
-        // Then takes any that is not round-off of its terms: coefficients of very different sizes have no common scale.
+        // The last attempt takes any pivot that is not round-off of its terms: coefficients of very different sizes
+        // have no common scale.
         small_ = true;
         for (std::uint32_t& version : version_) ++version;
         --k;
@@ -166,7 +167,7 @@ class Eliminated {
     return true;
   }
 
-  // The remaining rows of the pivots.
+  // Returns the remaining rows of the pivots.
   std::vector<std::map<std::uint32_t, std::uint32_t>> upper() const {
     std::vector<std::map<std::uint32_t, std::uint32_t>> out;
     for (const Row& row : upper_) out.emplace_back(row.begin(), row.end());
@@ -176,7 +177,7 @@ class Eliminated {
  private:
   struct Entry {
     Values value;
-    Values terms{};  // the sizes of what the value is a sum of, and of what these were
+    Values terms{};  // the sizes of the numbers that were added to the value, and of those in them
     bool exact = false;
     // The result of size_of_pivot, and the version of its row for which it holds.
     double size = 0;
@@ -188,7 +189,7 @@ class Eliminated {
   static Row::iterator find(Row& row, std::uint32_t j) {
     return std::lower_bound(row.begin(), row.end(), std::pair(j, 0U));
   }
-  // The entry of a column, which is added with this number if there is none; and whether it was added.
+  // Returns the entry of a column, which is added with this number if there is none, and whether it was added.
   static std::pair<std::uint32_t, bool> entry(Row& row, std::uint32_t j, std::size_t number) {
     const auto at = find(row, j);
     if (at != row.end() && at->first == j) return {at->second, false};
@@ -229,7 +230,7 @@ class Eliminated {
     best_ = {true, exact, cost, size, i, j, e};
   }
 
-  // The least fraction of the largest entry of its row over the samples; 0 if it is too small for a pivot.
+  // Returns the least fraction of the largest entry of its row over the samples; 0 if it is too small for a pivot.
   double size_of_pivot(std::uint32_t i, std::uint32_t j, std::uint32_t e) {
     double size = 1;
     const Values& largest = largest_in_row(i);
@@ -350,8 +351,8 @@ class Eliminated {
   std::vector<Row> rows_, upper_;
   std::vector<Column> columns_;
   std::vector<Values> row_scale_, column_scale_;
-  std::vector<std::optional<Values>> largest_;  // of a row in its present state, scaled
-  std::vector<std::uint32_t> version_;          // of a row: counts its changes
+  std::vector<std::optional<Values>> largest_;  // the largest entry of a row in its present state, scaled
+  std::vector<std::uint32_t> version_;          // version of a row, which counts its changes
   std::set<std::pair<std::size_t, std::uint32_t>> short_rows_, short_columns_;
   Best best_;
   bool one_sign_ = true;  // only pivots of the same sign at all samples

@@ -72,7 +72,7 @@ struct SparseLu {
     std::uint32_t column, first, count;  // into `own_terms`
   };
   std::vector<Own> own;
-  std::vector<Term> own_terms;  // of given entries
+  std::vector<Term> own_terms;  // terms of given entries
 
   double work() const {
     return static_cast<double>(influences.empty() ? forward.size() + terms.size() + backward.size()
@@ -86,7 +86,7 @@ struct SparseElimination {
   std::vector<std::map<std::uint32_t, std::uint32_t>> upper;
 };
 
-// Returns no pivots if the matrix is singular at a sample.
+// Eliminates a matrix. The result has no pivots if the matrix is singular at a sample.
 SparseElimination eliminate_sparse(std::uint32_t rows, std::span<const SampledEntry> entries, std::size_t samples);
 
 // Makes the solver. Rows 0..sides-1 have a right side, all others zero. `needed`: the columns whose solution is used.

@@ -1,4 +1,4 @@
-// What is made of a sparse elimination: lists of operations that solve, the inverse, columns left to their own rows.
+// The results of a sparse elimination: lists of operations that solve, the inverse, columns left to their own rows.
 #include <algorithm>
 #include <optional>
 
@@ -55,7 +55,7 @@ Known difference(const Known& a, const Known& b) { return a && b ? Known(*a - *b
 
 Known reciprocal(const SparseLu::Pivot& p) { return p.one ? Known(1) : p.minus_one ? Known(-1) : std::nullopt; }
 
-// The factors that are known whole numbers, from exact entries and pivots of 1 and -1.
+// Returns the factors that are known whole numbers, from exact entries and pivots of 1 and -1.
 std::vector<Known> known_factors(const SparseLu& e, std::span<const SampledEntry> entries) {
   std::vector<Known> lu(e.entries, 0.0);
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -73,7 +73,7 @@ std::vector<Known> known_factors(const SparseLu& e, std::span<const SampledEntry
   return lu;
 }
 
-// The solution for a unit side.
+// Returns the solution for a unit side.
 std::vector<Known> known_solution(const SparseLu& e, const std::vector<Known>& lu, std::uint32_t side,
                                   std::size_t rows) {
   std::vector<Known> rhs(rows, 0.0), y(rows, 0.0);

@@ -58,8 +58,8 @@ namespace {
 
 double power_of_two_near(double x) { return std::exp2(std::round(std::log2(x))); }
 
-// The median of the largest inertia in each equation: moments of inertia are further from 1 than masses, as lengths are.
-// Returns 1 if there is no inertia.
+// Returns the median of the largest inertia in each equation, because moments of inertia can be further from 1 than
+// masses. Returns 1 if there is no inertia.
 template <Number N>
 double unit_of_mass(const Matrix<N>& j, std::size_t coordinates) {
   std::vector<double> inertias;
@@ -76,8 +76,8 @@ double unit_of_mass(const Matrix<N>& j, std::size_t coordinates) {
 
 }  // namespace
 
-// Units in which a multiplier or a rate is far from 1 say nothing about how regular J is. A constraint whose coefficients are
-// small may be about to lose its hold, and keeps its multiplier's unit.
+// Removes units in which a multiplier or a rate is far from 1, because they say nothing about the regularity of J. A
+// constraint whose coefficients are small may be about to become singular, so its multiplier keeps its unit.
 template <Number N>
 Scales<N> SystemJacobian<N>::scales_of_far_units() const {
   constexpr double kFar = 0x1p20, kFarther = 0x1p30;

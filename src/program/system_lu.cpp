@@ -5,7 +5,7 @@
 namespace anholon {
 
 namespace {
-// From so many unknowns on, factors in double save more than the further passes cost.
+// From this number of unknowns on, factors in double save more than the further passes cost.
 constexpr std::size_t kMany = 128;
 // The least singular value, with rows divided by their largest entry, for factors in double: a pass then gains at least
 // five digits, also if the estimate is a hundred times too large and the factors have lost a digit.

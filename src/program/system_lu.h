@@ -14,16 +14,17 @@ class SystemLu {
  public:
   // Returns false if a pivot vanishes or is NaN; the factors are then unusable.
   bool factor(const Matrix<N>& a);
-  // Whether these are the factors of `a`.
+  // True if these are the factors of `a`.
   bool factors(const Matrix<N>& a) const { return in_double_ ? a.data == original_.data : lu_.factors(a); }
 
-  // x := A^-1 b to the digits of the factors.
+  // Computes x := A^-1 b to the digits of the factors.
   void solve_once(const std::vector<N>& b, std::vector<N>& x) const;
-  // x := A^-1 b to the digits of N.
+  // Computes x := A^-1 b to the digits of N.
   void solve(const std::vector<N>& b, std::vector<N>& x) const;
-  // How many solutions by solve_once, each of the residual of those before, have all digits of N, and refine them once.
+  // Returns the number of solutions by solve_once, each for the residual of those before, after which all digits of N
+  // are reached and refined once.
   int passes() const { return in_double_ ? kPassesInDouble : 2; }
-  // An estimate, as by Lu.
+  // Returns an estimate like that of Lu.
   N smallest_singular_value(std::vector<N>& direction, const Scales<N>& scales = {}) const;
 
   bool in_double() const { return in_double_; }
@@ -34,7 +35,7 @@ class SystemLu {
 
   Lu<N> lu_;
   bool in_double_ = false;
-  Matrix<N> original_;  // with narrow_ instead of lu_, if in_double_
+  Matrix<N> original_;  // the matrix, kept with narrow_ instead of lu_ if in_double_
   Lu<double> narrow_;
   mutable std::vector<double> narrow_side_, narrow_solution_;
   mutable std::vector<N> residual_, correction_;

@@ -13,40 +13,40 @@
 
 namespace anholon {
 
-// The entries of a square matrix by columns: those of column j are first[j] to first[j + 1]. Entries of one place are
-// added.
+// The entries of a square matrix by columns: those of column j are first[j] to first[j + 1]. Entries at the same place
+// are added.
 struct SparseColumns {
   std::vector<std::uint32_t> first, row;
   std::uint32_t size() const { return static_cast<std::uint32_t>(first.size() - 1); }
 };
 
-// Columns in the order of their elimination, each with the row that is preferred for its pivot.
+// The columns in the order of their elimination, each with the preferred row of its pivot.
 struct EliminationOrder {
   std::vector<std::uint32_t> column, row;
-  std::size_t entries = 0;  // of the factors, if every pivot is taken where it is preferred
+  std::size_t entries = 0;  // number of entries of the factors, if every preferred pivot is taken
 };
 
 template <Number N>
 class ThresholdLu {
  public:
-  // Returns false if no pivot is left of a column, if an entry is not finite, or if the factors have more than `most`
-  // entries; the factors are then unusable. `values`: of the entries, in their order.
+  // Factors a matrix. Returns false if no pivot is left in a column, if an entry is not finite, or if the factors have
+  // more than `most` entries; the factors are then unusable. `values`: of the entries, in their order.
   bool factor(const SparseColumns& a, const std::vector<N>& values, const EliminationOrder& order,
               std::size_t most = std::numeric_limits<std::size_t>::max());
 
-  // The number of entries of the factors, with the pivots.
+  // Returns the number of entries of the factors, with the pivots.
   std::size_t entries() const { return lower_.size() + upper_.size() + pivot_.size(); }
 
   // Replaces the right side, by rows, by the solution, by columns.
   void solve(std::vector<N>& x) const;
-  // The same with the transposed matrix: the right side is given by columns, the solution by rows.
+  // Does the same with the transposed matrix: the right side is given by columns, the solution by rows.
   void solve_transposed(std::vector<N>& x) const;
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffU;
   static constexpr double kThreshold = 0.1;
   struct Entry {
-    std::uint32_t at;  // of L: the row; of U: the step of elimination
+    std::uint32_t at;  // for L the row, for U the step of elimination
     N value;
   };
 
@@ -59,12 +59,13 @@ class ThresholdLu {
   std::vector<N> pivot_;
   std::vector<std::uint32_t> row_of_, column_of_;  // of each step
 
-  // For the column in hand.
-  std::vector<std::uint32_t> step_of_;      // of a row that has been a pivot's, else kNone
-  std::vector<N> scale_, x_;                // of rows: the reciprocal of the largest entry; the column
-  std::vector<std::uint32_t> seen_;         // of a row: the last step that met it, plus 1
-  std::vector<std::uint32_t> done_, left_;  // rows of the column that have been pivots', in reverse order; the others
-  std::vector<std::uint32_t> path_, next_;  // of the search: rows, and the entries of L to follow
+  // These serve the present column.
+  std::vector<std::uint32_t> step_of_;  // the step in which a row was the pivot's, else kNone
+  std::vector<N> scale_, x_;            // for rows: the reciprocal of the largest entry; the column
+  std::vector<std::uint32_t> seen_;     // for a row: the last step that met it, plus 1
+  // Rows of the column that have been pivot rows, in reverse order; the other rows.
+  std::vector<std::uint32_t> done_, left_;
+  std::vector<std::uint32_t> path_, next_;  // for the search: rows, and the entries of L to follow
   std::uint32_t now_ = 0;                   // the present step, plus 1
   mutable std::vector<N> side_;
 };

@@ -7,7 +7,7 @@
 
 namespace anholon {
 
-// Of unknown j, the coefficients x_(j, 0), x_(j, 1), …; the state holds x_j^(k), k < d_j, one unknown after the other.
+// The coefficients x_(j, 0), x_(j, 1), … of unknown j; the state holds x_j^(k), k < d_j, one unknown after the other.
 template <Number N>
 class UnknownCoefficients {
  public:
@@ -18,9 +18,9 @@ class UnknownCoefficients {
     for (std::size_t k = 1; k < length_ + 2; ++k) factorial_.push_back(factorial_.back() * N(static_cast<int>(k)));
   }
 
-  std::size_t length() const { return length_; }  // of each series
+  std::size_t length() const { return length_; }  // length of each series
   std::size_t state_size() const { return offset_.back(); }
-  // The place of x_j in the state.
+  // Returns the place of x_j in the state.
   std::size_t offset(std::size_t j) const { return offset_[j]; }
 
   N& operator()(std::size_t j, std::integral auto k) { return x_[j * length_ + static_cast<std::size_t>(k)]; }

@@ -16,14 +16,14 @@ constexpr std::size_t kMostDeciding = 3;
 
 bool is(const Node& n, Function f) { return n.kind == Kind::function && static_cast<Function>(n.index) == f; }
 
-// What decides in a node: the operand of sign and abs, the condition of a choice.
+// Returns the node that decides: the operand of sign and abs, the condition of a choice.
 std::optional<NodeId> decides(const Graph& g, NodeId id) {
   const Node& n = g.node(id);
   if (!is(n, Function::sign) && !is(n, Function::abs) && n.kind != Kind::select) return std::nullopt;
   return g.terms(id)[0].node;
 }
 
-// A factor times an expression that is the same for all multiples.
+// An expression as a factor times a part that is the same for all its multiples.
 struct Multiple {
   Rational factor;
   Expr of;
@@ -37,7 +37,7 @@ Multiple as_multiple(Graph& g, NodeId id) {
   return {c, Rational(1 / c) * e};
 }
 
-// The symbol in which u is linear with a number as its coefficient, with its value where u is zero.
+// Returns the symbol in which u is linear with a number as its coefficient, and its value where u is zero.
 std::optional<std::pair<Expr, Expr>> solved(Expr u) {
   Graph& g = *u.graph;
   for (const NodeId id : symbols({&u, 1})) {
@@ -52,7 +52,7 @@ class Cases {
  public:
   Cases(Expr e, const std::function<bool(Expr)>& zero) : g_(*e.graph), zero_(zero) {}
 
-  // e, in which so many expressions have had their sign.
+  // True if `zero` holds of e in all cases; the signs of `depth` expressions in e are chosen already.
   bool hold(Expr e, std::size_t depth) {
     const std::optional<Expr> u = first_deciding(e);
     if (!u) return zero_(e);
@@ -64,14 +64,14 @@ class Cases {
   }
 
  private:
-  // An expression that decides and holds no other one.
+  // Returns an expression that decides and contains no other one.
   std::optional<Expr> first_deciding(Expr e) {
     for (const NodeId id : reachable({&e, 1}))
       if (const auto u = decides(g_, id)) return as_multiple(g_, *u).of;
     return std::nullopt;
   }
 
-  // A branch that is put in may hold choices of its own, which are decided, too.
+  // Replaces what the sign of u decides. The branches may contain further choices by u, which are decided as well.
   Expr with_sign(Expr e, Expr u, int sign) {
     for (;;) {
       const Expr next = decided(e, u, sign);

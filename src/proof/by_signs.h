@@ -1,4 +1,5 @@
-// Zero by cases: the sign of each expression that decides (sign, abs, piecewise) is positive, negative or zero.
+// Proofs of zero by cases: the sign of each expression that decides (in sign, abs, piecewise) is positive, negative or
+// zero.
 #pragma once
 #include <functional>
 
@@ -6,8 +7,8 @@
 
 namespace anholon {
 
-// Whether `zero` holds of e in each case, with the branches of the case put in. Where an expression that decides is zero, a
-// symbol in which it is linear takes the value that makes it so. false also where there are too many cases.
+// True if `zero` holds of e in each case, with the branches of the case substituted. If an expression that decides is
+// zero, a symbol in which it is linear gets the value that makes it zero. Returns false if there are too many cases.
 bool shown_zero_by_signs(Expr e, const std::function<bool(Expr)>& zero);
 
 }  // namespace anholon

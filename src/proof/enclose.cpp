@@ -5,7 +5,7 @@
 
 namespace anholon {
 
-// The value of a step function; nullptr if x does not tell it.
+// Returns the value of a step function; nullptr if x does not determine it.
 static const Rational* lookup(const StepFunction& f, const Ball& x) {
   std::size_t k = 0;
   for (; k < f.knots.size(); ++k) {
@@ -16,7 +16,7 @@ static const Rational* lookup(const StepFunction& f, const Ball& x) {
   return &f.values[k];
 }
 
-// The values of all nodes below the expressions.
+// Returns the values of all nodes below the expressions.
 static BallPoint values_below(std::span<const Expr> es, const BallPoint& at) {
   const Graph& g = *es[0].graph;
   BallPoint value;
@@ -85,7 +85,7 @@ Column on_branches(std::span<const Expr> es, const BallPoint& at) {
   Column out(es.begin(), es.end());
   if (es.empty()) return out;
   Graph& g = *es[0].graph;
-  // A branch may hold further branching functions.
+  // A branch may contain further branching functions.
   for (;;) {
     std::unordered_map<NodeId, Expr> chosen;
     const BallPoint value = values_below(out, at);

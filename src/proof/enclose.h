@@ -9,12 +9,12 @@ namespace anholon {
 
 using BallPoint = std::unordered_map<NodeId, Ball>;  // symbol -> value
 
-// The values of expressions as balls; a value that is not defined on all of the balls is not finite. `at` holds every
-// symbol of the expressions.
+// Returns the values of expressions as balls; a value that is not defined on all of the balls is not finite. `at` holds
+// every symbol of the expressions.
 std::vector<Ball> enclose(std::span<const Expr> es, const BallPoint& at);
 
-// The expressions with the branch that holds at the point in place of each branching function whose condition the balls
-// decide. They have the same values there.
+// Returns the expressions with each branching function whose condition the balls decide replaced by the branch that
+// holds at the point. The results have the same values there.
 Column on_branches(std::span<const Expr> es, const BallPoint& at);
 
 }  // namespace anholon

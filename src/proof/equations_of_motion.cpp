@@ -22,13 +22,13 @@ std::uint64_t key(const Node& n) {
 // From this attempt on, coordinates have either sign, and are three times as large at every second attempt.
 constexpr int kElsewhere = 5000;
 
-// A value for each symbol at an attempt: between 0.3 and 1.4, derivatives of either sign.
+// Returns a value for each symbol at an attempt: between 0.3 and 1.4, derivatives of either sign.
 double generic(const Node& n, int attempt) {
   const std::uint64_t bits = scattered_bits(key(n) * 131 + static_cast<std::uint64_t>(attempt) * 7919 + 17);
   const double r = 0.3 + 1.1 * unit_of(bits);
   if (attempt >= kElsewhere && n.kind == Kind::jet && n.order == 0) return (bits & 1 ? -r : r) * (attempt % 2 ? 3 : 1);
   if (n.kind != Kind::jet || n.order == 0) return r;
-  // Every third attempt has small velocities: a bounded speed leaves room for them.
+  // Derivatives are divided by 1, 2 and 4 in turn, because a speed may be bounded.
   return (bits & 1 ? -r : r) / (1 << (attempt % 3));
 }
 

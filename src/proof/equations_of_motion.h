@@ -1,5 +1,5 @@
 // The motion as equations: the constraints with their derivatives, Routh's equations [L 2.7], and points at which all
-// of them hold. Rates stand for the derivatives of states.
+// of them hold. Rates replace the derivatives of states.
 //
 // At order k = 0, 1, 2, …, h the constraints' derivatives of order k are solved for some of the q^(k); from k = 2 on
 // together with Routh's equations, differentiated k - 2 times, for q^(k) and lambda^(k-2).
@@ -16,15 +16,15 @@ namespace anholon {
 // A derived equation, left side - right side, with masses substituted.
 struct DerivedEquation {
   bool constraint = false;
-  std::size_t index = 0;  // of a coordinate or constraint
+  std::size_t index = 0;  // index of a coordinate or constraint
   unsigned times = 0;     // number of differentiations
   Expr residual;
 };
 
-// Puts rates, with their masses and inputs, in place of the derivatives of states.
+// Substitutes rates, with their masses and inputs, for the derivatives of states.
 Expr put_rates(const Model& model, Expr e);
 
-// Values of all symbols, none of them near 0; each attempt gives another point.
+// Returns values of all symbols, none of them near 0; each attempt gives another point.
 PointValues generic_values(int attempt);
 
 class EquationsOfMotion {
@@ -34,9 +34,9 @@ class EquationsOfMotion {
 
   unsigned highest = 2;
   std::vector<DerivedEquation> lower;  // constraints and their derivatives of orders 0 and 1
-  std::vector<DerivedEquation> rows;   // of orders 2 and more: independent equations
+  std::vector<DerivedEquation> rows;   // rows of orders 2 and more: independent equations
   Column top;                          // q'', …, q^(h), lambda, …: the rows are affine in these, if the constraints are
-  // As many equations as unknowns: those of all orders.
+  // The equations of all orders, and as many unknowns.
   Column equations, unknowns;
   bool regular = false;  // the equations determine their unknowns, and the omitted equations follow from them
 
@@ -46,10 +46,12 @@ class EquationsOfMotion {
   std::vector<PointValues>& on_constraints() { return on_constraints_; }
   std::vector<PointValues>& anywhere() { return anywhere_; }
 
-  // Further points on the motion, whose coordinates have either sign and may be three times as large. There may be none.
+  // Returns further points on the motion, whose coordinates have either sign and may be three times as large. The list
+  // may be empty.
   std::vector<PointValues>& elsewhere();
 
-  // e with the constraints of orders 0 and 1 solved, on each branch of those that are quadratic; none if they cannot be solved.
+  // Returns e with the constraints of orders 0 and 1 solved, on each branch of those that are quadratic; empty if they
+  // cannot be solved.
   Column reduced(Expr e);
 
  private:

@@ -28,7 +28,7 @@ class Exporter {
   Index symbol(NodeId id) {
     const auto [it, fresh] = symbol_.try_emplace(id, static_cast<Index>(c_.symbols.size()));
     if (fresh) {
-      // Two symbols may be printed alike, as two branching functions whose long formulas are shortened.
+      // Two symbols may be printed alike, for example two branching functions whose long formulas are shortened.
       const std::string name = print(Expr{&g_, id}, names_, Format::text);
       std::string own = name;
       for (int k = 2; !used_.insert(own).second; ++k) own = name + " #" + std::to_string(k);
@@ -47,7 +47,7 @@ class Exporter {
     c_.claims.push_back(std::move(claim));
   }
 
-  // Whether a branching function stands for its branch at a witness.
+  // True if a branching function was replaced by its branch at a witness.
   bool took_branches() const { return took_branches_; }
 
  private:
@@ -60,7 +60,8 @@ class Exporter {
     return out;
   }
 
-  // The difference with branching functions replaced by their branches at its witness: the checker knows no others.
+  // Returns the difference with branching functions replaced by their branches at its witness, because the checker
+  // knows no other branching functions than its own.
   Difference on_branches_of_witness(Difference d) {
     constexpr slong kBits = 1024;
     const BallScope precision(kBits);

@@ -14,7 +14,8 @@ namespace {
 
 constexpr long kMostOfArgument = 20'000;  // products of terms, to reduce an argument
 
-// Logarithms as they are, or those of absolute values of factors: ln(x^2 y) is ln(x^2) + ln(y^2)/2.
+// The treatment of logarithms: kept, or split into those of absolute values of factors: ln(x^2 y) is ln(x^2) +
+// ln(y^2)/2.
 enum class Logarithms : std::uint8_t { kept, split };
 
 class Rewriting {
@@ -30,7 +31,7 @@ class Rewriting {
   using Factors = std::map<NodeId, Rational>;
 
   Expr at(NodeId id) const { return done_.at(id); }
-  // A copy, as those of the graph move when it grows.
+  // Returns a copy, because the terms of the graph move when it grows.
   std::vector<Term> terms_of(NodeId id) const { return {g_.terms(id).begin(), g_.terms(id).end()}; }
   Expr node(NodeId id) { return {&g_, id}; }
 
@@ -99,8 +100,8 @@ class Rewriting {
     }
   }
 
-  // sin u or cos u. Where u holds a multiple of pi/12, of which the graph takes out those of pi/2, that has numbers as its
-  // sine and cosine. The zero test expands other sums.
+  // Returns sin u or cos u. If u contains a multiple of pi/12 (the graph takes out multiples of pi/2), this multiple
+  // has numbers as its sine and cosine. The zero test expands other sums.
   Expr of_angle(Expr u, bool cosine) {
     const Function f = cosine ? Function::cos : Function::sin;
     const std::optional<Rational> turns = multiple_of_pi(u);
@@ -126,11 +127,11 @@ class Rewriting {
     return expanded(u, kMostOfArgument).value_or(u);
   }
 
-  // The angles that are rational multiples of pi at rational arguments.
+  // Returns the angle of asin, acos or atan if it is a rational multiple of pi at a rational argument.
   std::optional<Expr> known_angle(Function f, Expr u) {
     if (!is_number(u)) return std::nullopt;
     const Rational x = number_value(u);
-    std::optional<Rational> part;  // of pi
+    std::optional<Rational> part;  // the fraction of pi
     if (f == Function::atan && abs(x) == 1) part = x / 4;
     if (f != Function::atan && (x == 0 || abs(x) == 1)) part = x / 2;
     if (f != Function::atan && abs(x) == Rational(1, 2)) part = x / 3;
@@ -138,7 +139,7 @@ class Rewriting {
     return (f == Function::acos ? Rational(1, 2) - *part : *part) * g_.pi();
   }
 
-  // ln u = ln |u| for u > 0 is the sum of r_i ln(b_i^2)/2 over the factors b_i^r_i of u.
+  // Returns ln u, which is ln |u| for u > 0, as the sum of r_i ln(b_i^2)/2 over the factors b_i^r_i of u.
   Expr logarithm(Expr u, int depth) {
     constexpr int kDeepest = 8;  // roots within roots
     u = reduced(u);
@@ -161,7 +162,7 @@ class Rewriting {
     }
     return all;
   }
-  // Of a number, by its small primes.
+  // Returns the logarithm of a number by its small prime factors.
   Expr logarithm_of(Rational x) {
     constexpr unsigned long kLargest = 100;
     if (x <= 0) return log(g_.number(x));
@@ -176,7 +177,7 @@ class Rewriting {
     return all;
   }
 
-  // exp(c_1 a_1 + c_2 a_2 + …) as the product of exp(a_i)^c_i, which is y^c_i where a_i is ln y.
+  // Returns exp(c_1 a_1 + c_2 a_2 + …) as the product of exp(a_i)^c_i, which is y^c_i if a_i is ln y.
   Expr exponential(Expr u) {
     u = reduced(u);
     if (g_.node(u.id).kind != Kind::sum) return exponential_of(u.id, 1);
@@ -190,7 +191,7 @@ class Rewriting {
     return pow(of_log ? node(g_.terms(a)[0].node) : exp(node(a)), c);
   }
 
-  // u sign(u) is |u|, and |u| sign(u) is u, also where u is zero.
+  // Rewrites a product: u sign(u) is |u|, and |u| sign(u) is u, also if u is zero.
   Expr product(NodeId id) {
     Factors factors;
     for (const Term& t : g_.terms(id)) factors[t.node] = g_.rational(t.weight);
@@ -204,7 +205,8 @@ class Rewriting {
       all = all * (power.is_integer() ? pow(at(base), power) : root(at(base), power));
     return all;
   }
-  // Takes sign(u) out of the factors if they hold u or |u|, and returns what stands for both; 1 if that is among the factors.
+  // Removes sign(u) from the factors if they contain u or |u|, and returns the factor that replaces both; 1 if it stays
+  // among the factors.
   Expr without_sign(Factors& factors, NodeId sign, NodeId u) {
     const auto positive = [](const Rational& r) { return r.is_integer() && r > 0; };
     const Rational power = factors.at(sign);
@@ -226,7 +228,8 @@ class Rewriting {
     return g_.one();
   }
 
-  // x^e of a fraction e. Of square roots, even powers of factors common to all terms of x stand before the root.
+  // Returns x^e for a fraction e. For square roots, even powers of factors common to all terms of x are taken out of
+  // the root.
   Expr root(Expr x, const Rational& e) {
     x = reduced(x);
     if (is_number(x)) return root_of_number(number_value(x), e);
@@ -243,7 +246,7 @@ class Rewriting {
     return before * pow(x, e);
   }
 
-  // sqrt(6) is sqrt(2) sqrt(3).
+  // Returns the root of a number by its prime factors: sqrt(6) is sqrt(2) sqrt(3).
   Expr root_of_number(Rational x, const Rational& e) {
     constexpr long kLargest = 1'000'000;
     if (!(x > 0) || x.get_num() > kLargest || x.get_den() > kLargest) return pow(g_.number(x), e);
@@ -254,7 +257,7 @@ class Rewriting {
     return all;
   }
 
-  // The even powers of the factors that all terms have.
+  // Returns the even powers of the factors that all terms have.
   Factors even_powers(NodeId x) {
     Factors common;
     if (g_.node(x).kind != Kind::sum) return even(factors_of(x));
@@ -301,7 +304,7 @@ Expr with_split_logarithms(Expr e) { return Rewriting(*e.graph, Logarithms::spli
 
 namespace {
 
-// Whether e holds a function, or a root, that is written anew.
+// True if e contains a function, or a root, that would be rewritten.
 bool may_be_written_anew(Expr e) {
   const Graph& g = *e.graph;
   const std::vector<NodeId> ids = reachable({&e, 1});
@@ -329,7 +332,7 @@ bool holds_logarithm(Expr e) {
 
 bool shown_zero_in(Expr few, Expr e, Effort effort) { return !(few == e) && shown_zero(few, effort); }
 
-// By one way of writing or the other.
+// True if e is shown to be zero in one of the two rewritings.
 bool shown_zero_written_anew(Expr e, Effort effort) {
   return shown_zero_in(in_few_functions(e), e, effort) ||
          (holds_logarithm(e) && shown_zero_in(with_split_logarithms(e), e, effort));

@@ -16,7 +16,7 @@ constexpr long double kVanishes = 1e-9L;       // relative to the largest interm
 constexpr std::size_t kShort = 12;             // nodes: a shorter subexpression is not replaced
 constexpr std::size_t kMostWork = 40'000'000;  // node evaluations
 
-// The value of a free node, by its position.
+// Returns the value of a free node, by its position.
 long double generic(std::uint64_t position) {
   return 0.55L + 0.8L * unit_of(scattered_bits(position * 0x9e3779b97f4a7c15ULL + 12345));
 }

@@ -5,12 +5,12 @@
 
 namespace anholon {
 
-// Whether e vanishes at a random point up to round-off.
+// True if e vanishes at a random point up to round-off.
 bool seems_zero(Expr e);
 
-// e with subexpressions replaced by new symbols, the longest first, as long as the result still seems to vanish at a
-// random point; the result is therefore a guess. If it is zero for all values of its symbols, so is e. The new symbols
-// are quasi-velocities numbered from `first`.
+// Returns e with subexpressions replaced by new symbols, the longest first, as long as the result still seems to vanish
+// at a random point; the result is therefore a guess. If it is zero for all values of its symbols, e is zero as well.
+// The new symbols are quasi-velocities numbered from `first`.
 Expr generalized(Expr e, std::uint32_t first = 1000);
 
 }  // namespace anholon

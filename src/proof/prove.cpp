@@ -93,7 +93,7 @@ FormProof against_routh(const Mechanics& M, const Formulation& form, const Equat
   } else {
     const Column a = e.on(lagrange_operator(M) - forces(M));
     const bool along =
-        // n equations without multipliers: take their projection along the constraints
+        // The projection of n equations without multipliers along the constraints is taken.
         residual.size() == M.q.size() && !e.constraints.empty();
     const Column contracted = along ? e.contract(residual) : residual;
     for (std::size_t nu = 0; nu < contracted.size(); ++nu) {

@@ -18,9 +18,10 @@
 
 namespace anholon {
 
-// The effort: brief tries the general form of a long expression only, which is far shorter; full tries everything.
+// The effort of a proof: `brief` tries only the general form of a long expression, which is far shorter; `full` tries
+// everything.
 enum class Effort : std::uint8_t { brief, full };
-// Whether algebra (expr/normal.h) shows that e, or the general statement behind it, is zero.
+// True if algebra (expr/normal.h) shows that e, or the general statement behind it, is zero.
 bool shown_zero(Expr e, Effort effort);
 
 struct FormProof {
@@ -34,12 +35,12 @@ struct Proof {
   std::vector<FormProof> forms;    // comparisons with Routh's equations
   std::vector<Difference> kernel;  // B spans the kernel, and the solved constraints satisfy the constraints
   std::vector<Difference> pivots;  // no divisor is identically zero
-  // A stop request (base/stop.h) ended it: forms that were not compared are unknown, and so are all pairs that rest on
-  // the tangents of the constraints.
+  // True if a stop request (base/stop.h) ended the proof: forms that were not compared are unknown, and so are all
+  // pairs that need the tangents of the constraints.
   bool stopped = false;
-  std::size_t compared = 0;  // the first so many forms were compared
-  // Of one form and Routh's equations. The comparison of a form without multipliers counts only if the tangents of the
-  // constraints are shown; it is unknown without them.
+  std::size_t compared = 0;  // the number of forms that were compared, the first ones
+  // Returns the verdict on one form and Routh's equations. The comparison of a form without multipliers counts only if
+  // the tangents of the constraints are proved; without them it is unknown.
   Verdict with_routh(std::size_t a) const;
   Verdict between(std::size_t a, std::size_t b) const;
 };
@@ -60,15 +61,15 @@ struct ProofOptions {
 using EquationsOf = std::function<Equations(const Mechanics&, const Elimination&)>;
 FormProof prove_form(const Mechanics& M, const Formulation& form, const EquationsOf& equations,
                      const std::vector<Eliminations>& eliminations, const ProofOptions& options = {});
-// A stop request ends it and keeps the comparisons that are complete.
+// Compares all forms. A stop request ends the proof and keeps the comparisons that are complete.
 Proof prove(const Mechanics& M, const std::vector<const Formulation*>& forms,
             const std::vector<Eliminations>& eliminations, const ProofOptions& options = {});
 
-// States in the hypotheses which cases were laid over the file of the model, and which values were given beside it
+// Adds to the hypotheses which cases were applied to the file of the model, and which values were given beside it
 // ("m=2").
 void add_reading(Certificate& c, const std::vector<std::string>& cases, const std::vector<std::string>& values);
 
-// All results, for an independent checker.
+// Returns all results, for an independent checker.
 Certificate certificate(const Mechanics& M, const Proof& proof, const Eliminations& eliminations,
                         const std::string& program, const std::string& source_hash);
 

@@ -1,6 +1,6 @@
 // The pseudo-random bits behind the points that proofs try.
 //
-// Reports print values at these points, so the bits stay as they are: expr/generic_point.h serves everything else.
+// Reports print values at these points, so these bits must not change; expr/generic_point.h serves all other uses.
 #pragma once
 #include <cstdint>
 
@@ -11,7 +11,7 @@ inline std::uint64_t scattered_bits(std::uint64_t key) {
   return key;
 }
 
-// A number in [0, 1) from the upper 24 bits.
+// Returns a number in [0, 1) from the upper 24 bits.
 inline double unit_of(std::uint64_t bits) { return static_cast<double>(bits >> 40) / 16777216.0; }
 
 }  // namespace anholon

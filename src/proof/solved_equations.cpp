@@ -9,10 +9,10 @@ namespace anholon {
 
 namespace {
 
-// psi = 0 solved for the symbol s in which it is affine or quadratic. `sign`: that of a root.
+// The solution of psi = 0 for the symbol s in which it is affine or quadratic. `sign`: the sign of a root.
 struct Solved {
   Expr value;
-  bool by_root = false;  // `sign` stands in it
+  bool by_root = false;  // the value contains `sign`
 };
 
 std::optional<Solved> solved_for(Expr psi, Expr s, Expr sign) {
@@ -32,7 +32,7 @@ std::optional<Solved> solved_for(Expr psi, Expr s, Expr sign) {
     if (proved_zero(b)) return Solved{sign * sqrt(-(c / a)), true};
     return Solved{(sign * sqrt(b * b - 4 * (a * c)) - b) / (2 * a), true};
   } catch (const Failure&) {
-    return std::nullopt;  // a denominator that vanishes with s
+    return std::nullopt;  // a denominator vanishes with s
   }
 }
 

@@ -15,11 +15,11 @@ namespace {
 constexpr int kPoints = 40;  // points tried before the search ends
 constexpr int kSizes = 4;    // sizes of the free derivatives: 1, 1/2, 1/4, …
 constexpr slong kFirstBits = 64;
-constexpr slong kRootBits = 256;  // precision of the box of a root, unless more is asked for
+constexpr slong kRootBits = 256;  // precision of the box of a root, unless more is requested
 constexpr int kNewtonSteps = 60;
 
-// A rational in (1/5, 8/5) that depends on the symbol and the attempt; of derivatives, and elsewhere of coordinates, of either
-// sign.
+// Returns a rational in (1/5, 8/5) that depends on the symbol and the attempt. Derivatives, and for Where::elsewhere
+// also coordinates, have either sign.
 Rational arbitrary(const Node& n, int attempt, Where where) {
   const std::uint64_t h = scattered_bits(static_cast<std::uint64_t>(n.kind) * 1000003 + n.index * 131 + n.order +
                                          static_cast<std::uint64_t>(attempt) * 7919);
@@ -33,7 +33,7 @@ Rational arbitrary(const Node& n, int attempt, Where where) {
   return h & 1 ? Rational(-r) : r;
 }
 
-// Parameters of the model that have a rational value.
+// Returns the parameters of the model that have a rational value.
 std::vector<std::optional<Rational>> rational_parameters(const Model& model) {
   Graph& g = *model.graph;
   std::vector<std::optional<Rational>> values;
@@ -105,7 +105,7 @@ class Search {
       largest = value;
     }
     const std::string points = " at " + std::to_string(tried) + " points";
-    // A ball of a large radius says nothing of the difference.
+    // A ball with a large radius says nothing about the difference.
     const bool is_small = std::strtod(largest.c_str(), nullptr) < 1;
     out.detail = tried == 0 ? "no point of the manifold was found"
                  : is_small ? "zero to " + largest + points
@@ -118,7 +118,7 @@ class Search {
     return std::any_of(unknowns_.begin(), unknowns_.end(), [&](Expr u) { return u.id == id; });
   }
 
-  // Values of the free symbols, and a verified root for the others.
+  // Chooses values of the free symbols, and a verified root for the others.
   bool place(int attempt, WitnessPoint& w) {
     Column all = equations_;
     // operands that cancel in the difference must have values as well
@@ -202,7 +202,7 @@ class Search {
     return false;
   }
 
-  // 1 if a ball around e excludes zero, 0 if not at any precision, -1 if e has no value there.
+  // Returns 1 if a ball around e excludes zero, 0 if none does at any precision, -1 if e has no value there.
   int excludes_zero(const WitnessPoint& w, std::string& value) {
     for (slong bits = kFirstBits;; bits = std::min(4 * bits, most_bits_)) {
       const BallScope precision(bits);

@@ -12,19 +12,20 @@ inline constexpr long kWitnessBits = 1024;
 
 struct WitnessSearch {
   std::optional<WitnessPoint> witness;
-  std::string detail;  // the value there; or the size of the expression at the points tried
+  std::string detail;  // the value at the witness; or the size of the expression at the points tried
 };
 
-// Free symbols get pseudo-random rational values, parameters those of the model if these are rational. Constraints that
-// the elimination has not solved are satisfied by a verified root in the dependent derivatives. `bits`: maximal
-// precision of the balls that distinguish the difference from zero.
+// Searches a witness. Free symbols get pseudo-random rational values, parameters those of the model if these are
+// rational. Constraints that the elimination has not solved are satisfied by a verified root in the dependent
+// derivatives. `bits`: maximal precision of the balls that distinguish the difference from zero.
 WitnessSearch find_witness(const Difference& d, const Elimination& elimination, const Model& model,
                            long bits = kWitnessBits);
 
-// The coordinates that are tried: of one size and positive, or of either sign and up to three times as large.
+// The range of the coordinates that are tried: of one size and positive, or of either sign and up to three times as
+// large.
 enum class Where : std::uint8_t { positive, elsewhere };
 
-// As above, at a root of other equations, as many as unknowns.
+// Searches a witness at a root of other equations, as many as unknowns.
 WitnessSearch find_witness(const Difference& d, const Column& equations, const Column& unknowns, const Model& model,
                            Where where = Where::positive);
 

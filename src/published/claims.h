@@ -40,7 +40,7 @@ struct Claim {
   Span span;
   std::vector<ClaimCheck> checks;
 
-  // Whether the statement as restored is true; a false one has a corrected version.
+  // True if the restored statement is true; a false one has a corrected version.
   bool holds() const { return corrected.empty(); }
 };
 
@@ -55,7 +55,7 @@ struct Paper {
 // "a loss of the machine reading", "an error of the text", "undecidable without the scan".
 const char* in_words(DifferenceBy d);
 
-// All errors are collected in `diagnostics`, whose positions refer to `source`.
+// Reads a table of claims. All errors are collected in `diagnostics`, whose positions refer to `source`.
 std::optional<Paper> read_paper(const SourceText& source, Diagnostics& diagnostics);
 
 // A claim that matches a spelling.
@@ -63,9 +63,9 @@ struct FoundClaim {
   const Paper* paper;
   const Claim* claim;
 };
-// All claims that a spelling may denote: L3.13, "[L 3.13]", "Luo-Zhao (3.13)", 3.13, Gamma.
+// Returns all claims that a spelling may denote: L3.13, "[L 3.13]", "Luo-Zhao (3.13)", 3.13, Gamma.
 std::vector<FoundClaim> find_claims(const std::vector<Paper>& papers, const std::string& spelling);
-// The tag with the most similar spelling; empty if none is similar.
+// Returns the tag with the most similar spelling; empty if none is similar.
 std::string nearest_tag(const std::vector<Paper>& papers, const std::string& spelling);
 
 }  // namespace anholon

@@ -15,9 +15,9 @@ namespace anholon {
 
 namespace {
 
-constexpr std::size_t kMostCombined = 6;  // equations in a combination that is printed
+constexpr std::size_t kMostCombined = 6;  // the most equations in a combination that is printed
 
-// Whether e is zero by algebra; if the whole is too large, by its coefficients of the symbols in which it is affine.
+// True if e is zero by algebra; if the whole is too large, by its coefficients of the symbols in which it is affine.
 bool zero_by_parts(Expr e, const Column& symbols) {
   if (shown_zero_in_few_functions(e, Effort::brief)) return true;
   const Column slopes = gradient(e, symbols);
@@ -80,13 +80,13 @@ std::string Comparer::times(Expr factor) const {
   return ", times " + print(factor, names_, Format::text);
 }
 
-// The symbols by which a derived equation is recognised.
+// Returns the symbols by which a derived equation is recognised.
 Column Comparer::leading(const DerivedEquation& e, EquationsOfMotion& motion) const {
   if (!e.constraint) return motion.top;
   return jets(*M_.model, static_cast<unsigned>(M_.order[e.index]) + e.times);
 }
 
-// P = f * residual, identically.
+// True if P = f * residual identically, with some factor f.
 bool Comparer::directly(Expr P, const DerivedEquation& e, EquationsOfMotion& motion, Comparison& out) {
   std::vector<PointValues>& points = motion.anywhere();
   if (points.empty()) return false;
@@ -114,7 +114,8 @@ bool Comparer::directly(Expr P, const DerivedEquation& e, EquationsOfMotion& mot
   return true;
 }
 
-// The coefficients of a combination of rows that has the same derivatives by q'', lambda as P, and the remainder of P.
+// Computes the coefficients of a combination of rows that has the same derivatives by q'', lambda as P, and returns the
+// remainder of P.
 std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion,
                                           std::vector<std::pair<std::size_t, Expr>>& terms) {
   std::vector<PointValues>& points = motion.on_constraints();
@@ -154,7 +155,7 @@ std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion,
     if (occurs[i]) support.push_back(i);
   if (support.size() > kMostCombined) return std::nullopt;
   if (support.empty()) return P;
-  // The shortest columns that determine the coefficients.
+  // The shortest columns that determine the coefficients are chosen.
   std::vector<std::pair<std::size_t, std::size_t>> cost;
   for (std::size_t j = 0; j < motion.top.size(); ++j) {
     std::size_t sum = number_of_nodes(p[j]);
@@ -172,7 +173,7 @@ std::optional<Expr> Comparer::combination(Expr P, EquationsOfMotion& motion,
     if (choose_rows(a, 1e-7).independent.size() == columns.size() + 1) columns.push_back(j);
   }
   if (columns.size() < support.size()) return std::nullopt;
-  // (c, d) K = p: solved for one unknown after the other if the columns allow it, else by the inverse.
+  // (c, d) K = p is solved for one unknown after the other if the columns allow it, else by the inverse.
   Rows square;
   for (std::size_t i : support) {
     square.emplace_back();
@@ -291,7 +292,8 @@ Comparison Comparer::decide(Expr P) {
     return out;
   }
   if (combined(P, motion, out) || on_manifold(P, true, out) || by_contractions(P, out)) return out;
-  constexpr std::size_t kShort = 1000;  // nodes of which a difference below the round-off of numbers is looked for, too
+  // Up to this number of nodes, a difference below the round-off of numbers is searched as well.
+  constexpr std::size_t kShort = 1000;
   if (number_of_nodes(P) <= kShort || !vanishes(P, motion.elsewhere())) {
     const Difference d{{}, P, {}, {}, {}, {}};
     WitnessSearch search = find_witness(d, motion.equations, motion.unknowns, *M_.model, Where::elsewhere);

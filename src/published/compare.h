@@ -1,4 +1,4 @@
-// A published equation against the derived ones (theory: proof).
+// Compares a published equation with the derived ones (theory: proof).
 //
 // P = left - right is true if it is a combination of Routh's residuals r_a and of the constraints phi_r^(k),
 //
@@ -21,12 +21,12 @@ namespace anholon {
 // One changed place of an equation.
 struct ChangedPlace {
   int side = 0;          // 0 left, 1 right
-  std::size_t term = 0;  // of the side, from 0
+  std::size_t term = 0;  // index of the term in the side, from 0
   std::string from, to;  // the smallest term around the place; if several places change, a symbol
   Span span;
 };
 
-// The change of a misprint: one place, or several that change together; this one is the first.
+// The change that corrects a misprint: one place, or several that change together, of which this object is the first.
 struct Change : ChangedPlace {
   std::vector<ChangedPlace> places;
   std::string equation;  // the changed equation
@@ -38,18 +38,22 @@ struct Change : ChangedPlace {
 
 struct Comparison {
   Verdict verdict = Verdict::unknown;
-  std::string what;                // true: the kind of the equation; false: the nearest true one, unless `in_places`
-  std::optional<Expr> difference;  // false: left - right less the nearest true equation
+  // If true, the kind of the equation; if false, the nearest true one, unless `in_places`.
+  std::string what;
+  std::optional<Expr> difference;       // if false, left - right less the nearest true equation
   std::optional<WitnessPoint> witness;  // if false
   std::string detail;
   std::vector<Change> changes;       // each of them makes it true
-  std::optional<Change> wrong_term;  // false, without changes: the one term that is wrong or lost
-  std::string with_numbers;          // false, unknown: the numbers of the file with which it holds, "J = 0.5, c = 0.7"
-  bool identity = false;             // false: the equation is meant as an identity, not as an equation of motion
-  bool trivial = false;              // true of every motion of every system
-  bool of_constraints = false;       // true by the constraints alone
-  bool has_value = true;             // unknown: it has a value on the motion
-  bool in_places = false;            // false: it holds up to round-off where all coordinates are positive
+  std::optional<Change> wrong_term;  // if false without changes, the one term that is wrong or lost
+  // If false or unknown, the numbers of the file with which the equation holds, "J = 0.5, c = 0.7".
+  std::string with_numbers;
+  // If false, true for an equation that is meant as an identity, not as an equation of motion.
+  bool identity = false;
+  bool trivial = false;         // the equation is true of every motion of every system
+  bool of_constraints = false;  // the equation is true by the constraints alone
+  bool has_value = true;        // if unknown, false for an equation that has no value on the motion
+  // If false, true for an equation that holds up to round-off where all coordinates are positive.
+  bool in_places = false;
 };
 
 // The kind of an equation that is true by the rates of the states alone.
@@ -59,15 +63,15 @@ class Comparer {
  public:
   Comparer(const Mechanics& M, const Elimination& elimination, SymbolNames names);
 
-  // Decides whether left - right = 0 holds.
+  // Decides whether left - right = 0 holds; if it is false, finds the nearest true equation.
   Comparison judge(Expr published);
-  // As above, without the nearest equation if it is false.
+  // Decides only whether left - right = 0 holds.
   Comparison decide(Expr published);
-  // As judge(), with the changes that would make the equation true, if it is false.
+  // Judges an equation; if it is false, finds the changes that would make it true.
   Comparison compare(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet);
 
   EquationsOfMotion& motion(unsigned highest);
-  // For an equation that may have lost its highest derivatives.
+  // Returns the equations of motion for an equation that may have lost its highest derivatives.
   EquationsOfMotion& motion_for_changes(Expr published);
   // Returns true if left - right contains neither accelerations nor multipliers, or they cancel.
   bool without_motion(Expr published, EquationsOfMotion& motion) const;
@@ -98,17 +102,16 @@ class Comparer {
   std::optional<Column> contractions_;
 };
 
-// The highest derivative that the equations of the motion must contain.
+// Returns the order of the highest derivative that the equations of the motion must contain.
 unsigned order_of_motion(Expr e);
 
-// The changes that make a false equation true: of one place, else the fewest of up to four places.
+// Returns the changes that make a false equation true: changes of one place, else the fewest of up to four places.
 std::vector<Change> repairs(const PublishedEquation& equation, Vocabulary& words, const Alphabet& alphabet,
                             Comparer& comparer);
 
-// The change by which left - right loses `difference`: a term of a false equation has another number as its factor, or
-// is to go, or a side lacks it. A lost term has an empty text before the change, a term that is to go an empty one after
-// it. Returns nullopt if the difference is a sum or has sums among its factors.
-// REQUIRES: left - right - difference vanishes on the motion.
+// Returns the change by which left - right loses `difference`: a term of a false equation gets another number as its
+// factor, or is removed, or is added to a side. A lost term has an empty text before the change, a removed term an
+// empty text after it. Returns nullopt if the difference is a sum or has sums among its factors.
 std::optional<Change> wrong_term(const PublishedEquation& equation, Expr difference, Vocabulary& words,
                                  const SymbolNames& names, std::vector<PointValues>& points);
 

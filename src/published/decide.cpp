@@ -16,7 +16,7 @@ Comparison judged(Subject& subject, const std::string& text) {
   const std::vector<PublishedEquation> list = subject.read(source, diagnostics);
   if (diagnostics.has_errors())
     throw Failure({}, diagnostics.list().front().message + " in: " + text, diagnostics.list().front().hint);
-  // A vector equation is decided by its components: by a false one, then by an unknown one.
+  // A vector equation is decided by its components: by a false one if there is one, else by an unknown one.
   std::optional<Comparison> all;
   for (const PublishedEquation& e : list) {
     Comparison c = subject.judge(e);
@@ -39,8 +39,8 @@ std::string said(const Comparison& c) {
   return c.detail;
 }
 
-// All constraints with their derivatives, and Routh's equations, up to derivatives of the order `highest`, with masses
-// substituted.
+// Returns all constraints with their derivatives, and Routh's equations, up to derivatives of the order `highest`, with
+// masses substituted.
 Column all_equations(const Mechanics& M, unsigned highest) {
   Column all;
   for (std::size_t r = 0; r < M.phi.size(); ++r) {
@@ -105,7 +105,8 @@ void Decider::equation(const ClaimCheck& check, Decision& out) {
   if (out.has_mutant) out.mutant = judged(s, check.mutant).verdict;
 }
 
-// The mutant of a form has the velocity of the first coordinate added to the left side of each of its equations.
+// Decides a claim about forms. The mutant of a form has the velocity of the first coordinate added to the left side of
+// each of its equations.
 void Decider::forms(const ClaimCheck& check, Decision& out) {
   Subject& s = subject(check);
   const Mechanics& M = s.mechanics();
@@ -139,8 +140,8 @@ void Decider::forms(const ClaimCheck& check, Decision& out) {
                                                   : ": not decided";
 }
 
-// Checks exactly: rational values are substituted in every equation. The mutant is a point that does not belong to the
-// motion: its first value is changed.
+// Checks points exactly: rational values are substituted in every equation. The mutant is a point that does not belong
+// to the motion: its first value is changed.
 void Decider::points(const ClaimCheck& check, Decision& out) {
   Subject& s = subject(check);
   const Mechanics& M = s.mechanics();

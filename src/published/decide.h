@@ -11,14 +11,14 @@ namespace anholon {
 // The result of one check.
 struct Decision {
   const ClaimCheck* check = nullptr;
-  Verdict verdict = Verdict::unknown;  // of the statement
-  Verdict mutant = Verdict::unknown;   // of its mutant, if there is one, which must be refuted
+  Verdict verdict = Verdict::unknown;  // verdict on the statement
+  Verdict mutant = Verdict::unknown;   // verdict on its mutant, if there is one, which must be refuted
   bool has_mutant = false;
-  // the kind of a true statement; the counterexample of a false one; the reason if nothing is decided
+  // The kind of a true statement, the counterexample of a false one, or the reason if nothing is decided.
   std::string detail;
   double seconds = 0;
 
-  // Whether the result is that of the table, and the mutant, if there is one, is refuted.
+  // True if the result is that of the table, and the mutant, if there is one, is refuted.
   bool as_expected() const {
     return verdict == (check->expected ? Verdict::proved : Verdict::refuted) &&
            (!has_mutant || mutant == Verdict::refuted);

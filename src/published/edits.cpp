@@ -36,7 +36,7 @@ Syntax whole(long n) {
   return n < 0 ? with(Syntax::Op::negate, {number(std::to_string(-n))}) : number(std::to_string(n));
 }
 
-// The product without its factor k.
+// Returns the product without its factor k.
 Syntax without(const Syntax& s, std::size_t k) {
   Syntax out = s;
   if (k == 0) {
@@ -52,7 +52,7 @@ Syntax without(const Syntax& s, std::size_t k) {
   return out.args.size() == 1 ? Syntax(out.args[0]) : out;
 }
 
-// Twice the term, or half of it.
+// Returns twice the term, or half of it.
 Syntax scaled(const Syntax& s, bool twice) {
   long n = 0;
   if (s.op == Syntax::Op::negate) return with(Syntax::Op::negate, {scaled(s.args[0], twice)});
@@ -170,7 +170,7 @@ class Search {
     for (std::size_t i = 0; i < s.args.size(); ++i) visit_at(s, i, true);
   }
 
-  // In a sum within a product, an argument, …, each part between the signs is a term.
+  // Visits a node. In a sum within a product, an argument, …, each part between the signs is a term.
   void visit(const Syntax& s, bool term, bool base_of_power = false) {
     if (term && s.op != Syntax::Op::add && s.op != Syntax::Op::array) {
       add(Edit::Kind::coefficient, Effect::multiplies, number("2"));
@@ -270,7 +270,7 @@ class Search {
     add(kind, Effect::replaces, std::move(other));
   }
 
-  // More dots, and one or two fewer.
+  // Adds edits with more dots, and with one or two fewer.
   void derivatives(const Syntax& s) {
     try {
       Expr rate = words_.number(s);
@@ -288,7 +288,7 @@ class Search {
     if (s.args[0].op == Syntax::Op::prime) add(Edit::Kind::spare_dots, Effect::replaces, s.args[0].args[0]);
   }
 
-  // The symbol before the dots of a derivative.
+  // Visits the symbol before the dots of a derivative.
   void undotted(const Syntax& s) {
     if (s.op == Syntax::Op::prime) {
       path_.push_back(0);
@@ -308,7 +308,7 @@ class Search {
       for (const std::string& n : exchanged(s.text))
         if (dots_ == 0 || varies(n)) renamed(s, n, Edit::Kind::name);
       if (!has(alphabet_.others, s.text)) return;
-      // c for cos(psi): an abbreviation that was taken for a name.
+      // cos(psi) may replace c: an abbreviation was taken for a name.
       for (const std::string& n : alphabet_.coordinates)
         for (const char* f : {"cos", "sin"}) {
           Syntax other = with(Syntax::Op::call, {named(n)});
@@ -336,7 +336,7 @@ class Search {
     return out;
   }
 
-  // The names that may replace a name; for Q.x another member, or another force.
+  // Returns the names that may replace a name; for Q.x another member, or another force.
   Words exchanged(const std::string& name) const {
     Words out = alike(name);
     const auto put = [&](std::size_t from, std::size_t length, const Words& list) {
@@ -367,7 +367,7 @@ class Search {
   Vocabulary& words_;
   const Alphabet& alphabet_;
   unsigned most_dots_;
-  std::vector<Syntax> factors_;  // that a term may have lost
+  std::vector<Syntax> factors_;  // the factors that a term may have lost
   Path path_;
   int in_function_ = 0, dots_ = 0;  // around the visited node
   std::vector<Edit> list_;
@@ -399,7 +399,7 @@ std::vector<Edit> edits_of(const Syntax& difference, Vocabulary& words, const Al
   return Search(words, alphabet, most_dots).of(difference);
 }
 
-// The minus of a product is taken from its first factor.
+// Returns the opposite. The minus of a product is taken from its first factor.
 Syntax opposite(const Syntax& s) {
   if (s.op == Syntax::Op::negate) return s.args[0];
   if (s.op == Syntax::Op::multiply) {

@@ -1,4 +1,4 @@
-// The changes of single places that a misprint may consist of. An equation is taken as one formula, left - right: the
+// The changes of single places of which a misprint may consist. An equation is taken as one formula, left - right: the
 // first step of a path is the side.
 #pragma once
 #include "formula/formula.h"
@@ -13,7 +13,7 @@ struct Alphabet {
   std::vector<std::string> coordinates, others, constraints, masses, free;  // free: quasi-velocities
 };
 
-using Path = std::vector<std::uint32_t>;  // of a node: its indices among the arguments, from the root down
+using Path = std::vector<std::uint32_t>;  // the path of a node: its indices among the arguments, from the root down
 
 struct Edit {
   enum class Kind : std::uint8_t {
@@ -34,21 +34,22 @@ struct Edit {
   bool in_function = false;  // the place is in the argument of an elementary function, or in an exponent
 };
 
-// left - right
+// Returns left - right.
 Syntax difference_of(const PublishedEquation& equation);
 
 const Syntax& node_at(const Syntax& s, const Path& path, std::size_t length);
 inline const Syntax& node_at(const Syntax& s, const Path& path) { return node_at(s, path, path.size()); }
-// The length of the part of the path that leads to the innermost term that contains its end: an operand of a sum, or a
-// side.
+// Returns the length of the part of the path that leads to the innermost term that contains its end: an operand of a
+// sum, or a side.
 std::size_t innermost_term(const Syntax& difference, const Path& path);
 
-// All changes of one place; a symbol may have lost up to `most_dots` dots. The changed formula may be meaningless.
+// Returns all changes of one place; a symbol may have lost up to `most_dots` dots. The changed formula may be
+// meaningless.
 std::vector<Edit> edits_of(const Syntax& difference, Vocabulary& words, const Alphabet& alphabet, unsigned most_dots);
 
-// `s`, the node at `depth` on the paths of the edits, with all of them made.
+// Returns `s`, the node at `depth` on the paths of the edits, with all edits made.
 Syntax edited(const Syntax& s, std::size_t depth, const std::vector<const Edit*>& edits);
-// -x for x, and x for -x.
+// Returns -x for x, and x for -x.
 Syntax opposite(const Syntax& s);
 
 }  // namespace anholon

@@ -8,7 +8,7 @@ namespace anholon {
 
 struct PublishedEquation {
   std::string label;
-  Span span;           // of the label
+  Span span;           // place of the label
   FormulaText source;  // both sides, with the place of each character
   Syntax left, right;
 

@@ -9,7 +9,7 @@ namespace anholon {
 
 namespace {
 
-// Functions of numbers, which speak of no quantity of mechanics.
+// True for functions of numbers, which denote no quantity of mechanics.
 bool is_arithmetic(const std::string& f) { return find_function(f) >= 0 || f == "sqrt" || f == "atan2" || f == "D"; }
 
 bool holds(Expr e, bool (*which)(const Node&)) {
@@ -43,7 +43,7 @@ std::string vanishing_divisor(const Syntax& s, Vocabulary& words, std::vector<Po
     if (!is_divisor(i)) continue;
     try {
       if (vanishes(words.number(s.args[i]), points)) return print(s.args[i]);
-    } catch (const Failure&) {  // a part of a formula that has a value as a whole only
+    } catch (const Failure&) {  // the part has no value of its own
     }
   }
   return {};

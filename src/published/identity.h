@@ -12,13 +12,13 @@
 
 namespace anholon {
 
-// A divisor in s that is 0 at these points of the motion, as written; empty if there is none.
+// Returns a divisor in s that is 0 at these points of the motion, as written; empty if there is none.
 std::string vanishing_divisor(const Syntax& s, Vocabulary& words, std::vector<PointValues>& points);
 
 bool speaks_of_quantities(const Syntax& s, Vocabulary& words);
-// Whether both sides are equal once rates stand for the derivatives of states, and not before.
+// True if both sides are equal once rates replace the derivatives of states, and not before.
 bool holds_by_rates(const Syntax& left, const Syntax& right, Vocabulary& words);
-// Whether an equation is meant to hold for every motion.
+// True if an equation is meant to hold for every motion.
 bool meant_as_identity(const Syntax& left, const Syntax& right, Vocabulary& words);
 
 }  // namespace anholon

@@ -1,4 +1,4 @@
-// The true equation nearest to a false one.
+// Finds the true equation nearest to a false one.
 #include <algorithm>
 
 #include "expr/normal.h"
@@ -15,7 +15,7 @@ constexpr std::size_t kLongestCounted = 800;  // nodes
 constexpr std::size_t kLongestFactor = 40;    // nodes
 constexpr std::size_t kPrinted = 5;           // differences that are arranged for a choice
 
-// The length of an expression in print.
+// Returns a measure of the length of an expression in print.
 std::size_t monomials(Expr e, const SymbolNames& names) {
   if (is_zero(e)) return 0;
   std::size_t least = 1000 + number_of_nodes(e);
@@ -29,7 +29,7 @@ std::size_t monomials(Expr e, const SymbolNames& names) {
 
 }  // namespace
 
-// A misprint that is found shows the intended equation: of several, the one with the smallest change.
+// A misprint shows the intended equation: of several misprints, the one with the smallest change is taken.
 void Comparer::nearest_of(const std::vector<Change>& changes, Expr P, Comparison& out) const {
   std::size_t shortest = SIZE_MAX;
   for (std::size_t k = 0; k < changes.size() && k < kPrinted; ++k) {
@@ -39,7 +39,7 @@ void Comparer::nearest_of(const std::vector<Change>& changes, Expr P, Comparison
   }
 }
 
-// Collects derived equations, times factors, that may be what a false equation means.
+// Collects derived equations, times factors, that a false equation may mean.
 class Comparer::Nearest {
  public:
   Nearest(const Comparer& comparer, EquationsOfMotion& motion, Expr P)
@@ -55,7 +55,7 @@ class Comparer::Nearest {
   void offer_derived(const DerivedEquation& e) {
     next_equation();
     if (e.constraint) {
-      // Compares in the equation's own leading derivatives.
+      // The comparison is in the equation's own leading derivatives.
       const Column symbols = c_.leading(e, motion_), q = gradient(P_, symbols), f = gradient(e.residual, symbols);
       for (std::size_t j = 0; j < symbols.size(); ++j)
         if (are_not_zero(q[j], f[j]))
@@ -65,7 +65,7 @@ class Comparer::Nearest {
       offer(P_ - factor * e.residual, c_.name(e) + c_.times(factor), e.constraint ? 6 : is_number(factor) ? 2 : 3);
   }
 
-  // The equations of motion projected on the directions that the constraints leave free.
+  // Offers the equations of motion projected on the directions that the constraints leave free.
   void offer_projections() {
     const Elimination& E = c_.elimination_;
     if (E.dependent.empty() || E.quasi) return;
@@ -106,7 +106,7 @@ class Comparer::Nearest {
     if (c_.without_motion(P_, motion_)) offer(P_, kIdentity, 8);
   }
 
-  // Of the best few, takes the shortest in print.
+  // Takes the shortest in print of the best few.
   void take(Comparison& out) {
     std::stable_sort(offers_.begin(), offers_.end(),
                      [](const Offer& x, const Offer& y) { return x.length < y.length; });
@@ -130,13 +130,14 @@ class Comparer::Nearest {
 
  private:
   struct Offer {
-    std::size_t length, weight, of;  // of: the derived equation, by the order in which they are offered
+    // `of` is the number of the derived equation, in the order in which equations are offered.
+    std::size_t length, weight, of;
     Expr difference;
     std::string what;
   };
 
   std::size_t next_equation() { return ++of_; }
-  // Weaker statements count as longer: a combination, a constraint beside an equation of motion.
+  // Offers an equation. Weaker statements count as longer: a combination, a constraint beside an equation of motion.
   void offer(Expr difference, const std::string& what, std::size_t weight) {
     offers_.push_back({weight * monomials(difference, c_.names_), weight, of_, difference, what});
   }
@@ -145,7 +146,7 @@ class Comparer::Nearest {
   }
   Column signs() const { return {g_.one(), -g_.one()}; }
 
-  // The factors of an equation that P may hold: ratios of derivatives.
+  // Returns the factors of an equation that P may contain: ratios of derivatives.
   Column factors_of(Expr residual) const {
     Column factors = signs();
     const Column f = gradient(residual, by_);

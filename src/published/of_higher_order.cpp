@@ -1,7 +1,8 @@
 // Equations about motions whose constraints are nonlinear in derivatives of an order m of three or more.
 //
-// Routh's equations A q'' = G + lambda^T dphi/dq^(m) then hold q^(m), and with phi = 0 they determine q^(m) and lambda by the
-// lower derivatives. The accelerations are put in as functions of q^(m) and lambda, and then phi = 0.
+// Routh's equations A q'' = G + lambda^T dphi/dq^(m) then contain q^(m), and with phi = 0 they determine q^(m) and
+// lambda by the lower derivatives. The accelerations are substituted as functions of q^(m) and lambda, and then phi =
+// 0.
 #include <algorithm>
 
 #include "mechanics/expression_matrix.h"
@@ -11,7 +12,7 @@
 
 namespace anholon {
 
-// Returns true if it has decided.
+// Returns true if the verdict is decided.
 bool Comparer::of_higher_order(Expr P, Comparison& out) {
   const Model& model = *M_.model;
   if (M_.order.empty()) return false;

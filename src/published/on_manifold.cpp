@@ -18,7 +18,7 @@ constexpr int kPoints = 3;
 
 }  // namespace
 
-// The contractions on the manifold, one for each independent coordinate, masses substituted.
+// Returns the contractions on the manifold, one for each independent coordinate, masses substituted.
 const Column& Comparer::contractions() {
   if (!contractions_) {
     const Column a = put_masses(*M_.model, lagrange_operator(M_) - forces(M_));
@@ -28,8 +28,8 @@ const Column& Comparer::contractions() {
   return *contractions_;
 }
 
-// P as a combination of the contractions where the constraints are not solved: the coefficient of each comes from a
-// symbol that the other contractions do not hold.
+// Writes P as a combination of the contractions if the constraints are not solved: the coefficient of each comes from a
+// symbol that the other contractions do not contain.
 bool Comparer::by_contractions(Expr P, Comparison& out) {
   const Elimination& E = elimination_;
   const Graph& g = M_.graph();
@@ -62,7 +62,7 @@ bool Comparer::by_contractions(Expr P, Comparison& out) {
   return true;
 }
 
-// Returns true if it has decided.
+// Returns true if the verdict is decided.
 bool Comparer::on_manifold(Expr P, bool regular, Comparison& out) {
   const Elimination& E = elimination_;
   const Graph& g = M_.graph();

@@ -6,7 +6,7 @@
 
 namespace anholon {
 
-// The argument of reduced(…) or star(…) if s is such a call, or a definition that is one; else null.
+// Returns the argument of reduced(…) or star(…) if s is such a call, or a definition that is one; else nullptr.
 const Syntax* Vocabulary::reduced_argument(const Syntax& s, bool& quasi) const {
   if (s.op == Syntax::Op::name) {
     const auto it = lets_.find(s.text);
@@ -17,7 +17,7 @@ const Syntax* Vocabulary::reduced_argument(const Syntax& s, bool& quasi) const {
   return &s.args[0];
 }
 
-// Whether a part of s is taken on the manifold of the constraints: reduced(…), f.y, C.y.x, or star(…), g.x, B.x.u.
+// True if a part of s is taken on the manifold of the constraints: reduced(…), f.y, C.y.x, or star(…), g.x, B.x.u.
 bool Vocabulary::holds_reduced(const Syntax& s, bool quasi) const {
   if (s.op == Syntax::Op::name) {
     if (const auto it = lets_.find(s.text); it != lets_.end()) return holds_reduced(it->second.syntax, quasi);
@@ -30,7 +30,7 @@ bool Vocabulary::holds_reduced(const Syntax& s, bool quasi) const {
   return std::any_of(s.args.begin(), s.args.end(), [&](const Syntax& a) { return holds_reduced(a, quasi); });
 }
 
-// In the second argument quasi-velocities are symbols if the constraints are solved.
+// Evaluates partial(e, v). In the second argument quasi-velocities are symbols if the constraints are solved.
 Value Vocabulary::partial_of(const Syntax& s, const Value& what) {
   by_symbols_ = true;
   Value by;
@@ -68,7 +68,7 @@ Expr Vocabulary::partial_by(Expr e, Expr by, Span span) {
   const Graph& g = graph();
   switch (g.node(by.id).kind) {
   case Kind::quasi:
-    // A formula that is not written in quasi-velocities depends on them all the same.
+    // A formula that is not written in quasi-velocities still depends on them.
     if (jet_order(e) >= static_cast<int>(elimination_(true).m))
       throw Failure(span, "what is differentiated by a quasi-velocity is not expressed in quasi-velocities",
                     "partial(star(T_r), u), partial(g.x, u)");
@@ -94,7 +94,8 @@ Expr Vocabulary::partial_by(Expr e, Expr by, Span span) {
   }
 }
 
-// If the constraints are not solved, uses the implicit function theorem.
+// Returns the partial derivative along the manifold; if the constraints are not solved, by the implicit function
+// theorem.
 Expr Vocabulary::partial_along(Expr e, Expr by, bool quasi, Span span) {
   const Elimination& E = elimination_(quasi);
   if (quasi) used_quasi_ = true;

@@ -80,8 +80,8 @@ class Lines {
   }
 
   static constexpr std::size_t kInHint = 40;
-  // A line without its colon: after the first word, if it is followed by a space and a further word on the left; else a label
-  // is missing.
+  // Returns a line whose colon is missing with the colon after the first word, if a space and a further word on the
+  // left follow it; else a label is missing.
   static std::string labelled(std::string_view line) {
     const std::size_t space = std::min(line.find_first_of(" \t"), line.size());
     const std::size_t rest = std::min(line.find_first_not_of(" \t", space), line.size());
@@ -92,7 +92,7 @@ class Lines {
     return std::string(line.substr(0, space)) + ": " + std::string(line.substr(rest));
   }
 
-  // The name and the position of the '=' of `let NAME = …`; npos if the line is not a definition.
+  // Returns the name and the position of the '=' of `let NAME = …`; npos if the line is not a definition.
   static std::pair<std::string_view, std::size_t> definition(std::string_view line) {
     constexpr std::string_view kLet = "let";
     const std::size_t equals = line.find('='), colon = line.find(':');
@@ -118,7 +118,7 @@ class Lines {
 
 bool is_vector(const Value& v) { return std::holds_alternative<Vector>(v); }
 
-// A side of the component k of an equation between vectors.
+// Returns a side of the component k of an equation between vectors.
 Syntax component(const Syntax& side, const Value& value, int k) {
   if (!is_vector(value)) return side;  // 0
   return {Syntax::Op::member, std::string(1, static_cast<char>('x' + k)), {side}, side.span, side.offset, side.end, {}};

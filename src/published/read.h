@@ -14,8 +14,8 @@
 
 namespace anholon {
 
-// All errors are collected in `diagnostics`, whose positions refer to `equations`. Definitions are added to the
-// vocabulary.
+// Reads the equations. All errors are collected in `diagnostics`, whose positions refer to `equations`. Definitions are
+// added to the vocabulary.
 std::vector<PublishedEquation> read_equations(const SourceText& equations, Vocabulary& words, Diagnostics& diagnostics);
 
 }  // namespace anholon

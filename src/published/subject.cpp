@@ -11,7 +11,7 @@ namespace anholon {
 
 namespace {
 
-// Masses get the names that equations use for them.
+// Returns the names of symbols; masses have the names that equations use for them.
 SymbolNames names_of(const Model& model) {
   SymbolNames names = model.names;
   for (std::size_t i = 0; i < model.masses.size(); ++i) names.masses[i] = mass_name(model, i);
@@ -61,7 +61,7 @@ OpenModel Subject::with_free_inputs(OpenModel open) {
 
 struct Subject::WithNumbers {
   Model model;
-  std::unordered_map<NodeId, Expr> values;  // of parameters and inputs
+  std::unordered_map<NodeId, Expr> values;  // values of parameters and inputs
   Mechanics mechanics;
   Elimination elimination;
   std::optional<Comparer> comparer;
@@ -123,7 +123,7 @@ Subject::WithNumbers& Subject::with_numbers(const Parameters& of) {
 }
 
 Subject::Parameters Subject::needed_for(Expr difference, const std::function<bool(const Numbered&)>& may) {
-  constexpr std::size_t kMostFreed = 12;  // parameters of which it is tried whether they may stay free
+  constexpr std::size_t kMostFreed = 12;  // if there are more parameters, none of them is freed
   Parameters needed;
   for (std::size_t k = 0; k < numbered_.size(); ++k)
     if (may(numbered_[k])) needed.push_back(k);

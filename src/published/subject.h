@@ -12,8 +12,8 @@ namespace anholon {
 
 class Subject {
  public:
-  // `choice`: the eliminated coordinates, and the state near which they are eliminated. Functions that depend on it
-  // throw Failure if it is impossible.
+  // `choice`: the eliminated coordinates, and the state near which they are eliminated. Functions that depend on the
+  // elimination throw Failure if it is impossible.
   explicit Subject(OpenModel open, StateChoice choice = {});
   ~Subject();
   Subject(const Subject&) = delete;
@@ -27,10 +27,10 @@ class Subject {
   std::vector<PublishedEquation> read(const SourceText& equations, Diagnostics& diagnostics) {
     return read_equations(equations, words_, diagnostics);
   }
-  // Whether the equation is true; with the changes that would make it true, if it is false, or the numbers of the file
-  // with which it is. An equation that has no value is unknown.
+  // Decides whether the equation is true. If it is false, finds the changes that would make it true, or the numbers of
+  // the file with which it is true. An equation that has no value is unknown.
   Comparison compare(const PublishedEquation& equation);
-  // As above, without a search for changes and for the nearest equation.
+  // Decides the same, without a search for changes and for the nearest equation.
   Comparison judge(const PublishedEquation& equation) { return comparer_.decide(difference(equation)); }
   Expr difference(const PublishedEquation& equation) {
     return words_.number(equation.left) - words_.number(equation.right);
@@ -40,32 +40,35 @@ class Subject {
   // A parameter, or an input that is free and has a number in the file.
   struct Numbered {
     std::string name;
-    Expr value;  // by numbers and, of a parameter, by others
+    Expr value;  // in terms of numbers and, for a parameter, of other parameters
     bool input = false;
     std::size_t index = 0;
   };
   static bool has_formula(const Numbered& n) { return !n.input && !symbols({&n.value, 1}).empty(); }
   // The derived equations with the numbers of the file in place of some of them.
   struct WithNumbers;
-  using Parameters = std::vector<std::size_t>;  // places in numbered_
+  using Parameters = std::vector<std::size_t>;  // indices in numbered_
 
   const Elimination& elimination(bool quasi);
   WithNumbers& with_numbers(const Parameters& of);
-  // The fewest of them with which it is proved, at most all that satisfy `may`; none if there are none.
+  // Returns numbers of the file with which the difference is proved, from those that satisfy `may`, without single ones
+  // that are not needed; empty if all of them do not suffice.
   Parameters needed_for(Expr difference, const std::function<bool(const Numbered&)>& may);
-  // "J = 0.5, c = 0.7"
+  // Returns "J = 0.5, c = 0.7".
   std::string values_of(const Parameters& of);
-  // A parameter that others give keeps its formula: an equation with the formula put in is true. Returns nullopt if none is.
+  // Proves the equation by substituting the formulas of parameters that follow from others; nullopt if these do not
+  // suffice.
   std::optional<Comparison> by_formulas(Expr difference);
 
-  // An input whose formula is a number stands for a function of time, as parameters stand for all their values.
+  // Frees inputs: an input whose formula is a number represents a function of time, as parameters represent all their
+  // values.
   OpenModel with_free_inputs(OpenModel open);
 
   std::vector<Numbered> numbered_;
   OpenModel open_;
   StateChoice choice_;
   Mechanics mechanics_;
-  std::unique_ptr<const Elimination> eliminations_[2];  // of coordinates, in quasi-velocities
+  std::unique_ptr<const Elimination> eliminations_[2];  // the elimination of coordinates, and that in quasi-velocities
   Vocabulary words_;
   Comparer comparer_;
   Alphabet alphabet_;

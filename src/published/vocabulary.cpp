@@ -26,7 +26,7 @@ bool among(const char* const (&list)[n], const std::string& name) {
   return std::any_of(std::begin(list), std::end(list), [&](const char* x) { return name == x; });
 }
 
-// The path of a chain of members of a name; empty if s is not one.
+// Returns the path of a chain of members of a name; empty if s is not one.
 std::string path_of(const Syntax& s) {
   if (s.op == Syntax::Op::name) return s.text;
   if (s.op != Syntax::Op::member) return {};
@@ -289,7 +289,7 @@ std::optional<Value> Vocabulary::word(const std::string& first, const std::vecto
 
 std::optional<Expr> Vocabulary::quasi_velocity(const std::string& name) {
   const std::vector<QuasiVelocity>& own = mechanics_.model->quasi;
-  // u_x is a name that forms in quasi-velocities give where the model has too few.
+  // u_x is a name that forms in quasi-velocities introduce if the model has too few.
   const bool may_be_automatic = name.rfind("u_", 0) == 0;
   if (!may_be_automatic && std::none_of(own.begin(), own.end(), [&](const QuasiVelocity& u) { return u.name == name; }))
     return std::nullopt;
@@ -330,7 +330,8 @@ Expr Vocabulary::of_form(const Formulation& form, const std::vector<std::string>
   return left ? e.left[k] : right ? e.right[k] : e.left[k] - e.right[k];
 }
 
-// If the constraints are not solved, the derivative represents its value on the manifold.
+// Returns the solved derivative of y; if the constraints are not solved, the derivative represents its value on the
+// manifold.
 Expr Vocabulary::solved(const std::string& y, Span span) {
   const Elimination& E = elimination_(false);
   const std::size_t s = coordinate(y, span);
@@ -379,7 +380,7 @@ std::optional<Value> Vocabulary::call(const std::string& f, const std::vector<Va
   return along(*c, s.args[1].text, s.args[1].span);
 }
 
-// f.c0(x) of a table f. The formulas of a model that use the table hold all its pieces that vary.
+// Returns f.c0(x) of a table f. The formulas of a model that use the table contain all its pieces that vary.
 std::optional<Expr> Vocabulary::piece_of_table(const std::string& name, const std::vector<Value>& a, const Syntax& s) {
   const std::size_t dot = name.rfind('.');
   if (dot == std::string::npos || !is_piece_of_table(name.substr(dot + 1))) return std::nullopt;

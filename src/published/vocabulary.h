@@ -27,23 +27,24 @@ namespace anholon {
 
 class Vocabulary final : public Names {
  public:
-  // The elimination of coordinates, or (true) of quasi-velocities; called when a word needs it. May throw Failure.
+  // Returns the elimination of coordinates, or (true) of quasi-velocities; called when a word needs it. May throw
+  // Failure.
   using EliminationOf = std::function<const Elimination&(bool quasi)>;
   Vocabulary(const Mechanics& mechanics, std::shared_ptr<Names> model, EliminationOf elimination);
 
   // Joins dotted names of this vocabulary into one name each: every formula must pass through it once before it is
   // evaluated.
   void join(Syntax& s) const;
-  // Throws Failure if the name is taken. `value` is joined.
+  // Adds a definition. Throws Failure if the name is taken. `value` is joined.
   void let(const std::string& name, Syntax value, Span span);
-  // The names of the definitions so far.
+  // Returns the names of the definitions so far.
   std::vector<std::string> local_names() const;
 
-  // The value of a joined formula along the motion, with masses substituted, quasi-velocities expressed in coordinates,
-  // and rates in place of the derivatives of states.
+  // Returns the value of a joined formula along the motion, with masses substituted, quasi-velocities expressed in
+  // coordinates, and rates in place of the derivatives of states.
   Expr number(const Syntax& s);
   Value value(const Syntax& s);
-  // The same, in which derivatives of states are symbols.
+  // Returns the same value, in which derivatives of states are symbols.
   Expr number_before_rates(const Syntax& s);
 
   Graph& graph() override { return mechanics_.graph(); }
@@ -63,7 +64,7 @@ class Vocabulary final : public Names {
     Syntax syntax;
     Value value;
   };
-  // lambda.blade.x -> {"lambda", "blade", "x"}
+  // Splits lambda.blade.x into {"lambda", "blade", "x"}.
   static std::vector<std::string> split(const std::string& path);
   bool is_word(const std::string& first) const;
   std::optional<Value> word(const std::string& first, const std::vector<std::string>& rest, Span span);

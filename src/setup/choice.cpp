@@ -18,8 +18,8 @@ static std::string listed(const std::vector<std::string>& names) {
   return list + (names.size() > kMost ? ", …" : "");
 }
 
-// The sound of a name, as people spell names that they have heard: its first letter and the consonants after it, doubled
-// ones once.
+// Returns the sound of a name, to recognize names that are spelled by ear: its first letter and the consonants after
+// it, doubled ones once.
 static std::string sound(const std::string& name) {
   constexpr std::string_view kVowels = "aeiouy";
   std::string of;
@@ -28,8 +28,8 @@ static std::string sound(const std::string& name) {
   return of;
 }
 
-// The form that is meant by a name: by a slip in it, by one of the people it is called after, or by their sound; empty if
-// there is none.
+// Returns the form that a wrong name means, by a misspelling, by one of the people in its name, or by their sound;
+// empty if there is none.
 static std::string near_form(const std::string& name, const std::vector<std::string>& forms) {
   constexpr std::size_t kLeast = 4;  // letters of a name
   if (std::string near = did_you_mean(name, forms); !near.empty() || name.size() < kLeast) return near;
@@ -135,7 +135,7 @@ static std::optional<Dimension> dimension_of(const std::string& unit) {
   return read ? std::optional(read->dimension) : std::nullopt;
 }
 
-// The message about a value of another quantity.
+// Returns the message about a value of another quantity.
 static GivenQuantity::Misfit other_quantity(const Dimension& wanted, const Dimension& here) {
   return {describe(wanted) + " is expected here, this is " + describe(here), print(wanted)};
 }
@@ -143,7 +143,7 @@ static GivenQuantity::Misfit other_quantity(const Dimension& wanted, const Dimen
 std::optional<GivenQuantity::Misfit> GivenQuantity::misfit(const Constant& value) {
   if (!value.dimension) return std::nullopt;
   const bool units = !model_->coordinate_units.empty() || !model_->parameter_units.empty();
-  // In a file without units an angle may stand for any number.
+  // In a file without units an angle may represent any number.
   if (!units && *value.dimension == Dimension{}) return std::nullopt;
   if (!units && !looked_) {
     const auto all = implied_units(*model_);
@@ -180,7 +180,7 @@ Rational time_value(const Constant& value, const std::string& called) {
 }
 Rational pure_value(const Constant& value, const std::string& called) { return value_in({}, value, called); }
 
-// Throws if it is a state of the model, whose initial value is a formula of the file.
+// Throws if the name is that of a state of the model, whose initial value is a formula of the file.
 static void must_be_no_state(const Model& model, const InitialName& of, const std::string& called) {
   const auto& states = model.names.states;
   const bool coordinate = std::find(model.names.coordinates.begin(), model.names.coordinates.end(), of.name) !=

@@ -1,5 +1,5 @@
-// Names and numbers that somebody gives beside a model, made into a form and a choice of state. The command line and the
-// library share them. All functions throw Failure without a place.
+// Turns names and numbers that are given beside a model into a form and a choice of state. The command line and the
+// library share these functions. All of them throw Failure without a place.
 #pragma once
 #include "modelfile/names/constant.h"
 #include "setup/scenario.h"
@@ -11,26 +11,27 @@ const Formulation& named_form(const std::string& name);
 void must_apply(const Formulation& form, const Mechanics& mechanics);
 // Throws if no motion is computed in the form.
 void must_have_motions(const Formulation& form, const Mechanics& mechanics);
-// "routh, maggi, …": the forms that apply; `with_motions` leaves out those without.
+// Returns the forms that apply, "routh, maggi, …"; `with_motions` leaves out those for which no motion is computed.
 std::string forms_that_apply(const Mechanics& mechanics, bool with_motions);
 
-// The place of a coordinate; `called` begins the message: "--eliminate: ".
+// Returns the index of a coordinate; `called` begins the message: "--eliminate: ".
 std::size_t coordinate_of(const Model& model, const std::string& name, const std::string& called = {});
 
-// What an initial value belongs to: x'' is of order 2; lambda.blade is a multiplier.
+// The quantity to which an initial value belongs: x'' is of order 2; lambda.blade is a multiplier.
 struct InitialName {
   std::string name;  // without primes and "lambda."
   unsigned order = 0;
   bool multiplier = false;
 };
 InitialName initial_name(const std::string& written);
-// Adds a value to the choice. Throws if there is no such name, if the value follows from the state, if it is given
-// already, and if it has the unit of another quantity.
+// Adds a value to the choice. Throws if no quantity has the name, if the value follows from the state or is given
+// already, or if it has the unit of another quantity.
 void give(StateChoice& choice, const Model& model, const InitialName& of, const Constant& value,
           const std::string& called = {});
 
-// The quantity of values that are given beside a model: of a parameter, or of a derivative of a coordinate. In a file
-// without units it follows from the formulas; the text of the file is then read again, once.
+// The physical quantity of values that are given beside a model: that of a parameter, or of a derivative of a
+// coordinate. In a file without units the quantity follows from the formulas; the text of the file is then read again,
+// once.
 class GivenQuantity {
  public:
   // REQUIRES: the model outlives the object.
@@ -39,26 +40,27 @@ class GivenQuantity {
 
   struct Misfit {
     std::string message;  // "a length (m) is expected here, this is a mass (kg)"
-    std::string unit;     // the SI unit that is expected; "1" of a pure number; empty if there is none
-    // "a number in m, or a bare number in SI units"; `before` is "a number " or empty.
+    std::string unit;     // the expected SI unit; "1" for a pure number; empty if there is none
+    // Returns "a number in m, or a bare number in SI units"; `before` is "a number " or empty.
     std::string hint(const std::string& before) const;
   };
-  // Returns nullopt if the value has no unit, or one of this quantity.
+  // Returns nullopt if the value has no unit or a unit of this quantity.
   std::optional<Misfit> misfit(const Constant& value);
 
  private:
   GivenQuantity(const Model& model, std::string name, std::string unit, unsigned order);
 
   const Model* model_;
-  std::string name_, unit_;  // unit_: that of the file, empty if it is unknown
+  std::string name_, unit_;  // unit_: the unit in the file, empty if it is unknown
   unsigned order_;
   bool looked_ = false;
 };
-// The value of a time in s, and of a pure number. Both throw if the value has another unit; `called` begins the message: "--to: ".
+// Return the value of a time in s, and of a pure number. Both throw if the value has another unit; `called` begins the
+// message: "--to: ".
 Rational time_value(const Constant& value, const std::string& called);
 Rational pure_value(const Constant& value, const std::string& called);
 
-// Derivatives of this order and above follow from the state.
+// Returns the least order whose derivatives follow from the state.
 unsigned first_determined_order(const Model& model);
 
 }  // namespace anholon

@@ -6,7 +6,7 @@ namespace anholon {
 
 namespace {
 
-// The names of a model file, in which lambda.NAME is a multiplier; alone, `lambda` is a name without a value.
+// The names of a model file. lambda.NAME is a multiplier; `lambda` alone is a name without a value.
 class OutputNames final : public Names {
  public:
   explicit OutputNames(Names& names) : names_(names) {}
@@ -29,7 +29,7 @@ class OutputNames final : public Names {
   Names& names_;
 };
 
-// The outputs of the model of this name; those of a vector are name.x, name.y, name.z.
+// Returns the outputs of the model with this name; those of a vector are name.x, name.y, name.z.
 std::vector<Monitor> own_outputs(const Model& model, const std::string& name) {
   std::vector<Monitor> list;
   for (const Monitor& m : model.monitors)

@@ -1,4 +1,4 @@
-// Outputs that somebody asks for beside the model file: its own by their names, or formulas in its names.
+// Outputs that are requested beside the model file: outputs of the file by their names, or formulas in its names.
 #pragma once
 #include "setup/scenario.h"
 
@@ -8,8 +8,8 @@ struct ChosenOutput {
   std::string name, formula;  // an empty formula: the name is also the formula
 };
 
-// The model with these outputs alone; a vector gives one for each component. Throws Failure for a name or formula that the
-// model does not have. The model has a graph of its own, of which the names are.
+// Returns the model with these outputs alone; a vector gives one for each component. Throws Failure for an unknown name
+// or a wrong formula. The model shares the graph of `open`, in which the formulas are built.
 std::shared_ptr<const Model> with_outputs(const OpenModel& open, const std::vector<ChosenOutput>& outputs);
 
 }  // namespace anholon

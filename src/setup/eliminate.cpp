@@ -12,7 +12,7 @@ namespace {
 // Below this part of its size a pivot counts as zero.
 constexpr double kSingular = 1e-9;
 
-// A value in (0.6, 1.4) for a symbol whose value is not known.
+// Returns a value in (0.6, 1.4) for a symbol whose value is not known.
 double generic(const Node& n) { return 0.6 + 0.8 * generic_value(n, 0); }
 
 Matrix<double> constraint_matrix(const Mechanics& m, const std::vector<std::size_t>& constraints, PointValues& at) {
@@ -28,7 +28,7 @@ std::string list_of(const Model& model, const std::vector<std::size_t>& which) {
   return list;
 }
 
-// A pivot that is a number can never vanish: it is worth a few times its size.
+// Returns the weight of a pivot: a pivot that is a number can never vanish, so its weight is larger.
 double weight(const Mechanics& m, const std::vector<std::size_t>& constraints, std::size_t a) {
   constexpr double kConstant = 4;
   for (std::size_t r : constraints)
@@ -36,7 +36,7 @@ double weight(const Mechanics& m, const std::vector<std::size_t>& constraints, s
   return kConstant;
 }
 
-// Full pivoting on Phi M^(-1/2), the mass matrix by its diagonal.
+// Chooses pivots by full pivoting on Phi M^(-1/2), with the diagonal of the mass matrix.
 std::vector<std::size_t> best_pivots(const Mechanics& m, const std::vector<std::size_t>& constraints, PointValues& at) {
   Matrix<double> phi = constraint_matrix(m, constraints, at);
   const Column p = gradient(m.T, m.qd);
@@ -47,7 +47,7 @@ std::vector<std::size_t> best_pivots(const Mechanics& m, const std::vector<std::
     largest = std::max(largest, mass.back());
   }
   for (std::size_t a = 0; a < phi.cols; ++a) {
-    // A coordinate without inertia is as light as can be.
+    // A coordinate without inertia counts as very light.
     const double scale = largest > 0 ? std::sqrt(std::max(mass[a] / largest, 1e-6)) : 1;
     for (std::size_t i = 0; i < phi.rows; ++i) phi(i, a) *= weight(m, constraints, a) / scale;
   }
@@ -138,7 +138,7 @@ std::vector<QuasiVelocity> quasi_velocities(const Mechanics& m, const std::vecto
 }  // namespace
 
 PointValues values_near(const Model& model, const std::vector<double>& parameters, const InitialState<double>& state) {
-  // Varying masses stand for their values at the state, as far as pivots are concerned: any positive number does.
+  // Varying masses need some positive value for the choice of pivots.
   const bool known = state.q.size() == model.coordinates.size();
   return PointValues([parameters, state, known](const Node& n) {
     if (n.kind == Kind::parameter && n.index < parameters.size()) return parameters[n.index];
@@ -159,7 +159,7 @@ EliminationChoice choose_elimination(const Mechanics& m, const std::vector<std::
 std::vector<std::size_t> independent_rows(const Mechanics& m, const std::vector<std::size_t>& all, PointValues& at) {
   std::vector<std::size_t> rows = choose_rows(constraint_matrix(m, all, at), kSingular).independent;
   if (rows.size() < all.size()) {
-    // Fewer at a singular state only?
+    // Decides whether there are fewer independent rows at a singular state only.
     PointValues elsewhere(generic);
     rows = choose_rows(constraint_matrix(m, all, elsewhere), kSingular).independent;
   }

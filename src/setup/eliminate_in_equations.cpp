@@ -1,12 +1,12 @@
-// The eliminations of equations that are derived and compared, and not integrated.
+// Eliminations for equations that are derived and compared, but not integrated.
 #include "formulation/operators.h"
 #include "setup/eliminate.h"
 #include "setup/scenario.h"
 
 namespace anholon {
 
-// The pivots of constraints on accelerations depend on these, which follow from Routh's equations at the state. The
-// state is left as it is if they have no solution there.
+// Adds accelerations, on which the pivots of constraints on accelerations depend; they follow from Routh's equations at
+// the state. The state is unchanged if these have no solution there.
 static void add_accelerations(const Model& model, const std::vector<StateOverride>& overrides,
                               InitialState<double>& state) {
   try {
@@ -16,11 +16,11 @@ static void add_accelerations(const Model& model, const std::vector<StateOverrid
     const auto own = std::shared_ptr<const Model>(&model, [](const Model*) {});
     if (make_scenario(own, *find_formulation("routh"), choice, s).ok()) state = s.state;
   } catch (const Failure&) {
-    // A motion is refused for a reason that does not concern the equations.
+    // The refusal of a motion does not concern its equations.
   }
 }
 
-// Of those constraints `all` that are independent.
+// Returns an elimination of the constraints among `all` that are independent.
 static Elimination elimination_of(const Mechanics& m, const std::vector<std::size_t>& all, Unknowns unknowns,
                                   const std::vector<StateOverride>& overrides, const std::vector<std::size_t>& wanted,
                                   bool solve, unsigned order) {

@@ -9,7 +9,7 @@ namespace anholon {
 
 namespace {
 
-// Of more constraints than this it is not looked for which make a redundant one.
+// If there are more constraints, those that make one redundant are not searched.
 constexpr std::size_t kManyConstraints = 60;
 
 Hypothesis hypothesis(const ConstraintClass& c, int order) {
@@ -17,7 +17,7 @@ Hypothesis hypothesis(const ConstraintClass& c, int order) {
   return order == 1 && c.kind == "nonlinear" ? Hypothesis::chetaev : Hypothesis::dalembert;
 }
 
-// The independent constraints without which row r would be independent, too.
+// Returns the independent constraints without which row r would be independent as well.
 std::vector<std::size_t> made_of(const Scenario& s, std::size_t r, PointValues& at) {
   const std::size_t n = s.mechanics->q.size();
   std::vector<std::size_t> out;

@@ -20,7 +20,7 @@ bool known_before_solving(const Scenario& s, Expr value) {
   return true;
 }
 
-// The system with these inputs as symbols.
+// Returns the system with these inputs as symbols.
 System with_symbols(const Scenario& s, const std::set<std::size_t>& inputs) {
   auto model = std::make_shared<Model>(*s.model);
   for (std::size_t k : inputs) model->controls[k].value.reset();
@@ -31,7 +31,7 @@ System with_symbols(const Scenario& s, const std::set<std::size_t>& inputs) {
   return system;
 }
 
-// Those of the inputs that act as they should when they are set. `in_inputs`: also those that act in other inputs alone.
+// Returns the inputs that act as they should when they are set. `in_inputs`: also those that act only in other inputs.
 std::set<std::size_t> free_ones(const Scenario& s, const System& system, std::set<std::size_t> inputs, bool in_inputs) {
   const Graph& g = *s.model->graph;
   std::set<std::size_t> occurring;
@@ -60,7 +60,7 @@ std::set<std::size_t> free_ones(const Scenario& s, const System& system, std::se
   return inputs;
 }
 
-// Of these inputs, those that can be set, as symbols.
+// Returns the system in which those of the wanted inputs that can be set are symbols.
 OpenSystem opened(Workspace& s, const std::set<std::size_t>& wanted, bool in_inputs) {
   std::set<std::size_t> inputs;
   for (std::size_t k : wanted)
@@ -68,7 +68,7 @@ OpenSystem opened(Workspace& s, const std::set<std::size_t>& wanted, bool in_inp
       inputs.insert(k);
   if (inputs.empty()) return {s.system, {}};
   System system = with_symbols(s, inputs);
-  // An input that is no symbol brings those that its formula holds into the equations.
+  // If an input is no symbol, its formula brings other inputs into the equations.
   for (std::set<std::size_t> fewer; (fewer = free_ones(s, system, inputs, in_inputs)) != inputs;) {
     inputs = fewer;
     system = with_symbols(s, inputs);
@@ -104,7 +104,7 @@ std::vector<std::string> inputs_with_rates(const Scenario& s) {
   return names;
 }
 
-// The value of a formula at the consistent start.
+// Returns the value of a formula at the consistent start.
 static Rational value_at_start(const Scenario& s, const Model& model, Expr formula) {
   const Tape tape = compile({&formula, 1});
   Machine<double> machine(tape, 0, parameter_values<double>(model));
@@ -136,8 +136,8 @@ static bool holds_rate_of(Expr e, const std::set<std::size_t>& inputs) {
   return false;
 }
 
-// The formula of an input, in which others that are given are the parameters of `m`. Their rates, which nobody gives, are
-// those of their formulas. `given`: the formulas of these inputs, with all others put in.
+// Returns the formula of an input, in which other given inputs are the parameters of `m`. Their rates, which have no
+// values of their own, are those of their formulas. `given`: the formulas of these inputs, with all others substituted.
 static Expr with_inputs_as_parameters(const Model& m, std::size_t input, const std::map<std::size_t, Expr>& given) {
   const Expr open = m.controls[input].open;
   if (!open.graph) return given.at(input);

@@ -26,7 +26,7 @@ bool is_circular(const Node& n) {
           n.index == static_cast<std::uint32_t>(Function::cos) || n.index == static_cast<std::uint32_t>(Function::tan));
 }
 
-// For each coordinate whether it is a term in the argument of a circular function.
+// Returns for each coordinate whether it is a term in the argument of a circular function.
 std::vector<bool> terms_of_angles(const Graph& g, std::size_t nodes, std::size_t coordinates) {
   std::vector<bool> found(coordinates, false);
   const auto see = [&](NodeId id) {
@@ -42,7 +42,7 @@ std::vector<bool> terms_of_angles(const Graph& g, std::size_t nodes, std::size_t
   return found;
 }
 
-// Removes the coordinates that occur in the position of a body other than in circular functions.
+// Removes the coordinates that occur in the position of a body outside circular functions.
 void remove_lengths(const Model& model, std::vector<bool>& angles) {
   const Graph& g = *model.graph;
   std::vector<bool> seen(g.size(), false);
@@ -61,8 +61,8 @@ void remove_lengths(const Model& model, std::vector<bool>& angles) {
   }
 }
 
-// Whether the equations at a point without special values change with the coordinate. In those of a rolling wheel its
-// angle may stand in terms that cancel.
+// True if the equations at a generic point change with the coordinate. In the equations of a rolling wheel, its angle
+// may occur in terms that cancel.
 bool changes(const System& system, std::size_t coordinate) {
   constexpr double kChange = 1e-6;  // far above round-off
   const auto values = [&](double moved) {
@@ -78,7 +78,7 @@ bool changes(const System& system, std::size_t coordinate) {
   });
 }
 
-// Whether the initial value of the coordinate is written with a unit, in the file or beside it.
+// True if the initial value of the coordinate is written with a unit, in the file or beside it.
 bool is_with_unit(const Model& model, const std::vector<StateOverride>& overrides, std::size_t coordinate) {
   for (const StateOverride& o : overrides)
     if (!o.multiplier && o.order == 0 && o.coordinate == coordinate) return o.with_unit;

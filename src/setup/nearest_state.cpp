@@ -21,15 +21,15 @@ class StateLevel {
       if (p.c[i] >= level) rows_.push_back(i);
   }
 
-  // Whether the state that was loaded satisfies the equations up to round-off, after measure().
+  // True if the loaded state satisfies the equations up to round-off, after measure().
   bool holds(const Expansion<W>& at) const {
     return std::all_of(rows_.begin(), rows_.end(), [&](std::size_t i) {
       return at.hidden_residual(i, p_.c[i] - level_) <= unit_roundoff<W>() * W(kRoundoffs);
     });
   }
 
-  // The state nearest to `from` that satisfies the equations as linearized where `at` was prepared, which is `state`. Returns
-  // the largest change, relative, or nullopt if it is not determined.
+  // Computes the state nearest to `from` that satisfies the equations linearized at the state `state` for which `at` is
+  // prepared. Returns the largest relative change, or nullopt if the change is not determined.
   std::optional<W> step(const Expansion<W>& at, const std::vector<W>& from, std::vector<W>& state) const {
     const Matrix<W> J = at.system_jacobian().matrix();
     Matrix<W> M(n_, n_), A(rows_.size(), n_);
@@ -95,7 +95,7 @@ Outcome NearestState<W>::put(const Program& of, const W& t, const std::vector<W>
     W last(0);
     for (int k = 0;; ++k) {
       at.load(t, state, leading);
-      // What the stepper cannot begin with either, it names.
+      // If the state cannot be prepared here, the stepper cannot begin with it either, and reports the fault.
       if (!at.prepare().ok()) return {};
       at.measure();
       if (k == 0 && of_level.holds(at)) break;

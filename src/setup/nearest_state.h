@@ -1,5 +1,5 @@
-// The consistent state that is nearest in the mass norm to one that is not: positions first, then velocities (theory:
-// events). Of velocities that is what an ideal impulse of the constraints makes.
+// The consistent state that is nearest, in the mass norm, to an inconsistent one: positions first, then velocities
+// (theory: events). The nearest velocities are those after an ideal impulse of the constraints.
 //
 // The mass matrix and the rows of the constraints are those of Routh's equations, whatever the form of the motion. Positions
 // have to satisfy constraints of position only.
@@ -12,14 +12,14 @@ namespace anholon {
 template <Number W>
 class NearestState {
  public:
-  // `parameters`: where the structure of the equations is looked at.
+  // `parameters`: the values at which the structure of the equations is determined.
   NearestState(const Scenario& s, const std::vector<W>& parameters);
   NearestState(const NearestState&) = delete;
   NearestState& operator=(const NearestState&) = delete;
 
-  // Puts the nearest state in place of the state of a program, whatever its form. `leading`: the derivatives that this solves
-  // for, near the state. The state stays as it is if it has other entries than that of Routh's equations, as it may have with
-  // constraints of order 2 and more.
+  // Replaces the state of a program, whatever its form, by the nearest state. `leading`: the derivatives that the
+  // program solves for, near the state. The state is unchanged if it has other entries than that of Routh's equations,
+  // which may be the case with constraints of order 2 and more.
   Outcome put(const Program& of, const W& t, const std::vector<W>& parameters, const std::vector<W>& leading,
               std::vector<W>& state) const;
 

@@ -10,8 +10,8 @@ namespace anholon {
 template <Number N>
 class LeastMultipliers;
 
-// The size with which a miss is compared: that of the numbers behind its terms; or, if their round-off does not explain it,
-// `moved`, the size of these numbers by OutputTape::evaluate_moved.
+// Returns the size to which a residual is compared: that of the numbers behind its terms; or, if their round-off does
+// not explain the residual, `moved`, the size of these numbers by OutputTape::evaluate_moved.
 template <Number N>
 N size_behind(const N& miss, const N& made_of, const N& moved) {
   const bool explained = abs(miss) <= unit_roundoff<N>() * N(kRoundoffsOfSum) * made_of;
@@ -19,7 +19,7 @@ N size_behind(const N& miss, const N& made_of, const N& moved) {
 }
 
 // Expressions evaluated at a point of the motion. evaluate() reads no graph, so that one thread may evaluate while
-// another builds expressions. Where constraints are redundant multipliers are the least ones with the same forces; if
+// another builds expressions. If constraints are redundant, multipliers are the least ones with the same forces; if
 // multipliers belong to the state, those of constraints that are left out are zero.
 template <Number N>
 class OutputTape {
@@ -48,9 +48,9 @@ class OutputTape {
     machine_.evaluate();
     sizes_.clear();
   }
-  // The same with each leading derivative that is round-off of the terms of the equations as large as these terms, and with
-  // the derivative below it as large as that makes it within the time: what outputs are made of where accelerations are
-  // round-off. Returns false, and evaluates nothing, if none of these is larger than it is in the point.
+  // Evaluates with enlarged values: a leading derivative that is round-off of the terms of the equations gets the size
+  // of these terms, and the derivative below it gets that size times the elapsed time. The sizes of outputs are taken
+  // from these values if accelerations are round-off. Returns false, and evaluates nothing, if no value becomes larger.
   bool evaluate_moved(const Expansion<N>& point, const N& elapsed) {
     std::vector<std::pair<std::uint32_t, N>> moved;
     for (const InputPlace& in : places_) {
@@ -69,7 +69,7 @@ class OutputTape {
     sizes_.clear();
     return true;
   }
-  // By the rule of tape/bind.h.
+  // Evaluates with the inputs that the rule of tape/bind.h gives.
   template <class Rule>
   void evaluate_at(const Rule& rule) {
     bind(machine_, *system_.model->graph, rule);
@@ -77,14 +77,14 @@ class OutputTape {
     sizes_.clear();
   }
   const N& operator[](std::size_t i) const { return machine_.value(i); }
-  // The sum of the absolute values of its terms.
+  // Returns the sum of the absolute values of the terms of expression i.
   N terms(std::size_t i) const { return machine_.magnitude(tape_.roots[i]); }
-  // What it is made of (tape/tape.h), at the point evaluated last.
+  // Returns the size of the numbers of which expression i is made (tape/tape.h), at the last evaluated point.
   const N& made_of(std::size_t i) const {
     if (sizes_.empty()) machine_.made_of(sizes_);
     return sizes_[tape_.roots[i]];
   }
-  // Modes have changed.
+  // Sets the parameters anew, after modes have changed.
   void set_parameters(const std::vector<N>& parameters) {
     machine_.set_parameters(parameters);
     if (least_) least_->set_parameters(parameters);
@@ -96,12 +96,12 @@ class OutputTape {
   struct InputPlace {
     bool time;
     std::optional<std::size_t> variable;  // the unknown; nullopt for the multiplier of a redundant constraint
-    int order;                            // of its derivative
+    int order;                            // order of its derivative
     std::uint32_t slot;
   };
   struct MultiplierPlace {
     std::size_t input;       // among the places
-    std::size_t constraint;  // of the model
+    std::size_t constraint;  // index in the model
   };
   void find_multipliers(const System& of_point) {
     for (const MultiplierPlace& m : multipliers_) {
@@ -115,18 +115,18 @@ class OutputTape {
   const System& system_;
   Tape tape_;
   Machine<N> machine_;
-  std::vector<InputPlace> places_;              // of the inputs
-  std::vector<MultiplierPlace> multipliers_;    // among them, where constraints are redundant
-  std::shared_ptr<LeastMultipliers<N>> least_;  // that gives them; null where there is nothing to choose
+  std::vector<InputPlace> places_;              // places of the inputs
+  std::vector<MultiplierPlace> multipliers_;    // those among the places, if constraints are redundant
+  std::shared_ptr<LeastMultipliers<N>> least_;  // computes them; null if there is nothing to choose
   mutable std::vector<N> sizes_;
 };
 
-// The multipliers of all constraints where some are redundant: the least ones with the same forces (theory: dae-view).
+// The multipliers of all constraints if some are redundant: the least ones with the same forces (theory: dae-view).
 template <Number N>
 class LeastMultipliers {
  public:
   LeastMultipliers(Workspace& s, const std::vector<N>& parameters);
-  // Of all constraints of the model at a point.
+  // Returns the multipliers of all constraints of the model at a point.
   std::vector<N> at(const Expansion<N>& point);
   void set_parameters(const std::vector<N>& parameters) { phi_.set_parameters(parameters); }
 

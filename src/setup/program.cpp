@@ -7,7 +7,8 @@ namespace anholon {
 
 namespace {
 
-// By variable, as programs want it. What constraints settle is solved for in wider numbers, as for a motion.
+// Returns the start by variable, as programs need it. Values that constraints determine are computed in wider numbers,
+// as for a motion.
 EmitOptions::Start start_for_program(Workspace& s, const StateChoice& choice) {
   Start<double> start;
   if (Start<long double> wide; initial_state(s, choice, wide).ok()) {

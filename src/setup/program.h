@@ -1,4 +1,5 @@
-// The motion of a prepared system as a program in C or Python, with its consistent initial state, inputs, outputs and events.
+// Writes the motion of a prepared system as a program in C or Python, with its consistent initial state, inputs,
+// outputs and events.
 #pragma once
 #include "setup/scenario.h"
 
@@ -8,8 +9,9 @@ struct RateFormulas;
 
 enum class ProgramLanguage : std::uint8_t { c, python };
 
-// `name`: the prefix of names in C; `made_by`: a line for the head of the text. Throws Failure for what has no text: an
-// unknown function of time, a number beyond double. `rates`: in independent velocities, for a function of their own in Python.
+// Returns the text. `name`: the prefix of names in C; `made_by`: a line for the head of the text. Throws Failure if a
+// part has no text: an unknown function of time, a number beyond double. `rates`: equations in independent velocities,
+// for a function of their own in Python.
 std::string program_text(const Scenario& scenario, const StateChoice& choice, ProgramLanguage language,
                          const std::string& name, const std::string& made_by, const RateFormulas* rates = nullptr);
 

@@ -4,7 +4,7 @@
 
 namespace anholon {
 
-// Missed by more than this of the size of the state a constraint no longer follows from the others.
+// A constraint whose residual exceeds this part of the size of the state no longer follows from the others.
 static constexpr double kMiss = 1e-7;
 
 template <Number W>
@@ -62,7 +62,7 @@ Outcome follow_beside_start(Workspace& s) {
   Expansion<N> point(p, parameter_values<N>(*s.model), kOrders);
   const Start<double> start = start_of(s);
   point.load(start.t, {start.state.begin(), start.state.end()}, {start.leading.begin(), start.leading.end()});
-  // What fails here is for others to tell.
+  // Other checks report failures of these steps.
   if (!point.prepare().ok() || !point.project().ok() || !point.solve().ok() || !point.extend().ok()) return {};
   N size(1);
   for (std::size_t j = 0; j < p.unknowns(); ++j)

@@ -1,5 +1,6 @@
-// Constraints that are left out because they follow from the others: whether they go on to do so, and their
-// multipliers. Which are left out belongs to a point: a motion may choose others on its way (motion/motion.h).
+// Constraints that are left out because they follow from the others: checks that they still follow, and computes their
+// multipliers. The choice of the constraints that are left out belongs to a point: a motion may choose others later
+// (motion/motion.h).
 #pragma once
 #include "setup/output_tape.h"
 
@@ -11,16 +12,16 @@ class Redundant {
   Redundant(Workspace& scenario, const std::vector<W>& parameters);
 
   bool any() const { return outputs_.has_value(); }
-  // By how much each constraint that is left out at a point is missed there, in relation to the state.
+  // The residual of a constraint that is left out at a point, relative to the size of the state.
   struct Miss {
-    std::size_t constraint = 0;  // of the model
+    std::size_t constraint = 0;  // index in the model
     double miss = 0;
   };
-  // Not ok if one no longer holds at a point of the motion. Where the point is the start the constraints contradict one
-  // another.
+  // Fails if a constraint that is left out does not hold at a point of the motion. If the point is the start, the
+  // constraints contradict one another.
   Outcome hold(const Expansion<W>& point, bool start, std::vector<Miss>& misses);
-  // Of all constraints of the model, with the same N: the least ones, where multipliers are not part of the state, else
-  // zeros for what was left out (theory: dae-view).
+  // Returns the multipliers of all constraints of the model, with the same N: the least ones if multipliers are not
+  // part of the state, else zeros for the constraints that are left out (theory: dae-view).
   std::vector<W> multipliers(const Expansion<W>& point);
 
   void set_parameters(const std::vector<W>& parameters) {
@@ -29,13 +30,13 @@ class Redundant {
 
  private:
   const Scenario& s_;
-  std::optional<OutputTape<W>> outputs_;  // the constraints, where there are any
+  std::optional<OutputTape<W>> outputs_;  // the constraints; nullopt if none is redundant
   std::optional<LeastMultipliers<W>> least_;
 };
 
-// Whether the constraints that are left out at the start of a motion follow from the others beside it, too: by the series
-// of the motion that the others make. They do not where rows are dependent at this one point, or where constraints that
-// agree in their highest derivatives ask for more together (x' + y' = 0 and x' + y' + z = 0).
+// Fails if a constraint that is left out at the start of a motion does not follow from the others near the start, which
+// the series of the motion by the other constraints shows. This happens if rows are dependent at this one point only,
+// or if constraints that agree in their highest derivatives require more together (x' + y' = 0 and x' + y' + z = 0).
 Outcome follow_beside_start(Workspace& s);
 
 extern template class Redundant<long double>;

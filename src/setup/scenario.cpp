@@ -21,7 +21,7 @@ bool all_proved_zero(const Column& es) {
   return true;
 }
 
-// Whether e changes with one of the symbols, be it by steps, which have no derivative: sign(x'), a choice by x' > 0.
+// True if e changes with one of the symbols, also by steps, which have no derivative: sign(x'), a choice by x' > 0.
 bool depends_on(Expr e, const Column& on) {
   if (!all_proved_zero(gradient(e, on))) return true;
   const Graph& g = *e.graph;
@@ -52,7 +52,7 @@ ConstraintClass classify_one(const Mechanics& m, std::size_t r) {
   }
   const Column top = jets(*m.model, static_cast<unsigned>(order));
   bool linear = true;
-  Expr radial = g.zero();  // q^(m) dphi/dq^(m): equals d phi for phi homogeneous of degree d
+  Expr radial = g.zero();  // q^(m) dphi/dq^(m), which equals d phi for phi homogeneous of degree d
   for (std::size_t a = 0; a < top.size(); ++a) {
     if (is_zero(m.Phi[r][a])) continue;
     linear = linear && !depends_on(m.Phi[r][a], top);
@@ -110,7 +110,7 @@ int orders_beyond(const Scenario& s, const std::vector<int>& d) {
   return beyond;
 }
 
-// What the system's form asks for, out of the named values.
+// Returns the start that the system's form needs, from the named values.
 template <Number N>
 static Start<N> start_of(const Scenario& s, const InitialState<N>& named) {
   // The multipliers of a variational principle are not those of the reactions.
@@ -141,7 +141,7 @@ ProbeHints hints_at(const InitialState<double>& state) {
   return hints;
 }
 
-// Independent constraints at the state; those that follow from them are left out, with a note.
+// Chooses independent constraints at the state; those that follow from them are left out, with a note.
 static void choose_constraints(const Model& model, const std::vector<double>& parameters, Scenario& s) {
   IndependentConstraints rows = independent_constraints(*s.mechanics, parameters, s.state);
   s.independent = std::move(rows.independent);
@@ -153,7 +153,7 @@ static void choose_constraints(const Model& model, const std::vector<double>& pa
   }
 }
 
-// By how much the axes of an orientation miss length 1, right angles or a right-handed order.
+// Returns by how much the axes of an orientation deviate from length 1, right angles or a right-handed order.
 static double missed_by(const Rotation& r, PointValues& at) {
   double axes[3][3];
   for (int k = 0; k < 3; ++k)
@@ -170,7 +170,7 @@ static double missed_by(const Rotation& r, PointValues& at) {
   return most;
 }
 
-// Orientations are rotations at the start. Constraints may hold there what holds identically in others; numbers of the
+// Checks that orientations are rotations at the start. Some are rotations only because constraints hold; numbers of the
 // file may be rounded.
 static Outcome oriented(const Model& model, PointValues& at) {
   constexpr double kOfRotation = 1e-9;
@@ -187,7 +187,7 @@ static Outcome oriented(const Model& model, PointValues& at) {
   return {};
 }
 
-// No motion starts from a number beyond those of the machine, with a body that is deformed, or with a negative mass.
+// Refuses a start with a number beyond double, a deformed body, or a negative mass.
 static Outcome admissible(const Model& model, const std::vector<double>& parameters,
                           const InitialState<double>& state) {
   for (std::size_t a = 0; a < state.q.size(); ++a)
@@ -208,7 +208,7 @@ static Outcome admissible(const Model& model, const std::vector<double>& paramet
   return {};
 }
 
-// Routh's equations know all multipliers: the state is completed with them, whatever the form.
+// Completes the state with Routh's equations, which contain all multipliers, whatever the form.
 static Outcome complete(const InitialProblem<double>& problem, Scenario& s) {
   auto routh =
       std::make_shared<System>(implicit_system(s.model, *s.mechanics, *find_formulation("routh"), s.independent, {}));
@@ -221,8 +221,8 @@ static Outcome complete(const InitialProblem<double>& problem, Scenario& s) {
   return complete_state(problem, *s.routh, s.routh_structure, s.state);
 }
 
-// Constraints on accelerations, conditions on them and forces that are nonlinear in them ask for more than positions and
-// velocities.
+// True if the model has constraints on accelerations, conditions on them or forces that are nonlinear in them, which
+// may need more than positions and velocities.
 static bool may_need_completion(const Model& model, const Mechanics& mechanics) {
   const auto high = [](Expr e) {
     for (NodeId id : symbols({&e, 1}))
@@ -237,7 +237,7 @@ static bool may_need_completion(const Model& model, const Mechanics& mechanics) 
          !nonlinear_in_forces(mechanics).empty();
 }
 
-// Derivatives of a constraint that the structure asks for, and the fits of its tables do not have.
+// Refuses a constraint of which the structure needs derivatives that the fits of its tables do not have.
 static void smooth_enough(const Scenario& s) {
   for (std::size_t k = 0; k < s.system.constraints.size(); ++k) {
     const int c = s.structure.c[s.system.coordinates + k];
@@ -253,8 +253,8 @@ static void smooth_enough(const Scenario& s) {
   }
 }
 
-// Values given for coordinates without inertia, which follow from the equations. Forms that eliminate have lower orders
-// for their dependent coordinates, too.
+// Notes values given for coordinates without inertia, which follow from the equations. Forms that eliminate have lower
+// orders for their dependent coordinates as well, so they have no such note.
 static void note_unused_values(const Formulation& form, Scenario& s) {
   if (form.eliminates() || s.state.q_origin.empty()) return;
   for (std::size_t a = 0; a < s.system.coordinates; ++a)
@@ -310,7 +310,7 @@ static Outcome prepare(std::shared_ptr<const Model> model, const Formulation& fo
   if (!large_angles.empty()) s.notes.push_back(large_angles);
   if (!initial.ok()) return initial;
   if (!structured.ok()) return structured;
-  // Masses and forces that depend on accelerations, and coordinates without inertia, may ask for more, too.
+  // Masses and forces that depend on accelerations, and coordinates without inertia, may also need more.
   const bool beyond =
       std::any_of(s.structure.d.begin(), s.structure.d.begin() + static_cast<std::ptrdiff_t>(s.system.coordinates),
                   [](int d) { return d > 2; }) ||
@@ -393,7 +393,7 @@ void for_each_expression(Scenario& s, const ExprVisitor& f) {
   for_each_expression(elimination, f);
   for_each_expression(system, f);
   if (routh) for_each_expression(const_cast<System&>(*routh), f);
-  // The others hold numbers and words.
+  // The other members hold numbers and words.
   static_cast<void>(given_nodes), static_cast<void>(classes), static_cast<void>(state);
   static_cast<void>(independent), static_cast<void>(redundant), static_cast<void>(structure);
   static_cast<void>(routh_structure), static_cast<void>(notes);

@@ -1,5 +1,5 @@
-// One model made ready: mechanics, consistent state, independent constraints, implicit system in a
-// form, structure. The composition of the whole main line up to the stepping program.
+// One prepared model: mechanics, consistent state, independent constraints, implicit system in a form, structure. This
+// file composes the stages up to the stepping program.
 #pragma once
 #include <algorithm>
 #include <memory>
@@ -15,111 +15,114 @@ namespace anholon {
 
 struct ConstraintClass {
   std::string kind;          // holonomic, linear, affine, nonlinear (in its top derivative)
-  bool homogeneous = false;  // in the top derivative (order 1: it does no work)
-  bool rheonomic = false;    // holds t explicitly
+  bool homogeneous = false;  // homogeneous in the top derivative (order 1: it does no work)
+  bool rheonomic = false;    // contains t explicitly
   bool redundant = false;    // follows from the others at the initial state
 };
 
-// The numbers of a computation. multi: MPFR with as many digits as asked for.
+// The number type of a computation. multi: MPFR with the requested number of digits.
 enum class Precision : std::uint8_t { real, long_real, quad, multi };
 
 struct StateChoice {
   std::vector<StateOverride> overrides;
   std::optional<Rational> t;
-  std::vector<std::size_t> eliminate;  // coordinates to eliminate; empty: chosen
-  // Exponents that are whole numbers are put in (model/exponents.h), but for those that depend on one of these
-  // parameters, which may get other values; nullopt: none is put in.
+  std::vector<std::size_t> eliminate;  // coordinates to eliminate; if empty, the program chooses
+  // Exponents that are whole numbers are replaced by their values (model/exponents.h), unless they depend on one of
+  // these parameters, which may get other values. If nullopt, no exponent is replaced.
   std::optional<std::vector<std::size_t>> open_parameters;
 };
 
-// A prepared system. Its graph is frozen and is its own, so reading a scenario never changes it and many threads may do
-// so at once; whoever has to build expressions does so in a Workspace.
+// A prepared system. Its graph is frozen and belongs to it, so reading a scenario never changes it and many threads may
+// read it at once. Code that has to build expressions does so in a Workspace.
 struct Scenario {
   std::shared_ptr<const Model> model;
-  std::size_t given_nodes = 0;  // those of the graph before the model was put into equations
+  std::size_t given_nodes = 0;  // the number of nodes of the graph before the equations were derived
   std::unique_ptr<Mechanics> mechanics;
   std::vector<ConstraintClass> classes;
   std::shared_ptr<const StartPlan> start;  // null without numbers
   InitialState<double> state;              // consistent, in double
   std::vector<std::size_t> independent, redundant;
-  Elimination elimination;  // of forms without multipliers
+  Elimination elimination;  // the elimination of forms without multipliers
   System system;
   Structure structure;
-  // Routh's system, where the initial state holds more than positions and velocities, or the equations several
-  // solutions: it is completed there, whatever the form.
+  // Routh's system, if the initial state holds more than positions and velocities or the equations have several
+  // solutions: the state is completed with this system, whatever the form.
   std::shared_ptr<const System> routh;
   Structure routh_structure;
   std::vector<std::string> notes;
 };
 
-// A copy of a prepared system in which its holder may build expressions. Nodes have the ids that they would have got in
-// the graph of the original, so numbers that are computed in a workspace have the same bits in every other one made of
+// A copy of a prepared system in which its owner may build expressions. New nodes have the ids that they would have in
+// the graph of the original, so numbers that are computed in a workspace have the same bits in every other workspace of
 // the same scenario.
 //
-// Functions that give numbers or text take a `const Scenario&` and build in a workspace of their own. Those that take or
-// give expressions, and the parts of a computation, take the `Workspace&` in which these are.
+// Functions that return numbers or text take a `const Scenario&` and build in a workspace of their own. Functions that
+// take or return expressions, and the parts of a computation, take the `Workspace&` whose graph holds these
+// expressions.
 struct Workspace : Scenario {
   explicit Workspace(const Scenario& from);
   explicit Workspace(const Workspace& from) : Workspace(static_cast<const Scenario&>(from)) {}
   Workspace& operator=(const Workspace&) = delete;
 
   Graph& graph() const { return *model->graph; }
-  // Puts another number in place of the value of a parameter.
+  // Replaces the value of a parameter by a number.
   void set_parameter(std::size_t parameter, const Rational& value);
 
  private:
   std::shared_ptr<Model> own_model_;  // the same as `model`
 };
 
-// The handles of a scenario (expr/handles.h), those of its model and all other parts among them.
+// The handles of a scenario (expr/handles.h), including those of its model and of all other parts.
 void for_each_expression(Scenario& s, const ExprVisitor& f);
 
-// The model as it was before it was put into equations, for another form or other numbers; its holder may build in it.
+// Returns the model as it was before equations were derived, for another form or other numbers; the owner may build in
+// its graph.
 std::shared_ptr<Model> given_model(const Scenario& scenario);
 
-// Classes of the constraints, by exact tests on their partial derivatives.
+// Returns the classes of the constraints, by exact tests on their partial derivatives.
 std::vector<ConstraintClass> classify(const Mechanics& mechanics);
 
-// Prepares a clone of the model; the model itself is left as it is.
-// Diagnostics: what this model lacks for numbers (unknown functions).
-// The outcome tells of numbers: inconsistent data, a singular start.
+// Prepares a clone of the model; the model itself is unchanged. A model that lacks something for numbers (unknown
+// functions) is prepared without them. The outcome tells of faults of numbers: inconsistent data, a singular start.
 Outcome make_scenario(std::shared_ptr<const Model> model, const Formulation& form, const StateChoice& choice,
                       Scenario& scenario);
 
-// Finds the consistent state of a workspace whose parameters have got other values (set_parameter), or whose state others
-// (`choice`, for the same symbols as those with which it was made). Returns nullopt if its
-// equations are not those of the new state, where other constraints are independent: make_scenario makes them anew.
+// Finds the consistent state of a workspace whose parameters have other values (set_parameter), or whose state has
+// other values (`choice`, for the same symbols as those with which it was made). Returns nullopt if the equations do
+// not hold for the new state because other constraints are independent: make_scenario then makes them anew.
 std::optional<Outcome> begin_anew(Workspace& s, const StateChoice& choice = {});
 
-// Derivatives of the multipliers that belong to the state or are solved for, in forms with multipliers.
+// Returns how many derivatives of the multipliers belong to the state or are solved for, in forms with multipliers.
 int multiplier_orders(const Scenario& scenario);
 
-// The highest derivative that is solved for of any coordinate, d being of the system in the scenario's form; how many
-// more than their own are to be computed of the others, and of the multipliers.
+// largest_order returns the order of the highest derivative of any coordinate that is solved for; `d` belongs to the
+// system in the scenario's form. orders_beyond returns how many orders more than their own are to be computed of the
+// other coordinates, and of the multipliers.
 int largest_order(const Scenario& scenario, const std::vector<int>& d);
 int orders_beyond(const Scenario& scenario, const std::vector<int>& d);
 
-// By how many orders the expressions exceed what is solved for.
+// Returns by how many orders the expressions exceed the derivatives that are solved for.
 int orders_needed(const Scenario& scenario, std::span<const Expr> es);
 
-// Where the structure of its system is probed.
+// Returns the values near which the structure of a system is probed.
 ProbeHints hints_at(const InitialState<double>& state);
 
-// Nothing if numbers can be computed for the model, else why not.
+// Returns nullopt if numbers can be computed for the model, else the reason why not.
 std::optional<Diagnostic> not_integrated(const Model& model);
 
-// The state in the order of an Expansion's, its time, and the leading derivatives (empty: they follow without a guess).
+// The state in the order of an Expansion's state, its time, and the leading derivatives (empty: they follow without a
+// guess).
 template <Number N>
 struct Start {
   N t{0};
   std::vector<N> state, leading;
 };
-// The consistent state in double.
+// Returns the consistent state in double.
 Start<double> start_of(const Scenario& scenario);
-// The consistent state in the number type N.
+// Computes the consistent state in the number type N.
 template <Number N>
 Outcome initial_state(const Scenario& s, const StateChoice& choice, Start<N>& start);
-// The same, built in the workspace that is given.
+// Computes the same in the given workspace.
 template <Number N>
 Outcome initial_state(Workspace& s, const StateChoice& choice, Start<N>& start);
 

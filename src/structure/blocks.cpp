@@ -6,7 +6,8 @@ namespace anholon {
 
 namespace {
 
-// Strongly connected components by Tarjan's algorithm, without recursion; each comes after the components it needs.
+// Returns the strongly connected components by Tarjan's algorithm, without recursion; each comes after the components
+// it needs.
 std::vector<std::vector<std::size_t>> components(const std::vector<std::vector<std::size_t>>& needs) {
   constexpr std::size_t kUnseen = SIZE_MAX;
   const std::size_t n = needs.size();

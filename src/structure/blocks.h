@@ -14,13 +14,13 @@ struct Block {
   std::vector<std::size_t> equations, unknowns;  // ascending
 };
 
-// The blocks in an order of solution: each needs only unknowns of itself and of earlier blocks.
+// Returns the blocks in an order of solution: each needs only unknowns of itself and of earlier blocks.
 std::vector<Block> blocks(const Structure& structure);
 
 // A hidden constraint on the state: equation i with its derivatives of order k < c_i.
 struct HiddenConstraint {
   std::size_t equation;
-  // of the highest derivative of a coordinate in the k-th derivative of the equation; -1: multipliers only
+  // The order of the highest derivative of a coordinate in the k-th derivative of the equation; -1: multipliers only.
   std::vector<int> orders;
 };
 std::vector<HiddenConstraint> hidden_constraints(const System& system, const Structure& structure);

@@ -63,17 +63,17 @@ Column leading_unknowns(const System& s, const Structure& t) {
 namespace {
 
 constexpr int kMostNewton = 60, kNearStarts = 8;
-// Starts at random end after so many in a row that find no new solution; the second number as long as none of the
-// solutions is wanted.
+// The search from random starts ends after this number of starts in a row without a new solution; the second number
+// holds as long as none of the solutions is wanted.
 constexpr int kInVain = 24, kInVainWithoutWanted = 160, kMostRandomStarts = 600;
 constexpr std::size_t kFlipsUpTo = 8;  // coordinates whose signs are flipped one by one
 constexpr double kSame = 1e-6;         // solutions at a smaller distance count as one
 constexpr double kSingular = 1e-9;     // smallest scaled singular value
-// As above where Newton's method begins at random: it comes close to a point at which the equations do not determine the
-// motion.
+// The same threshold for random starts of Newton's method, which come close to points at which the equations do not
+// determine the motion.
 constexpr double kClearlyRegular = 1e-4;
 
-// The next number at random, from -1000 to 1000, the same on every machine.
+// Returns the next random number, from -1000 to 1000, the same on every machine.
 int thousandths(std::uint64_t& random) {
   random = random * 6364136223846793005U + 1442695040888963407U;
   return static_cast<int>((random >> 33U) % 2001U) - 1000;
@@ -128,14 +128,15 @@ class Search {
                 N(700);
       try_from(x);
     }
-    // Where all starts have led to points at which the equations do not determine the motion, so would others.
+    // If all starts have led to points at which the equations do not determine the motion, further starts would as
+    // well.
     if (!out_.singular || !out_.found.empty()) start_at_random(size);
     sort();
     return out_;
   }
 
  private:
-  // Farther away, until starts find nothing new.
+  // Starts farther away, until starts find nothing new.
   void start_at_random(const N& size) {
     least_singular_value_ = kClearlyRegular;
     std::uint64_t random = 1;
@@ -174,7 +175,8 @@ class Search {
     return size;
   }
 
-  // Accelerations with zero multipliers of the nonlinear constraints: Gauss' principle measures from them.
+  // Computes accelerations with zero multipliers of the nonlinear constraints; Gauss' principle measures changes from
+  // them.
   void without_nonlinear_constraints() {
     if (metric_ != 1U << 2 || guessed() || !constraints_may_branch(m_, s_)) return;
     std::vector<StageEquation> rows = part(equations_, 0, n_);
@@ -200,7 +202,7 @@ class Search {
     state_ = before;
   }
 
-  // Newton's method from accelerations that miss the constraints, with multipliers at random.
+  // Applies Newton's method from accelerations that miss the constraints, with random multipliers.
   void try_freely(const std::vector<N>& start, std::uint64_t random) {
     const InitialState<N> before = state_;
     for (std::size_t a = 0; a < n_; ++a) constraints_.x(state_, a) = start[a];
@@ -264,7 +266,7 @@ class Search {
       x.push_back(all_.x(state_, j));
       if (abs(x[j]) > size) size = abs(x[j]);
     }
-    // Clears the residue of the start in numbers that are zero.
+    // Sets to zero what the start has left in numbers that are zero.
     for (N& v : x)
       if (abs(v) < size * unit_roundoff<N>() * N(0.001)) v = N(0);
     for (const std::vector<N>& other : out_.found) {
@@ -278,7 +280,7 @@ class Search {
     out_.found.push_back(x);
   }
 
-  // q^(m) along and against the reaction E - G (theory: initial-data).
+  // Tries q^(m) along and against the reaction E - G (theory: initial-data).
   void along_the_reaction(const N& size) {
     const InitialState<N> before = state_;
     for (std::size_t j = 0; j < motion_.unknowns(); ++j) motion_.x(state_, j) = N(0);

@@ -10,8 +10,8 @@ namespace anholon {
 // True if a constraint of order 2 or more is nonlinear in its highest derivatives: its equations may have several
 // solutions.
 bool may_branch(const Mechanics& m, const System& s, std::size_t constraint);
-// The accelerations and higher derivatives in which a given force is nonlinear: the equations of motion may have several
-// solutions for them.
+// Returns the accelerations and higher derivatives in which a given force is nonlinear: the equations of motion may
+// have several solutions for them.
 Column nonlinear_in_forces(const Mechanics& m);
 // True if there is such a constraint or such a force.
 bool may_branch(const Mechanics& m, const System& s);
@@ -24,20 +24,20 @@ struct LeadingSolutions {
   bool singular = false;  // a start led to a point at which the equations do not determine the motion
 };
 
-// Equation i of the system, differentiated k times.
+// Returns equation i of the system, differentiated k times.
 StageEquation law(const System& s, std::size_t i, unsigned k);
-// Equations of motion and constraints, each differentiated as often as the structure requires, and the unknowns for
-// which they are solved.
+// These return the equations of motion and constraints, each differentiated as often as the structure requires, and the
+// unknowns for which they are solved.
 std::vector<StageEquation> leading_equations(const System& s, const Structure& t);
 Column leading_unknowns(const System& s, const Structure& t);
 
-// Whether a solution may be taken.
+// Tells whether a solution is acceptable.
 template <Number N>
 using MayBeTaken = std::function<bool(const std::vector<N>&)>;
 
-// `state` holds the state and, as leading derivatives, the guess: that of the user, or zeros. Zeros are replaced by the
-// accelerations without the nonlinear constraints, if these are of order 2. The search tries more starts as long as it has
-// found no solution that is wanted.
+// Solves for the leading derivatives. `state` holds the state and, as leading derivatives, a guess: that of the user,
+// or zeros. Zeros are replaced by the accelerations without the nonlinear constraints, if these are of order 2. The
+// search tries more starts as long as it has found no solution that is `wanted`.
 template <Number N>
 LeadingSolutions<N> leading_solutions(const Mechanics& m, const System& s, const Structure& t,
                                       const std::vector<N>& parameters, InitialState<N> state,

@@ -42,8 +42,8 @@ void StateSolver<N>::keep_said(const InitialState<N>& before, const Column& unkn
       *state_.value(n) = *before.value(n);
 }
 
-// As above for rates of multipliers and the other entries of their stage: the guess for those entries is their value
-// without these multipliers.
+// Does the same for rates of multipliers and the other entries of their stage: the guess for those entries is their
+// value without these multipliers.
 template <Number N>
 void StateSolver<N>::start_unconstrained(const StageEquations& laws, const Column& unknowns, unsigned metric) {
   if (std::none_of(unknowns.begin(), unknowns.end(), [&](Expr u) { return free_multiplier(node(u)); })) return;
@@ -121,8 +121,8 @@ void StateSolver<N>::mark_undetermined(Stage<N>& stage, const InitialState<N>& b
   }
 }
 
-// Says which positions and velocities were chosen by least change, in place of the note that was made before: what it names and
-// is still chosen is named again, with its value now.
+// Notes which positions and velocities were chosen by least change, in place of the earlier note: values in the earlier
+// note that are still chosen are named again, with their present values.
 template <Number N>
 void StateSolver<N>::say_least_change() {
   LeastChangeNote& said = state_.least_change;

@@ -17,7 +17,8 @@ std::string StateSolver<N>::entry_name(const Node& n) const {
                          n.order, Format::text);
 }
 
-// The derivatives and multipliers of the nonlinear constraints, and the derivatives in which forces are nonlinear.
+// Lists the derivatives and multipliers of the nonlinear constraints, and the derivatives in which forces are
+// nonlinear.
 template <Number N>
 std::string StateSolver<N>::solution_text(const std::vector<N>& x, const System& s, const Structure& t) const {
   std::string list;
@@ -58,7 +59,7 @@ Outcome StateSolver<N>::no_leading(const System& s, const LeadingSolutions<N>& s
           kGiveGuess};
 }
 
-// Forces are nonlinear in the accelerations, and no regular solution was found.
+// Returns the outcome for forces that are nonlinear in the accelerations if no regular solution is found.
 template <Number N>
 Outcome StateSolver<N>::no_accelerations(bool singular) const {
   if (singular)
@@ -89,20 +90,21 @@ Outcome StateSolver<N>::no_value(const Stage<N>& stage) {
           "give a guess near the wanted configuration: [initial] guess = {…}"};
 }
 
-// "constraint 'edge' (line 10)".
+// Describes an equation: "constraint 'edge' (line 10)".
 template <Number N>
 std::string StateSolver<N>::equation_text(const StageEquation& e) const {
   return e.what + (e.span.line ? " (" + line_of(e.span, model_.source_text) + ")" : "");
 }
 
-// The equation with the known values substituted, as a condition on the free or released unknowns: "x'^2 + 1 = 0".
+// Returns the equation with the known values substituted, as a condition on the free or released unknowns: "x'^2 + 1 =
+// 0".
 template <Number N>
 std::string StateSolver<N>::asked(const Stage<N>& stage, std::size_t row,
                                   const std::vector<std::size_t>& released) const {
   constexpr std::size_t kMostUnknowns = 2, kLongest = 60;
   constexpr long kMostWork = 2000;
   const Graph& g = m_.graph();
-  const std::unique_ptr<Graph> own = g.clone();  // others may be reading the graph
+  const std::unique_ptr<Graph> own = g.clone();  // other threads may be reading the graph
   const Expr residual = own->own(stage.equation(row).residual);
   std::size_t open = 0;
   bool valued = true;
@@ -132,14 +134,14 @@ std::string StateSolver<N>::asked(const Stage<N>& stage, std::size_t row,
   return text.size() > kLongest ? std::string() : "asks for " + text + " = 0 here";
 }
 
-// "x, y and z".
+// Joins parts as "x, y and z".
 static std::string listed(const std::vector<std::string>& parts, const char* last = " and ") {
   std::string text;
   for (std::size_t k = 0; k < parts.size(); ++k) text += (k == 0 ? "" : k + 1 == parts.size() ? last : ", ") + parts[k];
   return text;
 }
 
-// Two numbers with enough digits to distinguish them.
+// Prints two numbers with enough digits to distinguish them.
 static std::pair<std::string, std::string> told_apart(double a, double b) {
   for (int digits : {6, 9, 12, 17})
     if (std::pair text(number_text(a, digits), number_text(b, digits)); text.first != text.second || digits == 17)
@@ -149,21 +151,21 @@ static std::pair<std::string, std::string> told_apart(double a, double b) {
 
 namespace {
 
-// A value or a condition that may be left out; `value` is one that fits in its place, if it is known.
+// A value or a condition that may be left out; `value` is a value that would fit instead, if it is known.
 struct Given {
   std::string name, key, value;
   Span span;
 };
 
-// "x'", "qr' in wheel.toml".
+// Returns the names as "x'", "qr' in wheel.toml".
 std::vector<std::string> with_files(const std::vector<Given>& given, const SourceText& source) {
   std::vector<std::string> names;
   for (const Given& g : given) names.push_back(g.name + (g.span.file > 0 ? " in " + source.of(g.span).name : ""));
   return names;
 }
 
-// What to write instead in a file over a base: nothing of a base can be taken away, but values and the list of
-// conditions are replaced.
+// Tells what to write instead in a file over a base: entries of a base cannot be removed, but its values and its list
+// of conditions can be replaced.
 std::string over_base(const std::vector<Given>& given) {
   std::vector<std::string> replaced;
   bool conditions = false;
@@ -180,7 +182,7 @@ std::string over_base(const std::vector<Given>& given) {
 
 }  // namespace
 
-// A message with the given values and the equations that contradict each other.
+// Returns a message with the given values and the equations that contradict each other.
 template <Number N>
 Outcome StateSolver<N>::clash_of(const Stage<N>& stage, const Contradiction<N>& c,
                                  const InitialState<N>& before) const {

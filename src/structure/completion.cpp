@@ -6,7 +6,7 @@ namespace anholon {
 template <Number N>
 Outcome StateSolver<N>::complete(const System& s, const Structure& t) {
   int beyond = 0;
-  std::vector<StageEquation> late;  // hold leading derivatives, or derivatives of these up to the order `beyond`
+  std::vector<StageEquation> late;  // these hold leading derivatives, or derivatives of these up to the order `beyond`
   for (const StageEquation& e : conditions())
     if (const int order = order_beyond(e.residual, s, t); order >= 0)
       late.push_back(e), beyond = std::max(beyond, order);
@@ -30,7 +30,7 @@ Outcome StateSolver<N>::complete(const System& s, const Structure& t) {
   return {};
 }
 
-// Makes room for the state and its derivatives up to this order of the leading ones, and keeps what is there.
+// Makes room for the state and its derivatives up to this order of the leading ones, and keeps the present values.
 template <Number N>
 void StateSolver<N>::make_room(const System& s, const Structure& t, int beyond) {
   int coordinates = 2, multipliers = 0;
@@ -51,13 +51,14 @@ static int order_beyond(Expr e, const System& s, const std::vector<int>& d) {
   return most;
 }
 
-// The highest derivative of a leading derivative that e holds; -1 if e holds entries of the state only.
+// Returns the order of the highest derivative of a leading derivative that e holds; -1 if e holds entries of the state
+// only.
 template <Number N>
 int StateSolver<N>::order_beyond(Expr e, const System& s, const Structure& t) const {
   return anholon::order_beyond(e, s, t.d);
 }
 
-// The number of orders between the highest entry of e and the leading derivatives; 0: e contains leading ones.
+// Returns the number of orders between the highest entry of e and the leading derivatives; 0: e contains leading ones.
 template <Number N>
 int StateSolver<N>::level_of(Expr e, const System& s, const Structure& t) const {
   int level = 1000;
@@ -69,7 +70,7 @@ int StateSolver<N>::level_of(Expr e, const System& s, const Structure& t) const 
   return level == 1000 ? 0 : level;
 }
 
-// Entries x_j^(d_j - level) from the equations E_i^(c_i - level), by least change.
+// Computes the entries x_j^(d_j - level) from the equations E_i^(c_i - level), by least change.
 template <Number N>
 Outcome StateSolver<N>::stage(const System& s, const Structure& t, int level) {
   Column unknowns;
@@ -110,9 +111,9 @@ Outcome StateSolver<N>::stage(const System& s, const Structure& t, int level) {
   return {};
 }
 
-// A servo constraint whose input does not act against it restricts velocities through the equations of motion. They are
-// changed together with the other entries of this level, subject to all equations on these. Returns false if there are
-// none.
+// Adds velocities: a servo constraint whose input does not act against it restricts velocities through the equations of
+// motion. These velocities are changed together with the other entries of this level, subject to all equations on
+// velocities. Returns false if there are none.
 template <Number N>
 bool StateSolver<N>::add_velocities(const System& s, const Structure& t, int level, StageEquations& equations,
                                     Column& unknowns, unsigned& metric) const {
@@ -133,7 +134,7 @@ bool StateSolver<N>::add_velocities(const System& s, const Structure& t, int lev
   return true;
 }
 
-// Values given for derivatives that the state does not hold are conditions on the state.
+// Turns values given for derivatives that the state does not hold into conditions on the state.
 template <Number N>
 Outcome StateSolver<N>::given_beyond_the_state(const System& s, const Structure& t, StageEquations& late) {
   Outcome refused;
@@ -175,7 +176,7 @@ bool StateSolver<N>::branch_was_named(const System& s, const Structure& t) const
          std::any_of(model_.initial.guess.begin(), model_.initial.guess.end(), leading_guess);
 }
 
-// The leading derivatives: one linear system, or the solution nearest to the guess.
+// Computes the leading derivatives by one linear system, or as the solution nearest to the guess.
 template <Number N>
 Outcome StateSolver<N>::leading(const System& s, const Structure& t) {
   const Column unknowns = leading_unknowns(s, t);
@@ -206,7 +207,7 @@ Outcome StateSolver<N>::leading(const System& s, const Structure& t) {
   return {};
 }
 
-// The derivatives of this order of the leading ones.
+// Computes the derivatives of this order of the leading ones.
 template <Number N>
 Outcome StateSolver<N>::derivatives_of_leading(const System& s, const Structure& t, int order) {
   StageEquations equations;
@@ -221,8 +222,8 @@ Outcome StateSolver<N>::derivatives_of_leading(const System& s, const Structure&
   return find_by_least_change(all, state_, every) ? Outcome{} : no_value(all);
 }
 
-// Conditions on leading derivatives and their derivatives up to the order `beyond`, with all laws: velocities move first,
-// positions only if they must.
+// Solves conditions on leading derivatives and their derivatives up to the order `beyond` together with all laws:
+// velocities are changed first, positions only if necessary.
 template <Number N>
 Outcome StateSolver<N>::together(const System& s, const Structure& t, const StageEquations& late, int beyond) {
   // A state of the model has no derivative beyond its rate.
@@ -257,7 +258,7 @@ Outcome StateSolver<N>::together(const System& s, const Structure& t, const Stag
       return static_cast<int>(node(u).order) < t.d[*j] && *state_.origin(node(u)) != Origin::given;
     });
     if (!may_move && p_.overrides.empty()) continue;
-    for (Expr u : unknowns)  // derived values may be derived anew
+    for (Expr u : unknowns)  // derived values may be computed anew
       if (const auto j = s.variable(u.id); static_cast<int>(node(u).order) >= t.d[*j])
         *state_.origin(node(u)) = Origin::derived;
     clash_is_told_ = false;

@@ -30,8 +30,8 @@ Outcome StateSolver<N>::positions_and_velocities() {
   return {};
 }
 
-// Solves for positions and velocities together. Returns false if none fit; the state is then as it was. Far away any
-// equation holds up to round-off of its terms, so a place there is none.
+// Solves for positions and velocities together. Returns false if none fit; the state is then unchanged. A far place
+// does not count as solution, because there any equation holds up to round-off of its terms.
 template <Number N>
 bool StateSolver<N>::move_positions(const StartPlan& plan, const InitialState<N>& before) {
   const InitialState<N> failed = state_;
@@ -47,7 +47,7 @@ bool StateSolver<N>::move_positions(const StartPlan& plan, const InitialState<N>
   return near;
 }
 
-// The model's states start with the values of the file.
+// Sets the model's states to the values of the file.
 template <Number N>
 void StateSolver<N>::states() {
   const std::size_t n = model_.states.size();
@@ -57,7 +57,7 @@ void StateSolver<N>::states() {
   state_.state_rates_origin.assign(n, Origin::derived);
 }
 
-// Guesses, then values of the file, then the overrides; the model's states start with the values of the file.
+// Sets guesses, then values of the file, then the overrides; the model's states start with the values of the file.
 template <Number N>
 void StateSolver<N>::start_values(const std::function<bool(const Node&)>& wanted) {
   const InitialData& in = model_.initial;
@@ -117,8 +117,9 @@ StartPlan::Stages StateSolver<N>::kept_of(const StartPlan::Stages& s) const {
   return planned(m_, left_of(s->equations, s->unknowns, p_.overrides, m_.graph()), s->unknowns, s->metric, p_.mass);
 }
 
-// The given values are rounded numbers: all values may change a little, the others from those found with them or from
-// their guess, whichever changes the given ones less. Returns false if the equations are not satisfied then.
+// Treats the given values as rounded numbers: all values may change a little. The others start from their values found
+// before or from their guess, whichever changes the given values less. Returns false if the equations are not satisfied
+// then.
 template <Number N>
 bool StateSolver<N>::correct_rounded(Stage<N>& stage, const InitialState<N>& before,
                                      const std::vector<std::size_t>& free, const std::vector<std::size_t>& all) {
@@ -150,7 +151,7 @@ bool StateSolver<N>::correct_rounded(Stage<N>& stage, const InitialState<N>& bef
   return true;
 }
 
-// `tell`: whether the message of a failure is asked for.
+// `tell`: true if a failure needs a message.
 template <Number N>
 Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
   if (!stages) return {};
@@ -176,13 +177,13 @@ Outcome StateSolver<N>::attempt(const StartPlan::Stages& stages, bool tell) {
   if (stage.is_rounded()) {
     if (correct_rounded(stage, before, free, all)) return {};
     stage.worst(&worst);
-    // Data that overlap agree to their own digits only.
+    // Overlapping data agree only to the digits in which they are written.
     if (!(stage.worst(&worst) > N(stage_rounding<double>()))) return {};
   }
   return tell ? clash(stage, worst, before) : failed();
 }
 
-// Marks values that occur in an equation as derived, and so values that these move through the mass matrix by more than
+// Marks values as derived that occur in an equation, and values that these move through the mass matrix by more than
 // round-off.
 template <Number N>
 void StateSolver<N>::mark_derived(const Stage<N>& stage, const InitialState<N>& before,

@@ -1,7 +1,7 @@
 // Consistent initial data in stages: positions first, then velocities, then the further derivatives that the structure
 // requires.
 //
-// Given values hold as given. Missing ones follow from constraints and conditions by least change from the guess (0 by
+// Given values are kept. Missing ones follow from constraints and conditions by least change from the guess (0 by
 // default) in the mass norm. Given values that miss a constraint by at most 1e-8 of its scale are taken for rounded
 // numbers and corrected by least change; a larger residual is an error that names the constraint.
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace anholon {
 
-// Positions and velocities, from the constraints of orders 0 and 1 and the conditions on them.
+// Computes positions and velocities from the constraints of orders 0 and 1 and the conditions on them.
 template <Number N>
 Outcome consistent_state(const InitialProblem<N>& problem, InitialState<N>& state);
 

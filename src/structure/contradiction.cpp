@@ -41,7 +41,7 @@ class Circuits {
  private:
   static std::size_t members(const Contradiction<N>& c) { return c.equations.size() + c.given.size(); }
 
-  // The contradiction of row r with its combination of the basis; nullopt if the combination holds.
+  // Returns the contradiction of row r with its combination of the basis; nullopt if the combination holds.
   std::optional<Contradiction<N>> circuit(const Matrix<N>& a, std::size_t r, const std::vector<N>& c) const {
     std::vector<N> part(c.size(), N(0));
     N largest(0);
@@ -119,7 +119,7 @@ class DeletionFilter {
     }
     members += static_cast<std::size_t>(std::count(rows.begin(), rows.end(), true));
     if (members > kMostMembers || unknowns > kMostUnknowns || solvable(rows, fixed)) return std::nullopt;
-    // Equations that contradict each other do so for any given values.
+    // If the equations contradict each other without given values, no given value takes part.
     if (const std::vector<bool> none(given_.size(), false); !solvable(rows, none)) fixed = none;
     for (std::vector<bool>* list : {&rows, &fixed})
       for (std::size_t k = 0; k < list->size(); ++k) {
@@ -144,7 +144,7 @@ class DeletionFilter {
     return false;
   }
 
-  // The equations coupled with this one through free unknowns.
+  // Returns the equations coupled with this one through free unknowns.
   std::vector<bool> neighbours(std::size_t row) const {
     std::vector<bool> rows(s_.size(), false);
     std::vector<std::size_t> open = {row};
@@ -161,7 +161,7 @@ class DeletionFilter {
     return rows;
   }
 
-  // Whether these equations have a solution with these values given.
+  // True if these equations have a solution with these values given.
   bool solvable(const std::vector<bool>& rows, const std::vector<bool>& fixed) {
     state_ = start_;
     s_.keep(rows);
@@ -175,7 +175,7 @@ class DeletionFilter {
   InitialState<N>& state_;
   const InitialState<N> start_;
   const std::vector<bool>& given_;
-  std::vector<std::vector<bool>> holds_;  // whether equation i contains unknown j
+  std::vector<std::vector<bool>> holds_;  // true if equation i contains unknown j
 };
 
 }  // namespace

@@ -23,8 +23,9 @@ struct Contradiction {
   std::optional<N> wanted;
 };
 
-// `state` holds the given values and, for the free unknowns, the guess; it is not changed. `worst` is an equation that
-// does not hold. Returns nullopt if no set is found, or if the search would take too long.
+// Returns a minimal contradiction. `state` holds the given values and, for the free unknowns, the guess; the state is
+// not changed. `worst` is an equation that does not hold. Returns nullopt if no set is found, or if the search would
+// take too long.
 template <Number N>
 std::optional<Contradiction<N>> contradiction(Stage<N>& stage, InitialState<N>& state, const std::vector<bool>& given,
                                               std::size_t worst);

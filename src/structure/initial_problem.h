@@ -1,4 +1,4 @@
-// The problem of consistent initial data: what is given, and the equations of positions and velocities, compiled.
+// The problem of consistent initial data: the given values, and the compiled equations of positions and velocities.
 #pragma once
 #include <memory>
 #include <optional>
@@ -27,16 +27,18 @@ struct StartPlan {
 
   Tape values;  // t, the states, then guesses and given values
   using Stages = std::shared_ptr<const StagePlan>;
-  Stages positions, velocities;  // null where there is nothing to solve
-  // Of both, where there are conditions on velocities: positions may have to move if no velocities fit.
+  Stages positions, velocities;  // null if there is nothing to solve
+  // The stage of positions and velocities together, if there are conditions on velocities: positions may have to move
+  // if no velocities fit.
   Stages both;
-  bool kept = false;                                  // made for overrides:
-  Stages kept_positions, kept_velocities, kept_both;  // without conditions that are only about what is overridden
+  // true if the plan is made for overrides; then it has these stages:
+  bool kept = false;
+  Stages kept_positions, kept_velocities, kept_both;  // without conditions on overridden values alone
 
-  // The same plan with stages of its own; the handles are left as they are.
+  // Returns the same plan with stages of its own. The handles still refer to the old graph.
   StartPlan copy() const;
 };
-// The handles of a plan (expr/handles.h). REQUIRES: nobody else has its stages.
+// The handles of a plan (expr/handles.h). REQUIRES: no other plan shares its stages.
 void for_each_expression(StartPlan& p, const ExprVisitor& f);
 
 template <Number N>
@@ -51,7 +53,7 @@ struct InitialProblem {
   const InitialState<double>* near = nullptr;
 };
 
-// q_a^(k) with k >= 2, or a multiplier: a value beyond positions and velocities.
+// True for q_a^(k) with k >= 2 and for multipliers: values beyond positions and velocities.
 inline bool is_higher(const Node& n) { return n.kind == Kind::multiplier || (n.kind == Kind::jet && n.order > 1); }
 bool holds_higher(Expr e);
 bool overridden(const std::vector<StateOverride>& overrides, const Node& n);
@@ -59,13 +61,13 @@ bool overridden(const std::vector<StateOverride>& overrides, const Node& n);
 using StageEquations = std::vector<StageEquation>;
 
 StageEquations conditions_of(const Model& model);
-// The equations that overrides leave: all laws, and conditions that concern unknowns that are still open.
+// Returns the equations that overrides leave: all laws, and conditions that contain unknowns without overrides.
 StageEquations left_of(const StageEquations& equations, const Column& unknowns,
                        const std::vector<StateOverride>& overrides, Graph& g);
-// The stage of these equations; null if there are none.
+// Returns the stage of these equations; null if there are no equations.
 StartPlan::Stages planned(const Mechanics& m, const StageEquations& equations, const Column& unknowns, unsigned metric,
                           const std::vector<Column>* mass);
-// The numbers of the file: t, the states, then guesses and given values.
+// Returns the tape of the numbers in the file: t, the states, then guesses and given values.
 Tape initial_values(const Model& model);
 
 }  // namespace anholon

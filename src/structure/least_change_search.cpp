@@ -8,15 +8,16 @@ namespace anholon {
 namespace {
 
 constexpr int kMostIterations = 60;
-// Steps along Newton's flow grow by a factor where it leaves a place at which the Jacobian is nearly singular, and a flow
-// that comes to an end needs fewer.
+// The limit of steps along Newton's flow. The steps grow by a factor after a place at which the Jacobian is nearly
+// singular, and a flow that ends at a solution needs fewer steps.
 constexpr int kMostFlowSteps = 100;
 // After this number of line searches in a row without improvement the iteration is given up.
 constexpr int kMostInVain = 3;
-// The descent to the nearest solution in steps of Barzilai and Borwein takes some ten steps, and more where the constraints
-// are bent sharply.
+// The limit of steps of the descent to the nearest solution by Barzilai and Borwein, which takes about ten steps, and
+// more if the constraints are strongly curved.
 constexpr int kMostDescentSteps = 300;
-// So many iterations of Newton's method bring the steps of one descent back onto the solutions; beside folds each takes many.
+// The limit of iterations of Newton's method that bring the steps of one descent back onto the solutions; beside folds
+// each step takes many.
 constexpr int kMostDescentIterations = 500;
 // The smallest part of a step of Newton's method along its flow, a power of 4.
 constexpr double kLeastFlowPart = 0x1p-40;
@@ -43,7 +44,7 @@ class Iteration {
   }
   bool solved() const { return !(s_.worst() > stage_rounding<N>()); }
 
-  // The square of the distance from the guess, in the metric at the point.
+  // Returns the square of the distance from the guess, in the metric at the point.
   N distance() const { return distance(s_.metric); }
 
   // Goes towards the solution nearest to the guess or, if `nearest` is false, to any solution: every step is then the
@@ -79,22 +80,22 @@ class Iteration {
     return true;
   }
 
-  // True if run() has come to a solution, and to the nearest of its neighbours if that was asked for.
+  // True if run() has reached a solution and, if requested, the nearest of its neighbours.
   bool settled() const { return settled_ && solved(); }
   // True if run() made full steps only, from a point at which the equations are independent.
   bool direct() const { return direct_; }
 
-  // Goes to the solution nearest to the guess, from a solution that is not the nearest by a descent. Returns false if the
-  // equations have no value there.
+  // Goes to the solution nearest to the guess; if the first solution is not the nearest, a descent follows. Returns
+  // false if the equations have no value there.
   bool run_to_nearest() {
     if (!run(true)) return false;
     if (solved() && !settled_) descend();
     return true;
   }
 
-  // Follows Newton's flow from the point, along which all residuals fall in proportion: the solution at its end is that
-  // which belongs to the point, also where a full step of Newton's method would land near another one. Returns false if
-  // the flow ends before.
+  // Follows Newton's flow from the point, along which all residuals fall in proportion: the solution at its end belongs
+  // to the point, even if a full step of Newton's method would land near another one. Returns false if the flow ends
+  // before a solution.
   bool follow() {
     if (!s_.evaluate(state_)) return false;
     flow_part_ = kLeastFlowPart;
@@ -108,10 +109,10 @@ class Iteration {
     return solved();
   }
 
-  // Descends along the solutions from the one at hand to one whose neighbours are not nearer to the guess: the direction is
-  // the change towards the guess that keeps the equations to first order and is the greatest such in the metric at the
-  // point, its length follows from the two last steps (Barzilai and Borwein), and Newton's method brings each step back
-  // onto the solutions. Returns true if the step vanishes; else the descent ends at the nearest solution it has reached.
+  // Descends along the solutions to one whose neighbours are not nearer to the guess. The direction is the greatest
+  // change towards the guess, in the metric at the point, that keeps the equations to first order; its length follows
+  // from the two last steps (Barzilai and Borwein), and Newton's method brings each step back onto the solutions.
+  // Returns true if the step vanishes; else the descent ends at the nearest solution it has reached.
   bool descend() {
     std::vector<N> at, direction, last_at, last_direction;
     N last_moved(-1);
@@ -134,8 +135,8 @@ class Iteration {
   }
 
  private:
-  // The guess may be a stationary point of a constraint (the centre of a circle): moves the unknowns of such constraints
-  // away from it. Returns false if there are none.
+  // Moves unknowns away from a guess that is a stationary point of a constraint (the centre of a circle). Returns false
+  // if no constraint is stationary.
   bool leave_stationary_point(const RowChoice<N>& rows) {
     if (s_.linear()) return false;
     bool moved = false;
@@ -150,8 +151,8 @@ class Iteration {
     return moved;
   }
 
-  // True if the step is round-off of the point, or falls no more and is little above. `last`: the size of the step before,
-  // negative if there is none; it becomes that of this step.
+  // True if the step is round-off of the point, or is only a little above and no longer falls. `last`: the size of the
+  // step before, negative if there is none; becomes the size of this step.
   bool step_vanishes(N& last) const {
     N moved(0), size(0);
     for (std::size_t j = 0; j < x_.size(); ++j) {
@@ -164,7 +165,7 @@ class Iteration {
     return vanishes;
   }
 
-  // Takes the guess for unknowns that differ from it by the round-off of the largest change only.
+  // Sets unknowns to the guess if they differ from it only by the round-off of the largest change.
   void clear_round_off() {
     const std::vector<N> at = point();
     N largest(0);
@@ -183,7 +184,8 @@ class Iteration {
     return sum;
   }
 
-  // The part of the direction that the next step of a descent makes, from the change of the direction in the last one.
+  // Returns the part of the direction that the next step of a descent makes, from the change of the direction in the
+  // last step.
   N part_of_descent(const std::vector<N>& at, const std::vector<N>& direction, const std::vector<N>& last_at,
                     const std::vector<N>& last_direction) const {
     constexpr double kLeast = 0x1p-20, kMost = 16;
@@ -200,8 +202,9 @@ class Iteration {
     return part < N(kLeast) ? N(kLeast) : part > N(kMost) ? N(kMost) : part;
   }
 
-  // Makes this part of a step of the descent, or less, so that the distance does not grow in the metric at its start.
-  // Returns false, at the start of the step, if no part does that. Distances are known to the rounding of the solutions.
+  // Makes this part of a step of the descent, or a smaller one, so that the distance does not grow in the metric at its
+  // start. Returns false, at the start of the step, if no part achieves this. Distances are known to the rounding of
+  // the solutions.
   bool slide(const std::vector<N>& at, const std::vector<N>& direction, N part) {
     constexpr int kMostParts = 12;
     const Matrix<N> metric = s_.metric;
@@ -214,7 +217,8 @@ class Iteration {
     return false;
   }
 
-  // Computes the step that least changes the point, or the guess if `nearest`.
+  // Computes the step that least changes the point or, if `nearest`, the step to the point least distant from the
+  // guess.
   void least_step(typename Stage<N>::Elimination& e, bool nearest) {
     const std::vector<std::size_t>& rows = e.rows.independent;
     const std::size_t n = free_.size();
@@ -229,8 +233,8 @@ class Iteration {
       for (std::size_t j = 0; j < n; ++j) step_[j] = N(guess_[j] + step_[j] - *x_[j]);
   }
 
-  // Whether the residuals are those of Newton's flow at this part of the step: a part of them is gone, to the fraction
-  // kBent of that part.
+  // True if the residuals are those of Newton's flow at this part of the step: they fall by this part, with an error of
+  // at most the fraction kBent of it.
   bool flows(double part) const {
     constexpr double kBent = 0.5;
     N most(0), missed(0);
@@ -241,8 +245,8 @@ class Iteration {
     return missed <= N(kBent * part) * most + stage_rounding<N>() * N(4);
   }
 
-  // Goes along the step as far as Newton's flow does, found from smaller parts of the step to larger ones: a full step may
-  // end near a solution by chance. Returns false if the flow does not go along the step.
+  // Goes along the step as far as it follows Newton's flow, trying smaller parts of the step before larger ones,
+  // because a full step may end near a solution by chance. Returns false if no part of the step follows the flow.
   bool flow() {
     constexpr double kTimes = 4, kFewer = 64;
     scale_ = s_.scale;
@@ -290,20 +294,20 @@ class Iteration {
   const std::vector<std::size_t>& free_;
   std::vector<N*> x_;
   std::vector<N> guess_;
-  std::vector<N> right_, step_;  // of a step: the right side, and the step itself
-  std::vector<N> scale_, old_;   // at the start of a step
-  std::vector<N> old_residual_;  // of a step along Newton's flow
+  std::vector<N> right_, step_;  // right side of a step, and the step itself
+  std::vector<N> scale_, old_;   // scales and point at the start of a step
+  std::vector<N> old_residual_;  // residuals at the start of a step along Newton's flow
   double flow_part_ = 1;         // the part of the last step that was made along the flow
-  bool settled_ = false;         // whether the last step of run() vanished
+  bool settled_ = false;         // true if the last step of run() vanished
   bool direct_ = false;
   int in_vain_ = 0;     // searches in a row that found no improvement along their step
-  int iterations_ = 0;  // of run(), in all
+  int iterations_ = 0;  // all iterations of run()
 };
 
-// The nearest of the solutions to which searches have come.
+// The nearest of the solutions that searches have reached.
 template <Number N>
 struct Nearest {
-  static constexpr double kNearer = 1e-6;  // a solution that is nearer by less is not
+  static constexpr double kNearer = 1e-6;  // a smaller relative difference of distances does not count
   std::vector<N> point;                    // empty if there is none
   N distance{0};
 
@@ -322,7 +326,8 @@ std::vector<bool> held(const Stage<N>& s, const std::vector<std::size_t>& free) 
   return is;
 }
 
-// The k-th point around the guess, at increasing distance. `numbers`: of the unknowns, by which the point is drawn.
+// Returns the k-th point around the guess, at increasing distance. `numbers`: the numbers of the unknowns, by which the
+// point is drawn.
 template <Number N>
 std::vector<N> around(const std::vector<N>& guess, const std::vector<std::size_t>& numbers, int k) {
   std::vector<N> p = guess;
@@ -340,7 +345,8 @@ std::vector<N> around(const std::vector<N>& guess, const std::vector<std::size_t
 template <Number N>
 bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector<std::size_t>& may_move,
                           const InitialState<double>* near, bool by_flow) {
-  // In the mass norm the others would move along, which are coupled to these by inertia alone.
+  // Only unknowns that an equation contains are free: in the mass norm, others coupled to them by inertia would move as
+  // well.
   std::vector<std::size_t> free, numbers;
   const std::vector<bool> moves = held(s, may_move);
   for (std::size_t j = 0; j < may_move.size(); ++j)
@@ -357,7 +363,8 @@ bool find_by_least_change(Stage<N>& s, InitialState<N>& state, const std::vector
   }
   if (by_flow && !free.empty()) {
     if (newton.follow()) {
-      // Then to the nearest of a family of solutions, and to all digits. Another solution is farther by more than round-off.
+      // Newton's method continues to the nearest of a family of solutions, and to all digits. A result that is farther
+      // by more than round-off is another solution.
       const std::vector<N> there = newton.point();
       const N farther = N(2) * newton.distance();
       if (!newton.run(true) || !newton.settled() || newton.distance() > farther) {

@@ -11,7 +11,7 @@ namespace anholon {
 
 namespace {
 
-// Whether terms may be absent: most equations of motion have accelerations of all coordinates, and c derivatives of a
+// True if terms may be absent: most equations of motion have accelerations of all coordinates, and c derivatives of a
 // constraint of order m reach m + c.
 bool may_lack_terms(const System& s, const Structure& t) {
   const auto coordinates = t.d.begin() + static_cast<std::ptrdiff_t>(s.coordinates);
@@ -21,7 +21,7 @@ bool may_lack_terms(const System& s, const Structure& t) {
   return false;
 }
 
-// e in the parameters that do not follow from others.
+// Returns e in terms of the parameters that do not follow from others.
 Expr in_free_parameters(const Model& model, Expr e) {
   const auto follows = [&](const Node& n) {
     return n.kind == Kind::parameter && !symbols({&model.parameters[n.index].value, 1}).empty();
@@ -34,9 +34,10 @@ Expr in_free_parameters(const Model& model, Expr e) {
   return e;
 }
 
-// Whether the coefficient, which is 0, has another value if these parameters have. Other symbols have random values.
+// True if the coefficient, which is 0, gets another value if these parameters change. Other symbols have random values.
 bool changes(const Model& model, Expr coefficient, const std::vector<std::size_t>& parameters) {
-  constexpr double kRoundOff = 1e-12;  // of terms that cancel each other, the parameters being changed by 1 or more
+  // The relative error of terms that cancel each other; parameters change by 1 or more.
+  constexpr double kRoundOff = 1e-12;
   Column formulas;
   for (const Parameter& p : model.parameters) formulas.push_back(p.value);
   std::vector<double> values = evaluate_parameters<double>(*model.graph, formulas);
@@ -50,7 +51,7 @@ bool changes(const Model& model, Expr coefficient, const std::vector<std::size_t
   return !(std::abs(machine.value(0)) < kRoundOff);
 }
 
-// The parameters that make the coefficient another one: each of them by itself, or all together.
+// Adds the parameters that change the coefficient: each of them alone, or all together.
 void add_those_that_matter(const Model& model, Expr coefficient, std::set<std::size_t>& found) {
   std::vector<std::size_t> in_it;
   for (NodeId id : symbols({&coefficient, 1}))

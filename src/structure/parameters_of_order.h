@@ -4,9 +4,9 @@
 
 namespace anholon {
 
-// Those that do not follow from others, and at whose values terms with derivatives are absent from the system that the
-// structure would otherwise count. With another value of one of them the equations have another state. The mechanics
-// and the elimination are those that the system was made of, in the same graph.
+// Returns the parameters that do not follow from others and whose values remove terms with derivatives from the system
+// that the structure would otherwise count. With another value of one of them the equations have another state. The
+// mechanics and the elimination are those from which the system was made, in the same graph.
 std::vector<std::size_t> parameters_of_order(const Mechanics& mechanics, const Elimination& elimination,
                                              const System& system, const Structure& structure);
 

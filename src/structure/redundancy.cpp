@@ -11,11 +11,11 @@ namespace anholon {
 
 namespace {
 
-// A row this close to the span of others is taken only if no better one of its order is left, and one as close as the
-// second only if there is none of any order.
+// A row whose sine is below the first number is taken only if its order has no better row, and one below the second
+// only if no order has a better row.
 constexpr double kFarFromDependent = 0.5, kNearlyDependent = 0.05;
 
-// The value of a symbol that the state does not hold: in (0.5, 1.5), different for each symbol, so that rows of
+// Returns a value for a symbol that the state does not hold: in (0.5, 1.5), different for each symbol, so that rows of
 // different constraints are not parallel by accident.
 double generic(const Node& symbol) { return 0.5 + generic_value(symbol, 0); }
 
@@ -28,7 +28,7 @@ double length(const std::vector<double>& v) {
 // An orthonormal basis that grows.
 class OrthonormalRows {
  public:
-  // The component of v orthogonal to the basis, orthogonalized twice.
+  // Returns the component of v orthogonal to the basis, orthogonalized twice.
   std::vector<double> beyond(std::vector<double> v) const {
     for (int pass = 0; pass < 2; ++pass)
       for (const std::vector<double>& e : basis_) {

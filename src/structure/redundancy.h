@@ -1,8 +1,8 @@
 // Constraints that follow from others at a state: a choice of independent ones, and multipliers of least norm.
 //
 // If Phi = (dphi_r/dq^(m_r)) has rank r < s, q^(k) and N = Phi^T lambda are unique and lambda is not. The motion is
-// computed with r independent constraints, and the others are watched. Of all lambda with the same N the one of least
-// norm is reported (theory: dae-view, redundant constraints).
+// computed with r independent constraints, and the residuals of the others are watched. Of all lambda with the same N,
+// the one of least norm is reported (theory: dae-view, redundant constraints).
 #pragma once
 #include "structure/consistent.h"
 
@@ -17,16 +17,18 @@ struct IndependentConstraints {
 };
 
 // Chooses independent rows: constraints of lower order before those of higher order, which may be their derivatives,
-// and otherwise in the order of the file, rows far from the span of others first. A row that vanishes is
-// a singularity of its constraint, not a redundancy: it counts as independent, and the system Jacobian will show it.
+// otherwise in the order of the file, and rows far from the span of others before nearer ones. A zero row is a
+// singularity of its constraint, not a redundancy: it counts as independent, and the system Jacobian shows the
+// singularity.
 IndependentConstraints choose_independent(const Matrix<double>& phi, const std::vector<int>& order);
 
-// As above at a state; values that the state does not hold (accelerations that are not yet found) are arbitrary.
+// Chooses independent constraints at a state; values that the state does not hold (accelerations that are not yet
+// found) are arbitrary.
 IndependentConstraints independent_constraints(const Mechanics& m, const std::vector<double>& parameters,
                                                const InitialState<double>& state);
 
-// The lambda of least norm for all constraints, the rows of Phi, with the same N as `multipliers` of the independent
-// ones. With Phi = C Phi_independent it is C (C^T C)^-1 multipliers.
+// Returns the lambda of least norm for all constraints, the rows of Phi, with the same N as `multipliers` of the
+// independent ones. With Phi = C Phi_independent it is C (C^T C)^-1 multipliers.
 template <Number N>
 std::vector<N> least_multipliers(const Matrix<N>& phi, const std::vector<std::size_t>& independent,
                                  const std::vector<N>& multipliers);

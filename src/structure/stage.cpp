@@ -48,7 +48,7 @@ Stage<N>::Stage(const Mechanics& m, std::shared_ptr<const StagePlan> plan, const
 
 namespace {
 
-// Whether two numbers have the same bits; false in number types that are not compared bit by bit.
+// True if two numbers have the same bits; false in number types that are not compared bit by bit.
 template <Number N>
 bool same_bits(const N& a, const N& b) {
   if constexpr (std::floating_point<N>)
@@ -133,13 +133,14 @@ bool Stage<N>::read_equations(bool jacobian_stays) {
   return true;
 }
 
-// The round-off is that of doubles in all number types: values are typed in as doubles, and a start is one in all of them.
+// Sets partial derivatives to zero that are round-off. The round-off of doubles is used in all number types, because
+// users type values as doubles.
 template <Number N>
 void Stage<N>::drop_round_off() {
   constexpr double kSmall = 64 * std::numeric_limits<double>::epsilon(),
                    kMoved = 2 * std::numeric_limits<double>::epsilon();
   if (!plan_->linear) return;
-  // By a few units in the last place, another number for each.
+  // Moves a value by a few units in the last place, by different numbers for different k.
   const auto moved = [](const N& value, std::size_t k) {
     return N(value * N(1 + kMoved * static_cast<double>(1 + k % 3)));
   };
@@ -209,7 +210,7 @@ typename Stage<N>::Elimination& Stage<N>::elimination(const std::vector<std::siz
   for (std::size_t i = 0; i < free.size(); ++i)
     for (std::size_t j = 0; j < free.size(); ++j) part(i, j) = metric(free[i], free[j]);
   e.possible = !rows.empty() && e.change.factor(part, ar);
-  e.free = free;  // is set last: after an exception the elimination is that of no unknowns
+  e.free = free;  // set last, so that after an exception the elimination belongs to no unknowns
   return e;
 }
 
@@ -263,7 +264,7 @@ const std::vector<bool>& Stage<N>::determined(const std::vector<std::size_t>& fr
   return determined_->is;
 }
 
-// Values may have few digits, in relation to the terms that they make; and they may be doubles of which the greatest has a
+// Values may be written with few digits in relation to their terms, or be doubles, the greatest of which has a
 // round-off as large as all terms of an equation.
 template <Number N>
 bool Stage<N>::is_rounded(std::size_t i) const {
@@ -303,7 +304,7 @@ template class Stage<long double>;
 template class Stage<Quad>;
 template class Stage<Multi>;
 
-// A tape names the symbols of its inputs by their ids, which a clone of the graph has, too.
+// A tape refers to the symbols of its inputs by their ids, which are the same in a clone of the graph.
 template <>
 inline constexpr bool kHoldsNoExpressions<Tape> = true;
 

@@ -23,7 +23,7 @@ inline constexpr double kDependent = 1e-9;
 // Given values may miss a constraint by this fraction of its scale: they are taken for rounded numbers.
 inline constexpr double kRounded = 1e-8;
 
-// Equations in chosen unknowns with their partial derivatives, compiled: its users build no expressions.
+// Equations in chosen unknowns with their partial derivatives, compiled; the users of a plan build no expressions.
 struct StagePlan {
   // `mass`: the mass matrix, if the caller has it already.
   StagePlan(const Mechanics& m, std::vector<StageEquation> equations, Column unknowns, unsigned metric,
@@ -34,18 +34,18 @@ struct StagePlan {
   unsigned metric;
   bool linear = false;  // every equation is linear in the unknowns
   Tape tape;
-  // The slots that depend on the unknowns, and whether the mass matrix is among them.
+  // The slots that depend on the unknowns; `mass_moves` tells whether the mass matrix is among them.
   std::vector<std::uint32_t> moving;
   bool mass_moves = false;
-  std::vector<bool> is_unknown;          // of the tape's inputs
-  std::vector<std::vector<bool>> holds;  // whether equation i contains unknown j
+  std::vector<bool> is_unknown;          // true for those of the tape's inputs that are unknowns
+  std::vector<std::vector<bool>> holds;  // true if equation i contains unknown j
 };
 
 // The handles of a plan (expr/handles.h).
 void for_each_expression(StagePlan& p, const ExprVisitor& f);
 
-// Such equations with their numbers. The metric of least change is the mass matrix at each order of the coordinates in
-// `metric` (bit k: order k); the other unknowns are found, not measured.
+// The equations of a plan with their numbers. The metric of least change is the mass matrix at each order of the
+// coordinates in `metric` (bit k: order k); the metric does not measure changes of the other unknowns.
 template <Number N>
 class Stage {
  public:
@@ -66,28 +66,29 @@ class Stage {
   bool holds(std::size_t i, std::size_t j) const { return plan_->holds[i][j]; }
   const Mechanics& mechanics() const { return m_; }
 
-  // Restricts the stage to these equations; the other function takes all again.
+  // Restricts the stage to these equations; keep_all() removes the restriction.
   void keep(std::vector<bool> rows) { kept_ = std::move(rows), known_ = false; }
   void keep_all() {
     if (!kept_.empty()) known_ = false;
     kept_.clear();
   }
 
-  // Values, scales and partial derivatives at a state; false if a formula has no value there (`undefined` is its row,
-  // or the number of equations for an entry of the mass matrix). In hardware numbers, what depends only on inputs with
-  // the bits that they had at the evaluation before is not computed again.
+  // Computes values, scales and partial derivatives at a state. Returns false if a formula has no value there
+  // (`undefined` is its row, or the number of equations for an entry of the mass matrix). In hardware numbers, results
+  // that depend only on inputs with the same bits as at the last evaluation are not computed again.
   bool evaluate(const InitialState<N>& s);
   // The independent rows of the Jacobian in these unknowns, and the least changes that satisfy them; kept as long as
-  // Jacobian and metric stay.
+  // Jacobian and metric do not change.
   struct Elimination {
     std::vector<std::size_t> free;
     Matrix<N> a;  // the Jacobian in the free unknowns
     RowChoice<N> rows;
     LeastChange<N> change;
-    bool possible = false;  // whether there are such changes
+    bool possible = false;  // true if there are such changes
   };
   Elimination& elimination(const std::vector<std::size_t>& free);
-  // Tells for each of these unknowns whether the equations determine it; kept as long as the Jacobian stays.
+  // Tells for each of these unknowns whether the equations determine it; the result is kept as long as the Jacobian
+  // does not change.
   const std::vector<bool>& determined(const std::vector<std::size_t>& free);
   // True if the equations depend on unknown j.
   bool moves(std::size_t j) const {
@@ -95,17 +96,16 @@ class Stage {
       if (abs(jacobian(i, j)) > N(0)) return true;
     return false;
   }
-  // True if rounded values of the unknowns explain by how much the equation is missed.
+  // True if rounding of the unknowns' values explains the residual of equation i.
   bool is_rounded(std::size_t i) const;
-  // The same of all equations.
+  // True if rounding explains the residuals of all equations.
   bool is_rounded() const;
-  // True if an equation does not depend on any of these unknowns, and is missed by more than rounded values explain.
-  // REQUIRES: the equations are linear.
+  // True if an equation does not depend on any of these unknowns, and its residual is larger than rounding explains.
   bool contradicts(const std::vector<std::size_t>& free) const;
-  // The largest residual relative to its scale, and its index. Residuals below the round-off of the unknowns count as
-  // zero.
+  // Returns the largest residual relative to its scale, and its index. Residuals below the round-off of the unknowns
+  // count as zero.
   N worst(std::size_t* which = nullptr) const { return worst(scale, which); }
-  // As above, relative to the scales of another point.
+  // Returns the largest residual relative to the scales of another point.
   N worst(const std::vector<N>& scale, std::size_t* which = nullptr) const;
 
   std::vector<N> residual, scale;
@@ -122,8 +122,8 @@ class Stage {
   void drop_round_off();
 
   std::vector<N> floor_, at_;  // the values of the unknowns
-  std::vector<bool> kept_;     // empty: all
-  bool known_ = false;         // whether the numbers are those of the inputs
+  std::vector<bool> kept_;     // the equations of the restriction; empty: all
+  bool known_ = false;         // true if the numbers belong to the present inputs
   std::optional<Elimination> elimination_;
   struct Determined {
     std::vector<std::size_t> free;
@@ -143,12 +143,12 @@ N stage_rounding() {
   return unit_roundoff<N>() * N(200);
 }
 
-// min |x - x0| over the free unknowns that an equation contains, subject to the equations; the others stay. x0 are the values
-// in the state. By Newton's method
-// with a line search. If it does not converge by full steps, solutions are searched from x0 and from points around it, too, and
-// the nearest is taken; if none is found, the state ends at the least residual reached, which the caller examines.
-// Returns false if the equations have no value there. `near`: the start of the first search, if not x0. `by_flow`: searches
-// first along Newton's flow from x0, d/ds F(x(s)) = -F(x(s)), which leads to the solution that belongs to x0 among several.
+// Minimizes |x - x0| over the free unknowns that an equation contains, subject to the equations; the other unknowns
+// stay. x0 are the values in the state. The method is Newton's with a line search. If it does not converge by full
+// steps, solutions are also searched from x0 and from points around it, and the nearest solution is taken. If none is
+// found, the state ends at the least residual reached, which the caller examines. Returns false if the equations have
+// no value there. `near`: the start of the first search, if not x0. `by_flow`: searches first along Newton's flow from
+// x0, d/ds F(x(s)) = -F(x(s)), which leads to the solution that belongs to x0 among several.
 template <Number N>
 bool find_by_least_change(Stage<N>& stage, InitialState<N>& state, const std::vector<std::size_t>& free,
                           const InitialState<double>* near = nullptr, bool by_flow = false);

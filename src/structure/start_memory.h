@@ -1,7 +1,7 @@
 // The machines of a start plan with one set of parameters, kept for many states that differ in their overrides.
 //
-// A stage computes again only what depends on inputs with other bits than at the state before (Stage::evaluate), so
-// the states have the bits that they have without a memory. One thread at a time may use it.
+// A stage computes again only results that depend on inputs with other bits than at the state before (Stage::evaluate),
+// so the states have the bits that they have without a memory. One thread at a time may use a memory.
 #pragma once
 #include <memory>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace anholon {
 
-// What the solver of a state notes on its way, kept from one state to the next so that their lists keep their memory.
+// Temporary values of the solver of a state, kept from one state to the next so that their lists keep their storage.
 template <Number N>
 struct StartNotes {
   InitialState<N> at_first, before;    // the state before all attempts, and before the present one
@@ -52,7 +52,8 @@ class StartMemory {
   std::vector<Known> stages_;
 };
 
-// As consistent_state() (consistent.h), with a memory for the plan of the problem and its parameters.
+// Computes what consistent_state() of consistent.h computes, with a memory for the plan of the problem and its
+// parameters.
 template <Number N>
 Outcome consistent_state(const InitialProblem<N>& problem, StartMemory<N>& memory, InitialState<N>& state);
 

@@ -23,8 +23,8 @@ struct Level {
 
 // The note on positions and velocities that the least change has chosen.
 struct LeastChangeNote {
-  std::vector<Node> entries;         // that it names
-  std::optional<std::size_t> place;  // among the notes of the state
+  std::vector<Node> entries;         // the values that it names
+  std::optional<std::size_t> place;  // its index among the notes of the state
 };
 
 template <Number N>
@@ -40,7 +40,7 @@ struct InitialState {
   std::vector<std::string> notes;  // the choices made
   LeastChangeNote least_change;
 
-  // Takes all values away; the memory of the lists is kept for the next state.
+  // Removes all values; the storage of the lists is kept for the next state.
   void clear() {
     t = largest_correction = N(0);
     q.clear(), qd.clear(), q_origin.clear(), qd_origin.clear();
@@ -50,7 +50,7 @@ struct InitialState {
     least_change = {};
   }
 
-  // q_a^(k) or lambda_r^(k); null for orders that the state does not hold, and for other symbols.
+  // Returns q_a^(k) or lambda_r^(k); nullptr for orders that the state does not hold, and for other symbols.
   N* value(const Node& n) { return entry(*this, n); }
   const N* value(const Node& n) const { return entry(*this, n); }
   Origin* origin(const Node& n) {

@@ -40,7 +40,7 @@ class Probe {
   // no value at the point; `sigma` is then of no use.
   bool measure(const ProbeHints& hints, std::mt19937_64& random, std::vector<std::vector<int>>& sigma) {
     constexpr double kLeast = 0.05, kMost = 0.35;
-    // A distribution of the standard library has other bits in other libraries.
+    // Distributions of the standard library have different bits in different implementations.
     const auto spread = [&] { return static_cast<double>(random()) * 0x1p-64 * (kMost - kLeast) + kLeast; };
     bind(machine_, *system_.model->graph, [&](const Node& n, NodeId) {
       const double base = hints.at(n).value_or(0.4);
@@ -49,8 +49,8 @@ class Probe {
     machine_.evaluate();
     partials_.clear();
     for (std::uint32_t s = 0; s < tape_.code.size(); ++s) partials_.push_back(machine_.partials(s));
-    // A few columns at a time: all columns would take slots times inputs of memory, and these stay in the caches. The
-    // highest derivatives come first, as lower ones tell nothing where these occur.
+    // The columns are computed a few at a time: all columns would take slots times inputs of memory, and these stay in
+    // the caches. The highest derivatives come first, because lower ones tell nothing if these occur.
     constexpr std::size_t kColumns = 8;
     std::vector<std::uint32_t> next;
     for (auto column = columns_.begin(); column != columns_.end();) {
@@ -64,7 +64,7 @@ class Probe {
     return true;
   }
 
-  // Whether the derivative with respect to any input can still raise an entry of `sigma`.
+  // True if the derivative with respect to any input can still raise an entry of `sigma`.
   bool any_tells(const std::vector<std::vector<int>>& sigma) const {
     return std::any_of(columns_.begin(), columns_.end(), [&](std::uint32_t k) { return tells(k, sigma); });
   }
@@ -75,7 +75,7 @@ class Probe {
                        [&](const std::vector<int>& row) { return row[variable_of_[input]] < order_of_[input]; });
   }
 
-  // The derivatives with respect to some inputs.
+  // Measures the derivatives with respect to some inputs.
   bool measure(const std::vector<std::uint32_t>& inputs, std::vector<std::vector<int>>& sigma) {
     const std::size_t cols = inputs.size(), size = tape_.code.size() * cols;
     tangent_.assign(size, 0.0), terms_.assign(size, 0.0), zero_.assign(tape_.code.size(), 1);
@@ -99,7 +99,7 @@ class Probe {
       case Op::parameter:
       case Op::lookup:
         break;
-      // A derivative that occurs in either branch occurs.
+      // A derivative occurs in a choice if it occurs in one of its branches.
       case Op::select:
         for (const std::uint32_t operand : {in.a, in.b}) {
           const double* below = &tangent_[operand * cols];
@@ -146,15 +146,15 @@ class Probe {
   const Tape& tape_;
   Machine<double> machine_;
   std::vector<Machine<double>::Partials> partials_;
-  std::vector<double> tangent_, terms_;  // of each slot, for the present columns
-  std::vector<unsigned char> zero_;      // whether a slot has no entry there
+  std::vector<double> tangent_, terms_;  // numbers of each slot, for the present columns
+  std::vector<unsigned char> zero_;      // true if a slot has no entry there
   const System& system_;
-  std::vector<std::size_t> variable_of_;  // of each input that is an unknown or a derivative of one
+  std::vector<std::size_t> variable_of_;  // the unknown of each input that is an unknown or a derivative of one
   std::vector<int> order_of_;
   std::vector<std::uint32_t> columns_;  // these inputs, the highest derivatives first
 };
 
-// An unknown that cannot be matched, for the message.
+// Describes an unknown that cannot be matched, for the message.
 std::string undetermined(const System& s, const std::vector<std::vector<int>>& sigma) {
   for (std::size_t j = 0; j < s.size(); ++j) {
     bool occurs = false;
@@ -164,7 +164,7 @@ std::string undetermined(const System& s, const std::vector<std::vector<int>>& s
   return {};
 }
 
-// Coordinates whose acceleration occurs in no equation of motion.
+// Lists the coordinates whose acceleration occurs in no equation of motion.
 std::string without_inertia(const System& s, const std::vector<std::vector<int>>& sigma) {
   std::string list;
   for (std::size_t j = 0; j < s.coordinates; ++j) {
@@ -175,11 +175,11 @@ std::string without_inertia(const System& s, const std::vector<std::vector<int>>
   return list;
 }
 
-// The equations that are too many for the unknowns in them: those that alternating paths reach from one that no
-// matching gives an unknown of its own.
+// Returns the equations that are too many for the unknowns in them: those that alternating paths reach from an equation
+// that no matching gives an unknown of its own.
 std::vector<std::size_t> too_many(const std::vector<std::vector<int>>& sigma) {
   const std::size_t n = sigma.size();
-  std::vector<std::size_t> row_of(n, n);  // of each column
+  std::vector<std::size_t> row_of(n, n);  // the row of each column
   for (std::size_t free = 0; free < n; ++free) {
     std::vector<std::size_t> reached{free}, from(n, n);  // from[j]: the row by which column j is reached
     std::size_t end = n;
@@ -205,7 +205,8 @@ std::vector<std::size_t> too_many(const std::vector<std::vector<int>>& sigma) {
   return {};
 }
 
-// A servo constraint whose input does not act on what it should keep.
+// Returns the outcome for a servo constraint whose input does not act on the quantity that it should keep; nullopt if
+// there is none.
 std::optional<Outcome> idle_input(const System& s, const std::vector<std::vector<int>>& sigma) {
   for (const std::size_t row : too_many(sigma)) {
     if (row < s.coordinates || row >= s.mechanical()) continue;
@@ -221,8 +222,8 @@ std::optional<Outcome> idle_input(const System& s, const std::vector<std::vector
 
 }  // namespace
 
-// By the Hungarian method with potentials. Of columns that are equally near, one without a row is taken: where all entries
-// are equal, the assignment of the rows before then is not searched.
+// The Hungarian method with potentials. Of columns that are equally near, one without a row is taken: if all entries
+// are equal, the assignment of earlier rows is then not searched.
 std::vector<int> highest_transversal(const std::vector<std::vector<int>>& sigma) {
   const std::size_t n = sigma.size();
   const double inf = std::numeric_limits<double>::infinity(), forbidden = 1e9;
@@ -285,7 +286,8 @@ std::optional<std::vector<std::vector<int>>> signature(const System& s, const Ta
   return sigma;
 }
 
-// The first formula without a value at the hints themselves; where all have one, some lack it around them.
+// Names the first formula without a value at the hints themselves; if all have one, some formula has none near the
+// hints.
 static Outcome no_value(const System& s, const Tape& equations, const std::vector<double>& parameters,
                         const ProbeHints& hints) {
   Machine<double> machine(equations, 0, parameters);
@@ -350,7 +352,7 @@ Outcome analyse(const System& s, const std::vector<double>& parameters, const Pr
 
 void drop_absent(System& s, const Structure& t) {
   Graph& g = *s.model->graph;
-  // Most systems have no such derivative.
+  // Returns early for most systems, which have no such derivative.
   const int most = t.largest_c();
   const std::vector<NodeId> all = symbols(s.equations);
   if (std::none_of(all.begin(), all.end(), [&](NodeId id) {
@@ -367,15 +369,15 @@ void drop_absent(System& s, const Structure& t) {
 
 namespace {
 
-// The limits for a matrix: a wider one has numbers instead of names of its columns; one of more unknowns is printed row
-// by row.
+// The limits for printing a matrix: a wider one has numbers instead of names of its columns; one with more unknowns is
+// printed row by row.
 constexpr std::size_t kWidest = 100, kMostColumns = 30;
 
 std::string entry(const Structure& t, std::size_t i, std::size_t j) {
   return std::to_string(t.sigma[i][j]) + (t.transversal[i] == static_cast<int>(j) ? "*" : "");
 }
 
-// Only nonzero entries: "rod1 (c 2): x1 0*, y1 0".
+// Prints only nonzero entries: "rod1 (c 2): x1 0*, y1 0".
 std::string row_by_row(const System& s, const Structure& t) {
   std::string out =
       "signature matrix (equation (c): unknowns with the highest derivative that occurs; * on the transversal)\n";
@@ -393,7 +395,7 @@ std::string row_by_row(const System& s, const Structure& t) {
   return out + "\n";
 }
 
-// "1 x, 2 y, …" in lines of limited length.
+// Prints "1 x, 2 y, …" in lines of limited length.
 std::string numbered_columns(const System& s) {
   std::string out = "  columns:", line;
   for (std::size_t j = 0; j < s.size(); ++j) {

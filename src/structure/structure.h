@@ -39,7 +39,7 @@ struct ProbeHints {
   std::vector<std::vector<double>> derivatives;  // [order][coordinate]
   std::vector<double> states;
   double t = 0;
-  // The value of a symbol; nullopt if it is not among them.
+  // Returns the value of a symbol; nullopt if the hints have none.
   std::optional<double> at(const Node& n) const {
     if (n.kind == Kind::time) return t;
     if (n.kind == Kind::jet && n.order < derivatives.size()) return derivatives[n.order][n.index];
@@ -48,21 +48,22 @@ struct ProbeHints {
   }
 };
 
-// Sigma by probing near the hints; nullopt if the equations have no value there. `equations`: compiled from those of
-// the system. It builds no expressions, so many threads may call it at the same time.
+// Returns sigma by probing near the hints; nullopt if the equations have no value there. `equations`: the equations of
+// the system, compiled. The function builds no expressions, so many threads may call it at the same time.
 std::optional<std::vector<std::vector<int>>> signature(const System& system, const Tape& equations,
                                                        const std::vector<double>& parameters, const ProbeHints& hints);
 
-// The assignment of variables to equations with the greatest sum of sigma: equation i -> variable. Entries kAbsent are
-// forbidden; empty if there is no assignment.
+// Returns the assignment of variables to equations with the greatest sum of sigma: equation i -> variable. Entries
+// kAbsent are forbidden; the result is empty if there is no assignment.
 std::vector<int> highest_transversal(const std::vector<std::vector<int>>& sigma);
 
-// Outcome `singular` if the system has no transversal (an unknown that no equation determines).
+// Computes the structure. Returns the outcome `singular` if the system has no transversal (an unknown that no equation
+// determines).
 Outcome analyse(const System& system, const std::vector<double>& parameters, const ProbeHints& hints,
                 Structure& structure);
 
-// Replaces derivatives by zero that appear in an equation but cannot truly occur in it, being higher than those solved
-// for: they cancel, and a stepper could not know their values.
+// Replaces derivatives by zero that appear in an equation but cannot truly occur in it, because they are higher than
+// those solved for: they cancel, and a stepper could not know their values.
 void drop_absent(System& system, const Structure& structure);
 
 std::string print(const System& system, const Structure& structure);

@@ -6,7 +6,7 @@ namespace anholon {
 
 namespace {
 
-// Products of powers, and what multiplies them all.
+// The products of powers of a sum, and the factor that multiplies all of them.
 class Clearing {
  public:
   explicit Clearing(Expr e) : g_(*e.graph) {

@@ -30,7 +30,7 @@ std::optional<std::size_t> System::variable(NodeId symbol) const {
   return coordinates + static_cast<std::size_t>(it - constraints.begin());
 }
 
-// The equations of motion with their names: those of the form, then those of the multipliers.
+// Sets the equations of motion with their names: those of the form, then those of the multipliers.
 static void equations_of_motion(System& s, const Mechanics& m, const Elimination& e) {
   const Equations form = s.form->equations(m, e);
   Column residual = form.left - form.right;
@@ -40,7 +40,8 @@ static void equations_of_motion(System& s, const Mechanics& m, const Elimination
     for (const Coordinate& c : s.model->coordinates) s.equation_names.push_back(c.name);
     return;
   }
-  // n equations without multipliers count along the constraints; across them the constraints themselves hold.
+  // If a form has n equations without multipliers, their components along the constraints count; across them the
+  // constraints themselves hold.
   if (residual.size() == m.q.size() && !e.constraints.empty()) residual = e.contract(residual);
   s.equations = put_masses(*s.model, e.in_coordinates(residual));
   s.of_motion = s.equations.size();
@@ -52,8 +53,8 @@ static void equations_of_motion(System& s, const Mechanics& m, const Elimination
   }
 }
 
-// True if derivatives of states beyond their rates may come up: equations of motion hold them, or are differentiated for
-// constraints of order 3 and more and for those that an input enforces.
+// True if derivatives of states beyond their rates may occur: equations of motion contain them, or are differentiated
+// for constraints of order 3 and more and for those that an input enforces.
 static bool goes_beyond_rates(const System& s, const Mechanics& m) {
   const Graph& g = *s.model->graph;
   const std::vector<Constraint>& list = s.model->constraints;
@@ -73,7 +74,7 @@ System implicit_system(std::shared_ptr<const Model> model, const Mechanics& m, c
   s.coordinates = model->coordinates.size();
   s.constraints = constraints;
   equations_of_motion(s, m, elimination);
-  // The start and the motion hold no derivative of a state beyond its rate: the formula of the rate takes its place.
+  // The start and the motion hold no derivative of a state beyond its rate, so the formula of the rate is substituted.
   if (goes_beyond_rates(s, m))
     for (Expr& e : s.equations) e = put_state_rates(*model, e, 1);
   for (const Coordinate& c : model->coordinates) s.variable_names.push_back(c.name);

@@ -1,5 +1,6 @@
 // The implicit system F(t, x, x', …) = 0: n equations of motion, s constraints and the rates of the model's states, in
-// the unknown functions q_1..q_n, lambda_1..lambda_s, z_1, …. Masses are put in; no form is ever solved symbolically.
+// the unknown functions q_1..q_n, lambda_1..lambda_s, z_1, …. Masses are substituted; no form is ever solved
+// symbolically.
 //
 // A form without multipliers gives n - s equations, which determine the motion together with the
 // constraints. Routh's equations of the dependent coordinates, Phi_D^T lambda = a_D [L 3.4], are added
@@ -17,32 +18,33 @@ struct System {
   std::size_t coordinates = 0;           // n
   std::vector<std::size_t> constraints;  // indices of the model's constraints that take part
   Column equations;                      // n of motion, then one per constraint that takes part
-  std::size_t of_motion = 0;             // how many of the n belong to the form; the others give lambda
+  // The number of the n equations that belong to the form; the others give lambda.
+  std::size_t of_motion = 0;
   std::vector<std::string> equation_names;
   std::vector<std::string> variable_names;  // q_a, then lambda.NAME
-  // Of each variable: those with one number are measured against one size when the length of a step is chosen, as lengths are,
-  // and angles. Empty if all are.
+  // A number for each variable: variables with the same number are measured against one size when the length of a step
+  // is chosen, lengths against one and angles against another. Empty if all variables share one size.
   std::vector<std::uint32_t> scales;
-  Column rates;  // jets of coordinates n + k stand for these and their derivatives (by_rates.h)
+  Column rates;  // the jets of coordinates n + k represent these formulas and their derivatives (by_rates.h)
 
   std::size_t size() const { return equations.size(); }
-  // Equations and unknowns below this are those of motion and constraints; z' - rate = 0 follow.
+  // The equations and unknowns with smaller indices are those of motion and constraints; z' - rate = 0 follow.
   std::size_t mechanical() const { return coordinates + constraints.size(); }
-  // The symbol of the k-th derivative of variable j; as a node it need not be in the graph.
+  // Returns the symbol of the k-th derivative of variable j; its node need not be in the graph.
   Expr symbol(std::size_t variable, unsigned k) const;
   Node symbol_node(std::size_t variable, unsigned k) const;
-  // The variable of which a symbol is a derivative, or nothing (t, parameters).
+  // Returns the variable of which a symbol is a derivative; nullopt if there is none (t, parameters).
   std::optional<std::size_t> variable(NodeId symbol) const;
 };
 
-// Expressions of the system's model in which the multipliers of constraints that take no part are zero.
+// Returns the expressions with zeros for the multipliers of constraints that take no part.
 Column taking_part(const System& s, const Column& es);
 
 // The handles of the system (expr/handles.h), without those of its model.
 void for_each_expression(System& s, const ExprVisitor& f);
 
-// Constraints that are left out (redundant ones) have their multipliers set to zero.
-// `elimination` is of these constraints, and is not looked at by forms with multipliers.
+// Constraints that are left out (redundant ones) have their multipliers set to zero. `elimination` is of these
+// constraints; forms with multipliers ignore it.
 System implicit_system(std::shared_ptr<const Model> model, const Mechanics& mechanics, const Formulation& form,
                        const std::vector<std::size_t>& constraints, const Elimination& elimination = {});
 

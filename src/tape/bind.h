@@ -1,4 +1,4 @@
-// Fills the inputs of a tape's machine. The caller's rule says what a symbol is worth.
+// Sets the inputs of a tape's machine. The caller's rule returns the value of a symbol.
 #pragma once
 #include "tape/tape.h"
 

@@ -22,7 +22,7 @@ class Compiler {
     const auto part = [&](std::span<const Expr> roots) {
       Column all(roots.begin(), roots.end());
       all.insert(all.end(), rates_.begin(), rates_.end());
-      // A function needs its derivative as a slot of its own, which may introduce more functions.
+      // The derivative of a function needs a slot of its own, and may contain more functions.
       for (std::size_t before = 0; before != all.size();) {
         before = all.size();
         Column derivatives;
@@ -46,7 +46,7 @@ class Compiler {
       const std::vector<NodeId> nodes = reachable(all);
       large_.merge(large_sums(g_, nodes));
       for (NodeId id : nodes) emit(id);
-      for (Expr e : all) plain(e.id);  // derivatives of functions, too, are used before the end of the part
+      for (Expr e : all) plain(e.id);  // derivatives of functions are also used before the end of the part
     };
     part(es.first(leads.size()));
     std::vector<std::uint32_t> roots;
@@ -96,13 +96,13 @@ class Compiler {
     return push(in);
   }
 
-  // k, if the slot of a node holds its value divided by 2^k.
+  // Returns k if the slot of a node holds its value divided by 2^k.
   long unit(NodeId id) const {
     const auto it = unit_.find(id);
     return it == unit_.end() ? 0 : it->second;
   }
 
-  // The slot that holds the value of a node itself.
+  // Returns the slot that holds the value of a node itself.
   std::uint32_t plain(NodeId id) {
     if (unit(id) == 0) return slot_.at(id);
     const auto [it, fresh] = plain_.try_emplace(id, 0);
@@ -139,7 +139,7 @@ class Compiler {
     return whole_power_[key] = r;
   }
 
-  // Whether a node varies in time, before it has a slot.
+  // True if a node varies in time; the node need not have a slot.
   bool varies(NodeId id) {
     const auto [it, fresh] = varies_.try_emplace(id, false);
     if (!fresh) return it->second;
@@ -170,7 +170,7 @@ class Compiler {
       }
       if (list.size() > 1) products.push_back({id, std::move(list)});
     }
-    // In how many products each pair occurs: counted anew for those that a pair was taken out of.
+    // The number of products in which each pair occurs; it is counted anew for products from which a pair was taken.
     std::map<Pair, std::size_t> count;
     const auto tell = [&count](const std::vector<std::uint64_t>& list, bool more) {
       std::set<Pair> seen;
@@ -214,10 +214,10 @@ class Compiler {
     for (auto& [id, list] : products) factors_[id] = std::move(list);
   }
 
-  // Whether a power is a product of that many factors.
+  // True if a power is a product of the number of factors in its exponent.
   static bool is_repeated(const Rational& exponent) { return exponent.is_integer() && abs(exponent) <= 1000; }
 
-  // Whether the power of a value in units of 2^k is one in units of a whole power of two.
+  // True if the power of a value in units of 2^k has a unit that is a whole power of two.
   static bool keeps_unit(const Rational& exponent) {
     return abs(exponent) <= 1000 && (exponent * Rational(kUnits)).is_integer();
   }
@@ -324,7 +324,7 @@ class Compiler {
     if (!slot_.count(id)) slot_[id] = slot_of(id);
   }
 
-  // The slot of a node whose operands have theirs.
+  // Returns the slot of a node whose operands have slots.
   std::uint32_t slot_of(NodeId id) {
     const Node n = g_.node(id);
     switch (n.kind) {
@@ -392,7 +392,7 @@ class Compiler {
     return slot;
   }
 
-  // A derivative of an expression, which is compiled before.
+  // Returns the slot of a derivative of an expression, which is compiled before.
   std::uint32_t rate(Expr of, std::uint32_t order) {
     for (NodeId below : reachable({&of, 1})) emit(below);
     if (order == 0) return plain(of.id);
@@ -426,7 +426,7 @@ class Compiler {
     return push(in);
   }
 
-  // The slots of its derivatives follow later.
+  // Returns the slot of a function; the slots of its derivatives follow later.
   std::uint32_t function(NodeId id, const Node& n) {
     Instruction in{n.kind == Kind::function ? Op::function : Op::arctan2};
     in.a = operand(id, 0);
@@ -476,8 +476,8 @@ class Compiler {
   std::unordered_map<NodeId, std::pair<Expr, Expr>> derivative_;
   std::vector<std::pair<std::uint32_t, NodeId>> pending_derivatives_;
   std::unordered_set<NodeId> large_;                 // sums that are computed in units of their own
-  std::unordered_map<NodeId, long> unit_;            // of nodes whose slot holds the value divided by 2^unit
-  std::unordered_map<NodeId, std::uint32_t> plain_;  // the slots of their values
+  std::unordered_map<NodeId, long> unit_;            // for nodes whose slot holds the value divided by 2^unit
+  std::unordered_map<NodeId, std::uint32_t> plain_;  // the slots of the values of these nodes
   HashIndex rational_;
   std::unordered_map<std::uint32_t, std::uint32_t> step_function_;
   std::unordered_map<std::uint64_t, std::uint32_t> whole_power_;

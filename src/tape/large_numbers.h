@@ -1,4 +1,4 @@
-// Sums whose numbers a double does not hold.
+// Sums with numbers that are out of the range of double.
 //
 // The graph writes a sum with whole coefficients, 1 + 1e-34 y as 1e-34 (1e34 + y). Its tenth power is then 1e-340 (1e34 + y)^10,
 // a product of two numbers that no double holds. A tape computes such a sum in units of its largest coefficient, by which the
@@ -11,16 +11,16 @@
 
 namespace anholon {
 
-// Numbers up to 2^256 are held as they are.
+// Numbers up to 2^256 are stored unchanged.
 inline constexpr long kLargestExponent = 256;
 
-// The sums among these nodes whose coefficients make a product, or stand alone, with numbers beyond 2^256.
+// Returns the sums among these nodes whose coefficients are beyond 2^256, alone or in products.
 std::unordered_set<NodeId> large_sums(const Graph& g, std::span<const NodeId> nodes);
 
-// A k with 2^(k-1) < |r| < 2^(k+1). REQUIRES: r != 0.
+// Returns a k with 2^(k-1) < |r| < 2^(k+1). REQUIRES: r != 0.
 long binary_exponent(const Rational& r);
 
-// 2^k r.
+// Returns 2^k r.
 Rational times_power_of_two(const Rational& r, long k);
 
 }  // namespace anholon

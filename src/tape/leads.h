@@ -7,7 +7,7 @@
 
 namespace anholon {
 
-// Gives the roots of a tape these leads, and the slots on which they depend the leads that they need.
+// Sets these leads for the roots of a tape, and for the slots on which they depend the leads that the roots need.
 void spread_leads(Tape& tape, std::span<const int> leads);
 
 }  // namespace anholon

@@ -31,7 +31,7 @@ N pi_value() {
 bool smooth(Function f, const Ball& u) { return (f != Function::abs && f != Function::sign) || !u.contains_zero(); }
 bool smooth(const Ball& y, const Ball& x) { return !y.contains_zero() || x.is_positive(); }
 
-// `exact` in halves, if it is one of the exponents that are roots; else 0.
+// Returns `exact` in halves, if it is one of the exponents that are roots; else 0.
 int halves_of(const Rational& exact) {
   for (const int halves : {1, -1, 3, -3})
     if (exact == Rational(halves, 2)) return halves;
@@ -58,7 +58,7 @@ N power_value(const N& u, const N& r, const Rational& exact, int halves) {
     return pow(u, r);
 }
 
-// The side of a choice: 1 if s >= 0, -1 if s < 0, 0 if a ball does not decide.
+// Returns the side of a choice: 1 if s >= 0, -1 if s < 0, 0 if a ball does not decide.
 template <Scalar N>
 int branch(const N& s) {
   if constexpr (std::same_as<N, Ball>)
@@ -67,7 +67,7 @@ int branch(const N& s) {
     return s < N(0) ? -1 : 1;
 }
 
-// The number of ascending knots at or below x, and whether that number is certain.
+// Returns the number of ascending knots at or below x, and whether that number is certain.
 template <Scalar N>
 std::pair<std::size_t, bool> below(const std::vector<N>& knots, const N& x) {
   std::size_t low = 0, high = knots.size();
@@ -83,7 +83,7 @@ std::pair<std::size_t, bool> below(const std::vector<N>& knots, const N& x) {
   return {low, true};
 }
 
-// Whether the coefficients of orders 0..last are zero. For balls always false.
+// True if the coefficients of orders 0..last are zero; always false for balls.
 template <Scalar N>
 bool vanishes(const N* series, std::size_t last) {
   if constexpr (std::same_as<N, Ball>)
@@ -100,7 +100,7 @@ N unknown() {
     return N(0);
 }
 
-// The values that may be taken if a ball does not decide.
+// Returns an enclosure of both values, for a ball that does not decide.
 template <Scalar N>
 N either(const N& a, const N& b) {
   if constexpr (std::same_as<N, Ball>)
@@ -109,7 +109,7 @@ N either(const N& a, const N& b) {
     return a;
 }
 
-// The coefficient of order p of a product of series.
+// Returns the coefficient of order p of a product of series.
 template <Scalar N>
 N product(const N* a, const N* b, std::size_t p) {
   N s(0);
@@ -126,7 +126,7 @@ N square(const N* a, std::size_t p) {
   return s;
 }
 
-// All values of a step function on a ball.
+// Returns an enclosure of all values of a step function on a ball.
 template <Scalar N>
 N any_value(const std::vector<N>& knots, const std::vector<N>& values, const N& x) {
   std::optional<N> all;
@@ -183,7 +183,7 @@ void Machine<N>::step_of_stage(std::uint32_t slot, int stage) {
   step(in, slot, static_cast<std::size_t>(p));
 }
 
-// Row by row: how the coefficient of order p follows from the operands' coefficients up to p, and from its own below p.
+// Computes the coefficient of order p from the operands' coefficients up to p, and from the slot's own below p.
 template <Scalar N>
 void Machine<N>::step(const Instruction& in, std::uint32_t slot, std::size_t p) {
   N* w = series(slot);
@@ -253,7 +253,7 @@ N Machine<N>::quotient(const Instruction& in, const N* w, std::size_t p) const {
   return s / b[0];
 }
 
-// u w' = r w u'. Multiples of, say, r = 1/3 would be rounded in the same way at every step.
+// Uses u w' = r w u'. Multiples of r, for example of 1/3, would be rounded in the same way at every step.
 template <Scalar N>
 N Machine<N>::power(const Instruction& in, const N* w, std::size_t p) const {
   const N* u = series(in.a);
@@ -270,7 +270,7 @@ N Machine<N>::power(const Instruction& in, const N* w, std::size_t p) const {
   return (r * rates_of_u - rates_of_w) / (N(static_cast<int>(p)) * u[0]);
 }
 
-// w' = f'(u) u', p > 0.
+// Uses w' = f'(u) u', p > 0.
 template <Scalar N>
 N Machine<N>::function(const Instruction& in, std::size_t p) const {
   const N *u = series(in.a), *g = series(in.b);
@@ -282,7 +282,7 @@ N Machine<N>::function(const Instruction& in, std::size_t p) const {
   return s / N(static_cast<int>(p));
 }
 
-// w' = gy y' + gx x', p > 0.
+// Uses w' = gy y' + gx x', p > 0.
 template <Scalar N>
 N Machine<N>::arctan2(const Instruction& in, std::size_t p) const {
   const N *y = series(in.a), *x = series(in.b), *gy = series(in.first), *gx = series(in.count);

@@ -6,7 +6,7 @@ namespace anholon {
 
 namespace {
 
-// The table of a step function "name.coefficient".
+// Returns the name of the table of a step function "name.coefficient".
 std::string table_of(const StepFunction& f) { return f.name.substr(0, f.name.rfind('.')); }
 
 bool is_sign(const Node& n) { return n.kind == Kind::function && static_cast<Function>(n.index) == Function::sign; }

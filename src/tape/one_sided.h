@@ -17,8 +17,8 @@ namespace anholon {
 // A condition at whose borders formulas change: it passes zero, or a knot of tables.
 struct Branch {
   Expr condition;
-  std::string table;            // the name of the first one; empty: min, max, abs, sign or piecewise
-  std::vector<Rational> knots;  // ascending; 0 alone where there is no table
+  std::string table;            // the name of the first table; empty: min, max, abs, sign or piecewise
+  std::vector<Rational> knots;  // ascending; only 0 if there is no table
   Rational shift;               // leads beyond a border, and not to the next one
 };
 
@@ -28,19 +28,19 @@ class OneSided {
     std::size_t row, column;
   };
   OneSided() = default;
-  // Conditions are shifted by parameters from number `parameters` on, which is how many the model has.
+  // Conditions are shifted by parameters from number `parameters` on, the number of parameters of the model.
   OneSided(const Column& es, const Column& by, std::size_t parameters);
 
   const std::vector<Branch>& branches() const { return branches_; }
   const std::vector<Partial>& partials() const { return partials_; }
 
-  // Values of the formulas, then of the partial derivatives.
+  // The values of the formulas, then of the partial derivatives, on both sides of a border.
   template <Scalar N>
   struct Sides {
     std::size_t branch;
     std::vector<N> below, above;
   };
-  // The sides of the borders on which the point lies, but for `near`. `set` gives a machine its inputs.
+  // Returns the sides of the borders on which the point lies, up to `near`. `set` sets the inputs of a machine.
   template <Scalar N, class Set>
   std::vector<Sides<N>> sides(std::vector<N> parameters, const N& near, const Set& set) const {
     std::vector<Sides<N>> out;

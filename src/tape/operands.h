@@ -4,14 +4,14 @@
 
 namespace anholon {
 
-// Whether the instruction goes on as another function where its argument passes zero: abs and sign.
+// True if the instruction continues as another function where its argument passes zero: abs and sign.
 inline bool turns_at_zero(const Instruction& in) {
   return in.op == Op::function && (in.index == static_cast<std::uint32_t>(Function::abs) ||
                                    in.index == static_cast<std::uint32_t>(Function::sign));
 }
 
-// Calls f(slot) for each slot whose value that of `in` is computed from; slots of derivatives, which series need, are
-// not among them.
+// Calls f(slot) for each slot from whose value that of `in` is computed; slots of derivatives, which series need, are
+// left out.
 template <class F>
 void for_each_operand(const Tape& tape, const Instruction& in, const F& f) {
   switch (in.op) {

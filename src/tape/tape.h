@@ -43,7 +43,7 @@ enum class Op : std::uint8_t {
 
 struct Instruction {
   Op op;
-  bool constant = false;  // does not vary with time: only the coefficient of order 0
+  bool constant = false;  // does not vary with time: it has only the coefficient of order 0
   std::uint8_t lead = 0;
   std::uint32_t a = 0, b = 0;
   std::uint32_t index = 0;
@@ -85,10 +85,12 @@ Tape compile(std::span<const Expr> es, std::span<const int> leads, bool shared =
              std::span<const Expr> rates = {}, std::uint32_t rates_from = 0);
 Tape compile(std::span<const Expr> es);
 
-// The slots, without the inputs, whose coefficients of order 0 depend on one of these slots, in the order of the tape.
+// Returns the slots, without the inputs, whose coefficients of order 0 depend on one of these slots, in the order of
+// the tape.
 std::vector<std::uint32_t> dependents(const Tape& tape, const std::vector<std::uint32_t>& of);
 
-// The slots, ascending, from which the series of these slots are computed, themselves and those of derivatives among them.
+// Returns the slots, ascending, from which the series of these slots are computed, including these slots and those of
+// derivatives.
 std::vector<std::uint32_t> precedents(const Tape& tape, const std::vector<std::uint32_t>& of);
 
 // The number type of a tape: a floating-point type, or balls, which are never compared. In a machine of balls, the
@@ -102,7 +104,7 @@ class Machine {
  public:
   // Series of up to `orders` coefficients beyond the lead.
   Machine(const Tape& tape, std::size_t orders, const std::vector<N>& parameters);
-  // Other values of the parameters: what is constant in time is computed anew.
+  // Sets other values of the parameters; slots that are constant in time are computed anew.
   void set_parameters(const std::vector<N>& parameters);
 
   N* series(std::uint32_t slot) { return &data_[slot * stride_]; }
@@ -111,36 +113,36 @@ class Machine {
 
   // Computes stage s of slots [from, to); inputs must be set by the caller.
   void sweep(int stage, std::uint32_t from, std::uint32_t to);
-  // As above, of these slots alone, in this order.
+  // Computes stage s of these slots alone, in this order.
   void sweep(int stage, const std::vector<std::uint32_t>& slots);
   // Computes values only: all slots at order 0.
   void evaluate() { sweep(0, 0, static_cast<std::uint32_t>(tape_->code.size())); }
-  // As above, for these slots alone, in this order.
+  // Computes the values of these slots alone, in this order.
   void evaluate(const std::vector<std::uint32_t>& slots) {
     for (const std::uint32_t s : slots) step(tape_->code[s], s, 0);
   }
 
-  // d slot / d operand at order 0, for the operands of an instruction.
+  // The derivatives d slot / d operand at order 0, for the operands of an instruction.
   struct Partials {
     N a, b;
   };
   Partials partials(std::uint32_t slot) const;
-  // The sum of the absolute values of a slot's terms, at order 0.
+  // Returns the sum of the absolute values of a slot's terms, at order 0.
   N magnitude(std::uint32_t slot) const;
-  // For every slot at order 0: the sum of the absolute values of its terms with products multiplied out. Its round-off
-  // bounds a slot that should vanish.
+  // Computes for every slot at order 0 the sum of the absolute values of its terms with products multiplied out. The
+  // round-off of this sum bounds a slot that should vanish.
   void made_of(std::vector<N>& sizes) const;
-  // The sum of the absolute values of the terms of a main root, in its Taylor coefficient of this order.
+  // Returns the sum of the absolute values of the terms of a main root, in its Taylor coefficient of this order.
   N terms(std::size_t root, std::size_t order) const;
   const N& rational(std::uint32_t index) const { return rationals_[index]; }
-  // The knots around a slot with a step function: the one below and the one above; null if there is none.
+  // Returns the knots around a slot with a step function: the one below and the one above; nullptr if there is none.
   std::pair<const N*, const N*> knots_around(std::uint32_t slot) const;
   const Tape& tape() const { return *tape_; }
 
  private:
   void step_of_stage(std::uint32_t slot, int stage);
   void step(const Instruction& in, std::uint32_t slot, std::size_t p);
-  // The coefficient of order p of a slot; `w` is its series, known below p.
+  // These return the coefficient of order p of a slot; `w` is its series, known below p.
   N sum(const Instruction& in, std::size_t p) const;
   N quotient(const Instruction& in, const N* w, std::size_t p) const;
   N power(const Instruction& in, const N* w, std::size_t p) const;
@@ -154,7 +156,7 @@ class Machine {
   std::size_t stride_;
   std::vector<N> data_;
   std::vector<N> rationals_;
-  std::vector<int> halves_;  // of each rational, if as an exponent it is a root; else 0
+  std::vector<int> halves_;  // for each rational: twice its value if as an exponent it is a root; else 0
   struct Steps {
     std::vector<N> knots, values;
   };
@@ -166,7 +168,7 @@ extern template class Machine<long double>;
 extern template class Machine<Quad>;
 extern template class Machine<Multi>;
 
-// Values of parameters in any number type, or as enclosures.
+// Returns the values of parameters in any number type, or as enclosures.
 template <Scalar N>
 std::vector<N> evaluate_parameters(Graph& graph, std::span<const Expr> values);
 

@@ -1,4 +1,4 @@
-// A figure of a sweep in a folder: what `anholon plot` shows of it.
+// The figure that `anholon plot` shows of a sweep in a folder.
 #include "anholon/page.h"
 #include "api/pictures/sweep_picture.h"
 #include "plot/drawing.h"

@@ -28,7 +28,7 @@ bool heads_a_sweep(const std::vector<std::string>& names) {
   return !names.empty() && names[0] == "case" && names.size() > 1;
 }
 
-// The table of a CSV file that `anholon sweep` wrote. A column with a cell that is no number holds words.
+// Reads the table of a CSV file that `anholon sweep` wrote. A column with a cell that is no number holds words.
 ParquetTable table_of_csv(std::string_view text, const std::string& path) {
   ParquetTable table;
   std::vector<std::vector<double>> numbers;
@@ -82,11 +82,11 @@ void append(std::vector<double>& to, const ParquetColumn& from, std::vector<std:
   }
 }
 
-// The outcomes with the events that ended the motions.
+// Returns the outcomes, with the names of the events that ended motions.
 ParquetColumn endings(const ParquetColumn& outcomes, const ParquetColumn& events) {
   const Words *how = std::get_if<Words>(&outcomes.values), *by = std::get_if<Words>(&events.values);
   if (!how || !by) return outcomes;
-  // A pair of words is put together once.
+  // Each pair of words is joined once.
   constexpr std::uint32_t kNew = ~std::uint32_t{0};
   std::vector<std::uint32_t> known(how->different.size() * by->different.size(), kNew);
   Words all;
@@ -120,7 +120,7 @@ bool SweepCases::are_in(const std::string& path) {
     if (line.ends_with('\r')) line.pop_back();
     return heads_a_sweep(inner::split_csv(line));
   }
-  // Files of other formats may be large: the first bytes tell.
+  // Files of other formats may be large, so only the first bytes are read.
   char beginning[4] = {};
   if (!std::ifstream(path, std::ios::binary).read(beginning, sizeof beginning) ||
       std::string_view(beginning, sizeof beginning) != "PAR1")
@@ -131,7 +131,7 @@ bool SweepCases::are_in(const std::string& path) {
   try {
     for (const ParquetColumn& c : inner::read_parquet(text).columns) names.push_back(c.name);
   } catch (const Failure&) {
-    return false;  // the reader of runs tells what is wrong
+    return false;  // the reader of runs reports the fault
   }
   return heads_a_sweep(names);
 }
@@ -151,8 +151,8 @@ SweepCases::SweepCases(const std::string& path) {
     for (auto& [name, points] : points_of_axes(*store_)) known_[name].points = std::move(points);
 }
 
-// What varies stands between the number of the case and its outcome. Without outcomes, the columns behind it are unknown:
-// where cases have several rows, the ones that vary are the same in all rows of a case.
+// The varied columns stand between the number of the case and its outcome. If there are no outcome columns, their end
+// is unknown: if cases have several rows, the varied columns are those that are constant in all rows of a case.
 void SweepCases::see_what_varies() {
   std::vector<double> numbers;
   std::vector<std::string> words;
@@ -221,12 +221,13 @@ std::vector<unsigned> SweepCases::generations() const {
   return list;
 }
 
-// `report` shows a motion with its changes of mode, and Python that of one mode.
+// Returns no command for a sweep in one mode: `report` shows a motion with its changes of mode, Python one in a single
+// mode.
 std::string SweepCases::command() const {
   return store_ && store_->asked("mode").empty() ? command_of_sweep(*store_) : std::string();
 }
 
-// Units and meanings come from the model in the folder; a model that refers to files that are not there has none.
+// Reads units and meanings from the model in the folder; there are none if the model refers to files that do not exist.
 void SweepCases::read_model() {
   Diagnostics diagnostics;
   const auto open = inner::open_model(model_asked(store_->request()), diagnostics);

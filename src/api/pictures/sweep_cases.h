@@ -11,7 +11,7 @@ namespace anholon::v1 {
 
 class SweepCases {
  public:
-  // Whether a path names a folder or a file that holds a sweep.
+  // True if the path names a folder or a file that holds a sweep.
   static bool are_in(const std::string& path);
   // Throws Failure without a place.
   explicit SweepCases(const std::string& path);
@@ -19,20 +19,20 @@ class SweepCases {
   const std::vector<std::string>& names() const { return names_; }
   const std::vector<std::string>& varied() const { return varied_; }
   bool has(const std::string& name) const;
-  // Whether cases have several rows, at times that a column tells.
+  // True if cases have several rows, whose times are in a column.
   bool rows_at_times() const { return at_times_; }
   // The folder; null for a file.
   const inner::SweepStore* store() const { return store_ ? &*store_ : nullptr; }
 
-  // Columns by name; the words of a column of words are added to `words`, and its values are their indices. An outcome
-  // of a case that an event ended tells the event (ensemble/ending.h). If parts are missing, what varies has the points of
-  // the whole sweep. Throws Failure without a place if there is no such column.
+  // Returns columns by name. The words of a column of words are added to `words`, and the values of the column are
+  // their indices. An outcome of a case that an event ended names the event (ensemble/ending.h). If parts are missing,
+  // the varied columns have the points of the whole sweep. Throws Failure without a place if a column does not exist.
   std::vector<inner::plot::NamedColumn> read(const std::vector<std::string>& names,
                                              std::vector<std::string>& words) const;
-  // The generation of each row that `read` returns; empty if there is one generation.
+  // Returns the generation of each row that `read` returns; empty if there is one generation.
   std::vector<unsigned> generations() const;
-  // The command that computes the motion of a case, without the numbers of the case; empty for a file, which does not
-  // tell the model. A model that is known by its text alone is model.toml.
+  // Returns the command that computes the motion of a case, without the numbers of the case; empty for a file, which
+  // does not name the model. A model of which only the text is known is called model.toml.
   std::string command() const;
 
  private:

@@ -14,10 +14,10 @@ namespace {
 using inner::Failure;
 using inner::plot::NamedColumn;
 
-// The axis that is none: a curve is drawn, of the other numbers that vary the quantiles.
+// The word for no axis: a curve is drawn, with quantiles over the other numbers that vary.
 constexpr const char* kNoAxis = "none";
 
-// A number of a legend, in few digits.
+// Formats a number of a legend with few digits.
 std::string in_legend(double v) {
   constexpr int kDigits = 6;
   char buffer[64];
@@ -25,7 +25,8 @@ std::string in_legend(double v) {
   return {buffer, r.ptr};
 }
 
-// Whether the values of a column were drawn: the request of a folder says so, or each case has one of its own.
+// True if the values of a column were drawn at random: the request of a folder says so, or each case has a value of its
+// own.
 bool drawn(const SweepCases& cases, const std::string& name, std::size_t different, std::size_t all) {
   if (different == all) return true;
   if (!cases.store()) return false;
@@ -35,7 +36,8 @@ bool drawn(const SweepCases& cases, const std::string& name, std::size_t differe
          cases.store()->asked("vary " + of).find('~') != std::string::npos;
 }
 
-// What varies, without the columns that were drawn for the points of a grid: over the grid they are quantiles.
+// Returns the columns that vary, without those drawn at random for the points of a grid, over which quantiles are
+// shown.
 std::vector<std::string> axes_that_vary(const SweepCases& cases) {
   const auto different = [&](const std::string& name) {
     std::vector<std::string> words;
@@ -77,8 +79,8 @@ std::vector<std::string> axes_of(const SweepCases& cases, const SweepPictureRequ
   return axes;
 }
 
-// A curve of each case over x, or of many cases their quantiles over t. Returns false if the picture is another one: the
-// cases have a row each, words are shown, or an axis that varies was named.
+// Draws a curve of each case over x or, of many cases, their quantiles over t. Returns false if another kind of picture
+// is needed: the cases have one row each, words are shown, or an axis that varies is named.
 bool take_curves(SweepPicture& picture, const SweepCases& cases, const SweepPictureRequest& o,
                  const std::vector<std::string>& shown) {
   const std::vector<std::string>& varied = cases.varied();
@@ -115,7 +117,8 @@ bool take_curves(SweepPicture& picture, const SweepCases& cases, const SweepPict
   return true;
 }
 
-// Curves over one variation: of each scenario by itself, if the cases have several, with the columns of the others.
+// Returns curves over one variation. If the cases have several scenarios, each has its curves, with the columns of the
+// others.
 std::vector<inner::plot::NamedRun> curves_of_scenarios(const SweepCases& cases, const NamedColumn& at,
                                                        const std::vector<NamedColumn>& of) {
   std::vector<inner::plot::NamedRun> together = {{inner::plot::over_variation(at, of), ""}}, curves;
@@ -139,7 +142,7 @@ std::vector<inner::plot::NamedRun> curves_of_scenarios(const SweepCases& cases, 
   return curves;
 }
 
-// Throws Failure if there is no part. The title with the note, if parts are missing.
+// Returns the title, with the note if parts are missing. Throws Failure if there is no part.
 std::string title_with(SweepPicture& picture, const SweepCases& cases, const std::string& title) {
   if (!cases.store()) return title;
   const std::size_t there = cases.store()->present().size(), all = cases.store()->parts();

@@ -5,9 +5,10 @@
 
 namespace anholon {
 
-// The path of the program or of the shared library that holds this code.
+// Returns the path of the program or of the shared library that holds this code.
 std::filesystem::path own_file();
-// Folders that may hold data called `name`: share/anholon/NAME of each folder above own_file(), then `in_source`.
+// Returns folders that may hold data called `name`: share/anholon/NAME of each folder above own_file(), then
+// `in_source`.
 std::vector<std::filesystem::path> data_folders(const char* name, const char* in_source);
 
 }  // namespace anholon

@@ -9,9 +9,10 @@ class SharedLibrary {
   // Loads the file. It stays loaded to the end of the process.
   SharedLibrary(std::string name, const char* file);
 
-  // The address of a function or variable. Returns null, and notes the trouble, if the library has none of that name.
+  // Returns the address of a function or variable; nullptr, and notes the trouble, if the library has none of that
+  // name.
   void* find(const char* symbol);
-  // What has failed first, in words; empty if nothing has.
+  // Returns a description of the first failure; empty if there was none.
   const std::string& trouble() const { return trouble_; }
 
  private:

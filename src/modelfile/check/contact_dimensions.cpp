@@ -7,7 +7,7 @@ namespace anholon {
 
 namespace {
 
-// The formulas of a slip velocity.
+// Returns the formulas of a slip velocity.
 std::vector<const Item*> components_of(const Item* slip) {
   std::vector<const Item*> list;
   if (slip && slip->is_formula()) list.push_back(slip);
@@ -40,7 +40,7 @@ void ContactDimensions::expect(const Item* item, const DimensionForm& wanted) {
   collect(found_, [&] { formulas_.expect(*item, wanted); }, item->span);
 }
 
-// The components of a slip velocity have one dimension.
+// Returns the common dimension of the components of a slip velocity; reports components with different ones.
 std::optional<DimensionForm> ContactDimensions::slip_velocity(const Item* slip) {
   const std::vector<const Item*> list = components_of(slip);
   if (list.empty()) return std::nullopt;
@@ -50,7 +50,7 @@ std::optional<DimensionForm> ContactDimensions::slip_velocity(const Item* slip) 
   return first.dimension;
 }
 
-// Of a formula, which may have a clash that has been reported already.
+// Returns the dimension of a formula; nullopt if it is unknown or the formula has a clash, which is reported elsewhere.
 std::optional<Dimension> ContactDimensions::known_dimension(const Item& i) {
   try {
     return formulas_.known(formulas_.of(i).dimension);
@@ -84,7 +84,8 @@ void ContactDimensions::check(const Item& c) {
   if (right && !components_of(slip).empty()) note_bare_coefficients(c, *gap, *components_of(slip)[0]);
 }
 
-// A number without a unit as a coefficient that has one may be meant as a pure number.
+// Warns of coefficients that are numbers without a unit but have one by their contact: they may be meant as pure
+// numbers.
 void ContactDimensions::note_bare_coefficients(const Item& c, const Item& gap, const Item& slip) {
   const std::optional<Dimension> distance = known_dimension(gap), velocity = known_dimension(slip);
   if (!distance || !velocity) return;
@@ -105,7 +106,7 @@ void ContactDimensions::note_bare_coefficients(const Item& c, const Item& gap, c
   }
 }
 
-// In SI; empty if it does not follow.
+// Returns the SI unit; empty if it does not follow.
 std::string ContactDimensions::unit_of(const DimensionForm& form) const {
   const auto known = formulas_.known(form);
   return known ? print(*known) : std::string();

@@ -14,16 +14,16 @@ class ContactDimensions {
   ContactDimensions(FormulaDimensions& formulas, Diagnostics& found, Diagnostics& noted)
       : formulas_(formulas), found_(found), noted_(noted) {}
 
-  // Gives the quantities of the contact their dimensions. The power of friction is that of a force: a coefficient without a
-  // body is [gap]/([slip] s).
+  // Gives the quantities of the contact their dimensions. The power of friction is that of a force, so a coefficient
+  // without a body has the dimension [gap]/([slip] s).
   void read(const Item& contact);
 
   // Reports a gap that is neither a length nor an angle, and a slip velocity that is not the rate of one. REQUIRES: all
-  // elements of the file are read, as none of the two dimensions follows from a formula that has neither.
+  // elements of the file are read, because other formulas may determine these dimensions.
   void check(const Item& contact);
 
-  // Gives the contacts of an element their units. The power of a force is that of the rate of its gap, and of its slip
-  // velocity. REQUIRES: all elements are read.
+  // Gives the contacts of an element their units. A force times the rate of its gap, or times its slip velocity, is a
+  // power. REQUIRES: all elements are read.
   void measure(const Item& element, const std::string& name, std::vector<Contact>& contacts);
 
  private:

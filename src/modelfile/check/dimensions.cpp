@@ -12,7 +12,7 @@ namespace anholon {
 
 namespace {
 
-// Whether the item contains a number, a blank and a letter, or a key 'unit'.
+// True if the item contains a number, a blank and a letter, or a key 'unit'.
 bool may_have_units(const Item& item) {
   if (item.key == "unit") return true;
   for (const char* prose : {"title", "source", "doc"})
@@ -38,7 +38,7 @@ class Elements {
   }
 
   bool run() {
-    // A value given from outside may have replaced the only one with a unit.
+    // Looks for units here, because a value given from outside may have replaced the only value with a unit.
     each("parameters", [&](const Item& i) {
       if (i.is_formula()) formulas_.look_for_units(parse_formula(i.formula));
     });
@@ -87,7 +87,7 @@ class Elements {
     }
   }
 
-  // Gives monitors, states and outputs without a unit theirs. REQUIRES: the elements have been run.
+  // Gives monitors, states and outputs without a unit their units. REQUIRES: the elements have been run.
   void measure(Model& model) {
     const auto record = [&](const std::string& name, Span span, const DimensionForm& form) {
       if (const std::string unit = unit_of(form); !unit.empty())
@@ -104,8 +104,8 @@ class Elements {
     });
   }
 
-  // Of coordinates, then states: those of one dimension have one number, and so have those whose dimension does not follow.
-  // Empty if all have number 0. REQUIRES: the elements have been run.
+  // Returns the scales of coordinates, then of states: those of one dimension have one number, and so have those whose
+  // dimension does not follow. Empty if all have number 0. REQUIRES: the elements have been run.
   std::vector<std::uint32_t> scales() {
     std::vector<std::optional<Dimension>> kinds;
     std::vector<std::uint32_t> list;
@@ -144,7 +144,8 @@ class Elements {
     if (i) expect(*i, unit);
   }
 
-  // lambda dphi/dq^(m) is the force that has the power lambda dphi/dq^(m) q' of a constraint of order m.
+  // Returns the dimension of lambda: lambda dphi/dq^(m) is the force that has the power lambda dphi/dq^(m) q' of a
+  // constraint of order m.
   std::optional<DimensionForm> multiplier(const std::string& path) {
     const auto c = std::find_if(model_.constraints.begin(), model_.constraints.end(),
                                 [&](const Constraint& known) { return known.name == path && !known.by; });
@@ -161,7 +162,7 @@ class Elements {
           if (const DimensionForm phi = formulas_.term(side).dimension; formulas_.known(phi))
             return formulas_.unit("J") / (phi * power(formulas_.unit("s"), c->order));
       } catch (const Failure&) {
-        // It is reported where the constraint is.
+        // The failure is reported at the constraint.
       }
     }
     return std::nullopt;
@@ -235,7 +236,7 @@ class Elements {
     each("input", [&](const Item& i) { expect(i, named(i.key)); });
   }
 
-  // The knots may have units as well.
+  // Reads the units of tables: the knots may have units as well.
   void tables() {
     list("table", [&](const Item& t) {
       const Item* name = t.find("name");
@@ -270,7 +271,7 @@ class Elements {
       formulas_.term(*value);
   }
 
-  // In SI; empty if it does not follow.
+  // Returns the SI unit; empty if it does not follow.
   std::string unit_of(const DimensionForm& form) const {
     const auto known = formulas_.known(form);
     return known ? print(*known) : std::string();
@@ -278,7 +279,7 @@ class Elements {
 
   DimensionForm named(const std::string& name) { return formulas_.named(name).dimension; }
 
-  // "x''" of [initial]: the dimension of the derivative.
+  // Gives "x''" of [initial] the dimension of the derivative.
   void initial() {
     const Item* section = root_.find("initial");
     if (section) values(*section);
@@ -321,11 +322,11 @@ class Elements {
 
 }  // namespace
 
-// A number without a unit among others that have one may be meant in their unit: "b = 18" beside "r = 8 cm".
+// Notes numbers without a unit among others that have one: they may be meant in this unit, "b = 18" beside "r = 8 cm".
 static void note_bare_numbers(const Scope& scope, Model& model) {
   const auto& names = model.names.parameters;
   std::map<std::string, std::string>
-      measured;  // the unit in SI: a parameter that is given with a unit, in its written form
+      measured;  // by SI unit: a parameter that is given with a unit, in its written form
   std::vector<std::pair<std::size_t, std::string>> bare;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const Scope::Declaration& d = scope.declarations().at(names[i]);
@@ -340,7 +341,7 @@ static void note_bare_numbers(const Scope& scope, Model& model) {
     else if (number.op == Syntax::Op::number && parse_rational(number.text).value_or(0) != 0)
       bare.push_back({i, d.formula.text()});
   }
-  std::map<std::string, std::pair<std::size_t, std::string>> lists;  // of each unit, how many and which
+  std::map<std::string, std::pair<std::size_t, std::string>> lists;  // for each unit, how many and which
   std::vector<std::string> order;
   for (const auto& [i, text] : bare) {
     const std::string& unit = model.parameter_units[i];
@@ -357,14 +358,14 @@ static void note_bare_numbers(const Scope& scope, Model& model) {
   }
 }
 
-// Whether a file without units is consistent when the values from outside may have any dimension.
+// True if a file without units is consistent when the values from outside may have any dimension.
 static bool consistent_without_overrides(const Item& root, const Scope& scope, const Model& model) {
   Elements elements(root, scope, model, Elements::Overrides::ignored);
   elements.run();
   return elements.found().empty();
 }
 
-// Whether a value from outside has a unit.
+// True if a value from outside has a unit.
 static bool overrides_with_units(const Scope& scope) {
   return std::any_of(scope.declarations().begin(), scope.declarations().end(), [](const auto& d) {
     return !d.second.override.empty() && has_unit(parse_formula(d.second.formula));
@@ -377,7 +378,8 @@ void check_dimensions(const Item& root, const Scope& scope, Model& model, std::v
   const bool units_seen = elements.run();
   if (elements.found().empty()) model.scales = elements.scales();
   if (!may_have_units(root) && !overrides_with_units(scope)) return;
-  // Without units the check passes over formulas that contradict one another, but not over a unit from outside that does.
+  // If the file has no units, the check accepts formulas that contradict one another, but not a unit from outside that
+  // contradicts them.
   if (!elements.found().empty() && (units_seen || consistent_without_overrides(root, scope, model)))
     for (const Diagnostic& d : elements.found()) diagnostics.add(d);
   if (!units_seen) return;

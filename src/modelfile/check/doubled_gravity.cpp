@@ -13,7 +13,7 @@ namespace {
 // Values of expressions at one of several points that differ in the coordinates.
 class Point {
  public:
-  // `zero`: a parameter that is zero here.
+  // `zero`: a parameter that is zero at this point.
   Point(const Model& model, std::uint64_t number, std::optional<std::uint32_t> zero)
       : model_(model), number_(number), zero_(zero), parameters_(model.parameters.size()) {}
 
@@ -39,16 +39,16 @@ class Point {
 
 constexpr std::uint64_t kPoints = 3;
 
-// The values of a function at the points.
+// The values of a function at all points.
 using Values = std::array<double, kPoints>;
 
 struct Energies {
   std::vector<Values> potentials;
-  std::vector<Values> gravity;  // of each body
+  std::vector<Values> gravity;  // energies of each body
   Values gravity_of_all{};
 };
 
-// `part`: of the energies only what the parameter adds.
+// Returns the energies; with `part`, only the parts that this parameter adds.
 Energies energies(const Model& model, std::optional<std::uint32_t> part) {
   Energies out;
   out.potentials.resize(model.potentials.size());
@@ -66,7 +66,7 @@ Energies energies(const Model& model, std::optional<std::uint32_t> part) {
   return out;
 }
 
-// Whether two functions differ by a constant and are none themselves.
+// True if two functions differ by a constant and are not constants themselves.
 bool same(const Values& a, const Values& b) {
   constexpr double kRoundOff = 1e-9;
   for (std::size_t k = 1; k < kPoints; ++k) {

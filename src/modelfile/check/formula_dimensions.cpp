@@ -48,7 +48,7 @@ void FormulaDimensions::alike(const Measured& a, const Measured& b, Span place, 
   throw Failure(place, dimensions_.text(a.dimension) + between + dimensions_.text(b.dimension) + behind);
 }
 
-// Degrees alone do not determine the units of lengths and masses.
+// Notes a unit of the file. Degrees alone do not determine the units of lengths and masses.
 void FormulaDimensions::seen(const DimensionForm& unit) {
   if (!in_override_ && unit.known != Dimension{}) units_seen = true;
 }
@@ -72,7 +72,7 @@ bool FormulaDimensions::is_body(const std::string& name) const {
 
 void FormulaDimensions::declarations(Diagnostics& found) {
   found_ = &found;
-  // In the order of the file: a clash is reported at its first place.
+  // The order is that of the file, so that a clash is reported at its first place.
   std::vector<std::pair<std::pair<std::uint32_t, std::uint32_t>, std::string>> order;
   for (const auto& [name, d] : scope_.declarations()) order.push_back({{d.span.line, d.span.column}, name});
   std::sort(order.begin(), order.end());
@@ -162,7 +162,7 @@ Measured FormulaDimensions::of(const Item& item) {
   return vector(first.dimension);
 }
 
-// The exponent as a number, if it is written as one.
+// Returns the exponent as a number, if it is written as one.
 static std::optional<Rational> written_number(const Syntax& s) {
   switch (s.op) {
   case Syntax::Op::number:
@@ -190,7 +190,7 @@ Measured FormulaDimensions::raised(const Syntax& s) {
   const Measured base = of(s.args[0]);
   if (const auto exponent = written_number(s.args[1])) return number(power(base.dimension, *exponent));
   pure(s.args[1]);
-  // If the exponent is a parameter (Hertz's 3/2), the dimension is known only for the power of a pure number.
+  // If the exponent is a parameter (Hertz's 3/2), only the power of a pure number has a known dimension.
   const auto known = dimensions_.known(base.dimension);
   return known && *known == Dimension{} ? number() : anything();
 }
@@ -252,7 +252,7 @@ Measured FormulaDimensions::term(const Syntax& s) {
 }
 
 Measured FormulaDimensions::of(const Syntax& s) {
-  // A formula deeper than any that a person writes is not checked.
+  // A formula that is deeper than any written by a person is not checked.
   constexpr int kDeepest = 500;
   if (depth_ > kDeepest) return anything();
   ++depth_;
@@ -320,7 +320,7 @@ Measured FormulaDimensions::measured(const Syntax& s) {
 std::pair<DimensionForm, DimensionForm> FormulaDimensions::table(const std::string& name) {
   const auto it = tables_.find(name);
   if (it != tables_.end()) return it->second;
-  // One after the other: unknowns are numbered.
+  // The unknowns are made one after the other, because they are numbered.
   DimensionForm x = dimensions_.unknown("the argument of " + name), y = dimensions_.unknown("the values of " + name);
   return tables_.emplace(name, std::pair(std::move(x), std::move(y))).first->second;
 }
@@ -465,8 +465,8 @@ Measured FormulaDimensions::components(const Syntax& s) {
   return vector(first.dimension);
 }
 
-// choose(k, v1, v2, …) and piecewise(c1, v1, c2, v2, …, else): the values have one dimension, and so have the sides of a
-// condition.
+// Handles choose(k, v1, v2, …) and piecewise(c1, v1, c2, v2, …, else): the values have one dimension, and so have the
+// sides of a condition.
 Measured FormulaDimensions::one_of_values(const Syntax& s, DimensionRule rule) {
   const auto is_condition = [&](std::size_t k) {
     return rule == DimensionRule::choice ? k == 0 : k % 2 == 0 && k + 1 < s.args.size();
@@ -486,8 +486,8 @@ Measured FormulaDimensions::one_of_values(const Syntax& s, DimensionRule rule) {
   return value ? *value : anything();
 }
 
-// The velocity of a point is its derivative; with a body (the material point) or `inertial` it has the dimension of a
-// velocity.
+// Returns the dimension of the velocity of a point, which is its derivative; with a body (the material point) or
+// `inertial` it is that of a velocity.
 Measured FormulaDimensions::rate_of_point(const Syntax& s, int times) {
   const DimensionForm per = power(unit("s"), times);
   if (s.args.size() == 1) return vector(argument(s, 0).dimension / per);

@@ -18,7 +18,7 @@ struct Measured {
 
 class FormulaDimensions {
  public:
-  // Whether the units of values from outside (--set) are looked at; else such a value has any dimension.
+  // Tells whether the units of values from outside (--set) are read; if ignored, such a value has any dimension.
   enum class Overrides : std::uint8_t { read, ignored };
 
   FormulaDimensions(const Scope& scope, const Model& model, Overrides overrides);
@@ -29,39 +29,39 @@ class FormulaDimensions {
   void look_for_units(const Syntax& s);
   Measured of(const Syntax& s);
   Measured of(const Item& item);  // a formula, or an array of three
-  // The dimension of a side of an equation or of a term of a sum: a single axis is 1 of any unit along it, as in vel(P)
-  // = T.x.
+  // Returns the dimension of a side of an equation or of a term of a sum: a single axis is 1 of any unit along it, as
+  // in vel(P) = T.x.
   Measured term(const Syntax& s);
   Measured term(const Item& item) { return item.is_formula() ? term(parse_formula(item.formula)) : of(item); }
   Measured named(const std::string& name);
   DimensionForm unit(const char* text) const;
   // Throws Failure if m cannot have the wanted dimension.
   void expect(const Measured& m, const DimensionForm& wanted, Span place);
-  void expect(const Item& item, const DimensionForm& wanted);  // a formula or an array; other items are passed over
-  // The sizes of a shape, as in "disc(R)", are lengths. Throws Failure if one cannot be.
+  void expect(const Item& item, const DimensionForm& wanted);  // a formula or an array; other items are skipped
+  // Requires that the sizes of a shape, as in "disc(R)", are lengths. Throws Failure if one cannot be a length.
   void expect_lengths(const Item& shape);
   void alike(const Measured& a, const Measured& b, Span place, const char* between, const char* behind = "");
   std::optional<Dimension> known(const std::string& name);
   std::optional<Dimension> known(const DimensionForm& form) const { return dimensions_.known(form); }
 
-  // The dimensions of x and y of a table.
+  // Returns the dimensions of x and y of a table.
   std::pair<DimensionForm, DimensionForm> table(const std::string& name);
-  // The dimension of a unit that is given beside a value.
+  // Returns the dimension of a unit that is given beside a value.
   DimensionForm given_unit(const std::string& text);
 
   // A number without a unit, other than 0, as a term of a sum whose terms have a unit: the 2 of "2 + r" with a length r.
   struct BareTerm {
     Span span;
-    std::string text;  // of the number
+    std::string text;  // text of the number
     Dimension dimension;
   };
-  // Those of all formulas that were looked at, in the order of the file.
+  // Returns the bare terms of all formulas that were checked, in the order of the file.
   std::vector<BareTerm> bare_terms() const;
 
-  // The dimension of lambda.NAME; nullopt if it is not known.
+  // Returns the dimension of lambda.NAME; nullopt if it is not known.
   std::function<std::optional<DimensionForm>(const std::string&)> of_multiplier;
   bool units_seen = false;  // in the file, not in --set
-  bool in_field = false;    // in [gravity], where 'here' is a place
+  bool in_field = false;    // in [gravity], where 'here' denotes a place
 
  private:
   Measured declared(const std::string& name, const Scope::Declaration& d);
@@ -69,7 +69,7 @@ class FormulaDimensions {
   Measured call(const Syntax& s);
   Measured by_rule(const Syntax& s, DimensionRule rule);
   Measured argument(const Syntax& s, std::size_t i);
-  // The arguments from the first on have one dimension, which is returned.
+  // Requires that all arguments have one dimension, which is returned.
   Measured one_dimension(const Syntax& s, const std::string& behind);
   Measured components(const Syntax& s);
   Measured one_of_values(const Syntax& s, DimensionRule rule);

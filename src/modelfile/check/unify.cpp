@@ -38,7 +38,7 @@ DimensionForm Dimensions::unknown(const std::string& name) {
 }
 
 DimensionForm Dimensions::resolved(const DimensionForm& f) const {
-  // The solution of an unknown holds only older unknowns: from the newest down, each is substituted once.
+  // The solution of an unknown contains only older unknowns: from the newest down, each is substituted once.
   DimensionForm out = f;
   for (;;) {
     const auto it = std::find_if(out.unknowns.rbegin(), out.unknowns.rend(),

@@ -15,7 +15,7 @@ static constexpr std::size_t kDeepestParameters = 400;
 
 void check_values(const Model& model, Diagnostics& diagnostics) {
   const Graph& g = *model.graph;
-  // the length of the chain of references behind each value
+  // The length of the chain of references behind each value.
   std::vector<std::size_t> depth(model.parameters.size(), 0);
   const std::function<std::size_t(std::size_t)> deep = [&](std::size_t i) {
     if (depth[i] > 0 || is_number(model.parameters[i].value)) return depth[i];

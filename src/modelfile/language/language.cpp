@@ -23,7 +23,7 @@ const LanguageSection& language_section(const std::string& name) {
   return language().front();
 }
 
-// body, bodies; event, events.
+// Returns the plural of a name: body, bodies; event, events.
 static std::string plural(std::string name) {
   if (!name.ends_with('y')) return name + "s";
   name.pop_back();

@@ -28,7 +28,7 @@ enum class Content : std::uint8_t {
   place,
   columns,
   formulas,  // a table of formulas by name
-  values,    // as formulas, and tables of them by name
+  values,    // like formulas, and tables of them by name
   any,
 };
 
@@ -52,16 +52,17 @@ struct LanguageSection {
   Content content;  // the content of each name of a `named` section
   std::vector<LanguageKey> keys;
   const char* page;                     // Markdown: examples first, then the rules for doubtful cases
-  std::vector<std::string> words = {};  // further words for its subject, by which a reader asks for its page
+  std::vector<std::string> words = {};  // further words for its subject, by which a reader can find its page
 };
 
-// The sections in the order of the reference page.
+// Returns the sections in the order of the reference page.
 const std::vector<LanguageSection>& language();
 const LanguageSection& language_section(const std::string& name);
-// The section that has this name, the plural of it, or this word for its subject, in small or capital letters; else null.
+// Returns the section with this name, with its plural, or with this word for its subject, in small or capital letters;
+// nullptr if there is none.
 const LanguageSection* find_subject(const std::string& word);
 
-// The keys of a section; for the file itself also the names of the sections.
+// Returns the keys of a section; for the file itself also the names of the sections.
 std::vector<std::string> known_keys(const LanguageSection& section);
 
 // A name that has a meaning everywhere and cannot be declared.
@@ -72,7 +73,7 @@ struct ReservedName {
 const std::vector<ReservedName>& reserved_names();
 bool is_reserved(const std::string& name);
 
-// Functions of formulas that need the model: velocities, angular velocities, the field of gravity.
+// Returns the functions of formulas that need the model: velocities, angular velocities, the field of gravity.
 const std::vector<FunctionRow>& kinematic_functions();
 
 // The parts of the table, each in a file of its own.

@@ -7,7 +7,7 @@ namespace anholon {
 using enum Content;
 using Form = LanguageSection::Form;
 
-// The options of a motion, which are those of the command line.
+// Returns the keys of [simulate]: the options of a motion on the command line.
 static std::vector<LanguageKey> keys_of_simulate() {
   struct ContentOf {
     const MotionOption& option;

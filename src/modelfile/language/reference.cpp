@@ -123,7 +123,7 @@ error: a length (m) plus a time (s)
 
 )md";
 
-// A rule about the meaning of formulas that could be doubted; the test of the page checks it.
+// A rule for a formula whose meaning is not obvious; the test of the page checks it.
 struct Decision {
   const char* formula;
   const char* value;
@@ -274,7 +274,7 @@ std::string reference_page() {
   return out;
 }
 
-// Words for the chapter on formulas, which tells about units, too.
+// Returns words for the chapter on formulas, which also describes units.
 static const std::vector<std::string>& words_of_formulas() {
   static const std::vector<std::string> words = {"formulas", "formula", "units", "unit", "numbers"};
   return words;

@@ -28,7 +28,7 @@ void list_of(JsonWriter& j, std::initializer_list<const char*> types) {
   j.close();
 }
 
-// The schema of a key's value; `list`: values for the members of a family are allowed.
+// Writes the schema of a key's value; `list`: values for the members of a family are allowed.
 void content(JsonWriter& j, Content c, const std::vector<std::string>& choices = {}) {
   switch (c) {
   case Content::text:
@@ -72,7 +72,7 @@ void content(JsonWriter& j, Content c, const std::vector<std::string>& choices =
   }
 }
 
-// The description of a key, without the marks of Markdown.
+// Returns the description of a key without the marks of Markdown.
 std::string plain(const std::string& markdown) {
   std::string out;
   for (char c : markdown)
@@ -96,7 +96,7 @@ void properties(JsonWriter& j, const LanguageSection& s) {
   }
 }
 
-// The schema of a table of these keys and, if `others`, of names chosen by the author.
+// Writes the schema of a table of these keys and, if `others`, of names chosen by the author.
 void keys(JsonWriter& j, const LanguageSection& s, bool others) {
   type(j, {"object"});
   j.key("properties").open_object();
@@ -113,7 +113,7 @@ void section(JsonWriter& j, const LanguageSection& s) {
   case Form::keys:
     return keys(j, s);
   case Form::elements:
-    // A file with a base, and a case, may name elements: constraint.reel.equation = "…".
+    // In a file with a base, and in a case, elements may be named: constraint.reel.equation = "…".
     j.key("anyOf").open_array().open_object();
     type(j, {"array"});
     j.key("items").open_object();
@@ -129,7 +129,7 @@ void section(JsonWriter& j, const LanguageSection& s) {
     type(j, {"object"});
     if (std::string(s.name) == "case") return;
     j.key("additionalProperties").open_object().key("anyOf").open_array();
-    // The value alone, a list of values for the members of a family, or a table of its keys.
+    // The value is alone, a list of values for the members of a family, or a table of its keys.
     j.open_object();
     type(j, {"string", "number", "array"});
     j.close().open_object();

@@ -84,7 +84,7 @@ Expr BodyReader::frozen(Expr value, const std::string& name, Span span) {
   return g.mass(static_cast<std::uint32_t>(index));
 }
 
-// Positions of a chain are parts of one another: nodes that were checked are not checked again.
+// Checks a position. Positions in a chain are parts of one another, so nodes that were checked are not checked again.
 void BodyReader::check_position(const Vector& place, const Item& item, const std::string& what) {
   const Graph& g = *model_.graph;
   for (int i = 0; i < 3; ++i) {
@@ -127,7 +127,8 @@ void BodyReader::check_position(const Vector& place, const Item& item, const std
   }
 }
 
-// A kink in a coordinate acts only where the motion goes there; one in time makes every acceleration a pulse.
+// Refuses positions that jump or have a kink in time: a kink in a coordinate acts only if the motion reaches it, but
+// one in time makes every acceleration a pulse.
 void BodyReader::check_jumps(Expr position, const Item& item, const std::string& what) {
   const Expr e = put_controls(model_, {&position, 1})[0];
   const bool itself = jumps_at_a_point(model_, e, holds_time);
@@ -153,7 +154,7 @@ void BodyReader::read_body(const Entry& e) {
   body.particle = e.particle;
   body.mass = g.zero();
   body.center = body.gravity = body.exit_point = zero_vector(g);
-  // The list keeps its order even if this body turns out to be invalid.
+  // The list keeps its order even if this body is invalid.
   if (model_.bodies.size() <= e.index) model_.bodies.resize(e.index + 1, body);
   const std::string what = (e.particle ? "particle '" : "body '") + body.name + "'";
   check_keys(item, what, e.particle ? "particle" : "body", diagnostics_);
@@ -302,7 +303,7 @@ void BodyReader::read_axes(Body& body, const Item* inertia, const Item* axes) {
   for (int k = 0; k < 3; ++k) add(weight[k], unit[k], std::string(1, "xyz"[k]));
 }
 
-// A weighted axis, given along the body's own axes.
+// Adds a weighted axis, given along the body's own axes.
 void BodyReader::add_axis(Body& body, Expr weight, const Column& own, const std::string& tag, Span span) {
   if (is_zero(weight)) return;
   const Rotation& r = *body.orientation;
@@ -313,7 +314,7 @@ void BodyReader::add_axis(Body& body, Expr weight, const Column& own, const std:
   body.axes.push_back(axis);
 }
 
-// A varying mass makes the moments vary, and they are frozen with it.
+// Adds the axes of a shape. If the mass varies, the moments vary, and they are frozen with it.
 void BodyReader::shape_axes(Body& body, Expr mass, Span span) {
   if (!body.orientation)
     throw Failure(span, "the body '" + body.name + "' has the inertia of its shape but no orientation",
@@ -328,8 +329,8 @@ void BodyReader::shape_axes(Body& body, Expr mass, Span span) {
   }
 }
 
-// E = 1/2 tr(J) 1 - J must not have a negative eigenvalue (for principal axes: each moment is at
-// most the sum of the two others).
+// Checks that E = 1/2 tr(J) 1 - J has no negative eigenvalue (for principal axes: each moment is at most the sum of the
+// two others).
 void BodyReader::check_inertia(const Body& body, const Expr (&moment)[3][3], Span span, const std::string& of_plane) {
   double j[3][3];
   for (int i = 0; i < 3; ++i)

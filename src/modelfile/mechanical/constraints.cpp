@@ -13,7 +13,7 @@
 
 namespace anholon {
 
-// The highest order of derivative on which phi depends after simplification.
+// Returns the highest order of derivative on which phi depends after simplification.
 int ConstraintReader::true_order(Expr& phi) const {
   Graph& g = *model_.graph;
   for (int k = jet_order(phi);; --k) {
@@ -22,7 +22,7 @@ int ConstraintReader::true_order(Expr& phi) const {
     for (NodeId id : symbols({&phi, 1}))
       if (g.node(id).kind == Kind::jet && g.node(id).order == k) top.push_back({&g, id});
     const Column d = gradient(phi, top);
-    const auto told = [](Expr e) { return is_number(e) && !is_zero(e); };  // a number at a glance, without a proof
+    const auto told = [](Expr e) { return is_number(e) && !is_zero(e); };  // a nonzero number, which needs no proof
     const bool depends = std::any_of(d.begin(), d.end(), told) ||
                          std::any_of(d.rbegin(), d.rend(), [](Expr e) { return !proved_zero(e); });
     if (depends) return k;
@@ -55,7 +55,7 @@ void ConstraintReader::add_constraint(const std::string& name, Expr phi, const s
   model_.names.multipliers.push_back(name);
 }
 
-// The unit norms that quaternions need.
+// Adds the unit norms that quaternions need.
 std::vector<UnitNorm> ConstraintReader::norms_of_quaternions() {
   std::vector<UnitNorm> norms;
   collect(diagnostics_, [&] { norms = unit_norms(scope_, model_); });

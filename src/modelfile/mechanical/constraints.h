@@ -19,18 +19,18 @@ class ConstraintReader {
       : scope_(scope), model_(model), diagnostics_(diagnostics) {}
 
   void read(const Item& root);
-  // The unit norms that quaternions need; call it after everything that may contain a quaternion has been read.
+  // Adds the unit norms that quaternions need. REQUIRES: everything that may contain a quaternion has been read.
   std::vector<UnitNorm> norms_of_quaternions();
-  // The constraints with 'active', which hold in some modes. Those of the modes at the start become constraints of the
-  // model, behind all others; call it when the values of the parameters are known.
+  // Returns the constraints with 'active', which hold in some modes. Those that hold in the modes at the start become
+  // constraints of the model, behind all others. REQUIRES: the values of the parameters are known.
   std::vector<Contact> switched();
 
  private:
   int true_order(Expr& phi) const;
-  // `named`: where the name stands, if the file gives it.
+  // `named`: the place of the name, if the file gives a name.
   void add_constraint(const std::string& name, Expr phi, const std::string& equation, Span place,
                       std::optional<Span> named = std::nullopt);
-  // Takes the constraints from this one on out of the model: they hold while the formula is positive.
+  // Removes the constraints from index `first` on from the model: they hold while the formula is positive.
   void switch_by(const Item& active, std::size_t first);
   Vector evaluate_vector_side(const Value& side, const Syntax& s) const;
 

@@ -12,7 +12,7 @@ namespace anholon {
 
 namespace {
 
-// Of length 1; the formula stays as it is where its length is proved to be 1.
+// Returns v scaled to length 1; unchanged if its length is proved to be 1.
 Vector unit(const Vector& v) {
   const Expr square = dot(v, v);
   if (proved_zero(square - v[0].graph->one())) return v;
@@ -27,7 +27,7 @@ Vector axis(Graph& g, int k) {
 
 bool is_zero_vector(const Vector& v) { return proved_zero(v[0]) && proved_zero(v[1]) && proved_zero(v[2]); }
 
-// Two directions across n, one of them an axis if n has no component along it.
+// Returns two directions orthogonal to n, one of them an axis if n has no component along it.
 std::vector<Vector> tangents(const Vector& n) {
   Graph& g = *n[0].graph;
   constexpr int kAxes[] = {1, 0, 2};
@@ -40,7 +40,7 @@ std::vector<Vector> tangents(const Vector& n) {
   return {t, cross(n, t)};
 }
 
-// The other ways in which two bodies touch.
+// The hint for other ways in which two bodies touch.
 constexpr const char* kTwoBodies = "on = \"ball(R)\" with through = \"B.center\" where the other body B is a ball; "
                                    "else gap = \"…\" and slip = \"…\" as formulas in place of 'body'";
 
@@ -91,7 +91,7 @@ class TouchingReader {
   static constexpr const char* kShapes = "shape = \"point\", \"ball(R)\", \"disc(R)\", \"torus(R, r)\" or \"box(a, b, "
                                          "c)\", or gap and slip as formulas";
 
-  // Contacts in place of that of a solid whose contact is not known.
+  // Returns contacts that may replace that of a solid whose contact is not known.
   std::string instead_of(const std::string& solid) const {
     const std::string b = body().name;
     if (solid == "cylinder")
@@ -102,7 +102,7 @@ class TouchingReader {
     return kShapes;
   }
 
-  // A disc or a torus whose axis is always along the normal.
+  // Returns the failure for a disc or a torus whose axis is always along the normal.
   Failure lies_flat() const {
     const Item* shape = c_.find("shape");
     const std::string b = body().name;
@@ -114,7 +114,7 @@ class TouchingReader {
                        b + "(R, 0, 0)\" and so on");
   }
 
-  // Of the shapes of bodies some do not touch.
+  // Reads the shape; the hint for an unknown shape lists the shapes that can touch.
   Shape shape_that_touches(const Item& given) const {
     try {
       return read_shape(given, scope_, model_);
@@ -179,7 +179,7 @@ class TouchingReader {
     bowl_ = s.text == "bowl";
   }
 
-  // A plane that moves with coordinates may be meant as a face of another body.
+  // Notes a plane that moves with coordinates: it may be meant as a face of another body.
   void note_moving_plane() {
     if (radius_ || !(jet_order(through_[0]) >= 0 || jet_order(through_[1]) >= 0 || jet_order(through_[2]) >= 0)) return;
     const Item* named = c_.find("name");
@@ -206,15 +206,16 @@ class TouchingReader {
       q = place - shape_.sizes[0] * n;
     }
     if (shape_.kind == "disc" || shape_.kind == "torus") {
-      // The lowest place of the rim lies against the part of the normal that is in the plane of the disc, a x (n x a). Its
-      // size is |n x a|, whose digits a disc keeps that lies almost flat; 1 - (n a)^2 would cancel them.
+      // The lowest place of the rim lies opposite to the part of the normal that is in the plane of the disc, a x (n x
+      // a). Its size is |n x a|, which keeps its digits for a disc that lies almost flat; 1 - (n a)^2 would cancel
+      // them.
       const Vector& a = orientation()[2];
       const Vector axis = cross(n, a), across = cross(a, axis);
       const Expr size = sqrt(dot(axis, axis));
       if (proved_zero(size)) throw lies_flat();
       gap = gap - shape_.sizes[0] * size;
       q = place - (shape_.sizes[0] * pow(size, Rational(-1))) * across;
-      // The tube of a torus is thick about the rim.
+      // The tube of a torus surrounds the rim.
       if (shape_.kind == "torus") {
         gap = gap - shape_.sizes[1];
         q = q - shape_.sizes[1] * n;
@@ -241,7 +242,7 @@ class TouchingReader {
   std::size_t body_ = 0;
   Shape shape_;
   Vector normal_, through_;
-  std::optional<Expr> radius_;  // of a ball or bowl that is touched
+  std::optional<Expr> radius_;  // radius of the touched ball or bowl
   bool bowl_ = false;
 };
 

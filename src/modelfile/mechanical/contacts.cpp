@@ -49,7 +49,7 @@ class ContactReader {
   ContactReader(Scope& scope, Model& model, Diagnostics& diagnostics)
       : scope_(scope), model_(model), diagnostics_(diagnostics) {}
 
-  // One contact with its resistance; of a box those of its corners.
+  // Reads one contact with its resistance; for a box those of its corners.
   std::vector<Contact> read(const Item& c, std::size_t number) const {
     Contact contact = begin(c, "contact" + std::to_string(number + 1));
     if (!c.find("body")) read_formulas(c, contact);
@@ -73,7 +73,7 @@ class ContactReader {
     return {contact};
   }
 
-  // A constraint with one_sided = true: without friction, and with impacts that do not rebound.
+  // Reads a constraint with one_sided = true: it has no friction, and impacts do not rebound.
   Contact read_one_sided(const Item& c, std::size_t number) const {
     Contact contact = begin(c, "constraint" + std::to_string(number + 1));
     for (const char* key : {"by", "along"})
@@ -94,7 +94,7 @@ class ContactReader {
   }
 
  private:
-  // The name and the place.
+  // Begins a contact with its name and its place.
   static Contact begin(const Item& c, const std::string& without_name) {
     Contact contact;
     const Item* named = c.find("name");
@@ -184,7 +184,8 @@ class ContactReader {
     return list;
   }
 
-  // The moment about the directions that is at most the length of this key times the normal force.
+  // Adds the resistance by a moment about the directions, which is at most the length of this key times the normal
+  // force.
   void add_resistance(const Item& c, const std::string& key, const Touching& t, const std::vector<Vector>& directions,
                       const Contact& contact, std::size_t place, std::vector<Contact>& list) const {
     const Item* given = c.find(key);
@@ -225,14 +226,14 @@ class ContactReader {
     return put_masses(model_, evaluate_number(parse_formula(i.formula), scope_));
   }
 
-  // "x'", "the time": what a symbol is that a motion changes.
+  // Describes a symbol that a motion changes: "x'", "the time".
   std::string changing(const Node& n) const {
     if (n.kind == Kind::time) return "the time";
     if (n.kind != Kind::jet) return "the motion";
     return "'" + model_.coordinates[n.index].name + std::string(n.order, '\'') + "'";
   }
 
-  // A formula of parameters, which the contact notes.
+  // Reads a formula of parameters, and notes it in the contact.
   Expr coefficient(const Item& i, Contact& contact) const {
     const Expr e = formula(i, "a coefficient");
     for (NodeId id : symbols({&e, 1}))
@@ -248,7 +249,7 @@ class ContactReader {
     return e;
   }
 
-  // A velocity by its components: a number, a list of numbers, or a vector along two directions.
+  // Reads a velocity by its components: a number, a list of numbers, or a vector along two directions.
   std::vector<Expr> velocities(const Item& slip, const Item* along, Expr gap) const {
     std::vector<Expr> list;
     const auto take = [&](Expr e) {
@@ -303,13 +304,13 @@ bool is_one_sided(const Item& constraint) {
   return word->truth;
 }
 
-// What a model with too many contacts may have instead.
+// The hint for a model with too many contacts.
 static constexpr const char* kSoftContacts =
     "leave out contacts that stay open, or write soft ones, as many as you like: [[force]] with vector = \"-k*min(P.z, "
     "0)*ez\"";
 
 std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics) {
-  constexpr std::size_t kMost = 8;  // the modes of those that touch are enumerated
+  constexpr std::size_t kMost = 8;  // the modes of the touching contacts are enumerated
   std::vector<Contact> list;
   const ContactReader reader(scope, model, diagnostics);
   const auto touching = [&] {
@@ -339,7 +340,7 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
       }
     });
   std::size_t count = items ? items->items.size() : 0;
-  // The first contact that is one too many.
+  // The place of the first contact beyond the limit.
   Span beyond = count > kMost ? items->items[kMost].span : Span{};
   if (constraints)
     for (std::size_t k = 0; k < constraints->items.size(); ++k) {
@@ -365,7 +366,7 @@ std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model,
 
 namespace {
 
-// "floor", "floor.t1", "floor.rolling.t2" among the contacts.
+// Finds "floor", "floor.t1", "floor.rolling.t2" among the contacts.
 std::optional<ContactForces::Force> force_of(const std::string& path, const std::vector<Contact>& contacts) {
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     if (path == contacts[c].name && !contacts[c].under) return ContactForces::Force{c, std::nullopt};
@@ -375,7 +376,7 @@ std::optional<ContactForces::Force> force_of(const std::string& path, const std:
   return std::nullopt;
 }
 
-// "lambda.floor, lambda.floor.t1".
+// Lists the forces: "lambda.floor, lambda.floor.t1".
 std::string known_forces(const std::vector<Contact>& contacts) {
   std::string list;
   for (const Contact& c : contacts) {
@@ -387,7 +388,7 @@ std::string known_forces(const std::vector<Contact>& contacts) {
 
 bool is_contact_force(const Node& n) { return n.kind == Kind::multiplier && n.index >= kContactForces; }
 
-// With the forces of the model as it is: those of the constraints that hold at the start, and zeros.
+// Substitutes the forces of the model at the start: those of the constraints that hold there, and zeros.
 Expr with_forces_at_start(const Model& model, const std::vector<Contact>& contacts,
                           const std::vector<ContactForces::Force>& forces, Expr e) {
   Graph& g = *model.graph;
@@ -400,8 +401,8 @@ Expr with_forces_at_start(const Model& model, const std::vector<Contact>& contac
 
 }  // namespace
 
-// Zeros that the graph does not know to be such: rows divide by them, and the graph does not. Each force has one of its
-// own, so that none cancels another.
+// Returns a zero that the graph does not recognize: the graph refuses divisions by zero, the evaluation of rows does
+// not. Each force has a zero of its own, so that none cancels another.
 static Expr hidden_zero(Graph& g, const Node& force) {
   const Expr positive = g.number(static_cast<long>(force.index - kContactForces) + 1) + g.time() * g.time();
   return g.apply(Function::sign, positive) - g.one();
@@ -423,7 +424,7 @@ Expr with_contact_forces(Graph& g, Expr formula, const std::function<Expr(const 
   }
 }
 
-// Whether R(lambda) = R(0) + sum lambda dR/dlambda, by an exact test.
+// True if R(lambda) = R(0) + sum lambda dR/dlambda, by an exact test.
 static bool is_linear_in_forces(Graph& g, Expr rate) {
   Column forces;
   for (const NodeId id : symbols({&rate, 1}))
@@ -439,13 +440,13 @@ void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact
   if (asked.empty()) return;
   auto found = std::make_shared<ContactForces>();
   std::vector<bool>
-      unknown;  // paths that are a part of another one, as floor.rolling of floor.rolling.t1, are in no formula
+      unknown;  // no formula contains a path that is part of another one, such as floor.rolling of floor.rolling.t1
   for (const auto& [path, use] : asked) {
     const std::optional<ContactForces::Force> force = force_of(path, contacts);
     unknown.push_back(!force);
     found->forces.push_back(force.value_or(ContactForces::Force{}));
   }
-  // Without its contact, whose mistake is told, a force is unknown, too.
+  // If there are errors, a contact with a mistake may be missing, so its forces are not reported as unknown.
   const bool tell = !diagnostics.has_errors();
   const auto holds_force = [&](Expr e) {
     bool any = false;
@@ -467,7 +468,7 @@ void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact
     if (!holds_force(value)) return;
     found->formulas.push_back({of, index, value});
     value = at_start(value);
-    open = {};  // the mode puts in what value holds
+    open = {};  // the mode substitutes the forces in the value
   };
   for (std::size_t k = 0; k < model.monitors.size(); ++k)
     settle(model.monitors[k].value, model.monitors[k].open, ContactForces::Formula::Of::monitor, k);

@@ -1,6 +1,6 @@
 // [[contact]]: unilateral contacts with Coulomb friction and restitution (theory: contact).
 //
-// A contact is no part of the equations of a model: the model that is read is the one in which all contacts are open.
+// A contact is no part of the equations of a model: the reader returns the model in which all contacts are open.
 // Motions make a model for each mode of the contacts (contact/mode_model.h).
 #pragma once
 #include <cstdint>
@@ -20,85 +20,86 @@ enum class ImpactLaw : std::uint8_t { newton, poisson };
 struct ContactForces {
   struct Force {
     std::size_t contact = 0;
-    std::optional<std::size_t> friction;  // this component of the friction, or of the moment of resistance; else N
+    std::optional<std::size_t> friction;  // this component of the friction, or of the moment of resistance; nullopt: N
   };
   struct Formula {
     enum class Of : std::uint8_t { monitor, event, rate } of = Of::monitor;  // rate: of a state, linear in the forces
-    std::size_t index = 0;  // of its kind; in the model it holds the value with all contacts open
+    std::size_t index = 0;  // index among its kind; the element of the model holds the value with all contacts open
     Expr value;             // multiplier kContactForces + k is force k
   };
   std::vector<Force> forces;
   std::vector<Formula> formulas;
 };
 
-// Puts the forces of contacts into a formula that holds them. Where a quotient by a force that is zero has no value, the
-// formula has none either: it is not a number.
+// Substitutes the forces of contacts in a formula. If a quotient by a force that is zero has no value, the formula has
+// none either: it is not a number.
 Expr with_contact_forces(Graph& g, Expr formula, const std::function<Expr(const Node&)>& force);
 
-// What a [[constraint]] with active = "…" has instead of the laws of a contact: it holds, and pulls as well as it pushes,
-// while a formula of modes is positive.
+// The data of a [[constraint]] with active = "…", which has no laws of a contact: it holds in both directions while a
+// formula of modes is positive.
 struct Switch {
   Expr active;
-  int order = 0;         // of the constraint, 0 or 1
+  int order = 0;         // order of the constraint, 0 or 1
   std::string equation;  // as written
   // Its place among the constraints of the model if it holds at the start; the model then has it.
   std::optional<std::size_t> at_start;
 };
 
-// The SI units of a contact in a file with units; empty where they do not follow.
+// The SI units of a contact in a file with units; empty if they do not follow.
 struct ContactUnits {
-  std::string gap, normal, slip, friction;  // of resistance: slip is an angular velocity, friction a moment
+  std::string gap, normal, slip, friction;  // for resistance, slip is an angular velocity and friction a moment
 };
 
 struct Contact {
   std::string name;
-  std::string element;     // its name in the file: of a corner of a box that of the box
-  std::string shape;       // of a body that touches: point, ball, disc, torus or box; empty if the gap is a formula
+  std::string element;     // its name in the file; for a corner of a box, that of the box
+  std::string shape;       // shape of the body: point, ball, disc, torus or box; empty if the gap is a formula
   Expr gap;                // g(q, t) >= 0
   std::vector<Expr> slip;  // components of the relative tangential velocity, at most two, linear in q'
-  Expr friction;           // of the slip, mu >= 0
-  Expr static_friction;    // of sticking
+  Expr friction;           // coefficient of slip, mu >= 0
+  Expr static_friction;    // coefficient of sticking
   Expr restitution;        // 0 … 1
   ImpactLaw law = ImpactLaw::newton;
   Span span;
-  // Resistance to rolling or drilling stands behind its contact, whose place in the list this is, and whose gap it has. Its
-  // `slip` is an angular velocity, and its coefficients of friction are the length that times N is the largest moment.
+  // For resistance to rolling or drilling: the index of its contact, which precedes it in the list and whose gap it
+  // has. Its `slip` is an angular velocity, and its coefficients of friction are the lengths that, times N, are the
+  // largest moment.
   std::optional<std::size_t> under;
-  // A coefficient as it is given, for errors.
+  // A coefficient as written, for errors.
   struct Coefficient {
     std::string key;
     Expr value;
     Span span;
   };
   std::vector<Coefficient> given;
-  std::vector<Expr> sizes;     // of the shapes that touch, as far as they are given; they are positive
-  std::optional<Switch> held;  // a constraint that holds in some modes: its left side minus its right one is `gap`
-  std::shared_ptr<const ContactForces> forces;  // those of all contacts of the model; null if no formula holds any
+  std::vector<Expr> sizes;     // sizes of the shapes in contact, as far as they are given; they are positive
+  std::optional<Switch> held;  // a constraint that holds in some modes; `gap` is its left side minus its right side
+  std::shared_ptr<const ContactForces> forces;  // the forces of all contacts of the model; null if no formula holds any
   ContactUnits units;
-  // Where motions look at borders of surfaces (contact/surface/borders.h): those of all contacts, or null.
+  // The borders of surfaces of all contacts, if motions look at them (contact/surface/borders.h); else null.
   std::shared_ptr<const std::vector<Expr>> borders;
-  bool rough() const;  // whether there is friction
+  bool rough() const;  // true if there is friction
 };
 
-// The SI units of the columns of contacts: {"floor.gap": "m", "floor.normal": "N"}, as far as they are known.
+// Returns the SI units of the columns of contacts: {"floor.gap": "m", "floor.normal": "N"}, as far as they are known.
 std::map<std::string, std::string> column_units(const std::vector<Contact>& contacts);
 
-// How a coefficient of a contact is varied, if a word such as "floor.friction" names one; else empty.
+// Returns a hint how a coefficient of a contact is varied, if a word such as "floor.friction" names one; else empty.
 std::string hint_for_coefficient(const std::string& name);
 
-// Whether a [[constraint]] has one_sided = true. Throws Failure if that is neither true nor false.
+// True if a [[constraint]] has one_sided = true. Throws Failure if the value is neither true nor false.
 bool is_one_sided(const Item& constraint);
 
-// Whether a [[constraint]] holds in some modes only: it has the key 'active'.
+// True if a [[constraint]] holds in some modes only: it has the key 'active'.
 bool is_switched(const Item& constraint);
 
 // Reads the contacts of a file whose names are declared: its [[contact]]s, each followed by its resistance to rolling
-// (NAME.rolling) and drilling (NAME.drilling), then its constraints of one side, whose gaps are left - right. Contacts that
-// rub or rebound have one law of impacts. Errors go to the diagnostics.
+// (NAME.rolling) and drilling (NAME.drilling), then its one-sided constraints, whose gaps are left - right. Contacts
+// with friction or restitution must have the same law of impacts. Errors go to the diagnostics.
 std::vector<Contact> read_contacts(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
 
-// Finds the forces that monitors, outputs, rates of states and events hold, and puts zeros in their places in the model. Errors, also those
-// of conditions, rates and values that hold a force, go to the diagnostics.
+// Finds the forces that monitors, outputs, rates of states and events contain, and replaces them by zeros in the model.
+// Errors, also those of conditions, rates and values that contain a force, go to the diagnostics.
 void settle_contact_forces(const Scope& scope, Model& model, std::vector<Contact>& contacts, Diagnostics& diagnostics);
 
 }  // namespace anholon

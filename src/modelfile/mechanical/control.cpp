@@ -136,7 +136,7 @@ static void record(const std::string& column, Expr as_read, const OutputQuantity
       std::any_of(model.monitors.begin(), model.monitors.end(), [&](const Monitor& m) { return m.name == column; }))
     throw Failure(output.span, "a column '" + column + "' is there already", "give the output a name of its own");
   Expr value = put_masses(model, as_read), open = open_form(model, as_read);
-  // Converts the output to the unit that was asked for.
+  // Converts the output to its requested unit.
   if (!output.unit.empty()) {
     const Unit unit = *read_unit(output.unit);
     const Expr factor = model.graph->number(Rational(1 / unit.factor));

@@ -9,7 +9,7 @@
 namespace anholon {
 
 void declare_controls(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
-// Call it after all names are declared and before constraints are read.
+// REQUIRES: all names are declared, and no constraint is read yet.
 void read_controls(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
 // Reads `by` of the constraints from `first` on: one input without a formula for each of them.
 void keep_by(const Item& by, std::size_t first, const Scope& scope, Model& model);

@@ -12,14 +12,14 @@
 
 namespace anholon {
 
-// A step has the derivative 0, but is no constant.
+// True for a constant in time. A step function of time is not constant, although its derivative is 0.
 static bool constant_in_time(Expr e) {
   for (NodeId id : symbols({&e, 1}))
     if (e.graph->node(id).kind != Kind::parameter && e.graph->node(id).kind != Kind::pi) return false;
   return true;
 }
 
-// One term: constant * t^n or constant * f(a t + b).
+// Integrates one term: constant * t^n or constant * f(a t + b).
 static std::optional<Expr> antiderivative_of_term(Expr e) {
   Graph& g = *e.graph;
   const Expr t = g.time();
@@ -77,8 +77,8 @@ std::optional<Expr> antiderivative(Expr e) {
   return total;
 }
 
-// The rotation A(t) whose angular velocity is `spin`, equal to 1 at t = 0; nullopt unless the direction of the spin is
-// one of the axes.
+// Returns the rotation A(t) whose angular velocity is `spin`, equal to 1 at t = 0; nullopt unless the direction of the
+// spin is one of the axes.
 static std::optional<Rotation> rotation_of(const Vector& spin) {
   int axis = -1;
   for (int i = 0; i < 3; ++i) {
@@ -95,7 +95,7 @@ static std::optional<Rotation> rotation_of(const Vector& spin) {
   return turn(axis, *angle - start);
 }
 
-// Checks the axes at a few times: only the user's formulas keep an observer's axes orthonormal.
+// Checks at a few times that the axes are orthonormal, because only the user's formulas keep them so.
 static void check_orthonormal(const Rotation& a, const Model& model, Span span) {
   constexpr double kRounded = 1e-9;
   Graph& g = *model.graph;
@@ -116,7 +116,8 @@ static void check_orthonormal(const Rotation& a, const Model& model, Span span) 
 
 static const char* const kGiven = "the observer's motion is given: ";
 
-// The inertial forces would hold pulses where a derivative of lower order jumps.
+// Refuses tables that are not smooth enough: the inertial forces would contain pulses where a derivative of lower order
+// jumps.
 static void check_smooth(const ObserverFormula& f, const Model& model) {
   if (const auto name = too_rough(f.value, f.derivative))
     throw Failure(f.span,
@@ -135,7 +136,7 @@ static void check_smooth(const ObserverFormula& f, const Model& model) {
   }
 }
 
-// States by whose rates a formula of states changes, with their own.
+// Returns the states by whose rates a formula of states changes, including the states in these rates.
 static std::vector<std::uint32_t> states_behind(Expr e, const Model& model) {
   std::vector<std::uint32_t> list;
   const auto add = [&](Expr part) {

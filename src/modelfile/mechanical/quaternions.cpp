@@ -9,7 +9,7 @@
 
 namespace anholon {
 
-// Whether this constraint is a multiple of norm^2 = 1.
+// True if this constraint is a multiple of norm^2 = 1.
 static bool same_constraint(Expr phi, Expr norm) {
   for (const Rational& k : {Rational(1), Rational(-1), Rational(1, 2), Rational(-1, 2)})
     if (proved_zero(phi - k * norm)) return true;
@@ -63,7 +63,7 @@ void start_at_identity(const std::vector<UnitNorm>& norms, Model& model) {
   Graph& g = *model.graph;
   for (const UnitNorm& n : norms) {
     if (!n.scalar) continue;
-    // The index of the component that the value is given for, if it is one of the four.
+    // Returns the index of the component whose value is given, if it is one of the four.
     const auto component = [&](const GivenValue& v) -> std::optional<std::size_t> {
       const Node& node = g.node(v.symbol.id);
       const auto it = std::find(n.coordinates.begin(), n.coordinates.end(), node.index);

@@ -14,10 +14,10 @@ struct UnitNorm {
   std::vector<std::size_t> coordinates;
 };
 
-// Constraints to add for the quaternions read so far. Throws Failure for one that is no rotation.
+// Returns the constraints to add for the quaternions read so far. Throws Failure for a quaternion that is no rotation.
 std::vector<UnitNorm> unit_norms(const Scope& scope, const Model& model);
 
-// For a quaternion of four coordinates whose first is not given, the guess is near the identity: the default 0 is not a
+// Starts a quaternion of four coordinates whose first is not given near the identity: the default guess 0 is not a
 // rotation.
 void start_at_identity(const std::vector<UnitNorm>& norms, Model& model);
 

@@ -14,7 +14,7 @@ struct Solid {
   const char* name;
   const char* call;
   std::vector<const char*> sizes;                 // their names
-  const char* meaning;                            // of the sizes
+  const char* meaning;                            // meaning of the sizes
   std::array<std::array<Rational, 3>, 3> moment;  // about x, y, z; coefficients of the squares
 };
 

@@ -9,7 +9,7 @@ namespace anholon {
 // Reads the shape with its sizes, which are numbers or formulas of parameters. Throws Failure.
 Shape read_shape(const Item& item, Scope& scope, Model& model);
 
-// Moments of inertia about x, y, z for the mass m.
+// Returns the moments of inertia about x, y, z for the mass m.
 Column moments(const Shape& shape, Expr m);
 
 }  // namespace anholon

@@ -16,12 +16,12 @@ namespace {
 constexpr std::size_t kMostKnots = 10'000;
 constexpr std::uintmax_t kLargestFile = 16U << 20;
 
-// Fields of a row of a text file stand between semicolons if there are any, else between commas, else between blanks.
+// Returns the separator of the fields of a row of a text file: semicolons if there are any, else commas, else blanks.
 char separator_of(const std::string& line) {
   return line.find(';') != std::string::npos ? ';' : line.find(',') != std::string::npos ? ',' : ' ';
 }
 
-// A field in quotes may hold the separator.
+// Splits a row into fields; a field in quotes may contain the separator.
 std::vector<std::string> fields(const std::string& line) {
   std::vector<std::string> out;
   const char separator = separator_of(line);
@@ -48,13 +48,13 @@ std::vector<std::string> fields(const std::string& line) {
   return out;
 }
 
-// How many fields a row has without the empty ones at its end.
+// Returns the number of fields of a row without the empty ones at its end.
 std::size_t width(const std::vector<std::string>& row) {
   const auto last = std::find_if(row.rbegin(), row.rend(), [](const std::string& field) { return !field.empty(); });
   return static_cast<std::size_t>(row.rend() - last);
 }
 
-// Takes off the mark of UTF-8 with which some programs begin a file.
+// Removes the byte order mark of UTF-8 with which some programs begin a file.
 void drop_byte_order_mark(std::string& line) {
   if (line.rfind("\xEF\xBB\xBF", 0) == 0) line.erase(0, 3);
 }
@@ -73,7 +73,7 @@ class TableReader {
     try {
       fill(t, *named, table);
     } catch (const Failure&) {
-      // Formulas that use the table are not to complain, too.
+      // The table is declared all the same, so that formulas that use it do not report further errors.
       table.x = {0, 1}, table.y = {0, 0};
       declare(*named, std::move(table));
       throw;
@@ -143,7 +143,7 @@ class TableReader {
     return out;
   }
 
-  // The text of a data file, which the source text of the model keeps.
+  // Returns the text of a data file, which the source text of the model keeps.
   const std::string& text_of(const Item& file, const std::string& name, const std::filesystem::path& path) {
     std::vector<SourceText>& known = model_.source_text.tables;
     const auto at = std::find_if(known.begin(), known.end(), [&](const SourceText& s) { return s.name == name; });
@@ -175,7 +175,7 @@ class TableReader {
                       : "the line has " + std::to_string(row.size()) + (row.size() == 1 ? " column" : " columns"));
   }
 
-  // A name of the heading that stands there twice does not tell which column is meant.
+  // Refuses a name that occurs twice in the heading, because it does not identify a column.
   static void must_be_one(const Item& columns, std::size_t k, const std::string& path,
                           const std::vector<std::string>& heading, std::size_t first) {
     const auto again =
@@ -198,7 +198,7 @@ class TableReader {
 
   void from_file(const Item& file, const Item* columns, Table& table) {
     if (file.kind != Item::Kind::string) throw Failure(file.span, "a file is a name in quotes");
-    // Relative to the file in which it stands, which may be a base of the model file.
+    // The path is relative to the file that contains it, which may be a base of the model file.
     const SourceText& of = model_.source_text.of(file.span);
     const std::filesystem::path path = std::filesystem::path(of.name).parent_path() / file.text();
     const std::string name =
@@ -245,7 +245,7 @@ class TableReader {
           continue;
         }
       }
-      // A line of blanks may be a title in words, and so have fewer fields.
+      // If fields are separated by blanks, a line may be a title in words, and so have fewer fields.
       if (first_separator != ' ' && first_separator == separator_of(line) && width(row) > first_width)
         too_many(file, path.string(), number, width(row), first_width);
       for (int k = 0; k < 2; ++k) {

@@ -8,10 +8,10 @@
 
 namespace anholon {
 
-// A part of a vector of length 1 that is round-off.
+// The part of a vector of length 1 that counts as round-off.
 static constexpr double kRoundOff = 1e-9;
 
-// Whether a slip velocity is a multiple of the velocity of the gap.
+// True if a slip velocity is a multiple of the velocity of the gap.
 static bool is_along_gap(Expr gap, Expr slip) {
   const Expr rate = total_derivative(gap);
   Column velocities;
@@ -42,7 +42,7 @@ static Column velocities(const Model& model) {
   return list;
 }
 
-// The derivatives of a vector by the velocities.
+// Returns the derivatives of a vector by the velocities.
 static std::vector<Vector> columns(const Vector& v, const Column& by) {
   const Column rows[3] = {gradient(v[0], by), gradient(v[1], by), gradient(v[2], by)};
   std::vector<Vector> list;
@@ -61,7 +61,8 @@ static bool proved_zero(const Vector& v) { return proved_zero(v[0]) && proved_ze
 
 static Vector of_length_one(const Vector& v) { return pow(dot(v, v), Rational(-1, 2)) * v; }
 
-// The vector e, a sum of columns, with e*columns[a] = row[a] for all a: by those that are constant and at right angles.
+// Returns the vector e, a sum of columns, with e*columns[a] = row[a] for all a, scaled to length 1; nullopt if the
+// constant columns, made orthogonal, do not give such a vector.
 static std::optional<Vector> constant_direction(const Column& row, const std::vector<Vector>& columns,
                                                 const Model& model) {
   Graph& g = *model.graph;
@@ -83,8 +84,8 @@ static std::optional<Vector> constant_direction(const Column& row, const std::ve
 
 static Vector owned(Graph& g, const Vector& v) { return {g.own(v[0]), g.own(v[1]), g.own(v[2])}; }
 
-// Nodes that a check leaves in the graph of a model would change the order of terms in the formulas that follow, and so their
-// round-off: checks build in a copy.
+// The check builds in a copy: its nodes in the graph of the model would change the order of terms in later formulas,
+// and so their round-off.
 void check_tangential(std::vector<Vector> directions, Expr gap, const Vector& v, const Model& of, Span along) {
   const std::shared_ptr<Model> model = clone(of);
   Graph& g = *model->graph;
@@ -96,13 +97,14 @@ void check_tangential(std::vector<Vector> directions, Expr gap, const Vector& v,
                      "the normal is the gradient of the gap: name one or two directions at right angles to it");
 }
 
-// Gap and slip by the coordinates of which they hold velocities, and the velocity of all bodies that move with these.
+// The derivatives of gap and slip by the velocities of the coordinates that they contain, and the velocity of all
+// bodies that move with these coordinates.
 struct MovedTogether {
   Column gap, slip;
   std::vector<Vector> velocity;
 };
 
-// Returns nullopt if the bodies move differently or turn, as then it is not known which of their points touches.
+// Returns nullopt if the bodies move differently or turn, because then it is not known which of their points touches.
 static std::optional<MovedTogether> moved_together(Expr gap, Expr slip, const Model& model) {
   const Column by = velocities(model), n = gradient(total_derivative(gap), by), t = gradient(slip, by);
   MovedTogether m;

@@ -1,4 +1,4 @@
-// Slip velocities that are not tangential to a contact.
+// Refuses slip velocities that are not tangential to a contact.
 #pragma once
 #include "modelfile/names/names.h"
 
@@ -7,12 +7,14 @@ namespace anholon {
 // Throws Failure, at the place of `along`, if a direction is known to have a part along the normal.
 void check_tangential(const std::vector<Vector>& directions, const Vector& normal, const Model& model, Span along);
 
-// The same of the gap of a point with the velocity v: its normal is known if it is a fixed direction along which v opens the gap.
+// Checks the same for the gap of a point with the velocity v: its normal is known if it is a fixed direction along
+// which v opens the gap.
 void check_tangential(std::vector<Vector> directions, Expr gap, const Vector& v, const Model& model, Span along);
 
-// Throws Failure if a component of a slip velocity is not linear in the velocities, or a multiple of the velocity of the gap. Warns if one is that of bodies which
-// move together without turning, along a direction with a part along the normal of a plane. The rows of gap and slip alone do
-// not tell the angle between them: of bodies that turn they need not be at right angles, as those of the tip of a rod.
+// Throws Failure if a component of a slip velocity is not linear in the velocities, or is a multiple of the velocity of
+// the gap. Warns if a component is that of bodies which move together without turning, along a direction with a part
+// along the normal of a plane. The rows of gap and slip alone do not determine the angle between them: if bodies turn,
+// the rows need not be at right angles, for example those of the tip of a rod.
 void check_slips(Expr gap, const std::vector<Expr>& slip, const std::string& contact, Span place, const Model& model,
                  Diagnostics& diagnostics);
 

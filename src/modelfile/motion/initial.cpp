@@ -100,7 +100,7 @@ class InitialReader {
                             (near.empty() ? "" : "; did you mean '" + near + "'?"));
   }
 
-  // "x", "x'", "D(x,3)".
+  // Reads the symbol "x", "x'" or "D(x,3)".
   Expr symbol(std::string key, Span span) {
     unsigned order = 0;
     if (key.rfind("D(", 0) == 0 && key.back() == ')') {
@@ -153,7 +153,7 @@ class InitialReader {
           v);
   }
 
-  // branch = {rolling = "lambda > 0"}
+  // Reads branch = {rolling = "lambda > 0"}.
   void branch(const Item& i, const std::string& prefix) {
     if (i.kind != Item::Kind::table) throw Failure(i.span, "branch is a table", "branch = {NAME = \"lambda > 0\"}");
     for (const Item& v : i.items)

@@ -7,7 +7,7 @@
 
 namespace anholon {
 
-static constexpr long kMostRows = 5'000'000;  // more are refused at once
+static constexpr long kMostRows = 5'000'000;  // a request for more rows is refused at once
 
 static Rational rational(const Item& i, Scope& scope) {
   const Expr e = scope.number(i);
@@ -30,7 +30,7 @@ static OptionValue value(const Item& i, const MotionOption& option, Scope& scope
   return i.text();
 }
 
-// method = "auto", "taylor", "rk" or "bdf"
+// Returns the hint: method = "auto", "taylor", "rk" or "bdf".
 static std::string values_of(const MotionOption& option) {
   const std::vector<std::string>& choices = option.choices();
   std::string text = std::string(option.key) + " = ";

@@ -19,7 +19,7 @@ const std::string& text_of(const Item& item, const char* what) {
   return item.text();
 }
 
-// "#a33", "#aa3333"
+// Reads a colour, "#a33" or "#aa3333".
 std::string color(const Item& item) {
   const std::string& s = text_of(item, "color");
   const bool hex = (s.size() == 4 || s.size() == 7) && s[0] == '#' &&
@@ -73,7 +73,7 @@ class ViewReader {
     view_.up = v;
   }
 
-  // The name of a body or point.
+  // Reads the name of a body or point.
   std::string drawn(const Item& i) {
     const std::string name = normal_name(text_of(i, i.key.c_str()));
     if (std::find(drawn_.begin(), drawn_.end(), name) != drawn_.end()) return name;

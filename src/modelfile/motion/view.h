@@ -4,7 +4,7 @@
 
 namespace anholon {
 
-// Reads the section, and stores the named points. Call it after the bodies are known.
+// Reads the section, and stores the named points. REQUIRES: the bodies are known.
 void read_view(const Item& root, Scope& scope, Model& model, Diagnostics& diagnostics);
 
 }  // namespace anholon

@@ -1,4 +1,4 @@
-// The directions along which a vector equation is taken: the observer's axes, or those that `along` names.
+// The directions along which a vector equation is taken: the observer's axes, or those that the key `along` names.
 #pragma once
 #include "modelfile/names/names.h"
 
@@ -9,12 +9,12 @@ struct Direction {
   std::optional<Vector> axis;  // nullopt: the observer's own axis, whose component is in the vector itself
 };
 
-// along = "frame" (a frame, a body, or a formula of a rotation) or along = ["v1", "v2"]; without it ex, ey, ez. Throws
-// Failure.
+// Returns the directions of along = "frame" (a frame, a body, or a formula of a rotation) or along = ["v1", "v2"]; ex,
+// ey, ez if `along` is null. Throws Failure.
 std::vector<Direction> directions(const Item* along, Scope& scope);
 
-// The same, made of length 1 and at right angles; those that are so identically are taken as they are. Throws Failure, also if
-// they do not span as many dimensions.
+// Returns the same directions, made of length 1 and orthogonal; directions that are identically orthonormal are
+// unchanged. Throws Failure, also if the directions are linearly dependent.
 std::vector<Direction> orthonormal_directions(const Item& along, Scope& scope);
 
 Expr component(const Vector& v, const Direction& d, int index);

@@ -20,7 +20,7 @@ std::string Scope::orientation_hint(std::size_t body) const {
                            : "give it orientation = \"…\", or angle = \"…\" in the plane";
 }
 
-// vel(B, P): the velocity of the material point of B that coincides with P.
+// Returns vel(B, P), the velocity of the material point of B that coincides with P.
 Vector Scope::material_velocity(std::size_t body, const Vector& place, Span use) {
   const Vector c = center(body, use);
   const Vector v = total_derivative(c);
@@ -28,16 +28,17 @@ Vector Scope::material_velocity(std::size_t body, const Vector& place, Span use)
     if (is_zero(place - c)) return v;
     throw Failure(use, what_is(body) + " has no orientation: it has no material point there", orientation_hint(body));
   }
-  // One after the other: nodes are numbered in the order of their creation, so that all compilers number them alike.
+  // Nodes are made one after the other: they are numbered in the order of their creation, which must not depend on the
+  // compiler.
   const Vector rate = orientation(body, use).rate;
   const Vector arm = place - c;
   return v + cross(rate, arm);
 }
 
-// The inertial rate of change of a vector given by its moving components.
+// Returns the inertial rate of change of a vector given by its moving components.
 Vector Scope::inertial_rate(const Vector& v) { return total_derivative(v) + cross(model_.observer.spin, v); }
 
-// The value of the table; the motion ends at the border of a table that must not be left.
+// Returns the value of the table; the motion ends at the border of a table that must not be left.
 Expr Scope::look_up(std::size_t index, Expr x, Span use) {
   const TableEntry& entry = tables_[index];
   if (entry.table.outside == Outside::error) {
@@ -114,7 +115,7 @@ class Scope::Call {
     if (const Expr* e = std::get_if<Expr>(&a_[i])) return *e;
     throw Failure(s_.args[i].span, "a number is expected here");
   }
-  // The three numbers of B(a, b, c): components along the axes of B.
+  // Returns the three numbers of B(a, b, c): components along the axes of B.
   Vector components() const { return {number(0), number(1), number(2)}; }
 
   // ---- kinematics
@@ -130,7 +131,7 @@ class Scope::Call {
                       "give [observer] origin_velocity instead of origin_acceleration");
       return *of_origin + scope_.inertial_rate(p);
     }
-    // A particle is a point: beside a body it is the point that the body sees.
+    // A particle is a point: if a body follows, the velocity of the particle relative to this body is meant.
     if (is_body_at(0) && !(scope_.is_particle(body(0)) && is_body_at(1))) {
       const std::size_t of = body(0);
       return scope_.material_velocity(of, point(1), s_.span);
@@ -147,7 +148,7 @@ class Scope::Call {
     return scope_.model_.observer.origin_acceleration + scope_.inertial_rate(scope_.inertial_rate(p));
   }
 
-  // Of a rotation, or of a body.
+  // Returns the rate of a rotation, or of a body.
   Vector rate_of(std::size_t i) const {
     if (const Rotation* r = std::get_if<Rotation>(&a_[i])) return r->rate;
     return scope_.orientation(body(i), s_.args[i].span).rate;
@@ -198,7 +199,7 @@ class Scope::Call {
     return scope_.look_up(d.index, *e, s_.span);
   }
 
-  // f(t), or its formula at another argument.
+  // Returns f(t), or the formula of f at another argument.
   Value of_time(Declaration& d) {
     count(1, 1);
     const Expr at = number(0);

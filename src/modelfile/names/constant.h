@@ -13,10 +13,10 @@ struct Constant {
   std::optional<Dimension> dimension;  // the dimension of a number with a unit
 };
 
-// Throws Failure with the position in the text, as a column of line 1.
+// Reads a constant. Throws Failure with the position in the text, as a column of line 1.
 Constant read_constant(const std::string& text);
 
-// The value of an expression of parameters and numbers; nullopt if it depends on anything else.
+// Returns the value of an expression of parameters and numbers; nullopt if it depends on anything else.
 std::optional<double> constant_value(const Model& model, Expr e);
 
 }  // namespace anholon

@@ -1,9 +1,9 @@
-// Hints about names of a model file that other readers of formulas put in their own words.
+// Hints about names of a model file that other readers of formulas replace by their own words.
 #pragma once
 
 namespace anholon {
 
-// Where a name is unknown and resembles none that is known.
+// The hint for an unknown name that resembles no known name.
 inline constexpr const char* kGiveItAValue = "give it a value under [parameters] or [define]";
 
 }  // namespace anholon

@@ -16,14 +16,14 @@ std::string multiplier_path(const Syntax& s) {
 
 Value Scope::multiplier(const std::string& path, Span use) {
   const std::vector<std::string>& names = model_.names.multipliers;
-  // A constraint that holds in some modes may be among the names, too, and its force has no fixed place there.
+  // A constraint that holds in some modes may be among the names as well, but its force has no fixed index there.
   if (contact_forces.declares(path))
     if (const auto force = contact_forces.find(path, use))
       return graph().multiplier(kContactForces + static_cast<std::uint32_t>(*force), 0);
   if (const auto it = std::find(names.begin(), names.end(), path); it != names.end())
     return graph().multiplier(static_cast<std::uint32_t>(it - names.begin()), 0);
   for (const std::string& n : names)
-    if (n.rfind(path + ".", 0) == 0) return InertialName{};  // of a vector equation: a component must follow
+    if (n.rfind(path + ".", 0) == 0) return InertialName{};  // a vector equation, of which a component must follow
   if (const auto force = contact_forces.find(path, use))
     return graph().multiplier(kContactForces + static_cast<std::uint32_t>(*force), 0);
   const std::string near = did_you_mean(path, names);
@@ -51,7 +51,7 @@ std::optional<std::size_t> Scope::ContactForcesAsked::find(const std::string& pa
 
 bool is_reaction(const std::string& function) { return function == "reaction" || function == "reaction_torque"; }
 
-// reaction(B), reaction_torque(B): from the accelerations, by Newton's law.
+// Evaluates reaction(B) or reaction_torque(B) from the accelerations, by Newton's law.
 Vector Scope::reaction_on(std::size_t body, const Syntax& call) {
   if (multipliers_ == 0)
     throw Failure(call.span,
@@ -61,7 +61,7 @@ Vector Scope::reaction_on(std::size_t body, const Syntax& call) {
   return call.text == "reaction" ? r.force : r.torque;
 }
 
-// Looks at the texts first, which spares most files the search below.
+// True if any definition may contain a multiplier. The search in the texts spares most files the search below.
 bool Scope::speaks_of_multipliers() {
   if (!with_multipliers_.any)
     with_multipliers_.any = std::any_of(declarations_.begin(), declarations_.end(), [](const auto& named) {
@@ -72,7 +72,7 @@ bool Scope::speaks_of_multipliers() {
   return *with_multipliers_.any;
 }
 
-// Whether a definition contains a multiplier or a reaction, itself or through others.
+// True if a definition contains a multiplier or a reaction, itself or through others.
 bool Scope::holds_multiplier(const std::string& name) {
   if (!speaks_of_multipliers()) return false;
   if (const auto known = with_multipliers_.known.find(name); known != with_multipliers_.known.end())

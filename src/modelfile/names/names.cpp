@@ -56,7 +56,7 @@ std::size_t Scope::body(const std::string& name, Span span) const {
   if (const std::string members = members_known(name, body_names_); !members.empty())
     throw Failure(span, "there is no body or particle '" + name + "'" + members);
   const std::string near = did_you_mean(name, body_names_);
-  // The nearest name first.
+  // The nearest name comes first.
   constexpr std::size_t kMostListed = 8;
   std::string others;
   for (std::size_t i = 0, listed = 0; i < body_names_.size() && listed <= kMostListed; ++i) {
@@ -75,7 +75,7 @@ const std::size_t* Scope::find_body(const std::string& name) const {
 }
 
 void Scope::unknown(const std::string& name, Span span) const {
-  // With more failures than this no names are suggested: they would not help, and take long.
+  // If there are more failures, no names are suggested: they would not help, and take long.
   constexpr std::size_t kMostGuesses = 100;
   if (failures.size() > kMostGuesses) throw Failure(span, "unknown name '" + name.substr(0, 60) + "'");
   std::vector<std::string> known;
@@ -146,8 +146,8 @@ bool has_unit(const Syntax& s) {
   return s.op == Syntax::Op::quantity || std::any_of(s.args.begin(), s.args.end(), has_unit);
 }
 
-// {value = 2, unit = "km"} is 2 km; a bare number from outside has this unit, too, and a number with a unit keeps its
-// own.
+// Returns the value in its unit: {value = 2, unit = "km"} is 2 km. A bare number from outside has this unit as well,
+// and a number with a unit keeps its own.
 Value Scope::in_its_unit(Value v, const Declaration& d) {
   if (d.unit.empty()) return v;
   const bool own = d.item ? std::any_of(d.item->items.begin(), d.item->items.end(),
@@ -236,7 +236,7 @@ class Opened {
 };
 }  // namespace
 
-// Repeats the evaluation, each time first for the definition that was too deep before, until the first request
+// Repeats the evaluation, each time beginning with the definition that was too deep before, until the first request
 // succeeds.
 void Scope::from_the_ground(const std::function<void()>& ask) {
   std::vector<TooDeep> waiting{{"", nullptr, {}, ask}};
@@ -320,7 +320,7 @@ void Scope::settle(const std::string& name, Declaration& d, Span use) {
 }
 
 void Scope::resolve_all() {
-  // In the order of the file, members of a family in their order.
+  // The order is that of the file; members of a family are in their order.
   std::vector<std::pair<const std::string*, Declaration*>> order;
   for (auto& [name, d] : declarations_) order.push_back({&name, &d});
   std::sort(order.begin(), order.end(), [](const auto& a, const auto& b) {
@@ -421,7 +421,7 @@ Value Scope::member(const Value& object, const Syntax& s) {
                 is_scalar(object) ? habit_of_member(s) : "");
 }
 
-// A particle denotes the point of its position. (A body that merely has no orientation does not denote its centre.)
+// Returns the point of a particle, its position. (A body that merely has no orientation does not denote its centre.)
 std::optional<Vector> Scope::point(const BodyName& body, Span use) {
   return parts_[body.index].particle ? std::optional(center(body.index, use)) : std::nullopt;
 }

@@ -22,13 +22,13 @@ class Scope final : public Names {
   enum class Role : std::uint8_t { coordinate, parameter, function, define, frame, point, state, control, table };
   struct Declaration {
     Role role = Role::define;
-    std::size_t index = 0;  // of a coordinate, parameter or unknown function
+    std::size_t index = 0;  // index of a coordinate, parameter or unknown function
     FormulaText formula;
     const Item* item = nullptr;          // an array value
     std::vector<std::string> arguments;  // of a function with arguments
     Span span;
     bool symbolic = false;  // a symbol of its own: coordinate, unknown function
-    std::string unit;       // of a parameter {value, unit}
+    std::string unit;       // unit of a parameter {value, unit}
     std::string override;   // "--set m=3", if the value comes from the command line
     enum class State : std::uint8_t { fresh, open, done, failed } state = State::fresh;
     std::size_t place = 0;  // among all declarations
@@ -36,7 +36,7 @@ class Scope final : public Names {
     Syntax body{};  // of a function with arguments
     bool parsed = false;
   };
-  void reserve(const std::set<std::string>& letters) { letters_ = letters; }  // of [index]
+  void reserve(const std::set<std::string>& letters) { letters_ = letters; }  // letters of [index]
   // Throws Failure if the name is reserved, already taken, or not an identifier (P[2], with whole numbers in a bracket,
   // is allowed).
   void declare(const std::string& name, Declaration d);
@@ -52,15 +52,15 @@ class Scope final : public Names {
     const Item* angle = nullptr;
     bool particle = false;
     bool center_open = false, orientation_open = false;
-    bool center_failed = false, orientation_failed = false;  // and the failure was reported
-    bool body_failed = false;                                // its section has an error, which was reported
+    bool center_failed = false, orientation_failed = false;  // true if the part failed, and the failure was reported
+    bool body_failed = false;                                // true if its section has an error, which was reported
     std::optional<Vector> center_value;
     std::optional<Rotation> orientation_value;
   };
   BodyParts& parts(std::size_t body) { return parts_[body]; }
   Vector center(std::size_t body, Span use);
   bool is_particle(std::size_t body) const { return parts_[body].particle; }
-  // For messages: "the particle 'bob'", and what to do where it has no orientation.
+  // For messages: "the particle 'bob'", and the hint if it has no orientation.
   std::string what_is(std::size_t body) const;
   std::string orientation_hint(std::size_t body) const;
   bool has_orientation(std::size_t body) const { return parts_[body].orientation || parts_[body].angle; }
@@ -80,8 +80,8 @@ class Scope final : public Names {
 
   // In potentials the name of a varying mass denotes its frozen symbol.
   bool freeze_masses = false;
-  // While an object of this class exists, formulas may contain multipliers and reactions, and definitions that contain
-  // them: the constraints are known then.
+  // While an object of this class exists, the constraints are known, so formulas may contain multipliers and reactions,
+  // and definitions that contain them.
   class Multipliers {
    public:
     explicit Multipliers(Scope& scope) : scope_(scope) { ++scope_.multipliers_; }
@@ -92,15 +92,16 @@ class Scope final : public Names {
    private:
     Scope& scope_;
   };
-  // The forces of contacts, which formulas may hold before the contacts are read: multipliers kContactForces + k of force
-  // asked()[k]. After that no formula may hold any, as its symbols have no values.
+  // The forces of contacts, which formulas may contain before the contacts are read: multiplier kContactForces + k is
+  // force asked()[k]. After close() no formula may contain further forces, because their symbols have no values.
   class ContactForcesAsked {
    public:
-    using Asked = std::vector<std::pair<std::string, Span>>;  // "floor.t1", and where it is asked for first
+    using Asked = std::vector<std::pair<std::string, Span>>;  // "floor.t1", and the place of its first use
     void declare(const std::string& contact) { contacts_.insert(contact); }
-    // Whether "floor" of the path "floor.t1" is a contact.
+    // True if "floor" of the path "floor.t1" is a contact.
     bool declares(const std::string& path) const { return contacts_.count(path.substr(0, path.find('.'))) > 0; }
-    // The force `path`; nullopt if there is no such contact. Corners of a box have the numbered names of their contact.
+    // Returns the force `path`; nullopt if there is no such contact. Corners of a box have the numbered names of their
+    // contact.
     std::optional<std::size_t> find(const std::string& path, Span use);
     const Asked& asked() const { return asked_; }
     void close() { closed_ = true; }
@@ -112,10 +113,11 @@ class Scope final : public Names {
   };
   ContactForcesAsked contact_forces;
   Vector gravity_at(const Vector& place, Span use);
-  // The derivatives of the field of gravity by the three coordinates of the place; none if the field is uniform.
+  // Returns the derivatives of the field of gravity by the three coordinates of the place; empty if the field is
+  // uniform.
   bool gravity_gradient = false;  // set by [gravity] gradient
   std::vector<Vector> gravity_gradient_at(const Vector& place, Span use);
-  std::vector<Diagnostic> failures;  // of declarations evaluated on demand
+  std::vector<Diagnostic> failures;  // failures of declarations evaluated on demand
 
   // Names
   Graph& graph() override { return *model_.graph; }
@@ -182,13 +184,13 @@ class Scope final : public Names {
   std::vector<Quaternion> quaternions_;
   std::vector<std::string> open_;                        // path of names being evaluated
   std::size_t depth_ = 0;                                // depth of nested definitions and parts of bodies
-  std::vector<std::map<std::string, Value>> arguments_;  // of functions being called
+  std::vector<std::map<std::string, Value>> arguments_;  // arguments of functions being called
   int multipliers_ = 0;                                  // number of callers that allow them
   struct DefinitionsWithMultipliers {
     std::optional<bool> any;            // some definition may hold a multiplier
-    std::map<std::string, bool> known;  // whether this one does
+    std::map<std::string, bool> known;  // true for a definition that may hold one
   } with_multipliers_;
-  std::size_t calls_ = 0;  // of given functions, over the whole file
+  std::size_t calls_ = 0;  // calls of given functions, over the whole file
 };
 
 // Multipliers from this one on are forces of contacts; models have far fewer constraints.
@@ -198,10 +200,10 @@ inline constexpr std::uint32_t kContactForces = 1U << 20U;
 inline constexpr const char* kWhereMultipliers =
     "such a formula stands in conditions, monitors, outputs, rates and events, or in a [define] that these use";
 bool is_reaction(const std::string& function);
-// "rolling.x" of lambda.rolling.x; empty for other members.
+// Returns "rolling.x" for lambda.rolling.x; empty for other members.
 std::string multiplier_path(const Syntax& member);
 
-// Whether a number with a unit occurs in the formula.
+// True if a number with a unit occurs in the formula.
 bool has_unit(const Syntax& s);
 
 }  // namespace anholon

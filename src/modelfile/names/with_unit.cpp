@@ -26,7 +26,7 @@ bool is_with_unit(const SourceText& source, Span key) {
     if (!item || item->kind != Item::Kind::string) return false;
     const std::vector<Syntax> sides = parse_plain(item->formula);
     return std::any_of(sides.begin(), sides.end(), has_unit);
-  } catch (const Failure&) {  // in a text that is read otherwise, as one with indices
+  } catch (const Failure&) {  // the text is read in another way, for example with indices
     return false;
   }
 }

@@ -4,8 +4,8 @@
 
 namespace anholon {
 
-// Whether the value of the key at this place holds a number with a unit: theta = "45 rad". Reads the text again. False if
-// there is no such key.
+// True if the value of the key at this place contains a number with a unit: theta = "45 rad". Reads the text again.
+// False if there is no such key.
 bool is_with_unit(const SourceText& source, Span key);
 
 }  // namespace anholon

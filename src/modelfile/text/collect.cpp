@@ -19,7 +19,7 @@ bool collect(Diagnostics& diagnostics, const std::function<void()>& f, Span plac
   }
 }
 
-// "P" of "in P[3]: …"; empty for other messages.
+// Returns "P" for "in P[3]: …"; empty for other messages.
 static std::string family_of(const std::string& message) {
   const std::size_t open = message.find('[');
   if (message.rfind("in ", 0) != 0 || open == std::string::npos || message.find(' ', 3) < open) return {};

@@ -1,4 +1,4 @@
-// Failures of single elements are collected, so that all errors of a file are reported at once.
+// Collects failures of single elements, so that all errors of a file are reported at once.
 #pragma once
 #include <functional>
 
@@ -7,7 +7,7 @@
 
 namespace anholon {
 
-// A failure that was already reported at its origin: uses of a broken definition are not reported again.
+// Returns a failure that was already reported at its origin: uses of a broken definition are not reported again.
 Failure silent_failure();
 bool is_silent(const Diagnostic& d);
 
@@ -15,10 +15,10 @@ bool is_silent(const Diagnostic& d);
 // gets `place`.
 bool collect(Diagnostics& diagnostics, const std::function<void()>& f, Span place = {});
 
-// As above, for an element of the file. For a member of a family the message names the member; of failures at the same
-// place only that of one member is reported.
+// Does the same for an element of the file. For a member of a family the message names the member; of failures at the
+// same place only that of one member is reported.
 bool collect(Diagnostics& diagnostics, const std::function<void()>& f, const Item& element);
-// Whether a failure of another member of the family was already reported at the same place.
+// True if a failure of another member of the family was already reported at the same place.
 bool is_repeated(const Diagnostics& diagnostics, const Diagnostic& d);
 
 // Calls f(table, index) for each element of an array of tables, collecting failures per element.

@@ -159,7 +159,7 @@ class Bracketed {
 
 bool has_bracket(const std::string& text) { return text.find('[') != std::string::npos; }
 
-// P[i-1] and nothing more: the whole text names one element.
+// True if the whole text names one element: P[i-1].
 bool is_reference(const std::string& text) {
   const std::size_t open = text.find('[');
   return open != std::string::npos && is_identifier(normal_name(text.substr(0, open))) &&
@@ -314,8 +314,8 @@ class Writer {
     i.formula.set_indices(std::move(indices));
   }
 
-  // The part of a list element that makes it a family: the entry itself, its name, or, for a force without name, the
-  // object it acts on.
+  // Returns the part of a list element that makes it a family: the entry itself, its name, or, for a force without
+  // name, the object it acts on.
   static const Item* naming(const Item& element) {
     if (element.kind == Item::Kind::string) return &element;
     const Item* name = element.find("name");
@@ -362,7 +362,7 @@ class Writer {
     l.items = std::move(items);
   }
 
-  // An equation with a free letter is expanded to one for each of its values.
+  // Expands an equation with a free letter to one equation for each of its values.
   void conditions(Item& l, const Context& context) {
     std::vector<Item> items;
     for (Item& i : l.items) {
@@ -410,7 +410,7 @@ Families write_out_families(Item& root, const std::map<std::string, std::string>
       collect(diagnostics, [&] { context = IndexReader(overrides, out).read(*section, diagnostics); });
     root.items.erase(section);
   }
-  // Stops after a wrong index: everything that depends on it would be wrong, too.
+  // Stops after a wrong index, because everything that depends on it would be wrong as well.
   if (!diagnostics.has_errors()) Writer(out, diagnostics).table(root, context);
   return out;
 }

@@ -26,7 +26,7 @@ struct Written {
 
 struct Line {
   enum class Kind { blank, comment, header, entry } kind = Kind::blank;
-  std::string text;  // of a comment or header
+  std::string text;  // text of a comment or header
   std::string key;
   Written value;
   std::string comment;
@@ -221,7 +221,7 @@ bool has_comments(const Written& v) {
          std::any_of(v.elements.begin(), v.elements.end(), has_comments);
 }
 
-// Whether an inner list is broken or contains comments.
+// True if an inner list is broken or contains comments.
 bool has_lines(const Written& v) {
   return v.broken || has_comments(v) || std::any_of(v.elements.begin(), v.elements.end(), has_lines);
 }
@@ -231,8 +231,8 @@ bool is_number(const Written& v) {
          std::string("+-.0123456789").find(v.text[0]) != std::string::npos;
 }
 
-// Lines of code, each perhaps with a comment: comments on neighbouring lines start in the same column, that of the
-// author's first one if it is wide enough.
+// A line of code, perhaps with a comment: comments on neighbouring lines start in the same column, that of the author's
+// first comment if it is far enough to the right.
 struct Commented {
   std::string code, comment;
   std::size_t column = 0;
@@ -269,7 +269,7 @@ std::string flat(const Written& v) {
   return table ? "{" + out + "}" : "[" + out + "]";
 }
 
-// The text of a value that begins in this column of a line with this indentation.
+// Returns the text of a value that begins in this column of a line with this indentation.
 std::string text_of(const Written& v, std::size_t indent, std::size_t column, bool aligned = false) {
   if (v.kind == Written::Kind::table) {
     std::string out;

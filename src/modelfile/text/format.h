@@ -1,5 +1,5 @@
-// The text of a model file in its usual layout. The order, the comments and the text of every value are kept; blanks,
-// blank lines, the alignment of = and of comments, and the lines of lists are changed.
+// Formats a model file in its usual layout. The order, the comments and the text of every value are kept; blanks, blank
+// lines, the alignment of = and of comments, and the lines of lists are changed.
 //
 //   key = value          consecutive lines have their = in one column, and their comments
 //   [a, b], {k = v}      on one line up to 120 characters; a list that the author broke, or that is wider, has one element on each
@@ -13,10 +13,11 @@
 
 namespace anholon {
 
-// Throws Failure if the text is not TOML, or if its layout cannot be changed without changing its content.
+// Returns the formatted text. Throws Failure if the text is not TOML, or if its layout cannot be changed without
+// changing its content.
 std::string formatted(const SourceText& source);
 
-// Whether both have the same content, apart from position and layout.
+// True if both have the same content, apart from position and layout.
 bool same_content(const Item& a, const Item& b);
 
 }  // namespace anholon

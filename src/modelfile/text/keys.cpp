@@ -11,7 +11,7 @@ namespace anholon {
 
 namespace {
 
-// What the language has for words of textbooks and other programs in a section; "" is the top of a model.
+// The hints for words of textbooks and other programs in a section; "" is the top of a model.
 struct OtherWord {
   const char* section;
   std::vector<std::string_view> words;
@@ -53,7 +53,7 @@ const std::vector<OtherWord>& other_words() {
   return list;
 }
 
-// Empty for a word that is none of these.
+// Returns the hint for such a word; empty for any other word.
 std::string hint_for_other_word(const std::string& section, const std::string& word) {
   for (const OtherWord& o : other_words())
     if (section == o.section && std::find(o.words.begin(), o.words.end(), word) != o.words.end()) return o.hint;

@@ -1,4 +1,4 @@
-// The keys of a section: known to the language, or a mistake.
+// Checks the keys of a section, which are known to the language or mistakes.
 #pragma once
 #include <string>
 
@@ -11,13 +11,13 @@ namespace anholon {
 // name for the table.
 void check_keys(const Item& table, const std::string& where, const std::string& section, Diagnostics& diagnostics);
 
-// Whether a key that check_keys() reports was meant as this one: it resembles it, or its hint is about it.
+// True if a key that check_keys() reports was meant to be `key`: it resembles it, or its hint is about it.
 bool is_misspelt(const std::string& key, const Item& table, const std::string& section);
 
-// The section of that name; null if there is none, or if its value is not a section (reported).
+// Returns the section of that name; nullptr if there is none, or if its value is not a section (reported).
 const Item* find_section(const Item& root, const char* key, Diagnostics& diagnostics);
 
-// The text of unit = "km/h"; throws if it is not a unit.
+// Returns the text of unit = "km/h"; throws Failure if it is not a unit.
 std::string unit_text(const Item& item);
 
 }  // namespace anholon

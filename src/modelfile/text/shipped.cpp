@@ -10,7 +10,7 @@ namespace anholon {
 
 namespace fs = std::filesystem;
 
-// The value of the first line that is `title = "…"`.
+// Returns the value of the first line that is `title = "…"`.
 static std::string title_of(const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());

@@ -12,15 +12,15 @@ struct ShippedFile {
   std::string name, path, title;
 };
 enum class Shipped : std::uint8_t { models, templates, equations };
-// Sorted by path.
+// Returns the files, sorted by path.
 std::vector<ShippedFile> shipped_files(Shipped kind);
 
-// The text of a model file, or else of the shipped model of that name, with the name for messages. Throws
-// Failure without a place, with the nearest name.
+// Returns the text of a model file or, if there is none, of the shipped model of that name, with the name for messages.
+// Throws Failure without a place, with the nearest name.
 SourceText model_text(const std::string& path_or_name);
-// The shipped model of that name, with or without ".toml"; nullopt if there is none.
+// Returns the shipped model of that name, with or without ".toml"; nullopt if there is none.
 std::optional<SourceText> shipped_model(const std::string& name);
-// The same for published equations: a file, or shipped ones by their name, with or without ".eq".
+// Returns the text of published equations: a file, or shipped ones by their name, with or without ".eq".
 SourceText equation_text(const std::string& path_or_name);
 
 }  // namespace anholon

@@ -29,7 +29,7 @@ struct Place {
     std::size_t at = 0;
     for (std::uint32_t column = 1; column < span.column && at < line.size(); ++column) at += utf8_width(line, at);
     rest = line.substr(at);
-    // The sign = that ends the key: the first outside of quotes.
+    // The sign = that ends the key is the first outside of quotes.
     char quote = 0;
     equals = std::string::npos;
     for (std::size_t i = 0; i < line.size() && equals == std::string::npos; ++i)
@@ -45,7 +45,7 @@ struct Place {
 
   bool says(const char* words) const { return parser.find(words) != std::string::npos; }
   bool has_value() const { return equals != std::string::npos; }
-  // The place of a text that begins the line, blanks aside.
+  // Returns the place of a text at the beginning of the line, after blanks.
   Span at_start(const std::string& text) const {
     Span s = span;
     s.column = static_cast<std::uint32_t>(std::min(line.find_first_not_of(" \t"), line.size()) + 1);
@@ -56,21 +56,21 @@ struct Place {
   std::string parser;
   Span span;
   std::string line;
-  std::string rest;  // from the place on
+  std::string rest;  // the line from the place on
   std::size_t equals;
-  std::string key, value;  // without blanks around them; the value without a comment behind it
+  std::string key, value;  // without blanks around them; the value without a comment after it
 };
 
 using Found = std::optional<Failure>;
 
-// The name between the first quotes of the parser's description.
+// Returns the name between the first quotes of the parser's description.
 std::string quoted_name(const std::string& description) {
   const std::size_t quote = description.find('\'');
   if (quote == std::string::npos) return "";
   return description.substr(quote + 1, description.find('\'', quote + 1) - quote - 1);
 }
 
-// [body] at one place and [[body]] at another; a section or a key that is there already.
+// Reports [body] at one place and [[body]] at another, and a section or a key that exists already.
 Found is_there_already(const Place& p) {
   if (!p.says("cannot redefine existing ")) return {};
   const std::string name = quoted_name(p.parser);
@@ -104,7 +104,7 @@ Found unknown_escape(const Place& p) {
                  "a text in single quotes keeps its \\ as it is: 'a\\b'");
 }
 
-// "let C = 5", "const double C = 5;", "let C: f64 = 5", as other languages declare a number.
+// Reports "let C = 5", "const double C = 5;", "let C: f64 = 5", which are declarations of a number in other languages.
 Found declaration(const Place& p) {
   static const std::regex form(
       R"(\s*((?:let|var|const|def|set|param|parameter|parameters|define|real|double|float)(?:\s+[A-Za-z_]\w*)?)\s+)"
@@ -128,7 +128,7 @@ Found other_comment(const Place& p) {
   return {};
 }
 
-// The key is not followed by a sign =.
+// Reports a key that is not followed by a sign =.
 Found sign_missing(const Place& p) {
   if (!p.says("in key-value pair: expected '='")) return {};
   const std::string value = p.value.empty() ? "…" : p.value;
@@ -171,7 +171,7 @@ Found list_left_open(const Place& p) {
   return {};
 }
 
-// A text of a list without its second quote, which ends at the first quote of the next one: ["x", "y, "psi"].
+// Reports a text of a list without its second quote, which ends at the first quote of the next text: ["x", "y, "psi"].
 Found quote_forgotten(const Place& p) {
   const std::size_t at = p.line.size() - p.rest.size();
   if (!p.says("in array: expected comma or closing ']'") || at < 2 || p.line[at - 1] != '"') return {};
@@ -185,7 +185,7 @@ Found quote_forgotten(const Place& p) {
                  trimmed(right));
 }
 
-// A number with a comma, a point at its end or a zero at its start.
+// Reports a number with a comma, a point at its end or a zero at its start.
 Found number(const Place& p) {
   if (p.says("saw ','") && p.span.column > 1 && p.span.column - 2 < p.line.size() &&
       std::isdigit(static_cast<unsigned char>(p.line[p.span.column - 2])))
@@ -204,7 +204,7 @@ Found number(const Place& p) {
   return {};
 }
 
-// A formula without quotes, or what stands beside one with quotes.
+// Reports a formula without quotes, or text beside a formula with quotes.
 Found formula_without_quotes(const Place& p) {
   if (!p.has_value()) return {};
   if (p.value.empty()) return Failure(p.span, "a value is missing after '='");
@@ -222,7 +222,7 @@ Found formula_without_quotes(const Place& p) {
   return Failure(p.span, "a formula stands in quotes", p.key + " = \"" + p.value + "\"");
 }
 
-// A formula without quotes within a list or a table in braces, such as x in [x, "y", 0].
+// Reports a formula without quotes within a list or a table in braces, such as x in [x, "y", 0].
 Found element_without_quotes(const Place& p) {
   if (!p.says("could not determine value type") && !p.says("in decimal integer: expected digit") &&
       !p.says("in array: expected comma"))

@@ -1,4 +1,4 @@
-// Syntax errors of TOML in the words of a user.
+// Describes syntax errors of TOML in words for users.
 #pragma once
 #include <string_view>
 
@@ -6,8 +6,8 @@
 
 namespace anholon {
 
-// The mistake that the parser found at this place and describes in its own words. Common mistakes are known by the text
-// of the line; of others the parser's description is given.
+// Returns the mistake that the parser found at this place and describes in its own words. Common mistakes are
+// recognized by the text of the line; for others the parser's description is given.
 Failure syntax_error(std::string_view description, Span span, const SourceText& source);
 
 }  // namespace anholon

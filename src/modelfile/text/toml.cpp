@@ -53,7 +53,7 @@ class Places {
     return last_offset_;
   }
 
-  // The characters of a number as written.
+  // Returns the characters of a number as written.
   std::string number(Span s) const {
     std::size_t i = offset(s);
     std::string out;
@@ -106,7 +106,7 @@ class Places {
   mutable std::size_t last_offset_ = 0;
 };
 
-// A key of more parts is refused before the parser builds (and recursively destroys) a table for each part.
+// A key with more parts is refused before the parser builds (and recursively destroys) a table for each part.
 constexpr int kDeepestKey = 100;
 
 void check_depth(const SourceText& source) {
@@ -125,7 +125,7 @@ void check_depth(const SourceText& source) {
   }
 }
 
-// A character outside ASCII is allowed only in quotes and comments (a bare Greek key is the likeliest mistake, and
+// Refuses characters outside ASCII except in quotes and comments (a bare Greek key is the most likely mistake, and
 // toml++ 3.3 fails on it).
 void check_ascii(const SourceText& source) {
   const std::string& s = source.text;

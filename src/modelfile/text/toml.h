@@ -24,7 +24,7 @@ struct Item {
   const std::string& text() const { return formula.text(); }
 };
 
-// Throws Failure on a syntax error of TOML itself. All positions have this file number (Span::file).
+// Reads a TOML text. Throws Failure on a syntax error of TOML itself. All positions have this file number (Span::file).
 Item read_toml(const SourceText& source, std::uint32_t file = 0);
 
 }  // namespace anholon

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostFiles = 20;
 
-// Sections that declare names: a case that gives a name not declared there contains a mistake.
+// Sections that declare names: it is a mistake if a case gives a name that the file does not declare there.
 const std::vector<std::string>& declaring() {
   static const std::vector<std::string> list = {"index", "parameters", "functions",   "define",
                                                 "frame", "point",      "state",       "mode",
@@ -44,14 +44,14 @@ Item* find_named(Item& list, const std::string& name) {
   return it == list.items.end() ? nullptr : &*it;
 }
 
-// P[2] is declared if it is written explicitly or a family P[…] is.
+// True if P[2] is declared: it is written explicitly, or a family P[…] is.
 bool is_declared(const std::string& name, const std::vector<std::string>& known) {
   const std::string family = name.substr(0, name.find('[') + 1);
   return std::any_of(known.begin(), known.end(),
                      [&](const std::string& k) { return k == name || (!family.empty() && k.rfind(family, 0) == 0); });
 }
 
-// "there is a, b": the first of the names that are there.
+// Lists the first of the known names: "there is a, b".
 std::string those_there(const std::vector<std::string>& known) {
   std::string list;
   for (std::size_t k = 0; k < known.size() && k < 12; ++k) list += (k ? ", " : "there is ") + known[k];
@@ -66,7 +66,7 @@ std::string those_there(const std::vector<std::string>& known) {
                 hint);
 }
 
-// What to do where a list `section` has no element of this name.
+// Returns the hint for a list `section` that has no element of this name.
 std::string hint_of_element(const std::string& section, const std::string& name,
                             const std::vector<std::string>& known) {
   if (name.find('[') != std::string::npos)
@@ -165,7 +165,7 @@ class Overlay {
   bool scenario_;
 };
 
-// The file on which `source` builds: one beside it, or a shipped model by its name. `read`: with its text.
+// Returns the file on which `source` builds: one beside it, or a shipped model by its name. `read`: with its text.
 SourceText base_of(const SourceText& source, const fs::path& here, const Item& base, bool read) {
   SourceText below;
   below.name = (fs::path(source.name).parent_path() / base.text()).lexically_normal().string();
@@ -195,7 +195,7 @@ Item read_over(SourceText& all, std::size_t file, std::vector<fs::path>& open) {
   }
   if (file >= kMostFiles)
     throw Failure(base->formula.whole(), "more than " + std::to_string(kMostFiles) + " files that build on each other");
-  // A text that is already in memory, as in the file of a run, is not read from disk.
+  // A text that is already in memory, such as that in the file of a run, is not read from disk.
   if (file >= all.others.size()) all.others.push_back(std::move(below));
   Item merged = read_over(all, file + 1, open);
   Diagnostics problems;

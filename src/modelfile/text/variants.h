@@ -16,8 +16,8 @@
 
 namespace anholon {
 
-// The tree of a file laid over that of its base (and of the base's base); the files are added to source.others unless
-// they are already there. The path of a base is relative to the file that names it. Throws Failure.
+// Returns the tree of a file laid over that of its base (and of the base's base); the files are added to source.others
+// unless they are already there. The path of a base is relative to the file that names it. Throws Failure.
 Item read_files(SourceText& source);
 
 // Removes the cases of a file from its tree and returns them.

@@ -30,10 +30,10 @@ class Draw {
       : bits_(philox({static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32), stream, 0},
                      {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)})) {}
 
-  // In (0, 1), all 53 bits random.
+  // Returns a number in (0, 1), all 53 bits random.
   double uniform() const { return open(0); }
   std::uint64_t bits() const { return (static_cast<std::uint64_t>(bits_[0]) << 32) | bits_[1]; }
-  // A standard normal number, by the polar method of Box and Muller.
+  // Returns a standard normal number, by the transform of Box and Muller.
   double normal() const { return std::sqrt(-2 * std::log(open(0))) * std::cos(2 * std::numbers::pi * open(2)); }
 
  private:

@@ -45,7 +45,7 @@ static_assert(std::size(kDirections) + 1 == kSobolDimensions);
 
 using Directions = std::array<std::array<std::uint64_t, kBits>, kSobolDimensions>;
 
-// v_k = m_k 2^-k as numbers of kBits bits; the first dimension is the sequence of van der Corput, m_k = 1.
+// Returns v_k = m_k 2^-k as numbers of kBits bits; the first dimension is the sequence of van der Corput, m_k = 1.
 Directions directions() {
   Directions v{};
   for (std::size_t k = 0; k < kBits; ++k) v[0][k] = std::uint64_t{1} << (kBits - 1 - k);

@@ -9,11 +9,12 @@ namespace anholon {
 
 inline constexpr std::uint32_t kSobolDimensions = 21;
 
-// Coordinate `dimension` of point `number` < 2^52, in (0, 1). The shift, the same for all points, is added to the bits
-// without carry (a digital shift); it keeps how evenly the points lie. REQUIRES: dimension < kSobolDimensions.
+// Returns coordinate `dimension` of point `number` < 2^52, in (0, 1). The shift, the same for all points, is added to
+// the bits without carry (a digital shift), which keeps the evenness of the points. REQUIRES: dimension <
+// kSobolDimensions.
 double sobol(std::uint64_t number, std::uint32_t dimension, std::uint64_t shift = 0);
 
-// The number that a standard normal variable stays below with probability p in (0, 1), to about 16 digits.
+// Returns the number below which a standard normal variable stays with probability p in (0, 1), to about 16 digits.
 double normal_quantile(double p);
 
 }  // namespace anholon

@@ -17,9 +17,9 @@ namespace {
 constexpr std::size_t kLongestText = std::size_t{64} << 20;
 constexpr std::size_t kMostSymbols = 10'000;
 constexpr std::size_t kMostNodes = 1'000'000;
-constexpr std::size_t kMostTerms = 8'000'000;  // of all nodes and claims together
+constexpr std::size_t kMostTerms = 8'000'000;  // the limit of all nodes and claims together
 constexpr std::size_t kMostClaims = 100'000;
-constexpr std::size_t kMostBits = std::size_t{1} << 28;  // of all rationals together
+constexpr std::size_t kMostBits = std::size_t{1} << 28;  // the limit of all rationals together
 constexpr std::size_t kLongestString = 10'000;
 constexpr long kLargestExponent = 1'000'000'000;
 constexpr int kDeepest = 8;

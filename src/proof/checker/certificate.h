@@ -1,7 +1,7 @@
 // A certificate: the record of a proof that forms of the equations agree, for an independent checker.
 //
-// It is a straight-line program (each node uses earlier ones only) and claims about its nodes. Every claim is about one
-// expression, the difference
+// A certificate is a straight-line program (each node uses earlier ones only) and claims about its nodes. Every claim
+// is about one expression, the difference
 //
 //     left − Σ coefficient · node                 (the pairs of `right`)
 //
@@ -94,7 +94,7 @@ struct Certificate {
   std::vector<Node> nodes;
   std::vector<Claim> claims;
 
-  // The permitted names of a function node.
+  // Returns the permitted names of a function node.
   static const std::vector<std::string>& functions();
   static bool has_function(std::string_view name);
 };
@@ -103,8 +103,8 @@ const char* name(Certificate::ClaimKind kind);
 
 std::string to_json(const Certificate& c);
 
-// Is safe for any bytes: throws Failure with the place inside the JSON ("nodes[3]: …"), and accepts only certificates
-// that satisfy all conditions above.
+// Reads a certificate. The function is safe for any bytes: it throws Failure with the place inside the JSON ("nodes[3]:
+// …"), and accepts only certificates that satisfy all conditions above.
 Certificate read_certificate(std::string_view text);
 
 }  // namespace anholon

@@ -33,7 +33,7 @@ const std::vector<KnownFunction>& functions() {
       {"exp", Family::exponential, [](const Ball& u) { return exp(u); }, [](const Ball&, const Ball& v) { return v; }},
       {"log", Family::keyed, [](const Ball& u) { return log(u); },
        [](const Ball& u, const Ball&) { return Ball(1) / u; }},
-      // There is no derivative at the edge itself.
+      // abs and sign have no derivative at the edge itself.
       {"abs", Family::branch, [](const Ball& u) { return abs(u); },
        [](const Ball& u, const Ball&) { return u.contains_zero() ? Ball::unknown() : sign(u); }},
       {"sign", Family::branch, [](const Ball& u) { return sign(u); },

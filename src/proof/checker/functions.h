@@ -1,6 +1,6 @@
-// The functions of certificates, as their checker knows them: a row for each.
+// The functions of certificates, one row for each, from which the checker takes their rules.
 //
-// Derivatives are written out here again, and not taken from expr/elementary.def: the checker does not trust the
+// Derivatives are written here again, and not taken from expr/elementary.def, because the checker does not trust the
 // simplifier.
 #pragma once
 #include <string>
@@ -13,9 +13,9 @@ namespace anholon::verification {
 // The rule by which a function is evaluated.
 enum class Family : std::uint8_t {
   keyed,        // equal arguments have equal values
-  odd,          // and the value of -u is that of u with the other sign
+  odd,          // keyed, and the value of -u is that of u with the other sign
   complement,   // acos u = pi/2 - asin u
-  branch,       // abs, sign: they follow whether u is a square
+  branch,       // abs, sign: they depend on whether u is a square
   circle,       // a rational function of a point of the circle group
   exponential,  // a rational function of a square that is not 0
 };
@@ -26,9 +26,9 @@ struct KnownFunction {
   Ball (*value)(const Ball& u);
   Ball (*derivative)(const Ball& u, const Ball& v);  // v = value(u)
 };
-// In the order that certificates count them.
+// Returns the functions in the order in which certificates count them.
 const std::vector<KnownFunction>& functions();
-// REQUIRES: there is a function of that name
+// REQUIRES: there is a function of that name.
 const KnownFunction& function(const std::string& name);
 
 }  // namespace anholon::verification

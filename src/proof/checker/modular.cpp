@@ -24,7 +24,7 @@ class PointTest {
     roots_ = program.varying_roots();
   }
 
-  // A finding for each claim of the program. Throws Unable.
+  // Returns a finding for each claim of the program. Throws Unable.
   std::vector<ModularFinding> run() {
     take_points_of_two_fields();
     take_points_for_branches();
@@ -50,7 +50,7 @@ class PointTest {
     if (fields_.size() < 2) throw Unable{"its constant roots exist modulo none of the primes at hand"};
   }
 
-  // Each choice of the signs that are still open must occur.
+  // Takes more points, so that each choice of the signs that are still open occurs.
   void take_points_for_branches() {
     const auto needed = [&](int m) {
       return m == 0 || m > kMostBranches ? 0 : static_cast<int>(std::ceil(-kLargestChance * 0.7 * std::exp2(m))) + 1;
@@ -83,8 +83,8 @@ class PointTest {
       finding.is = ModularFinding::Is::nonzero;
       return finding;
     }
-    // Probability per point: degree d over p, for all conjugates, given that the roots exist; and two different
-    // arguments may have equal values.
+    // The probability per point is degree d over p, for all conjugates, given that the roots exist; two different
+    // arguments may also have equal values.
     const double zeros = degree_[k] + program_.key_collisions();
     double chance = std::exp2(std::log2(std::max(zeros, 1.0)) + program_.log2_conjugates() + roots_ - 60.99);
     const int branches = program_.open_branches();

@@ -43,7 +43,7 @@ struct ModularFinding {
   std::string detail;      // unknown: the reason
 };
 
-// A finding for each claim of zero; `unknown` for the others.
+// Returns a finding for each claim of zero; `unknown` for the other claims.
 std::vector<ModularFinding> test_zero(const Certificate& c, const HashKey& key, int points, Work& work);
 
 }  // namespace anholon::verification

@@ -9,7 +9,7 @@ using Point = ReducedProgram::Point;
 
 namespace {
 
-// a/b modulo the order of a cyclic group, to which b is coprime.
+// Returns a/b modulo the order of a cyclic group, to which b is coprime.
 Word modulo(const Rational& e, Word order) {
   mpz_class m, inverse;
   mpz_import(m.get_mpz_t(), 1, 1, sizeof order, 0, 0, &order);
@@ -30,7 +30,7 @@ Point rotate(const Field& f, Point a, Word times) {
   return r;
 }
 
-// cos and sin of π/12 are (√6 ± √2)/4; 2 and 3 are squares.
+// Returns cos and sin of π/12, which are (√6 ± √2)/4; 2 and 3 are squares.
 Point twelfth_of(const Field& f, Word half) {
   const auto root = [&f](Word square) { return f.power(square, ((f.prime() - 1) / 2 + 1) / 2); };
   const Word quarter = f.multiply(half, half), root2 = root(2), root6 = f.multiply(root2, root(3));
@@ -95,7 +95,7 @@ class ModularProgram::PointDraw {
   }
 
  private:
-  // What is random: the kinds of the arguments that determine it.
+  // The kinds of random values, which begin the arguments that determine such a value.
   enum : std::uint64_t { kSymbol = 1, kPi = 2, kTurn = 3, kGrowth = 4, kAtan2 = 5, kFunction = 6 };
 
   Word random(std::uint64_t tag, Word a, Word b = 0) const {

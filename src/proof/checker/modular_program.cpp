@@ -8,7 +8,7 @@
 namespace anholon::verification {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kMostBits = 4096;  // of a coefficient inside an angle
+constexpr std::size_t kMostBits = 4096;  // the limit of a coefficient inside an angle
 
 static std::uint64_t name_of(const std::string& function) {
   const auto& all = Certificate::functions();
@@ -70,7 +70,8 @@ std::size_t ModularProgram::site(std::uint32_t local, bool root) {
   return it->second;
 }
 
-// Starts at the largest node: all paths to a node are added up before it is expanded.
+// Writes an argument as an angle. It starts at the largest node, so that all paths to a node are added up before the
+// node is expanded.
 Angle ModularProgram::flatten(Index argument, bool circle) {
   Angle angle;
   Rational ones = 0, pis = 0;
@@ -256,7 +257,7 @@ void ModularProgram::degrees() {
     if (std::isnan(d.numerator)) d.numerator = kInfinity;
     if (work_.done()) throw Unable{"the limit of work is reached"};
   }
-  // The norm to the field without roots: one factor for each choice of all roots.
+  // The norm to the field without roots has one factor for each choice of all roots.
   std::map<std::uint32_t, mpz_class> order;
   for (const auto& [local, q] : roots) {
     mpz_class& n = order.emplace(local, 1).first->second;
@@ -288,7 +289,7 @@ void ModularProgram::angle_degree(std::size_t i, Degree& d) {
   const Step& s = steps_[i];
   const std::string& name = s.node->function;
   const bool circle = s.family == Family::circle;
-  const std::uint64_t special = static_cast<std::uint64_t>(steps_.size()) * kBases;  // of the atoms 1 and π
+  const std::uint64_t special = static_cast<std::uint64_t>(steps_.size()) * kBases;  // bases of the atoms 1 and π
   double sum = 0;
   for (const Part& part : s.angle.parts) {
     const double times = std::abs(Rational(part.coefficient * (circle ? circle_q_ : growth_q_)).get_d());

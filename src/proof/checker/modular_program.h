@@ -86,7 +86,7 @@ struct ReducedProgram {
   ReducedProgram(const Field& f, std::size_t steps);
   Field field;
   Word half;
-  Point twelfth;                           // of the angle pi/12
+  Point twelfth;                           // the point of the angle pi/12
   std::vector<std::vector<Word>> weights;  // number: its value; sum: coefficients
   std::vector<std::vector<Factor>> factors;
   std::vector<std::vector<Turn>> turns;
@@ -106,7 +106,7 @@ class ModularProgram {
   ModularProgram& operator=(const ModularProgram&) = delete;
 
   const std::vector<std::size_t>& claims() const { return claims_; }
-  // The choices of signs: nodes of the certificate, and whether a root is taken of them.
+  // Returns the choices of signs: nodes of the certificate, and whether a root is taken of them.
   std::vector<std::pair<Index, bool>> sites() const {
     std::vector<std::pair<Index, bool>> list;
     for (const Site& s : sites_) list.emplace_back(nodes_[s.local], s.root);
@@ -114,25 +114,25 @@ class ModularProgram {
     return list;
   }
 
-  // Flattens the angles and bounds the degrees; it comes before what follows. Throws Unable.
+  // Flattens the angles and bounds the degrees. REQUIRED before the functions below. Throws Unable.
   void prepare();
-  // The degree of the difference that a claim states, and the number of pairs of arguments that have to differ times
-  // their degree: bounds on the number of zeros.
+  // Return the degree of the difference that a claim states, and the number of pairs of arguments that have to differ
+  // times their degree; both bound the number of zeros.
   double difference_degree(const Certificate::Claim& claim);
   double key_collisions() const { return keyed_ * keyed_ * largest_key_; }
   double log2_conjugates() const { return log2_conjugates_; }
-  // Roots whose arguments vary: half of the points have none.
+  // Returns the number of roots whose arguments vary: each has a value at half of the points.
   double varying_roots() const;
-  // Choices of signs that the points seen have left open.
+  // Returns the number of choices of signs that the points so far have left open.
   int open_branches() const;
 
-  // The program over a field; nullopt if a number of the program has no value in it.
+  // Returns the program over a field; nullopt if a number of the program has no value in it.
   std::optional<ReducedProgram> over(const Field& field) const;
 
   enum class Drawn : std::uint8_t { good, undefined, not_square, bad_prime };
-  // The values of all nodes at the random point that `key` determines. Throws Unable at the limit of work.
+  // Computes the values of all nodes at the random point that `key` determines. Throws Unable at the limit of work.
   Drawn draw(const ReducedProgram& r, const HashKey& key, std::vector<Word>& values);
-  // left - sum coefficient * term of a claim, from the values of the nodes.
+  // Returns left - sum coefficient * term of a claim, from the values of the nodes.
   Word difference(const ReducedProgram& r, const Certificate::Claim& claim, const std::vector<Word>& values) const;
 
  private:
@@ -160,7 +160,7 @@ class ModularProgram {
   std::vector<Site> sites_;
   std::map<std::pair<std::uint32_t, bool>, std::uint32_t> site_of_;
   mpz_class circle_q_ = 1, growth_q_ = 1;
-  std::uint64_t cost_ = 100;  // of one point
+  std::uint64_t cost_ = 100;  // cost of one point
 
   std::vector<Degree> degree_;
   std::map<std::uint64_t, double> base_degree_;

@@ -23,7 +23,7 @@ class RealProgram {
   const Ball& value(Index node) const { return value_[local_[node]]; }
   Ball difference(const Certificate::Claim& claim) const;
 
-  // The derivatives of `nodes` with respect to some symbols, row by row, after evaluate.
+  // Returns the derivatives of `nodes` with respect to some symbols, row by row. REQUIRES: evaluate() was called.
   std::vector<Ball> jacobian(const std::vector<Index>& nodes, const std::vector<Index>& symbols) const;
 
   const std::vector<Index>& symbols() const { return symbols_; }  // indices of the symbols that occur, ascending

@@ -38,7 +38,8 @@ std::string text(const Certificate& c, const std::vector<Index>& symbols, const 
   return s;
 }
 
-// Small numbers with few digits, positive at every other attempt: roots and logarithms need positive arguments.
+// Returns small numbers with few digits, positive at every other attempt, because roots and logarithms need positive
+// arguments.
 std::vector<Rational> real_point(const Certificate& c, const HashKey& key, int attempt) {
   std::vector<Rational> point(c.symbols.size());
   for (std::size_t s = 0; s < point.size(); ++s) {

@@ -38,7 +38,7 @@ struct ClaimFinding {
 
 struct Verification {
   std::vector<ClaimFinding> claims;  // as in the certificate
-  bool all_confirmed() const;        // and there is something to confirm
+  bool all_confirmed() const;        // true if there are claims, and all are confirmed
 };
 
 Verification verify(const Certificate& c, const VerifyOptions& options = {});

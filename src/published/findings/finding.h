@@ -9,30 +9,30 @@ struct FoundPlace {
   Span span;
 };
 
-// A change that would make the equation true; itself the first of its places.
+// A change that would make the equation true; the object itself is the first of its places.
 struct FoundChange : FoundPlace {
   std::vector<FoundPlace> places;
   std::string reads;  // the changed equation
   bool proved = false;
-  // One place with its term; one symbol at several places with the places; else one after the other.
+  // Describes one place with its term; one symbol at several places with the places; other places one after the other.
   std::string text() const;
 };
 
 struct EquationFinding {
   std::string label, text;
   Verdict verdict = Verdict::unknown;
-  std::string what;                       // true: the kind of the equation; false: the nearest true one, or empty
-  std::optional<std::string> difference;  // false: left - right less the nearest true equation
-  bool identity = false;                  // false: the equation is meant as an identity
-  std::string detail;                     // false: left - right at the point; unknown: why
-  std::optional<std::string> point;       // false: values of the symbols, "x = 1/2, …"
+  std::string what;                       // if true, the kind of the equation; if false, the nearest true one, or empty
+  std::optional<std::string> difference;  // if false, left - right less the nearest true equation
+  bool identity = false;                  // if false, true for an equation that is meant as an identity
+  std::string detail;                     // if false, left - right at the point; if unknown, the reason
+  std::optional<std::string> point;       // if false, the values of the symbols, "x = 1/2, …"
   std::vector<FoundChange> changes;
-  std::string with_numbers;  // false, unknown: the numbers of the file with which it holds
+  std::string with_numbers;  // if false or unknown, the numbers of the file with which the equation holds
 };
 
 EquationFinding finding_of(const PublishedEquation& equation, const Comparison& comparison, const SymbolNames& names);
 
-// "true", "false" or "unknown": the verdict on an equation.
+// Returns "true", "false" or "unknown": the verdict on an equation.
 const char* truth(Verdict verdict);
 
 }  // namespace anholon

@@ -1,7 +1,7 @@
-// Misprints: changes of one place of an equation, and of several places at once, that make a false equation true.
+// Finds misprints: changes of one place of an equation, and of several places at once, that make a false equation true.
 //
-// They are tried numerically at points of the motion (published/misprints/trial.h, together.h); survivors are judged like any
-// other equation. More changes are tried only if fewer do not make the equation true.
+// Changes are tried numerically at points of the motion (published/misprints/trial.h, together.h); survivors are judged
+// like any other equation. More changes are tried only if fewer do not make the equation true.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -39,7 +39,7 @@ class Repair {
     Change change;
   };
 
-  // Judges the likely changes; the others only if none of these is accepted.
+  // Judges the likely changes first, and the others only if none of these is accepted.
   void judge(const std::vector<Misprint>& list) {
     std::size_t left = kMostJudged;
     for (std::size_t from = 0; from < list.size() && left > 0 && changes_.empty();) {
@@ -65,7 +65,8 @@ class Repair {
       keep([](const Change& c) { return c.identity; });
   }
 
-  // A term with another number as its factor is one change (published/misprints/wrong_term.cpp).
+  // True if two numbers of one term change: a term with another number as its factor is one change
+  // (published/misprints/wrong_term.cpp).
   bool has_two_numbers_in_one_term(const std::vector<const Edit*>& edits) const {
     std::set<Path> terms;
     for (const Edit* e : edits)
@@ -117,7 +118,7 @@ class Repair {
     changes_.push_back(std::move(s.change));
   }
 
-  // Whether `a` is a better form of the same change as `b`. In an equation with two terms either may be changed: the
+  // True if `a` is a better form of the same change as `b`. In an equation with two terms either may be changed: the
   // shorter form is better, else the change of the right side. Among several terms the first is changed; among several
   // factors the last ones have the dots, as in m*x'' and r*r'.
   static bool better(const Change& a, const Change& b) {
@@ -140,7 +141,7 @@ class Repair {
     return lateness(a) > lateness(b);
   }
 
-  // Whether both are equal up to a constant factor; for identities, whether their left sides are.
+  // True if both are equal up to a constant factor; for identities, if their left sides are.
   bool same(Expr a, Expr b, Expr left_a, Expr left_b) {
     std::vector<PointValues>& points = motion_.anywhere();
     const auto nothing = [&](Expr e) {
@@ -204,7 +205,7 @@ class Repair {
     return placed(p, s, (minus ? "- " : "+ ") + text(s), (minus ? "+ " : "- ") + text(after));
   }
 
-  // Whether s is the component of a vector equation that represents a side.
+  // True if s is the component of a vector equation that represents a side.
   static bool is_component(const Syntax& s) {
     return s.op == Syntax::Op::member && s.args[0].offset == s.offset && s.args[0].end == s.end;
   }

@@ -123,7 +123,7 @@ bool Together::independent(const Items& a, const Items& b) const {
   return true;
 }
 
-// Items that do not add up, tried as one.
+// Tries items whose effects do not add up as one.
 std::optional<Together::Sum> Together::joined(const Items& items) {
   if (++tried_ > kMostTried) return std::nullopt;
   std::vector<std::uint32_t> edits;
@@ -163,8 +163,8 @@ void Together::prepare_pairs() {
   std::stable_sort(pairs_.begin(), pairs_.end(), [](const Sum& a, const Sum& b) { return before(a.change, b.change); });
 }
 
-// Sets of lost dots that are connected by bound pairs (pairs whose effects do not add up), each set once. `set` and
-// `open` are indices of lost dots; those in `open` come after the first of the set and may be joined.
+// Collects sets of lost dots that are connected by bound pairs (pairs whose effects do not add up), each set once.
+// `set` and `open` are indices of lost dots; those in `open` come after the first of the set and may be joined.
 void Together::connect(std::vector<std::uint32_t>& set, const std::vector<std::uint32_t>& open, unsigned count,
                        std::vector<Sum>& out) {
   const std::size_t n = dot_items_.size();
@@ -181,7 +181,7 @@ void Together::connect(std::vector<std::uint32_t>& set, const std::vector<std::u
                     [&](std::uint32_t i) { return of_dots_[i * n + next] == Relation::impossible; }))
       continue;
     std::vector<std::uint32_t> further(open.begin() + static_cast<std::ptrdiff_t>(k + 1), open.end());
-    // Bound to the new one, and to none before it: the others are in `open` already, or were.
+    // Adds the dots bound to the new one and to none before it; the others are or were in `open` already.
     for (std::uint32_t i = set[0] + 1; i < single_dots_; ++i)
       if (bound(next, i) &&
           std::none_of(set.begin(), set.end(), [&](std::uint32_t j) { return j == i || bound(j, i); }))

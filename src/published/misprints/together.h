@@ -11,7 +11,7 @@ namespace anholon {
 
 // Changes that are made together, and their cost: a measure of how unlikely they are as a misprint.
 struct Misprint {
-  std::vector<std::uint32_t> edits;  // of the trial
+  std::vector<std::uint32_t> edits;  // indices of edits of the trial
   int cost = 0;
 };
 
@@ -20,9 +20,9 @@ class Together {
   static constexpr unsigned kMost = 4;
 
   Together(Trial& trial, const Syntax& difference);
-  // The sets of `count` changes by which left - right vanishes, the likely ones first. A misprint that changes several
-  // places in one way counts once: a symbol that lost its dots or was mistaken for another one everywhere, an exponent
-  // that moved to another factor.
+  // Returns the sets of `count` changes by which left - right vanishes, the likely ones first. A misprint that changes
+  // several places in one way counts once: a symbol that lost its dots or was mistaken for another one everywhere, an
+  // exponent that moved to another factor.
   std::vector<Misprint> sets_of(unsigned count);
 
  private:
@@ -64,13 +64,13 @@ class Together {
 
   Trial& trial_;
   std::vector<Item> items_;
-  std::vector<Sum> singles_, dots_;       // of one item; sorted
-  std::vector<Sum> pairs_;                // of lost dots; sorted
-  std::vector<Sum> bound_;                // of a lost dot and another change that do not add up
-  std::vector<Sum> triples_;              // of lost dots that do not add up
-  std::vector<std::uint32_t> dot_items_;  // those of one place first
+  std::vector<Sum> singles_, dots_;       // sums of one item; sorted
+  std::vector<Sum> pairs_;                // sums of two lost dots; sorted
+  std::vector<Sum> bound_;                // sums of a lost dot and another change that do not add up
+  std::vector<Sum> triples_;              // sums of three lost dots that do not add up
+  std::vector<std::uint32_t> dot_items_;  // the items of lost dots, those of one place first
   std::uint32_t single_dots_ = 0;
-  std::vector<Relation> of_dots_;  // of two of them
+  std::vector<Relation> of_dots_;  // relations of two lost dots
   bool singles_known_ = false, pairs_known_ = false;
   std::size_t tried_ = 0, looked_up_ = 0;
   std::map<std::vector<std::uint32_t>, int> found_;  // cost by edits

@@ -35,7 +35,7 @@ Numbers operator*(const Numbers& a, const Numbers& b) {
   return each([&](std::size_t k) { return a[k] * b[k]; });
 }
 
-// Whether the value of s is linear in the argument i, with the others held.
+// True if the value of s is linear in the argument i, with the others held.
 bool linear_in(const Syntax& s, std::size_t i) {
   switch (s.op) {
   case Syntax::Op::add:
@@ -95,7 +95,7 @@ std::optional<Trial::Amount> Trial::evaluated(const Syntax& s) {
 
 // ---- the equation as it stands -----------------------------------------------------------------
 
-// Reads how the node is computed from its arguments; false if it is not one of these operations.
+// Reads how the node is computed from its arguments; returns false if it is not one of these operations.
 bool Trial::read_parts(Node& n) {
   const Syntax& s = *n.syntax;
   using Way = Node::Way;
@@ -321,7 +321,8 @@ Numbers Trial::change(std::vector<std::uint32_t> edits) {
   return with(root_, 0, edits).c[0] - root_.value.c[0];
 }
 
-// `edits` are in the order of their paths: those of the node itself first, then those of each argument together.
+// Returns the value of a node after edits. `edits` are in the order of their paths: those of the node itself first,
+// then those of each argument together.
 Trial::Amount Trial::with(const Node& n, std::size_t depth, std::span<const std::uint32_t> edits) {
   std::size_t own = 0;
   while (own < edits.size() && edits_[edits[own]].edit.path.size() == depth) ++own;

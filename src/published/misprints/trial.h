@@ -32,18 +32,18 @@ class Trial {
   std::size_t size() const { return edits_.size(); }
   const Edit& edit(std::size_t i) const { return edits_[i].edit; }
 
-  // The increase of left - right by edit i.
+  // Returns the increase of left - right by edit i.
   const Numbers& change_of(std::size_t i) const { return edits_[i].change; }
   Numbers change(std::vector<std::uint32_t> edits);
-  // The tolerance below which a value at a point counts as zero beside changes of that size.
+  // Returns the tolerance below which a value at a point counts as zero beside changes of that size.
   double tolerance(std::size_t point, double extent) const;
-  // Whether left - right vanishes after changes with the effect `change`, with `extent` the sum of their sizes.
+  // True if left - right vanishes after changes with the effect `change`, with `extent` the sum of their sizes.
   bool vanishes(const Numbers& change, const Numbers& extent) const;
   bool vanishes(const Numbers& change) const { return vanishes(change, change); }
   const Numbers& value() const { return root_.value.c[0]; }
 
-  bool possible(std::size_t a, std::size_t b) const;     // both edits can be made at once
-  bool independent(std::size_t a, std::size_t b) const;  // possible, and the effects add up
+  bool possible(std::size_t a, std::size_t b) const;     // true if both edits can be made at once
+  bool independent(std::size_t a, std::size_t b) const;  // true if possible, and the effects add up
 
  private:
   // A number, or the components of a vector.

@@ -1,4 +1,4 @@
-// A false equation whose error is one term: a side lacks it, has it beyond what is true, or has it with a wrong factor.
+// A false equation whose error is one term: a side lacks the term, has it in excess, or has it with a wrong factor.
 #include <algorithm>
 
 #include "expr/normal.h"
@@ -25,7 +25,7 @@ bool has_minus(Expr term) {
   return g.node(term.id).kind == Kind::sum && g.rational(g.terms(term.id)[0].weight) < 0;
 }
 
-// A formula that is printed as it stands.
+// Returns a formula that is printed unchanged.
 Syntax verbatim(std::string text) { return {Syntax::Op::name, std::move(text), {}, {}, 0, 0, {}}; }
 
 class Search {
@@ -52,7 +52,7 @@ class Search {
   }
   std::string text(Expr e) const { return print(arranged(e, names_), names_, Format::text); }
 
-  // The operand with another number as its factor, if that is what is wrong.
+  // Returns the change that gives the operand another number as its factor, if this factor is the error.
   std::optional<Change> in_place_of(int side, std::size_t i) {
     const Syntax& s = operand(side, i);
     Expr value;
@@ -90,7 +90,7 @@ class Search {
     return finished(std::move(c), after);
   }
 
-  // The side without an operand.
+  // Returns the side without an operand.
   Syntax without(int side, std::size_t i) const {
     Syntax after = sides_[side];
     if (after.op != Syntax::Op::add) return verbatim("0");

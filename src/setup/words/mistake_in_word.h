@@ -1,4 +1,4 @@
-// A mistake in a word that somebody writes beside a model: a range, a variation, a line of a table of cases, a reduction.
+// A mistake in a word that is given beside a model: a range, a variation, a line of a table of cases, a reduction.
 #pragma once
 #include <algorithm>
 #include <string>
@@ -10,10 +10,10 @@ namespace anholon {
 struct MistakeInWord {
   Diagnostic diagnostic;  // with its place in the word
   std::string word;
-  std::string file = {};  // from which the word is, if it is from a file
+  std::string file = {};  // the file of the word, if it is from a file
 };
 
-// Marks a part of the word. Throws MistakeInWord.
+// Throws MistakeInWord, which marks a part of the word.
 [[noreturn]] inline void mistake_in(const std::string& word, std::size_t at, std::size_t length,
                                     const std::string& message, const std::string& hint) {
   Span span;

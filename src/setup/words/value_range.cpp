@@ -33,7 +33,7 @@ Constant constant_in(const std::string& word, const WordPart& p) {
   }
 }
 
-// The part without blanks around it.
+// Returns the part without blanks around it.
 WordPart without_blanks(const std::string& word, const WordPart& p) {
   std::size_t skip = 0;
   while (skip < p.text.size() && p.text[skip] == ' ') ++skip;
@@ -43,7 +43,7 @@ WordPart without_blanks(const std::string& word, const WordPart& p) {
   return {p.at + skip, std::move(text)};
 }
 
-// Reads one range, whose messages show its place in the word.
+// Reads one range; messages show its place in the word.
 class RangeReader {
  public:
   RangeReader(const std::string& word, std::size_t sign, GivenQuantity& of, std::size_t most)

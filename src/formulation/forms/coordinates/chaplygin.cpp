@@ -14,8 +14,8 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   const Expr T_before = T(M, E.m - 1), T_tilde = E.on(T_before);
   const Column p = E.on(E.D(gradient(T_before, jets(*M.model, E.m))));      // dT^(m-1)/dq_b^(m)
   const Column r = E.on(E.D(gradient(T_before, jets(*M.model, E.m - 1))));  // dT^(m-1)/dq_b^(m-1)
-  // Term by term: compilers evaluate the operands of a sum in different orders, and the order of creation of nodes
-  // determines the order of sums.
+  // The terms are computed one by one: compilers evaluate the operands of a sum in different orders, and the order of
+  // creation of nodes determines the order of sums.
   const auto f_by_u = E.f_by_u();
   const auto turned = m * E.rate(f_by_u), f_by = E.f_by(E.m - 1);
   const Column first = m * E.rate(E.by_u(T_tilde)), second = E.I(E.by(E.m - 1, T_tilde)), third = p * (turned - f_by),

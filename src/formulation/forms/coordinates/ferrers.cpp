@@ -9,7 +9,7 @@ namespace anholon::forms {
 
 static Equations equations(const Mechanics& M, const Elimination& E) {
   const Column p = E.on(E.D(gradient(M.T, M.qd)));
-  // Term by term, as in chaplygin.cpp.
+  // The terms are computed one by one, as in chaplygin.cpp.
   const Column first = E.rate(E.by_u(E.on(M.T))), second = p * E.rate(E.f_by_u()),
                third = E.contract(gradient(M.T, M.q));
   return {first - second - third, E.contract(forces(M))};

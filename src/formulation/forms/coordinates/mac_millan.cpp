@@ -10,13 +10,13 @@
 
 namespace anholon::forms {
 
-// The sum over the points.
+// Returns the sum over the points.
 static Column bracket_of(const Mechanics& M, const Elimination& E) {
   Column bracket(E.free.u.size(), M.graph().zero());
   for (const WeightedPoint& point : M.points) {
     const Vector v = total_derivative(point.place);
     for (int i = 0; i < 3; ++i) {
-      // Term by term, as in chaplygin.cpp.
+      // The terms are computed one by one, as in chaplygin.cpp.
       const Column rate = E.rate(E.by_u(v[i])), by_q = E.I(E.by(0, v[i])), turned = rate - by_q;
       for (std::size_t a = 0; a < bracket.size(); ++a) {
         const Expr speed = point.weight * E.on(v[i]);

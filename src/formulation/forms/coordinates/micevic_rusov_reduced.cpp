@@ -11,7 +11,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   const Column p = E.on(E.D(gradient(T_before, jets(*M.model, E.m))));      // dT^(m-1)/dq_b^(m)
   const Column r = E.on(E.D(gradient(T_before, jets(*M.model, E.m - 1))));  // dT^(m-1)/dq_b^(m-1)
   const Column t = E.on(gradient(M.T, M.q));
-  // Term by term, as in chaplygin.cpp.
+  // The terms are computed one by one, as in chaplygin.cpp.
   const auto turned = E.f_rate_by_u(), f_by = E.f_by(E.m - 1), f_by_u = E.f_by_u();
   const Column first = E.by_u(T(M, E.m)), second = E.I(E.by(E.m - 1, T_before)), third = E.I(t),
                fourth = p * (turned - f_by), fifth = (r + E.D(t)) * f_by_u;

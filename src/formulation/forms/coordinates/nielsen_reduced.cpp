@@ -14,7 +14,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   const Expr T_before = T(M, E.m - 1);
   const Column p = E.on(E.D(gradient(T_before, jets(*M.model, E.m))));      // dT^(m-1)/dq_b^(m)
   const Column r = E.on(E.D(gradient(T_before, jets(*M.model, E.m - 1))));  // dT^(m-1)/dq_b^(m-1)
-  // Term by term, as in chaplygin.cpp.
+  // The terms are computed one by one, as in chaplygin.cpp.
   const auto turned = m * E.f_rate_by_u(), f_by = m1 * E.f_by(E.m - 1);
   const Column first = m * E.by_u(T(M, E.m)), second = m1 * E.I(E.by(E.m - 1, T_before)), third = m1 * (r * E.f_by_u()),
                fourth = p * (turned - f_by);

@@ -36,7 +36,7 @@ static std::string linear_accelerations(const Mechanics& M) {
   return {};
 }
 
-// A q'' - b
+// Returns A q'' - b.
 static Column acceleration_level(const Mechanics& M, const Elimination& E) {
   Column level;
   for (std::size_t r : E.constraints)

@@ -4,7 +4,7 @@
 //   D/Dt dTheta/dq_nu' - dTheta/dq_nu - sum_b dTheta/dq_b df_b/dq_nu'
 //     - sum_b theta_b (d/dt df_b/dq_nu' - df_b/dq_nu - sum_c df_b/dq_c df_c/dq_nu')  =  G_nu + sum_b G_b df_b/dq_nu'
 //
-// Chaplygin's own case: no dependent coordinate occurs anywhere.
+// In Chaplygin's own case no dependent coordinate occurs anywhere.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {
@@ -14,7 +14,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   const Column theta = E.on(E.D(gradient(M.T, M.qd)));
   Rows along;  // df_b/dq_nu + sum_c df_b/dq_c df_c/dq_nu'
   for (std::size_t b : E.dependent) along.push_back(E.contract(E.g_by(0)[b]));
-  // Term by term, as in chaplygin.cpp.
+  // The terms are computed one by one, as in chaplygin.cpp.
   const auto turned = E.rate(E.f_by_u());
   const Column first = E.rate(E.by_u(Theta)), second = E.contract(E.by(0, Theta)), third = theta * (turned - along);
   return {first - second - third, E.contract(forces(M))};

@@ -2,7 +2,7 @@
 //
 //   1/m [dT^(m)/dq^(m) - (m+1) dT/dq] = Q + QR + … + Gamma + sum lambda dphi/dq^(m)
 //
-// m is the highest order of the constraints (1 at least), or the order asked for; T^(m) = D^m T/Dt^m with frozen
+// m is the highest order of the constraints (1 at least), or the requested order; T^(m) = D^m T/Dt^m with frozen
 // masses.
 #include "formulation/formulation.h"
 

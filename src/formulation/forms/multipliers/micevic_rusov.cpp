@@ -2,7 +2,7 @@
 //
 //   dT^(m)/dq^(m) - dT^(m-1)/dq^(m-1) - dT/dq = Q + QR + … + Gamma + sum lambda dphi/dq^(m)
 //
-// m is the highest order of the constraints (1 at least), or the order asked for; T^(k) = D^k T/Dt^k with frozen
+// m is the highest order of the constraints (1 at least), or the requested order; T^(k) = D^k T/Dt^k with frozen
 // masses. All jets are independent; q^(m+1) drops out of the left side.
 #include "formulation/formulation.h"
 

@@ -2,7 +2,7 @@
 //
 //   m D/Dt dT^(m-1)/dq^(m) - dT^(m-1)/dq^(m-1) = Q + QR + … + Gamma + sum lambda dphi/dq^(m)
 //
-// m is the highest order of the constraints (1 at least), or the order asked for; T^(k) = D^k T/Dt^k with frozen
+// m is the highest order of the constraints (1 at least), or the requested order; T^(k) = D^k T/Dt^k with frozen
 // masses. For m = 1 these are Routh's equations.
 #include "formulation/formulation.h"
 

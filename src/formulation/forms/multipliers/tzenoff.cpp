@@ -2,7 +2,7 @@
 //
 //   1/2 [dT''/dq'' - 3 dT/dq] = Q + QR + … + Gamma + sum lambda dphi/dq^(m)
 //
-// for every order of the constraints. With another m asked for, they are Tzenoff's equations of higher order: [N 5.1]
+// for every order of the constraints. With another requested m, they are Tzenoff's equations of higher order: [N 5.1]
 // with that m.
 #include "formulation/formulation.h"
 

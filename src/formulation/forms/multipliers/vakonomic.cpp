@@ -3,7 +3,7 @@
 //
 //   D/Dt dT/dq' - dT/dq = G + sum_r sum_k (-1)^k d^k/dt^k (mu_r dphi_r/dq^(k)),   k = 0 .. m
 //
-// They agree with the ideal reactions of Chetaev and Niu only if the constraints are integrable.
+// These equations agree with the ideal reactions of Chetaev and Niu only if the constraints are integrable.
 #include "formulation/formulation.h"
 
 namespace anholon::forms {

@@ -15,7 +15,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
     u_by_q.push_back(gradient(u, M.q));
     turned.push_back(total_derivative(gradient(u, M.qd)) - u_by_q.back());
   }
-  // Term by term, as in chaplygin.cpp.
+  // The terms are computed one by one, as in chaplygin.cpp.
   const Column by_q = gradient(M.T, M.q), through_u = p_u * u_by_q,
                T_by_q = by_q - through_u;  // at fixed u: dchi/dq = -beta du/dq
   const Column momentum(p_u.begin(), p_u.begin() + static_cast<std::ptrdiff_t>(E.free.u.size()));

@@ -14,7 +14,7 @@ static Equations equations(const Mechanics& M, const Elimination& E) {
   const Column p = E.on(gradient(T_before, jets(*M.model, E.m)));  // dT^(m-1)/dq_s^(m)
   Rows g_by_pi;                                                    // dg_s/dpi_a^(m-1)
   for (const Column& row : E.g_by(E.m - 1)) g_by_pi.push_back(E.contract(row));
-  // Term by term, as in chaplygin.cpp.
+  // The terms are computed one by one, as in chaplygin.cpp.
   const Column first = E.by_u(T(M, E.m)), second = E.contract(E.by(E.m - 1, T_before)),
                third = E.contract(gradient(M.T, M.q)), fourth = p * (E.g_rate_by_u() - g_by_pi);
   return {first - second - third - fourth, E.contract(forces(M))};
@@ -25,7 +25,7 @@ static Quantities quantities(const Mechanics& M, const Elimination& E) {
   const Label before = energy("T", E.m - 1), star = energy("T", E.m - 1, Over::star),
               star_m = energy("T", E.m, Over::star);
   const Labels q_m = jet_labels(M, E.m);
-  Labels pi, pi_below;  // of the operators d/dpi and d/dpi^(m-1)
+  Labels pi, pi_below;  // labels of the operators d/dpi and d/dpi^(m-1)
   for (const std::string& u : E.free.names) {
     pi.push_back(indexed(energy("pi"), u, {name_of(*M.model, u)}));
     pi_below.push_back(indexed(energy("pi", E.m - 1), u, {name_of(*M.model, u)}));
