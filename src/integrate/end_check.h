@@ -32,20 +32,23 @@ class EndCheck {
   // Whether it is one of the looks that decide, not one for round-off.
   bool decides() const { return near_ < 0; }
   enum class Next { good, look, shorten };
-  // `rate`: the defect there, in relation to the size of what it changes.
+  // Takes the result of the look at where(). `rate`: the defect there, relative to the size of the derivatives that it
+  // changes.
   Next seen(const N& rate);
-  // The length is refused for another reason.
+  // Refuses the length for another reason.
   Next refuse();
-  // Whether looks were passed where solutions for the leading derivatives have no digits that lead the motion further.
+  // True if a look was passed although the solutions for the leading derivatives have lost the digits that lead the
+  // motion.
   bool loses_digits() const { return loses_digits_; }
-  // The next step is another one.
+  // Forgets what was seen: the next step is a new one.
   void forget();
 
  private:
-  // A step of good series changes its leading derivatives by less, in relation to the size of the derivatives below.
+  // The largest rate of change of leading derivatives, relative to the size of the derivatives below, in a step with
+  // good series.
   static constexpr double kMostChange = 0x1p-10;
   bool passes(const N& rate, const N& h) const { return rate * abs(h) <= allowed_; }
-  // Parts of a step where nothing but round-off is left.
+  // The parts of a step within which a defect is nothing but round-off.
   static constexpr double kNear[] = {0x1p-12, 0x1p-24};
   Next go_on();
   bool is_noise();
