@@ -79,7 +79,7 @@ Rational set_times(const MotionSettings& settings, const Scenario& s, const Aske
   return end;
 }
 
-// N, or all.
+// Returns the number of times of the bounds, 0 for all times, or nullopt without the option.
 std::optional<std::size_t> rigorous(const MotionSettings& settings, const Asker& asker) {
   constexpr long kMostTimes = 1'000'000;
   if (!settings.rigorous) return std::nullopt;

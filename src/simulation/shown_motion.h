@@ -15,7 +15,7 @@ class ShownMotion {
 
   // Shows the motion of another integrator, which computes in doubles.
   void show(std::unique_ptr<SecondMotion> second) { second_ = std::move(second); }
-  // The other integrator; null if the motion of the course is shown.
+  // The other integrator; nullptr if the motion of the course is shown.
   const SecondMotion* second() const { return second_.get(); }
 
   // Goes to time t; then `point` and `work` belong to that time.
