@@ -31,7 +31,7 @@ bool of_parameters(Expr e) {
   return true;
 }
 
-// Whether a derivative beyond those that are solved for stands in an equation, so that it may occur for some parameters.
+// True if an equation contains a derivative beyond those that are solved for, so that it may occur for some parameters.
 bool may_go_beyond(const System& system, const Structure& t) {
   for (std::size_t i = 0; i < system.equations.size(); ++i)
     for (const NodeId id : symbols({&system.equations[i], 1})) {
