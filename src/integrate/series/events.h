@@ -79,8 +79,8 @@ class EventWatch {
 
   // Returns the value of a quadrature on the state at a time from the start of the step; nullopt if it has none.
   using Values = std::function<std::optional<N>(std::size_t quadrature, const N& where)>;
-  // Whether the series of formulas of the state, finite ones, have their values at a point on the way, to the tolerance and
-  // the round-off of the values; `value`: of a quadrature there.
+  // True if the series of formulas of the state, if finite, have their values at a point on the way, up to the
+  // tolerance and the round-off of the values; `value`: the value of a quadrature there.
   using ValueThere = std::function<std::optional<N>(std::size_t quadrature)>;
   // The magnitude of all that the value is made of.
   using MadeOf = std::function<N(std::size_t quadrature)>;
