@@ -61,7 +61,7 @@ class PairRun {
     V high, low;
   };
 
-  // Fused on every machine: without an instruction the C library does it.
+  // The product is fused on every machine: without an instruction the C library computes it.
   static V fused(V a, V b, V c) {
     if constexpr (L == 1)
       return __builtin_fma(a, b, c);
