@@ -11,8 +11,8 @@
 
 namespace anholon {
 
-// Takes large pieces of memory from the system and gives them back when they are freed: a column that has moved would
-// otherwise stay in the heap.
+// Takes large pieces of memory from the system and gives them back when they are freed: otherwise a column that has
+// moved would stay in the heap.
 void* take_pages(std::size_t bytes);
 void free_pages(void* place, std::size_t bytes);
 

@@ -1,4 +1,4 @@
-// Writers of results: one format of a file is behind each of them (result/format.h).
+// Writers of results; each writes one format of files (result/format.h).
 //
 // A writer stops at the first failure of its file, which `error` and `close` report.
 #pragma once
