@@ -1,6 +1,5 @@
-// One model as the driver of the speed table (bench/speed.py) asks for it: made ready, then
-// integrated to the end of its [simulate] with the tolerances that come on the standard input. Each
-// answer is a line of JSON.
+// Measures one model for the speed table (bench/speed.py): makes the model ready, then answers the commands on the
+// standard input, which integrate it to the end of its [simulate]. Each answer is a line of JSON.
 //
 //   speed_bench MODEL [--set NAME=VALUE]... [--form NAME]     answers with the times of making ready
 //   start                          positions and velocities at the start, coordinate by coordinate, in 36 digits
@@ -86,7 +85,8 @@ std::vector<N> positions_and_velocities(const Ready& ready, const Expansion<N>& 
   return values;
 }
 
-// The kernel of a motion that is long enough for the dearest writing and for machine code.
+// Makes or finds the kernel plan of a motion that is long enough to pay for the most expensive writing and for machine
+// code.
 const std::shared_ptr<const KernelPlan>& plan_of(Ready& r, double tolerance, const Start<long double>& start,
                                                  Company company = Company::alone) {
   auto& plan = r.plans[{tolerance, company}];
@@ -108,8 +108,8 @@ const std::shared_ptr<const KernelPlan>& plan_of(Ready& r, double tolerance, con
   return plan;
 }
 
-// The only place that knows how a stepper is made and driven. Forms without multipliers go as far
-// as their elimination does: choosing another on the way is the business of motion/motion.
+// Makes and drives a stepper. The motion in a form without multipliers fails where its elimination ends: only
+// motion/motion chooses another elimination on the way.
 template <Number N>
 struct Trajectory {
   using W = Wider<N>;
@@ -145,7 +145,7 @@ void write_state(JsonWriter& json, const Values& values, int digits = 0) {
 
 void write(JsonWriter& json, const char* key, double x) { json.key(key).number(number_text(x)); }
 
-// The most memory that the process has had.
+// Returns the peak memory of the process in MiB.
 double megabytes() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;)
@@ -216,8 +216,8 @@ void answer_run(Ready& r, double tolerance, double seconds, std::size_t most_ste
   write_state(json, motion->last());
 }
 
-// Motions that differ in where a coordinate begins: by 1/64 from lane to lane. What else the file gives stays,
-// constraints are kept.
+// Returns the starts of motions in which one coordinate begins 1/64 further from lane to lane. The other initial data
+// of the file stay, and the constraints are satisfied.
 template <class W>
 std::vector<Start<W>> neighbours(const Ready& r, const std::string& name) {
   const Scenario& s = r.scenario;
@@ -252,8 +252,8 @@ void answer_lanes(const Ready& r, const std::string& name, JsonWriter& json) {
   write_state(json, last);
 }
 
-// The lanes of one kernel, each to the end; those that are there wait for the others. Where they have arrived, if asked
-// for.
+// Runs the motions in the lanes of one kernel, each to the end; motions that have arrived wait for the others. `last`,
+// if given, receives the positions and velocities at the ends.
 void go_side_by_side(Kernel& kernel, std::deque<Trajectory<double>>& motions,
                      const std::vector<Start<Wider<double>>>& starts, const Wider<double>& end,
                      std::vector<std::vector<Wider<double>>>* last = nullptr) {
