@@ -3,13 +3,13 @@
 //
 //   speed_bench MODEL [--set NAME=VALUE]... [--form NAME]     answers with the times of making ready
 //   start                          positions and velocities at the start, coordinate by coordinate, in 36 digits
-//   exact DIGITS                   those at the end, so many digits to be trusted
-//   run TOLERANCE SECONDS [STEPS]  as many motions as fit the time, at least one; STEPS: no more of each
-//   lanes NAME                     the neighbours in the lanes of a kernel, which begin with a shifted coordinate NAME: where
-//                                  they start, and where they end by motions in long double
-//   batch TOLERANCE SECONDS NAME   all of them side by side in one kernel, as often as fits the time
+//   exact DIGITS                   positions and velocities at the end, right in so many digits
+//   run TOLERANCE SECONDS [STEPS]  as many motions as fit the time, at least one; STEPS: the most steps of each
+//   lanes NAME                     neighbours, one for each lane of a kernel, which begin with a shifted coordinate
+//                                  NAME: their starts, and the ends of their motions in long double
+//   batch TOLERANCE SECONDS NAME   all neighbours side by side in one kernel, as often as fits the time
 //
-//   speed_bench --peak             no model: what the core can do, in GF/s
+//   speed_bench --peak             the speed of the core in GF/s, without a model
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -47,9 +47,10 @@ struct Request {
 struct Ready {
   Scenario scenario;
   std::unique_ptr<Program> stepping;
-  std::map<std::pair<double, Company>, std::shared_ptr<const KernelPlan>> plans;  // by tolerance, alone or in lanes
-  double read = 0, scenario_made = 0, program_made = 0;                           // seconds
-  double plan_made = 0, compiled = 0;                                             // of the last of the plans
+  std::map<std::pair<double, Company>, std::shared_ptr<const KernelPlan>>
+      plans;                                             // by tolerance, and for one motion alone or for lanes
+  double read = 0, scenario_made = 0, program_made = 0;  // seconds
+  double plan_made = 0, compiled = 0;                    // of the last of the plans
 };
 
 std::unique_ptr<Ready> make_ready(const Request& request) {
@@ -318,7 +319,7 @@ void answer_batch(Ready& r, double tolerance, double seconds, const std::string&
   }
   std::vector<std::vector<W>> arrived;
   go_side_by_side(*kernel, motions, starts, end, &arrived);
-  // The same motions, each alone.
+  // Repeats the same motions, each alone.
   Trajectory<double> alone(r, settings);
   alone.stepper.accelerate(plan);
   std::vector<W> last;
