@@ -25,7 +25,8 @@ class CommandLine {
  public:
   CommandLine();
 
-  // Runs the command that the words name, and returns the exit status. Throws UsageError for words that make no command.
+  // Runs the command that the words name, and returns the exit status. Throws UsageError for words that make no
+  // command.
   int run(int argc, char** argv);
 
   // Adds a command below `parent` (nullptr: below the program) that is run with its parsed options.

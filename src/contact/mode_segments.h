@@ -67,7 +67,7 @@ class ModeSegments {
   Rational end_;
   std::function<void(std::size_t)> slips_;
   std::optional<Rational> vanished_;  // the time at which a slip vanished last; it may vanish once at a time
-  int retries_ = 0;                   // how often BDF went on where Taylor's method gave up
+  int retries_ = 0;                   // the number of times that BDF continued where Taylor's method gave up
   bool events_near_ = false;          // the last segment by BDF has come near the end of a mode
 };
 

@@ -32,8 +32,9 @@ class SlipStart {
   // for the time h of time_to_grow; the error is of the order of h^3 (theory: contact). Returns false if the motion
   // ends meanwhile.
   bool hold(Outcome& outcome);
-  // Of contacts that shared friction, reports those that slip with the one at which the last segment ended. One that
-  // still sticks, because it only touched its limit or the others hold it, has not slipped, and its event is removed.
+  // Among contacts that shared friction, reports those that slip together with the one at which the last segment ended.
+  // A contact that still sticks, because it only touched its limit or the others hold it, has not slipped, and its
+  // event is removed.
   void tell_who_slips_too(const ContactModes& now);
   // Sets first guesses of directions: against the friction that held.
   void guess_directions(ContactProblem& problem) const;

@@ -11,7 +11,7 @@ struct TouchingBodies {
   TouchingBodies(const TouchingBodies&) = delete;
   TouchingBodies& operator=(const TouchingBodies&) = delete;
 
-  // What is excluded by the event at the end of the last segment.
+  // The changes of modes that the event at the end of the last segment excludes.
   struct Excluded {
     bool touch = false, stick = false, slips = false;
   };
@@ -87,7 +87,7 @@ struct TouchingBodies {
   RoundOff near;
   ContactModes modes;  // of the last segment, or of the next one
   std::vector<Excluded> excluded;
-  std::vector<bool> turned;             // whether the last segment ended because a slip turned
+  std::vector<bool> turned;             // true if the last segment ended because a slip turned
   long double before = 0;               // the largest acceleration without contacts at the start of the last mode
   std::vector<long double> most_place;  // the largest value of each coordinate at a change of mode
 };

@@ -79,7 +79,7 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
   if (const Outcome o = initial_state(s, choice, here); !o.ok()) return no(o.message);
   made->parameters_ = parameter_values<long double>(*s.model);
   made->find_free_parameters(*s.model, wanted.inputs);
-  // With another value of these parameters the equations would differ.
+  // These parameters are not free: with other values the equations have another state.
   for (const std::size_t i : parameters_of_order(*s.mechanics, s.elimination, s.system, s.structure))
     std::erase(made->free_, i);
   const std::vector<double>& state = made->motion_start_ = {here.state.begin(), here.state.end()};

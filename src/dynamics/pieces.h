@@ -15,9 +15,9 @@ namespace anholon {
 using NextPiece =
     std::function<std::optional<std::size_t>()>;  // the first state of a piece; nullopt after the last one
 
-// Calls work(next) in this thread, and in others if there are many pieces of `size` states; together they take all pieces
-// of `count` states. If work throws in one of the threads, the others take no further piece, and the exception is thrown
-// once they have ended. StopRequested, which comes from a StopScope of this thread, is such an exception.
+// Calls work(next) in this thread, and in others if there are many pieces of `size` states; together they take all
+// pieces of `count` states. If work throws in one of the threads, the others take no further piece, and the exception
+// is thrown once they have ended. StopRequested, which comes from a StopScope of this thread, is such an exception.
 template <class Work>
 void in_pieces(std::size_t count, std::size_t size, const Work& work) {
   std::atomic<std::size_t> first = 0;

@@ -37,8 +37,8 @@ class CaseTable {
                                const std::string& hint) const;
 
   std::string text_, file_;
-  std::size_t header_ = 0;          // where the line of the header begins
-  std::vector<std::size_t> lines_;  // where the lines of the rows begin
+  std::size_t header_ = 0;          // the begin of the line of the header
+  std::vector<std::size_t> lines_;  // the begins of the lines of the rows
   std::vector<std::string> names_;
   std::vector<std::size_t> places_;    // the places of the names among the cells of a line
   std::optional<std::size_t> number_;  // the place of a column "case"

@@ -355,7 +355,7 @@ namespace {
 // A part of a step.
 struct Piece {
   double from, to;
-  int depth;  // how often it was halved
+  int depth;  // the number of halvings
 };
 
 // Returns the pieces between these points, the first one last.

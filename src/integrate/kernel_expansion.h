@@ -99,7 +99,7 @@ class KernelExpansion {
   void send(double h, double t);
   // The change that Newton's first step would make to the leading derivatives foretold there, as a rate.
   double defect() const { return kernel_->defect(lane_); }
-  // How the velocities differ there, for a kernel with unknowns of its own; `t`: the time there.
+  // The difference of the velocities at the time t, where the kernel was sent, for a kernel with unknowns of its own.
   VelocityJump velocity_jump(double t) const;
   void show_advanced(bool advanced) { kernel_->show_advanced(advanced); }
   // Goes where the kernel was sent, and begins the next expansion there. REQUIRES: the kernel has no other lanes.

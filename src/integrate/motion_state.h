@@ -80,7 +80,7 @@ struct MotionTrack {
     bool by_kernel = false;
   };
   MotionState<N> now;
-  // Where the present expansion was begun, and where the one before was begun.
+  // The states where the present expansion and the one before were begun.
   Begun& begun() { return expansions[present]; }
   const Begun& begun() const { return expansions[present]; }
   Begun& previous() { return expansions[1 - present]; }
@@ -95,7 +95,8 @@ inline constexpr int kCollapsedRoundoffs = 16;
 // An ordinary step is longer than this, relative to the time.
 inline constexpr double kShortStep = 2 * kCollapsedRoundoffs * 0x1p-53;
 
-// What ordinary steps in the lanes of a kernel tell the stepper of a motion (lanes/ordinary_steps.h).
+// The data of ordinary steps in the lanes of a kernel (lanes/ordinary_steps.h) that the stepper of the motion takes
+// over.
 struct OrdinaryCourse {
   struct Step {
     double to = 0, length = 0;

@@ -71,7 +71,7 @@ class StepEnd {
 
   const W& time() const { return aimed_; }
   bool arrives() const { return arrives_; }
-  std::size_t kinks() const { return kinks_; }  // that have cut a step short
+  std::size_t kinks() const { return kinks_; }  // the number of kinks that have cut a step short
 
  private:
   struct Others {
@@ -84,9 +84,9 @@ class StepEnd {
     std::uint32_t slot;
     N value, rate;
   };
-  // The kinks at which constraints turn: what decides at the last one; when one was passed, the longest time between
-  // two, how many in a row were passed after a far shorter time, and how many expansions in a row were put back before
-  // the kink.
+  // The kinks at which constraints turn: the deciding values at the last one; of the kinks that were passed, the
+  // longest time between two, and the number in a row that came after a far shorter time; the number of expansions in a
+  // row that were put back before the kink.
   struct Turns {
     std::vector<Passing> passed;
     std::optional<W> last = {};
@@ -94,10 +94,10 @@ class StepEnd {
     int soon = 0, put_back = 0;
     bool forward = true;
   };
-  // Numbers of steps in a row.
+  // The numbers of consecutive steps of some kinds.
   struct InARow {
-    int short_kinks = 0;  // that were cut by a kink shortly after their start
-    int met_again = 0;    // that were cut by a kink at their start or shortly after it
+    int short_kinks = 0;  // steps that were cut by a kink shortly after their start
+    int met_again = 0;    // steps that were cut by a kink at their start or shortly after it
   };
   struct Hidden {
     std::uint32_t slot;

@@ -95,8 +95,8 @@ class Stepper {
   const W& time() const { return track_.now.t; }
   std::vector<W> state() const { return motion().state; }
   std::vector<W> leading() const { return motion().leading; }
-  // Where the present expansion was begun: the start of the last step, or of the next one if its expansion is made
-  // already. So a run that resumes here repeats a step that was cut short by its end in full.
+  // The state where the present expansion was begun: at the start of the last step, or of the next one if its expansion
+  // is already made. A run that resumes there repeats a step that was cut short by its end in full.
   StepperState<N> begun() const { return expander_.begun(track_); }
   const W& before() const { return before_; }                    // the time where the last step began
   const std::vector<Fired<N>>& fired() const { return fired_; }  // in the last step, in order

@@ -1,5 +1,5 @@
-// LLVM IR for functions over the arena of a kernel: loads and stores, and the arithmetic of lanes, operation by operation
-// as in kernel/tiers/.
+// LLVM IR for functions over the arena of a kernel: loads and stores, and the arithmetic of lanes, operation by
+// operation as in kernel/tiers/.
 #pragma once
 #include <vector>
 

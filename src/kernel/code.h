@@ -69,8 +69,8 @@ struct CompilerModule {
 };
 inline constexpr int kCompilerVersion = 9;
 
-// Whether code of little effort is translated for so many lanes (jit/x86), and not compiled; a tenth to a quarter of the
-// time is then enough.
+// True if code of little effort is translated for so many lanes (jit/x86) instead of compiled; this takes a tenth to a
+// quarter of the time.
 inline constexpr bool translated_at_first(int lanes) { return lanes <= 4; }
 
 // The module beside the program; null if there is none, or if this machine cannot run its code.

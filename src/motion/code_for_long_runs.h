@@ -40,7 +40,7 @@ class CodeForLongRuns {
   void begin(const std::shared_ptr<const KernelPlan>& plan, int lanes, CodeEffort effort);
 
   Compilation compilation_;
-  // How far the work had come after so many seconds of the clock of point().
+  // The progress `at` of the work after so many seconds of the clock of point().
   struct Point {
     double seconds, at;
   };

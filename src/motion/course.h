@@ -21,7 +21,7 @@ struct MethodReport {
   };
   std::vector<Turn> turns;
   std::size_t taylor_steps = 0, expansions = 0;
-  std::size_t steps = 0, refused = 0, evaluations = 0;  // by the other method
+  std::size_t steps = 0, refused = 0, evaluations = 0;  // those of the other method
   std::size_t trials = 0, trial_evaluations = 0;        // trials that were given up, or whose steps were made again
   bool differs_from_taylor() const { return steps > 0 || trials > 0 || !turns.empty(); }
 };
@@ -126,7 +126,7 @@ class MethodCourse {
   bool by_other_ = false;               // another method has made the last step
   StateRecord met_;                     // the record of other methods
   CodeForLongRuns code_;
-  std::size_t rescues_ = 0, taylor_for_ = 0;  // how often Taylor's method had to help; the steps that it still makes
+  std::size_t rescues_ = 0, taylor_for_ = 0;  // the rescues by Taylor's method; the steps that it still makes
   MethodReport report_;                       // `last` is the method that continues the motion
 };
 

@@ -107,7 +107,7 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
   const W start = leg_->stepper.before(), now = leg_->stepper.time();
   const Event* set = nullptr;  // the last event that sets something
   goes_on = true;
-  std::optional<N> changed;  // where an event changes or ends the motion
+  std::optional<N> changed;  // the place at which an event changes or ends the motion
   std::vector<bool> met(
       s_.model->bounds.size());  // the bounds that were met at that place; the motion may turn back there
   std::vector<W> state, parameters = parameters_;

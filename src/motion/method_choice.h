@@ -95,7 +95,7 @@ class TaylorWatch {
 
   double log_tolerance_;
   std::size_t kinks_before_ = 0, next_kinks_ = kFirstKinks, next_stiff_ = kFirstStiff;
-  std::optional<Mark> stiff_, kinky_;  // where the stretch begins on which the next trial is made
+  std::optional<Mark> stiff_, kinky_;  // the start of the stretch on which the next trial is made
 };
 
 }  // namespace anholon

@@ -137,7 +137,7 @@ class Motion {
   const Program& program() const { return leg_->program; }
   const std::vector<W>& parameters() const { return parameters_; }
   const std::vector<W>& start_parameters() const { return start_parameters_; }
-  // How often other dependent coordinates or other independent constraints were chosen during the motion.
+  // The number of choices of other dependent coordinates or other independent constraints during the motion.
   std::size_t eliminations() const { return choices_.taken; }
   // For another method (motion/course.h): the plan of the kernel, or nullptr; whether the choices should be made anew
   // at a point; Taylor steps from where the other method is.
@@ -158,7 +158,7 @@ class Motion {
     Elimination elimination;
     System system;
     Structure structure;
-    std::vector<Expr> quadratures;  // those of the motion, events and bounds, in the workspace
+    std::vector<Expr> quadratures;  // the quadratures of the motion, of events and of bounds, in the workspace
     Program program;
     Stepper<N> stepper;
     Expansion<W> point, present;
@@ -231,14 +231,14 @@ class Motion {
   int stages_;
   std::vector<W> start_parameters_, parameters_;  // they differ in modes
   std::vector<N> narrow_parameters_;
-  // What the events that have fired set; with constraints, also what makes the set state consistent.
+  // The numbers that the events have set; with constraints, also the solver that makes the set state consistent.
   struct EventEffects {
     std::vector<std::optional<SetByEvent>> sets;
     std::optional<NearestState<W>> nearest;
   };
   EventEffects effects_;
   Start<W> start_;
-  std::vector<W> begun_parameters_;  // where the last expansion was made
+  std::vector<W> begun_parameters_;  // the parameters of the last expansion
   std::unique_ptr<Leg> leg_;
   Beside beside_;
   bool stepped_ = false, other_digits_ = false;

@@ -10,7 +10,7 @@
 namespace anholon {
 
 enum class Writing : std::uint8_t {
-  derived,   // as the form gave them
+  derived,   // unchanged, as derived from the form
   paired,    // with products of common pairs (tape.h)
   rates,     // total derivatives left to the series (by_rates.h), paired
   quasi,     // in quasi-velocities (quasi_velocities.h), paired: the kernel has unknowns of its own
@@ -22,7 +22,7 @@ const char* name(Writing writing);
 struct Representation {
   Writing writing = Writing::derived;
   std::shared_ptr<const KernelPlan> plan;
-  std::vector<std::string> velocities;  // of quasi: the quasi-velocities p, in words of the model
+  std::vector<std::string> velocities;  // for `quasi`: the quasi-velocities p, in words of the model
   bool clears_poles = false;            // constraints have poles, near which the other writings lose digits
 };
 

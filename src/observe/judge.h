@@ -40,7 +40,7 @@ class Judge {
   Workspace& s_;
   const SimulationOptions& o_;
   RunToJudge<W> run_;
-  std::size_t resets_ = 0;  // how often events have changed the state
+  std::size_t resets_ = 0;  // the number of times that events have changed the state
   struct Beside {
     Beside(Workspace& s, const std::vector<W>& parameters, RowComparison c)
         : outputs(s, parameters), comparison(std::move(c)) {}

@@ -11,7 +11,7 @@
 
 namespace anholon {
 
-// Whether a second, sharper run estimates the global error; it costs more than the run itself.
+// The choice of motions whose global error is estimated by a second, sharper run, which costs more than the run itself.
 enum class ErrorEstimate : std::uint8_t { never, short_runs, always };
 inline constexpr std::size_t kShortRun = 5000;  // steps
 
@@ -67,10 +67,10 @@ struct SimulationOptions {
   std::size_t most_steps = 50'000'000;
   bool kernel = true;  // use a kernel if there is one: its pivots, chosen at the start, affect the last digits
   ErrorEstimate estimate = ErrorEstimate::never;
-  // Whether the notes tell of supports that pull and of friction that is needed (observe/floors/floor_watch.h).
+  // True if the notes tell of supports that pull and of friction that is needed (observe/floors/floor_watch.h).
   bool watches_floors = true;
   bool watches_carriers = true;  // of supports of one body alone, too
-  // Whether the ranges of monitors also count the ends of Taylor's steps.
+  // True if the ranges of monitors also count the ends of Taylor's steps.
   bool watches_ranges = true;
   std::vector<Conserved> conserved;    // to be watched: expressions of the scenario
   std::vector<std::size_t> from_zero;  // events whose formulas are zero at the start, and have round-off as values

@@ -55,7 +55,7 @@ struct SimulationReport {
   Outcome outcome;
   double t = std::numeric_limits<double>::quiet_NaN();  // the time reached
   std::size_t steps = 0, rows = 0;
-  std::size_t rows_looked_at = 0;  // by the residual report
+  std::size_t rows_looked_at = 0;  // the number of rows in the residual report
   int order = 0;
   double seconds = 0;
   // Relative to the greatest of their terms so far (theory: certificate).
@@ -75,7 +75,7 @@ struct SimulationReport {
   bool looks_for_events = false;   // the model has events
   std::vector<EventReport> events;
   std::optional<RigorousReport> rigorous;
-  std::optional<std::size_t> eliminations;  // how often other coordinates were eliminated, if the form eliminates
+  std::optional<std::size_t> eliminations;  // changes of the eliminated coordinates, if the form eliminates
   MethodReport method;
   std::optional<SecondOpinion>
       second;  // if another integrator was requested; steps, order and sigma are those of the motion beside it

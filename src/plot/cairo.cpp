@@ -144,7 +144,7 @@ std::string draw_cairo(const Drawing& d, const std::string& title, CairoFormat f
   }
   library().cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
   library().cairo_set_line_cap(c, CAIRO_LINE_CAP_ROUND);
-  // Without this, patches that share a border would show the paper between them.
+  // Antialiasing would show the paper between patches that share a border.
   library().cairo_set_antialias(c, CAIRO_ANTIALIAS_NONE);
   for (const Patch& p : d.patches) {
     library().cairo_set_source_rgb(c, static_cast<double>(p.rgb >> 16 & 255U) / 255,

@@ -56,8 +56,8 @@ bool is_mode(const std::vector<double>& y) {
          std::all_of(y.begin(), y.end(), [](double v) { return std::isfinite(v) && v == std::round(v); });
 }
 
-// The cubic with both slopes between two rows, over u in [0, 1] of an interval of length h. If the slopes do not fit the
-// rows, there is a jump in between, and the line stays straight.
+// The cubic with both slopes between two rows, over u in [0, 1] of an interval of length h. If the slopes do not fit
+// the rows, there is a jump in between, and the line stays straight.
 class Between {
  public:
   Between(double y0, double y1, double d0, double d1, double h) : y0_(y0), y1_(y1), d0_(h * d0), d1_(h * d1) {

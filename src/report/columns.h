@@ -49,7 +49,7 @@ int rows_to_look_at(std::size_t coordinates, std::size_t constraints);
 
 // The numbers as little-endian doubles, in base64.
 std::string packed(const std::vector<double>& values);
-// The same in single precision, marked by "f:" before them: for pictures alone.
+// The numbers in single precision, in base64 after "f:": for pictures alone.
 std::string packed_for_pictures(const std::vector<double>& values);
 
 }  // namespace anholon

@@ -53,7 +53,7 @@ std::vector<Line> joined(const std::vector<Line>& lines);
 std::string as_text(const std::vector<Derivation>& list);
 std::string as_latex(const std::vector<Derivation>& list);
 std::string as_mathml(const std::vector<Derivation>& list);
-// The same formulas as lines that wrap, for a notebook.
+// Prints the formulas as lines that wrap, for a notebook.
 std::string as_html(const std::vector<Derivation>& list);
 std::string as_json(const std::vector<Derivation>& list, bool as_list);
 

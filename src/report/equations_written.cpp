@@ -211,8 +211,8 @@ std::string as_mathml(const std::vector<Derivation>& all) {
   std::string out;
   for (const Derivation& d : all)
     for (const Table& table : tables(d)) {
-      // MathML Core has no columnalign; readers of MathML 3 have no style. Chromium aligns formulas, which are blocks, by
-      // -webkit-right.
+      // MathML Core has no columnalign; readers of MathML 3 have no style. Chromium aligns formulas, which are blocks,
+      // by -webkit-right.
       out += "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">\n<mtable displaystyle=\"true\" "
              "columnalign=\"right center left\">\n";
       for (const auto& [left, right] : table)

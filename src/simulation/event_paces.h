@@ -35,7 +35,7 @@ class EventPaces {
  private:
   struct Pace {
     std::size_t times = 0;
-    int shrinking = 0;  // how often in a row the interval has become shorter
+    int shrinking = 0;  // the number of times in a row that the interval has become shorter
     W last{0}, interval{0};
   };
   const std::vector<Event>& events_;

@@ -36,7 +36,7 @@ class RunRows {
  public:
   using W = Wider<N>;
 
-  // What the rows are made of, and what watches them; all these objects outlive the rows.
+  // The objects that the rows read and the watches that see them; all outlive the rows.
   struct Parts {
     Workspace& s;
     const SimulationOptions& options;

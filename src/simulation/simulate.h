@@ -9,7 +9,7 @@ namespace anholon {
 
 class WaitingRows;
 
-// What one motion in doubles passes to the next one in the same workspace.
+// The data that one motion in doubles passes to the next one in the same workspace.
 struct SimulationPlans {
   MotionPlans motion;
   std::optional<std::shared_ptr<WaitingRows>> rows;  // nullptr if rows need the reference

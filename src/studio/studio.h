@@ -12,7 +12,7 @@ namespace anholon {
 
 struct StudioOptions {
   SourceText source;                                       // of the opened model
-  bool shipped = false;                                    // it comes with the program, and is not written to
+  bool shipped = false;                                    // the model comes with the program, and is not written to
   std::string sweep;                                       // a folder of a sweep that is opened in place of a model
   int port = 0;                                            // 0: a free one
   std::vector<std::string> worker;                         // the command line that runs studio_work()

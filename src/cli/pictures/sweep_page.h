@@ -14,8 +14,8 @@ struct SweepMap {
 // Returns the map of the sweep o.run. Throws Failure without a place.
 SweepMap map_of_sweep(const PlotCommand& o);
 
-// Writes the page as HTML that needs no other file, and returns the exit status. Throws UsageError, and Failure without a
-// place.
+// Writes the page as HTML that needs no other file, and returns the exit status. Throws UsageError, and Failure without
+// a place.
 int write_page_of_sweep(const PlotCommand& o);
 
 }  // namespace anholon::cli

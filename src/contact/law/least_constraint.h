@@ -1,5 +1,5 @@
-// The accelerations of bodies whose contacts touch, by Gauss' principle of least constraint with friction (theory: contact,
-// (co.2)).
+// The accelerations of bodies whose contacts touch, by Gauss' principle of least constraint with friction (theory:
+// contact, (co.2)).
 //
 // If the loads N are known, those accelerations minimize
 //   1/2 (x - x0)^T A (x - x0) + sum mu N |t x + t0|,

@@ -26,7 +26,7 @@ class CaseParameters {
  private:
   const Scenario& s_;
   const std::vector<Varied>& varied_;
-  bool any_ = false;  // whether a parameter is varied
+  bool any_ = false;  // true if a parameter is varied
   Tape tape_;
   std::optional<Tape> bodies_;
   std::optional<Tape> exponents_;    // the exponents that vary

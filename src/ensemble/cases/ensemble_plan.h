@@ -1,4 +1,4 @@
-// What the cases of an ensemble share: compiled tapes, and settings.
+// The data that all cases of an ensemble share: compiled tapes and settings.
 #pragma once
 #include "ensemble/cases/case_parameters.h"
 #include "ensemble/lanes/sweep_lanes.h"

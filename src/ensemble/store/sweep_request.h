@@ -19,7 +19,7 @@ struct SweepRequest {
   std::vector<std::string> columns;
   std::size_t cases = 0;
   std::size_t chunk = 0;  // cases of a part
-  // How a program makes the request again, in the program's own format; it does not distinguish sweeps.
+  // The data with which a program makes the request again, in the program's own format; they do not distinguish sweeps.
   std::string recipe = {};
   // The name by which a command found the model; it does not distinguish sweeps either.
   std::string model_name = {};

@@ -35,7 +35,7 @@ struct WatchedSeries {
 template <Number N>
 struct Fired {
   std::size_t series = 0;
-  N where{0};  // from the start of the step
+  N where{0};  // the distance from the start of the step
 };
 
 template <Number N>

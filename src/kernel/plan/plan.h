@@ -160,8 +160,8 @@ struct Plan {
   double work() const;
 };
 
-// How numbers that no double represents are rounded: to the nearest double, or to the other one of the two doubles
-// between which they lie. What two motions with different roundings have in common does not come from the roundings.
+// The rounding of numbers that no double represents: to the nearest double, or to the other one of the two doubles
+// between which they lie. A property that motions with both roundings share does not come from rounding.
 enum class Rounding : std::uint8_t { nearest, other };
 // The values of the coefficients of a plan, for one set of parameters after the other.
 class CoefficientValues {

@@ -36,7 +36,7 @@ class PlaceRates {
   Triple direction(std::size_t root) const { return {rate(root), rate(root + 1), rate(root + 2)}; }
 
   const Scenario& s_;
-  std::vector<std::size_t> axes_;  // where the axes of each body begin, and where the last ones end
+  std::vector<std::size_t> axes_;  // the begin of the axes of each body, and the end of the last ones
   std::size_t first_residual_ = 0, first_weight_ = 0;
   Tape tape_;
   Machine<double> machine_;

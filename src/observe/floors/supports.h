@@ -4,9 +4,9 @@
 // A geometric constraint of a single equation is a support in one of these cases:
 // - floor: coordinates move all bodies as one, and the residual changes with them at constant rates: a plane.
 // - ground: the same, but the rate is constant with one of these coordinates alone: a height above a street or a bowl.
-// - carrier: the residual depends on the place of one body alone, whose coordinates move no other body, and which no other geometric
-//   constraint holds in the plane of the normal and the weight; the normal force carries the weight at the start: a sphere, a
-//   hoop, but also a rod.
+// - carrier: the residual depends on the place of one body alone, whose coordinates move no other body, and which no
+//   other geometric constraint holds in the plane of the normal and the weight; the normal force carries the weight at
+//   the start: a sphere, a hoop, but also a rod.
 // A support that also holds sideways is a hinge, which may pull. The results are used for notes only, so a doubtful
 // case is no support.
 #pragma once

@@ -25,7 +25,7 @@ struct KindError {
 
 struct ErrorReport {
   std::vector<KindError> kinds;  // in the order of the columns
-  std::string means;             // how the error was found
+  std::string means;             // the way in which the error was found
   std::optional<double> until;   // the last time that was compared, if the sharper run ended earlier
   std::string stopped;           // the reason of that end
   std::optional<double> lost;    // the time from which no digits of the motion are left

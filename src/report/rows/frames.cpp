@@ -125,7 +125,8 @@ std::size_t doubtful_intervals(std::span<const double> t, const std::vector<Movi
       const int known = derivatives(c, k - 1, k + 1);
       // A run without velocities offers only straight lines between positions.
       if (!(std::min(a, b) > wide / kMostUneven) || known == 0) continue;
-      // The error at row k is a multiple of (a b)^(known + 1), that in the middle of an interval of (wide/2)^(2 known + 2).
+      // The error at row k is a multiple of (a b)^(known + 1), the error in the middle of an interval one of
+      // (wide/2)^(2 known + 2).
       const double there = std::abs(between_rows(c, t, k - 1, k, k + 1) - c.value[k]);
       const double here = there * std::pow(wide * wide / (4 * a * b), known + 1);
       const double moves = std::max(change(c.value, k - 1, k + 1), nothing[n].change);

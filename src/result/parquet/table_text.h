@@ -1,9 +1,9 @@
 // Reads flat tables that any program wrote as a Parquet file, as the text of a CSV file with the same cells.
 //
-// These are the files of pandas, pyarrow, polars, DuckDB and this program: columns of numbers, truth values and words, whose
-// pages have version 1 or 2 and are plain, by a dictionary, split by bytes, or by differences. A float is written with the
-// fewest digits that read back to it, an absent value as an empty cell. The unnamed index of a table of pandas is left out.
-// (Apache Parquet, "File format", "Encodings")
+// These are the files of pandas, pyarrow, polars, DuckDB and this program: columns of numbers, truth values and words,
+// whose pages have version 1 or 2 and are plain, by a dictionary, split by bytes, or by differences. A float is written
+// with the fewest digits that read back to it, an absent value as an empty cell. The unnamed index of a table of pandas
+// is left out. (Apache Parquet, "File format", "Encodings")
 #pragma once
 #include <string>
 #include <string_view>
