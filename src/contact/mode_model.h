@@ -20,8 +20,8 @@ struct ModeEvent {
   }
 };
 
-// The kind of ends of a mode: events of its model, or conditions for methods that do not look for events. Conditions are
-// monitors whose names begin with kCondition; a mode holds as long as each of them has the listed sign, or is zero.
+// The kind of ends of a mode: events of its model, or conditions for methods that do not look for events. Conditions
+// are monitors whose names begin with kCondition; a mode holds as long as each of them has the listed sign, or is zero.
 enum class ModeEnds : std::uint8_t { events, conditions };
 inline constexpr char kCondition = '#';
 
