@@ -31,7 +31,8 @@ void expand(Column& c) {
 
 enum Stage { reading, energy_and_forces, equations, expanding, printing, expanding_and_printing };
 
-// The graph keeps what it has built: every stage starts from a model read anew, outside the clock.
+// The expression graph keeps what is built, so every stage starts from a model that is read anew while the clock
+// stands.
 void stage(benchmark::State& state, Stage timed) {
   for (auto _ : state) {
     state.PauseTiming();

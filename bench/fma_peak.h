@@ -1,5 +1,5 @@
-// Fused multiply-adds per second of one core, in doubles alone and in vectors: twelve independent
-// chains hide the latency.
+// The fused multiply-adds per second of one core, in doubles and in vectors. Twelve independent chains of them hide the
+// latency of one.
 #pragma once
 #include <algorithm>
 #include <cstring>
@@ -15,7 +15,8 @@ struct Peak {
 
 namespace fma_peak_detail {
 
-// The chains are named by constants, or they would not stay in registers.
+// Runs `times` multiply-adds in each chain. The indices of the chains are compile-time constants: otherwise the
+// compiler would keep the sums in memory, not in registers.
 template <class V, std::size_t... chain>
 [[gnu::always_inline]] inline void sweep(long times, double& result, std::index_sequence<chain...>) {
   V sum[sizeof...(chain)] = {};
@@ -25,7 +26,7 @@ template <class V, std::size_t... chain>
   for (long i = 0; i < times; ++i) ((sum[chain] = sum[chain] * factor + addend), ...);
   V total{};
   ((total += sum[chain]), ...);
-  std::memcpy(&result, &total, sizeof result);  // one of them will do: it is only to be needed
+  std::memcpy(&result, &total, sizeof result);  // the sum must be used, or the compiler would delete the chains
 }
 
 typedef double Four __attribute__((vector_size(32)));

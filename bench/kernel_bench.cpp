@@ -1,6 +1,6 @@
-// One Taylor expansion of systems of each shape, by every backend: the interpreted tape, the kernel's tables in every
-// tier of this machine with one lane and with all, machine code. For lanes the time is of all of them. And what machine
-// code costs: made anew, and found on disk.
+// The time of one Taylor expansion, for systems of several shapes and by every backend: the interpreted tape, the
+// kernel's tables in every tier of this machine with one lane and with all lanes, and machine code. With several lanes
+// it is the time of all of them. Also the cost of machine code: compiled anew, and found on disk.
 #include <filesystem>
 #include <map>
 #include <set>
@@ -22,8 +22,8 @@ struct Shape {
   const char *model, *count;  // of links or trailers
   std::string name() const { return std::string(model) + (*count ? "-" : "") + count; }
 };
-// A single knife edge, a rolling body, a constraint for each trailer, no constraints but links that are coupled with
-// all others.
+// A single knife edge; a rolling body; trailers with a constraint each; chains without constraints whose links are all
+// coupled.
 constexpr Shape kShapes[] = {{"sleigh", ""},     {"disc", ""},   {"trailers", "3"},
                              {"trailers", "10"}, {"chain", "4"}, {"chain", "16"}};
 
@@ -53,7 +53,7 @@ struct Subject {
   double t = 0;
 };
 
-// Derived once, however often the clock starts anew.
+// Returns the system of this shape, which is derived only once for all its measurements.
 const Subject& subject(const Shape& shape) {
   static std::map<std::string, Subject> all;
   return all.try_emplace(shape.name(), shape).first->second;

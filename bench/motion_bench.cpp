@@ -1,5 +1,5 @@
-// Inside the process: derivation up to the stepping program, and the cost of a step, per model and
-// number type.
+// The times inside the process, for each model: the derivation up to the stepping program, and one step for each number
+// type.
 #include <fstream>
 #include <sstream>
 

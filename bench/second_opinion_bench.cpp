@@ -1,6 +1,6 @@
-// One motion by Taylor's series and by SUNDIALS, inside one process: the same program of the same model, from the same
-// start to the same end, without rows. The error is that of the coordinates and velocities at the end against 30
-// digits.
+// The time of one motion by Taylor's series and by SUNDIALS, inside one process: the same program of the same model,
+// with the same start and end, without rows. The error compares the coordinates and velocities at the end with a motion
+// in 30 digits.
 #include <cmath>
 #include <map>
 

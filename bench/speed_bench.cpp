@@ -1,16 +1,15 @@
-// One model as the driver of the speed table (bench/speed.py) asks for it: made ready, then
-// integrated to the end of its [simulate] with the tolerances that come on the standard input. Each
-// answer is a line of JSON.
+// Measures one model for the speed table (bench/speed.py): makes the model ready, then answers the commands on the
+// standard input, which integrate it to the end of its [simulate]. Each answer is a line of JSON.
 //
 //   speed_bench MODEL [--set NAME=VALUE]... [--form NAME]     answers with the times of making ready
 //   start                          positions and velocities at the start, coordinate by coordinate, in 36 digits
-//   exact DIGITS                   those at the end, so many digits to be trusted
-//   run TOLERANCE SECONDS [STEPS]  as many motions as fit the time, at least one; STEPS: no more of each
-//   lanes NAME                     the neighbours in the lanes of a kernel, which begin with a shifted coordinate NAME: where
-//                                  they start, and where they end by motions in long double
-//   batch TOLERANCE SECONDS NAME   all of them side by side in one kernel, as often as fits the time
+//   exact DIGITS                   positions and velocities at the end, right in so many digits
+//   run TOLERANCE SECONDS [STEPS]  as many motions as fit the time, at least one; STEPS: the most steps of each
+//   lanes NAME                     neighbours, one for each lane of a kernel, which begin with a shifted coordinate
+//                                  NAME: their starts, and the ends of their motions in long double
+//   batch TOLERANCE SECONDS NAME   all neighbours side by side in one kernel, as often as fits the time
 //
-//   speed_bench --peak             no model: what the core can do, in GF/s
+//   speed_bench --peak             the speed of the core in GF/s, without a model
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -50,9 +49,10 @@ struct Request {
 struct Ready {
   Scenario scenario;
   std::unique_ptr<Program> stepping;
-  std::map<std::pair<double, Company>, std::shared_ptr<const KernelPlan>> plans;  // by tolerance, alone or in lanes
-  double read = 0, scenario_made = 0, program_made = 0;                           // seconds
-  double plan_made = 0, compiled = 0;                                             // of the last of the plans
+  std::map<std::pair<double, Company>, std::shared_ptr<const KernelPlan>>
+      plans;                                             // by tolerance, and for one motion alone or for lanes
+  double read = 0, scenario_made = 0, program_made = 0;  // seconds
+  double plan_made = 0, compiled = 0;                    // of the last of the plans
 };
 
 std::unique_ptr<Ready> make_ready(const Request& request) {
@@ -88,7 +88,8 @@ std::vector<N> positions_and_velocities(const Ready& ready, const Expansion<N>& 
   return values;
 }
 
-// The kernel of a motion that is long enough for the dearest writing and for machine code.
+// Makes or finds the kernel plan of a motion that is long enough to pay for the most expensive writing and for machine
+// code.
 const std::shared_ptr<const KernelPlan>& plan_of(Ready& r, double tolerance, const Start<long double>& start,
                                                  Company company = Company::alone) {
   auto& plan = r.plans[{tolerance, company}];
@@ -110,8 +111,8 @@ const std::shared_ptr<const KernelPlan>& plan_of(Ready& r, double tolerance, con
   return plan;
 }
 
-// The only place that knows how a stepper is made and driven. Forms without multipliers go as far
-// as their elimination does: choosing another on the way is the business of motion/motion.
+// Makes and drives a stepper. The motion in a form without multipliers fails where its elimination ends: only
+// motion/motion chooses another elimination on the way.
 template <Number N>
 struct Trajectory {
   using W = Wider<N>;
@@ -152,7 +153,7 @@ void write_state(JsonWriter& json, const Values& values, int digits = 0) {
 
 void write(JsonWriter& json, const char* key, double x) { json.key(key).number(number_text(x)); }
 
-// The most memory that the process has had.
+// Returns the peak memory of the process in MiB.
 double megabytes() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;)
@@ -223,8 +224,8 @@ void answer_run(Ready& r, double tolerance, double seconds, std::size_t most_ste
   write_state(json, motion->last());
 }
 
-// Motions that differ in where a coordinate begins: by 1/64 from lane to lane. What else the file gives stays,
-// constraints are kept.
+// Returns the starts of motions in which one coordinate begins 1/64 further from lane to lane. The other initial data
+// of the file stay, and the constraints are satisfied.
 template <class W>
 std::vector<Start<W>> neighbours(const Ready& r, const std::string& name) {
   const Scenario& s = r.scenario;
@@ -336,7 +337,7 @@ void answer_batch(Ready& r, double tolerance, double seconds, const std::string&
   }
   std::vector<std::vector<W>> arrived;
   go_side_by_side(*kernel, ordinary, motions, starts, end, &arrived);
-  // The same motions, each alone.
+  // Repeats the same motions, each alone.
   Trajectory<double> alone(r, settings);
   alone.stepper.accelerate(plan);
   std::vector<W> last;

@@ -1,5 +1,5 @@
-// From process start to written CSV: `anholon simulate` on the models of the papers, 10 s of motion
-// at tolerance 1e-12. Goal: under 50 ms of wall time each.
+// The time from process start to written CSV: `anholon simulate` on the models of the papers, 10 s of motion at
+// tolerance 1e-12. Goal: under 50 ms of wall time each.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>

@@ -1,6 +1,5 @@
-// The time of a piece of work on a machine that others use: the smaller of wall time and the
-// thread's time on the core. The second leaves out what others were given meanwhile, the first has
-// no call of the system in it.
+// The time of a piece of work on a machine with other users: the smaller of wall time and the thread's CPU time. CPU
+// time excludes the work of others in between; wall time is read without a system call.
 #pragma once
 #include <algorithm>
 #include <ctime>
@@ -22,7 +21,7 @@ class Stopwatch {
   double core_ = now(CLOCK_THREAD_CPUTIME_ID), wall_ = now(CLOCK_MONOTONIC);
 };
 
-// The median.
+// Returns the median; reorders the times.
 template <class Times>
 double median(Times& times) {
   const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);

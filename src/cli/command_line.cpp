@@ -14,7 +14,8 @@
 
 namespace anholon::cli {
 
-// What a shell completes, from the commands and options themselves. Options without a group are not shown.
+// Returns the commands and options that a shell completes, read from `app` itself; options without a group are hidden
+// and left out.
 static CommandWords words_of(const CLI::App& app, const std::string& words) {
   CommandWords c{words, app.get_description(), {}, {}};
   for (const CLI::Option* option : app.get_options()) {
@@ -32,7 +33,7 @@ static CommandWords words_of(const CLI::App& app, const std::string& words) {
   return c;
 }
 
-// What a mode is, for commands that take none.
+// What a mode is: a part of the hint for commands without --mode.
 static constexpr const char* kAboutModes = "a mode says which contacts are open, slip or stick, and which constraints "
                                            "with 'active' hold; a motion finds its modes "
                                            "itself";
@@ -60,8 +61,8 @@ void CommandLine::check_options(int argc, char** argv) const {
   }
 }
 
-// The help of an option. The library counts bytes where it pads names to the column of the descriptions, and an ellipsis
-// has three of them.
+// Prints the help of an option. The library counts bytes where it pads names to the column of the descriptions, but an
+// ellipsis has three bytes.
 class HelpLines : public CLI::Formatter {
  public:
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
@@ -71,7 +72,7 @@ class HelpLines : public CLI::Formatter {
     return line;
   }
 
-  // The library ends the options with two empty lines if the last group of them is hidden.
+  // Removes one of the two empty lines with which the library ends the options if their last group is hidden.
   std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
     std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
     if (const std::size_t at = text.find("\n\n\n"); at != std::string::npos) text.erase(at, 1);

@@ -14,7 +14,7 @@
 
 namespace anholon::cli {
 
-// A command of the command line, and where its options are stored.
+// A command of the command line, and the object in which its options are stored.
 template <class Command>
 struct Words {
   CLI::App* app;
@@ -25,7 +25,8 @@ class CommandLine {
  public:
   CommandLine();
 
-  // Runs the command that the words name, and returns the exit status. Throws UsageError for words that make no command.
+  // Runs the command that the words name, and returns the exit status. Throws UsageError for words that make no
+  // command.
   int run(int argc, char** argv);
 
   // Adds a command below `parent` (nullptr: below the program) that is run with its parsed options.
@@ -36,7 +37,7 @@ class CommandLine {
   }
 
   enum class Model { needed, optional };
-  // Adds a command on a model, with the options that all of these have.
+  // Adds a command on a model, with the options that all such commands have.
   template <class Command>
   Words<Command> model_command(const char* name, const char* what, int (*function)(const Command&), const char* footer,
                                Model model = Model::needed);
@@ -58,21 +59,21 @@ class CommandLine {
 
 // ---- options that commands share -------------------------------------------------------------------
 
-// Options of the table in cli/model_options.h
+// Adds the options of one kind from the table in cli/model_options.h.
 void model_options(CLI::App* c, SystemCommand& o, ModelOption::Of of);
 void parameters(CLI::App* c, SystemCommand& o);
 void state(CLI::App* c, SystemCommand& o);
 void form_option(CLI::App* c, SystemCommand& o);
-// --mode of a command on the equations of one mode of the contacts
+// Adds --mode to a command on the equations of one mode of the contacts.
 void mode_of_contacts(CLI::App* c, SystemCommand& o);
-// An option of motions; `help` if the command means it in its own way.
+// Adds an option of motions; `help` replaces the text of the table if the option means something else in this command.
 void motion_option(CLI::App* c, SystemCommand& o, const char* name, const char* help = nullptr);
 void motion_options(CLI::App* c, SystemCommand& o, MotionOption::Part part);
 void accuracy(CLI::App* c, SystemCommand& o);
 void motion(CLI::App* c, SystemCommand& o);
-// --m, the order of forms that have one
+// Adds --m, the order of the forms that have one.
 void order_m(CLI::App* c, int& m);
-// What the help says of an output that may be left out
+// The words of the help that name the default output.
 std::string plain_output();
 
 // ---- the commands ----------------------------------------------------------------------------------
@@ -98,7 +99,7 @@ void add_studio(CommandLine& line);
 void add_sweep(CommandLine& line);
 void add_verify(CommandLine& line);
 
-// ---- what the templates do -------------------------------------------------------------------------
+// ---- definitions of the templates ------------------------------------------------------------------
 
 // Says that a command needs a model, and returns the exit status.
 int say_no_model();

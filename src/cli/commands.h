@@ -9,8 +9,8 @@ namespace anholon::cli {
 
 enum ExitCode : int { kOk = 0, kStopped = 1, kBadInput = 2, kFault = 3 };
 
-// The options of a command on a model. Those of the commands below have the same names as their words; an empty text or
-// list is an option that is not given.
+// The options of a command on a model. Most members of the structs below have the name of their option on the command
+// line; an empty text or list is an option that is not given.
 struct ModelCommand {
   std::string command_line;  // in a form that can be typed again
   std::string model;         // a file, the name of a shipped model, or a run
@@ -18,12 +18,12 @@ struct ModelCommand {
   bool json = false, quiet = false;
 };
 
-// The options of a command on a system: on a model in a state, whose equations have a form.
+// The options of a command on a system, which is a model in a state with a form of its equations.
 struct SystemCommand : ModelCommand {
   std::string t;
   std::vector<std::string> q, qdot, qddot, qdddot, lambda, lambdadot, eliminate;
   std::vector<std::string> mode;  // of the contacts
-  MotionSettings motion;          // as asked for, without those of the file
+  MotionSettings motion;          // the settings of the command line, without those of the file
   std::string show;
 
   int digits() const { return motion.digits.value_or(16); }
@@ -67,9 +67,9 @@ struct VerifyCommand {
 // A page of a motion.
 struct PageFile {
   std::string path;
-  std::vector<std::string> forms;  // whose equations are shown; empty: the usual ones
+  std::vector<std::string> forms;  // the forms whose equations are shown; empty: the usual ones
   bool no_proof = false;
-  std::vector<std::string> columns;  // that are plotted, as names and patterns; empty: as many as there is room for
+  std::vector<std::string> columns;  // the columns to plot, as names and patterns; empty: as many as there is room for
 };
 
 struct SimulateCommand : SystemCommand {
@@ -95,10 +95,10 @@ struct SweepCommand : SystemCommand {
   std::vector<std::string> reduce, columns;
   int threads = 0;  // 0: as many as the machine has
   std::string output;
-  std::string shard, chunk, refine, refine_by;  // of sweeps in folders
+  std::string shard, chunk, refine, refine_by;  // for sweeps in folders
 };
 
-// `sweep status` and `sweep collect`
+// The options of `sweep status` and `sweep collect`.
 struct SweepFolderCommand {
   std::string command_line;  // as in ModelCommand
   std::string folder, output;
@@ -109,7 +109,7 @@ struct PlotCommand {
   std::string run;  // or a sweep
   std::vector<std::string> columns;
   std::string abscissa, ordinate, histogram, from, to, labels = "unicode", title, size, output;
-  int motions = 0;  // that a page of a sweep holds
+  int motions = 0;  // the number of motions that a page of a sweep holds
   bool log = false, equal = false, each = false, together = false, json = false;
 };
 
@@ -138,7 +138,7 @@ struct ReferenceCommand {
   bool schema = false;
 };
 
-// Each returns the exit status.
+// Each of these functions runs a command and returns the exit status.
 int check(const SystemCommand& o);
 int compare(const CompareCommand& o);
 int convert(const ConvertCommand& o);

@@ -8,7 +8,7 @@ namespace anholon::cli {
 
 namespace {
 
-// Between single quotes of a shell.
+// Returns the text in single quotes of a shell.
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);

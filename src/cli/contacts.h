@@ -9,7 +9,8 @@ namespace anholon::cli {
 // Throws UsageError if the model has contacts.
 void without_contacts(const Reader& in, const std::string& command);
 
-// The model in the mode that --mode names. Throws UsageError if it needs one and no --mode is given.
+// Returns the model in the mode that --mode names. Throws UsageError if the mode is wrong, or if it is missing and the
+// model has contacts.
 Reader in_mode(Reader in, const SystemCommand& o, const std::string& command);
 
 }  // namespace anholon::cli

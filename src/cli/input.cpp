@@ -100,7 +100,7 @@ Reader read(const ModelCommand& o, SourceText source) {
   return r;
 }
 
-// The name of the form asked for.
+// Returns the name of the form that the options or the file ask for.
 static std::string wanted_form(const SystemCommand& o, const Model& model) {
   return merged(o.motion, model.simulate).form.value_or("routh");
 }

@@ -20,7 +20,8 @@ struct UsageError {
   std::string text;
 };
 
-// Shows the place of the mistake in the word that the option has, or in the file from which it is. Throws UsageError.
+// Throws UsageError, whose text shows the place of the mistake in the word of the option, or in the file that holds the
+// word.
 [[noreturn]] void refuse(const MistakeInWord& m, const char* option);
 
 struct Reader {
@@ -30,13 +31,14 @@ struct Reader {
 };
 // Reads the model named by the options (a path, or the name of a shipped model) with --set applied.
 Reader read(const ModelCommand& o);
-// As above, from a text that is already in memory.
+// Reads the model from a text that is already in memory, with --set applied.
 Reader read(const ModelCommand& o, SourceText source);
-// The form asked for: --form, else [simulate] form, else Routh's; throws if it does not apply.
+// Returns the form that --form names, else that of [simulate] form, else Routh's. Throws if it does not apply.
 const Formulation& form(const SystemCommand& o, const Model& model, const Mechanics* mechanics = nullptr);
-// Puts the selected form in the place of --form auto, or of that of the file; prints it unless quiet.
+// Replaces the form "auto", of the command line or of the file, by the selected form in the options; prints its name
+// unless quiet.
 void settle_form(SystemCommand& o, const Reader& in);
-// The options with the form settled.
+// Returns the options with the form settled.
 template <class Command>
 Command with_form(Command o, const Reader& in) {
   settle_form(o, in);
@@ -44,12 +46,12 @@ Command with_form(Command o, const Reader& in) {
 }
 StateChoice state_choice(const SystemCommand& o, const Model& model);
 Rational exact(const std::string& text, const std::string& option);
-// The same with the dimension of its unit.
+// Reads a number with the dimension of its unit.
 Constant constant(const std::string& text, const std::string& option);
-// How the command line calls its options, and notes on stderr. saving: the option that saves or continues a run, if one
-// is given.
+// Returns the asker of the command line: it names options with "--" and prints notes on stderr. saving: the option that
+// saves or continues a run, if one is given.
 Asker asker(const char* saving = "");
-// Splits "a,b,c" and repeated words alike.
+// Splits words of the form "a,b,c" and joins the parts of all words in one list.
 std::vector<std::string> split(const std::vector<std::string>& words);
 
 // Throws if the form does not apply to the model, or no motion is computed in it.
@@ -57,18 +59,19 @@ void must_have_motions(const Reader& in, const Formulation& form);
 // Makes the scenario of the model in the form asked for; throws UsageError for mistakes of the user.
 Outcome ready(const Reader& in, const Formulation& form, const StateChoice& choice, Scenario& scenario);
 
-// Makes only the elimination, for printing equations; lifted to --m if it is given.
+// Computes only the elimination, for printing equations; lifted to the order of --m if it is given.
 Elimination elimination(const Reader& in, const Mechanics& m, const Formulation& form, const StateChoice& choice,
                         unsigned order = 0);
 // Throws if the form is not available with the order m.
 void must_have_order(const Formulation& form, const Mechanics& mechanics, unsigned m);
 
-// The eliminations with which forms are compared: with the constraints solved, if they can be, and unsolved.
+// Returns the eliminations with which forms are compared: with solved constraints, if they can be solved, and with
+// unsolved ones.
 std::vector<Eliminations> eliminations_of(const Reader& in, const Mechanics& m, const StateChoice& choice,
                                           unsigned order = 0);
 
 void print_diagnostic(const Diagnostic& d, const SourceText& source);
-// source: the text in which the outcome may have a place.
+// source: the text to which the place of the outcome, if any, refers.
 void print_outcome(const Outcome& o, const SourceText& source = {});
 
 std::vector<ShippedFile> shipped(Shipped kind);

@@ -17,7 +17,7 @@ using namespace anholon::cli;
 
 namespace {
 
-// What was printed has reached its reader; a full disk or a closed pipe is not success.
+// Returns the exit status after all output is written: a full disk or a closed pipe turns success into an error.
 int finish(int code) {
   const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   if (written || code != kOk) return code;  // the earlier error was already printed

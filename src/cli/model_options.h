@@ -1,4 +1,4 @@
-// The options that change a model or its state by words, one row each: of the command line, saved runs and provenance.
+// The table of the options that change a model or its state. The command line, saved runs and result files use it.
 #pragma once
 #include "cli/commands.h"
 
@@ -8,7 +8,7 @@ struct ModelOption {
   enum class Of : std::uint8_t { parameters, state, form };
   Of of;
   const char* name;   // "qdot" for --qdot
-  const char* value;  // how the help calls its value
+  const char* value;  // the name of the value in the help
   const char* help;
   std::vector<std::string> SystemCommand::* words;
   bool assigns;  // each word is NAME=VALUE, and several may follow one --name

@@ -11,13 +11,13 @@ namespace {
 
 bool is_file(const std::string& path) { return !path.empty() && path != "-"; }
 
-// Whether both names are those of one regular file.
+// True if both names are those of one regular file.
 bool is_one_file(const std::string& a, const std::string& b) {
   std::error_code none;
   return is_file(a) && is_file(b) && fs::equivalent(a, b, none) && fs::is_regular_file(a, none);
 }
 
-// As above, for files that may not be there yet.
+// True if both names are those of one file, which need not exist yet.
 bool will_be_one_file(const std::string& a, const std::string& b) {
   std::error_code none;
   if (!is_file(a) || !is_file(b) || fs::exists(a, none) || fs::exists(b, none)) return is_one_file(a, b);

@@ -12,8 +12,8 @@ struct OutputFile {
   std::string option, path;
 };
 
-// Throws UsageError if an output is the file of the model, a file to which the model refers, or one of `read`, or if two
-// outputs are one file. Call it before anything is computed. A run may be written over the run that gives the model.
+// Throws UsageError if an output is the file of the model, a file to which the model refers, or one of `read`, or if
+// two outputs are one file. Called before anything is computed. A run may be written over the run that gives the model.
 void must_spare_inputs(const ModelCommand& o, const Reader& in, const std::vector<std::string>& read,
                        const std::vector<OutputFile>& outputs);
 

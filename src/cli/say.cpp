@@ -47,7 +47,7 @@ std::string padded(std::string text, const Conversion& c) {
   return c.flags.find('-') != std::string::npos ? text + room : room + text;
 }
 
-// The arguments are taken in turn, as in printf.
+// Fills in a format; takes the arguments in turn, as printf does.
 class Printer {
  public:
   Printer(const char* format, std::va_list& arguments) : at_(format), arguments_(arguments) {}

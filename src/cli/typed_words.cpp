@@ -9,7 +9,6 @@
 
 namespace anholon::cli {
 
-// --q x=1 y=2 MODEL: a word without '=' that slipped into a list of assignments is the model.
 void rescue_model(SystemCommand& o) {
   for (const ModelOption& option : model_options()) {
     if (!option.assigns) continue;
@@ -43,7 +42,6 @@ bool is_topic(const std::string& word, const std::vector<std::string>& commands)
       "forces, …, and formulas\n"};
 }
 
-// The words as they could be typed again.
 std::string command_line(int argc, char** argv) {
   std::string line = "anholon";
   for (int i = 1; i < argc; ++i) {

@@ -7,15 +7,15 @@ namespace anholon::cli {
 // Throws UsageError with a suggestion if the first word is no option and none of the commands.
 void check_command(const std::string& word, const std::vector<std::string>& commands);
 
-// Whether a word of `help` is a topic of model files. Throws UsageError with a suggestion if the word is neither that nor an
-// option nor one of the commands.
+// True if a word after `help` is a topic of model files. Throws UsageError with a suggestion if the word is neither a
+// topic nor an option nor one of the commands.
 bool is_topic(const std::string& word, const std::vector<std::string>& commands);
 
-// In --q x=1 y=2 MODEL the model slips into the list of assignments: takes a word without '=' out of these lists as the
-// model, where none is named.
+// Takes a word without '=' out of the lists of assignments as the model, if no model is named: in --q x=1 y=2 MODEL the
+// parser puts the model into the list of --q.
 void rescue_model(SystemCommand& o);
 
-// The words as they could be typed again.
+// Returns the words in a form that can be typed again in a shell.
 std::string command_line(int argc, char** argv);
 
 }  // namespace anholon::cli

@@ -19,7 +19,7 @@ Word word(const std::string& text) {
   return {text, text.substr(0, at), at == std::string::npos ? "" : text.substr(at + 1)};
 }
 
-// "; did you mean 'floor'?", or nothing.
+// Returns "; did you mean 'floor'?", or an empty string.
 std::string meant(const std::string& name, const std::vector<std::string>& known) {
   const std::string near = did_you_mean(name, known);
   return near.empty() ? "" : "; did you mean '" + near + "'?";

@@ -40,7 +40,7 @@ class HybridMotion {
   }
 
   SimulationReport go() {
-    // A parameter that is varied may give a coefficient any value.
+    // If a parameter is varied, a coefficient may have any value.
     if (const std::vector<Diagnostic> wrong = wrong_coefficients(bodies_.contacts, *s_.model); !wrong.empty())
       return joined_.report({OutcomeKind::inconsistent, wrong[0].message, wrong[0].hint, wrong[0].span},
                             bodies_.at.t.get_d(), 0);
@@ -75,11 +75,11 @@ class HybridMotion {
   }
 
  private:
-  // A slip velocity with two components ends at this part of the velocities.
+  // A slip velocity with two components ends at this part of its earlier size.
   static constexpr long double kRest = 1e-12L;
-  // Impacts at one instant; others follow after a segment.
+  // The most impacts at one instant; further ones follow after a segment.
   static constexpr std::size_t kMostImpacts = 16;
-  // A disc lies flat at this part of the sine of its tilt; and so does one whose motion fails at this other part.
+  // A disc lies flat if the sine of its tilt has fallen to the part kFlat; if the motion fails, also at kNearlyFlat.
   static constexpr long double kFlat = 1e-5L, kNearlyFlat = 1e-4L;
   static constexpr const char* kPassed =
       "the contact is deeper than the round-off of its event: take a smaller --tolerance, or end the motion before";
@@ -94,7 +94,7 @@ class HybridMotion {
   }
   std::string when() const { return " at t = " + number_text(bodies_.at.t.get_d(), 12); }
 
-  // An outcome if a gap is negative.
+  // Fails if a gap is negative.
   Outcome not_inside(const std::string& where, const std::string& hint, bool at_start = false) {
     bodies_.dynamics.go(bodies_.at);
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
@@ -109,7 +109,7 @@ class HybridMotion {
     return {};
   }
 
-  // What to do if a gap is negative at the start.
+  // The hint for a gap that is negative at the start.
   static std::string how_to_start(const Contact& contact) {
     const std::string start = "start where the gap is zero or positive, by [initial] or --q";
     return start + (contact.shape.empty()
@@ -118,7 +118,7 @@ class HybridMotion {
                           "plane the body is");
   }
 
-  // The values with which a mode begins are none that the user has given.
+  // The velocities at the start of a mode are not from the user, so the outcome does not blame the user's values.
   void explain(Outcome& outcome) {
     if (outcome.kind == OutcomeKind::inconsistent)
       outcome = {OutcomeKind::singular, "no velocities fit the modes of the contacts" + when(),
@@ -126,7 +126,7 @@ class HybridMotion {
     name_angles(outcome);
   }
 
-  // Names angles that are near their singularity where the motion is singular.
+  // If the motion is singular, names the angles that are near their singularity.
   void name_angles(Outcome& outcome) {
     constexpr double kNear = 0.1;
     if (outcome.kind != OutcomeKind::singular) return;
@@ -141,7 +141,8 @@ class HybridMotion {
     }
   }
 
-  // A slip that has passed zero where an event has ended the motion goes on or not by the modes that would follow.
+  // Names the slips that passed zero where an event has ended the motion: whether they go on follows from the next
+  // modes.
   void name_last_slips() {
     if (!bodies_.dynamics.has_values() || !is_regular().ok() || bodies_.shrinks()) return;
     if (std::none_of(bodies_.excluded.begin(), bodies_.excluded.end(), [](const auto& e) { return e.slips; })) return;
@@ -152,7 +153,7 @@ class HybridMotion {
     name_reversals(bodies_.modes);
   }
 
-  // A contact that is not pressed may slip and stick alike: it sticks where nothing moves it.
+  // A contact that is not pressed may slip or stick: it sticks if nothing moves it.
   void note_rests(const ContactProblem& p, const ContactSolution& now) {
     constexpr long double kNothing = 1e-12L;
     const long double least = kNothing * size_of_forces(p, now);
@@ -166,21 +167,21 @@ class HybridMotion {
     }
   }
 
-  // A slip that passes zero and goes on reverses.
+  // A slip that passes zero and goes on has reversed.
   void name_reversals(const ContactModes& modes) {
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
       if (bodies_.excluded[c].slips && modes[c].touch == Touch::slips && !modes[c].rests)
         joined_.rename(event_name(c, ModeChange::sticks), event_name(c, ModeChange::reverses));
   }
 
-  // An outcome if a contact has not done what its mode says.
+  // Fails if a contact has not done what its mode says.
   Outcome as_its_modes() const {
     if (const auto how = bodies_.contradiction())
       return {OutcomeKind::inconsistent, *how + when(), "please report the model, as this is a bug of anholon"};
     return {};
   }
 
-  // Friction that touches its bound and falls again is no slip.
+  // Friction that touches its bound and falls again is not a slip.
   void take_back_touches() {
     for (std::size_t c = 0; c < bodies_.contacts.size() && !shares_friction(bodies_.modes); ++c) {
       if (!bodies_.excluded[c].stick || bodies_.modes[c].touch != Touch::sticks) continue;
@@ -192,7 +193,7 @@ class HybridMotion {
     }
   }
 
-  // Impacts where a closed gap shrinks, then the modes by the accelerations.
+  // Computes impacts where a closed gap shrinks, then chooses the modes by the accelerations.
   Outcome choose() {
     bodies_.look();
     if (Outcome o = as_its_modes(); !o.ok()) return o;
@@ -233,16 +234,16 @@ class HybridMotion {
         beginning.push_back(c);
     }
     slips_->begin(beginning, list[0].x);
-    // The velocities at the end of a segment have the round-off of those before, which may be much larger.
+    // The velocities at the end of a segment have the round-off of earlier velocities, which may be much larger.
     bodies_.dynamics.go(bodies_.at);
     bodies_.stop(bodies_.modes);
     bodies_.drop_left_over();
     bodies_.bound_rest();
-    // Coordinates that are round-off have been set to zero.
+    // The check is made again, because coordinates that are round-off were set to zero.
     return is_regular();
   }
 
-  // An outcome if what touches has no derivatives.
+  // Fails if the gap or the slip velocity of a touching contact has no derivatives.
   Outcome is_regular() const {
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c) {
       if (!bodies_.near.closed(c) && bodies_.dynamics.place(c).gap > 0) continue;
@@ -252,7 +253,7 @@ class HybridMotion {
     return {};
   }
 
-  // An outcome if what touches lies flat.
+  // Fails if a touching body lies flat.
   Outcome not_flat(long double part) {
     roots_.see(bodies_.at);
     for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
@@ -261,8 +262,8 @@ class HybridMotion {
     return {};
   }
 
-  // Impacts where a closed gap shrinks: at a border of a surface, those on the side from which the bodies come, then those on the
-  // other side, if the velocities lead there.
+  // Computes impacts where a closed gap shrinks: at a border of a surface, first those on the side from which the
+  // bodies come, then those on the other side, if the velocities lead there.
   Outcome strike(bool& over_border, bool& struck) {
     for (std::size_t k = 0; k < kMostImpacts; ++k) {
       if (Outcome o = is_regular(); !o.ok()) return o;
@@ -283,7 +284,7 @@ class HybridMotion {
     return {};
   }
 
-  // Tells how a border of a surface, at which the modes end, has changed them.
+  // Reports the changes of modes at a border of a surface.
   void tell_changes(const ContactModes& before) {
     for (std::size_t c = 0; c < before.size(); ++c) {
       const ContactMode& now = bodies_.modes[c];
@@ -302,19 +303,19 @@ class HybridMotion {
         joined_.event_once(event_name(c, *change), bodies_.at.t.get_d());
     }
   }
-  // Tells which closed contacts the impacts of others have opened.
+  // Reports the closed contacts that impacts of others have opened.
   void tell_openings(const ContactModes& before) {
     for (std::size_t c = 0; c < before.size(); ++c)
       if (before[c].touch != Touch::open && bodies_.modes[c].touch == Touch::open && !bodies_.contacts[c].under)
         tell_leaves(c);
   }
-  // An impact of the contact itself tells that its bodies part.
+  // If the contact itself has an impact, its event tells that the bodies part.
   void tell_leaves(std::size_t c) {
     const double t = bodies_.at.t.get_d();
     if (!joined_.has(event_name(c, ModeChange::hits), t)) joined_.event_once(event_name(c, ModeChange::leaves), t);
   }
 
-  // The motion with all contacts open tells which formula has no value.
+  // The motion with all contacts open names the formula that has no value.
   Outcome what_has_no_value() {
     Outcome outcome, without = {OutcomeKind::not_a_number, "masses or forces have no value" + when(),
                                 "start or stop the motion elsewhere"};
@@ -323,7 +324,8 @@ class HybridMotion {
     return outcome.ok() ? without : outcome;
   }
 
-  // Notes in the modes what is taken for round-off. `now`, `open`: the accelerations of the modes, and without contacts.
+  // Writes into the modes what counts as round-off. `now`, `open`: the accelerations of the modes, and without
+  // contacts.
   void put_round_off(const ContactProblem& p, const ContactSolution& now, const std::optional<ContactSolution>& open) {
     long double force = 0;
     for (const long double b : p.b) force = std::max(force, std::abs(b));
@@ -339,30 +341,33 @@ class HybridMotion {
       m.closed = m.touch == Touch::open && bodies_.near.closed(c) && bodies_.near.gap_is_round_off(c);
       m.slack = kRest * (force > 0 ? force : 1);
       if (bodies_.contacts[c].under) m.slack *= p.contacts[c].friction;
-      // Friction that is said to be at its bound is below the slack: the mode ends where friction goes on to grow.
+      // Friction found to be at its bound may be beyond it by half of the slack, so the mode ends only if friction
+      // grows on.
       const long double beyond =
           std::hypot(now.friction[c][0], now.friction[c][1]) - p.contacts[c].static_friction * now.normal[c];
       if (m.touch == Touch::sticks) m.slack = std::max(m.slack, 2 * beyond);
     }
   }
 
-  // How much a slip velocity changes in the last digits of the times of the motion, with these accelerations: it passes a smaller
-  // one at the time at which it vanishes.
+  // The change of a slip velocity in the last digits of the times of the motion, with these accelerations. At the time
+  // at which the velocity vanishes, a smaller velocity cannot be resolved.
   long double slip_in_last_digits_of_time(std::size_t c, const std::vector<long double>& accelerations) const {
     constexpr long double kDigits = 16 * std::numeric_limits<double>::epsilon();
     return std::max(least_time(order_), kDigits * std::abs(static_cast<long double>(end_.get_d()))) *
            bodies_.dynamics.slip_acceleration(c, accelerations);
   }
 
-  // A shorter time before a slip with two components vanishes, Taylor coefficients of its direction overflow in doubles: those of
-  // the orders up to a few more than that of the polynomials are powers of the inverse of this time, up to the order 19.
+  // The least time before a slip with two components vanishes. At a shorter time, Taylor coefficients of its direction
+  // overflow in doubles: the coefficients, up to an order a few above that of the polynomials, are powers of the
+  // inverse of this time; kOfOrder is the time for order 19.
   static long double least_time(int order) {
     constexpr long double kOfOrder = 5e-14L;
     constexpr int kOrder = 19, kMore = 4;
     return std::pow(kOfOrder, static_cast<long double>(kOrder + kMore) / (std::min(order, kOrder) + kMore));
   }
 
-  // In a motion that is short in the unit of time, polynomials of lower order let slips with two components come nearer to zero.
+  // In a motion that is short in the unit of time, polynomials of lower order let slips with two components come nearer
+  // to zero.
   void choose_order() {
     constexpr long double kPart = 5e-11L;  // of the time of the motion
     constexpr int kLowest = 8;
@@ -429,9 +434,10 @@ class HybridMotion {
     return {};
   }
 
-  // A gap comes to rest if the time is near the limit to which its impacts add up, or if it is pressed together and would
-  // rise, with its velocity after the impact, by round-off of its place only. Gaps that come to rest do so together, as
-  // the impacts of each set the others in motion; and so does a slip that friction ends within round-off of the place.
+  // Brings gaps to rest. A gap comes to rest if the time is near the limit of its impacts, or if it is pressed together
+  // and would rise, with its velocity after the impact, by no more than the round-off of its place. Such gaps come to
+  // rest together, because the impacts of each set the others in motion; slips that friction ends within the round-off
+  // of the place end with them.
   void land() {
     const double t = bodies_.at.t.get_d();
     ContactModes stops(bodies_.contacts.size());

@@ -9,7 +9,7 @@
 
 namespace anholon {
 
-// Whether two warnings differ in the time that they name alone.
+// True if two warnings differ at most in the time that they name.
 static bool same_but_time(const Warning& a, const Warning& b) {
   const auto without_time = [](const std::string& text) {
     const std::size_t at = text.find(" at t = "), end = text.find(':', at);
@@ -20,8 +20,9 @@ static bool same_but_time(const Warning& a, const Warning& b) {
 
 static bool is_of_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.'; }
 
-// The model of a mode has constraints NAME.gap and NAME.slip1, …, inputs NAME.n and NAME.t1, … that keep them, and two events of a
-// change that differ by a prime. A user knows the forces lambda.NAME and lambda.NAME.t1, and the events.
+// The model of a mode has constraints NAME.gap and NAME.slip1, …, inputs NAME.n and NAME.t1, … that keep them, and two
+// events of a change that differ by a prime. A user knows the forces lambda.NAME and lambda.NAME.t1, and the events;
+// their names replace those of the model.
 static void put_known_names(const std::string& contact, std::string& text) {
   const std::string lambda = "lambda.", monitor = "monitor '", name = contact + ".";
   for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
@@ -46,7 +47,7 @@ static void put_known_names(const std::string& contact, std::string& text) {
   }
 }
 
-// The change is that from the start of the whole motion.
+// Joins watched numbers; the change is that from the start of the whole motion.
 static void join(std::vector<WatchedReport>& all, const std::vector<WatchedReport>& segment) {
   for (const WatchedReport& m : segment) {
     const auto known = std::find_if(all.begin(), all.end(), [&](const WatchedReport& o) { return o.name == m.name; });
@@ -74,7 +75,7 @@ JoinedReport::JoinedReport(const Model& model, const std::vector<Contact>& conta
 bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, ModeEvent>& contacts) {
   bool goes_on = true;
   power_miss_ = std::max(power_miss_, r.power * (r.turned_over > 0 ? r.turned_over : 1));
-  // What a mode says of its own part of a change: the whole motion is told of at the end.
+  // True for a warning about the change within one mode; the change of the whole motion is reported at the end.
   const auto of_its_own = [&](const Warning& w) {
     return std::any_of(r.conserved.begin(), r.conserved.end(), [&](const WatchedReport& c) {
       return w.message == not_conserved(c.name, c.largest_change).message;
@@ -85,7 +86,7 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
                        [&](const Warning& o) { return same_but_time(o, w); });
   };
   for (const std::string& note : r.notes) {
-    // A constraint is told once, from when it first pulls.
+    // A constraint is noted once, with the time of its first pull.
     const std::string text = without_size_of_pull(note), name = text.substr(0, text.find(" from t = "));
     if (is_of_support(note) && std::none_of(floors_.begin(), floors_.end(),
                                             [&](const std::string& known) { return known.rfind(name, 0) == 0; }))
@@ -134,7 +135,7 @@ bool JoinedReport::add(const SimulationReport& r, const std::map<std::string, Mo
       if (!known->second.is_told()) continue;
       e.stop = false;
       while (!e.name.empty() && e.name.back() == '\'') e.name.pop_back();
-      // A change has two events where its forces may be zero at the start, and they may fall together.
+      // A change has two events if its forces may be zero at the start, and the two may fall together.
       if (!all_.events.empty() && all_.events.back().name == e.name && all_.events.back().t.value == e.t.value)
         continue;
     }
@@ -188,7 +189,7 @@ void JoinedReport::rename(const std::string& name, const std::string& other) {
   if (last != all_.events.rend()) last->name = other;
 }
 
-// The place of an event of a contact among those of one instant; nullopt for an event of the model.
+// The rank of an event of a contact among those of one instant; nullopt for an event of the model.
 std::optional<int> JoinedReport::rank(const EventReport& e) const {
   const std::size_t dot = e.name.rfind('.');
   if (dot == std::string::npos ||
@@ -198,7 +199,7 @@ std::optional<int> JoinedReport::rank(const EventReport& e) const {
   return what == "hits" ? 0 : what == "rests" ? 2 : 1;
 }
 
-// Events of the model keep their places.
+// Sorts the events of contacts; events of the model keep their places.
 void JoinedReport::order_events() {
   std::vector<EventReport>& all = all_.events;
   for (std::size_t from = 0, to = 0; from < all.size(); from = to) {

@@ -18,7 +18,7 @@ void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
       model.monitors[f.index].value = value;
       break;
     case ContactForces::Formula::Of::event:
-      // A number passes no zero, and zero itself is no event.
+      // An event never fires if its formula is a number; zero is replaced by 1, which does not pass zero either.
       model.events[f.index].when = is_zero(value) ? g.one() : value;
       break;
     case ContactForces::Formula::Of::rate:
@@ -36,7 +36,7 @@ constexpr std::size_t kModeNumbers = 8;
 constexpr const char* kNamesOfNumbers[kModeNumbers] = {".direction1", ".direction2", ".fast",   ".rest",
                                                        ".slack",      ".depth",      ".given1", ".given2"};
 
-// Then, of the load and of each component that is shared, its part of each force that holds.
+// After these numbers come the shares of the load and of each component that is shared, one for each holding force.
 std::vector<long double> numbers_of(const ContactMode& m) {
   std::vector<long double> list = {m.direction[0], m.direction[1], m.fast.value_or(0), m.rest,
                                    m.slack,        m.depth,        m.shares[0].given,  m.shares[1].given};
@@ -73,13 +73,13 @@ class ModeBuilder {
       if (mode.touch != Touch::open && c.rough())
         friction = mode.touch == Touch::sticks ? stick(c, mode, normal) : slip(c, mode, normal);
     } else if (mode.touch == Touch::open) {
-      // A gap that is zero at the start passes no zero when it closes again at once.
+      // A gap that is zero at the start does not pass zero if it closes again at once.
       ends(c, ModeChange::hits, c.gap, -1, number(ModeNumber::depth));
     } else {
       normal = mode.load.shared ? shared_load(mode) : keep(c.name + ".gap", c.name + ".n", c.gap, 0);
       if (!mode.load.shared) loads_.push_back(normal);
       act(c, 0, normal, c.gap);
-      // A force that is zero at the start passes no zero when it begins to pull.
+      // A force that is zero at the start does not pass zero if it begins to pull.
       ends(c, ModeChange::leaves, normal, -1, number(ModeNumber::slack));
       if (c.rough()) friction = mode.touch == Touch::sticks ? stick(c, mode, normal) : slip(c, mode, normal);
     }
@@ -110,7 +110,7 @@ class ModeBuilder {
   void begin(const std::vector<Contact>& contacts) {
     InitialData& initial = model_->initial;
     initial = {};
-    // The sides come first: the formulas of the surfaces know them by their numbers.
+    // The sides come first, because the formulas of the surfaces refer to them by number.
     if (!contacts.empty() && contacts[0].borders) pass_borders(*contacts[0].borders);
     initial.t = parameter("begin.t");
     stopped_.assign(model_->coordinates.size(), false);
@@ -144,7 +144,8 @@ class ModeBuilder {
   }
   Expr number(ModeNumber which) const { return numbers_[static_cast<std::size_t>(which)]; }
 
-  // Notes the coordinate that a constraint stops: the one whose velocity alone its rate holds, as a factor.
+  // Notes the coordinate that a constraint stops: its velocity is a factor of the constraint's rate, and the only
+  // velocity in it.
   void note_stopped(Expr phi, int order) {
     const Expr rate = order == 0 ? total_derivative(phi) : phi;
     std::vector<std::size_t> moved;
@@ -156,7 +157,7 @@ class ModeBuilder {
     if (is_zero(rest)) stopped_[moved[0]] = true;
   }
 
-  // A constraint that an input keeps; returns the input.
+  // Adds a constraint that an input keeps; returns the input.
   Expr keep(const std::string& constraint, const std::string& input, Expr phi, int order) {
     note_stopped(phi, order);
     const std::size_t u = model_->controls.size(), r = model_->constraints.size();
@@ -167,7 +168,8 @@ class ModeBuilder {
     return g_.control(static_cast<std::uint32_t>(u), 0);
   }
 
-  // The generalized force of a force along a gap (order 0) or a slip velocity (order 1): its power is force times the rate.
+  // Adds the generalized force of a force along a gap (order 0) or a slip velocity (order 1); its power is force times
+  // the rate.
   void act(const Contact& c, std::uint32_t order, Expr force, Expr along) {
     Force f;
     f.name = c.name;
@@ -181,20 +183,20 @@ class ModeBuilder {
     model_->forces.push_back(std::move(f));
   }
 
-  // The force that holds a component.
+  // Returns the force that holds a component.
   Expr hold(const Contact& c, std::size_t a) {
     const std::string tag = std::to_string(a + 1);
     return keep(c.name + ".slip" + tag, c.name + ".t" + tag, g_.own(c.slip[a]), 1);
   }
 
-  // The load of a contact whose gap others hold.
+  // Returns the load of a contact whose gap others hold.
   Expr shared_load(const ContactMode& mode) const {
     Expr load = g_.zero();
     for (std::size_t k = 0; k < mode.load.of.size(); ++k) load = load + numbers_[kModeNumbers + k] * loads_[k];
     return load;
   }
 
-  // Components of friction that is shared.
+  // Returns the components of friction that is shared.
   std::vector<Expr> shared(const Contact& c, const ContactMode& mode) {
     std::vector<Expr> forces;
     std::size_t next = kModeNumbers + (mode.load.shared ? mode.load.of.size() : 0);
@@ -220,7 +222,7 @@ class ModeBuilder {
     components_.back() = forces;
     for (std::size_t a = 0; a < c.slip.size(); ++a) act(c, 1, forces[a], c.slip[a]);
     if (mode.held && (mode.begins || mode.at_bound)) {
-      // The slip that begins is left out of the motion for a moment, and its friction is that of a slip.
+      // The slip that begins is left out of the motion for a moment; its friction has the size of that of a slip.
       Expr square = g_.zero();
       for (const Expr f : forces) square = square + f * f;
       for (Expr& f : components_.back()) f = f * c.friction * normal * pow(square, Rational(-1, 2));
@@ -235,14 +237,15 @@ class ModeBuilder {
         ends(c, ModeChange::slips, force - most, 1, number(ModeNumber::slack));
       return size;
     }
-    // The slack is one of |T|, of which the square has the slope 2 |T|.
+    // The slack belongs to |T|; the square has the slope 2 |T|.
     const Expr square = forces[0] * forces[0] + forces[1] * forces[1], slack = number(ModeNumber::slack);
     ends(c, ModeChange::slips, square - most * most, 1, slack * (g_.number(2) * most + slack));
     return size;
   }
 
-  // d = v/|v|, of a slow slip by the ratio r of the components across and along the direction e in which it slips at the
-  // start: (e + r e')/sqrt(1 + r^2) is analytic where v passes zero on a straight line.
+  // Adds the friction of a slip, with d = v/|v|. For a slow slip the formula uses the ratio r of the components across
+  // and along the direction e in which the contact slips at the start: (e + r e')/sqrt(1 + r^2) is analytic where v
+  // passes zero on a straight line.
   Expr slip(const Contact& c, const ContactMode& mode, Expr normal) {
     const Expr force = g_.number(-1) * c.friction * normal;
     if (c.slip.size() == 1) {
@@ -255,7 +258,7 @@ class ModeBuilder {
     if (mode.begins) {
       components_.back() = {force * number(ModeNumber::along), force * number(ModeNumber::across)};
       for (std::size_t a = 0; a < 2; ++a) act(c, 1, components_.back()[a], c.slip[a]);
-      // A force that jumps may turn it back.
+      // A force that jumps may turn the slip back.
       ends(c, ModeChange::slows, c.slip[0] * number(ModeNumber::along) + c.slip[1] * number(ModeNumber::across), -1);
       return c.friction * normal;
     }
@@ -277,7 +280,7 @@ class ModeBuilder {
     return c.friction * normal;
   }
 
-  // The mode ends where `when` passes zero in this direction, and also where it begins at zero and passes it by more than the
+  // Ends the mode where `when` passes zero in this direction, also if it begins at zero and passes it by more than the
   // slack.
   void ends(const Contact& c, ModeChange change, Expr when, int direction, std::optional<Expr> slack = std::nullopt) {
     const Expr later = slack ? when - g_.number(direction) * *slack : when;
@@ -307,9 +310,9 @@ class ModeBuilder {
     HeldComponent place;
     Expr force;
   };
-  std::vector<Held> held_;                     // where friction is shared
-  std::vector<Expr> loads_;                    // those that hold the gaps so far
-  std::vector<Expr> normals_, numbers_;        // numbers_: of the contact that is added
+  std::vector<Held> held_;                     // of shared friction
+  std::vector<Expr> loads_;                    // the loads that hold the gaps so far
+  std::vector<Expr> normals_, numbers_;        // numbers_: of the contact that is being added
   std::vector<std::vector<Expr>> components_;  // of friction, along the components of the slip
   std::size_t contact_ = 0;
   std::vector<bool> stopped_;

@@ -1,5 +1,5 @@
-// The model of one mode of the contacts: a contact that touches is a constraint gap = 0 that a normal force keeps as an
-// input, one that sticks has slip = 0 as well, kept by its friction; friction of a contact that slips is -mu N d.
+// Makes the model of one mode of the contacts: a contact that touches is a constraint gap = 0 that a normal force keeps
+// as an input; one that sticks has slip = 0 as well, kept by its friction; friction of a contact that slips is -mu N d.
 #pragma once
 #include <map>
 #include <optional>
@@ -9,19 +9,19 @@
 
 namespace anholon {
 
-// Why a mode ends. A slip that passes zero sticks, or reverses if it goes on; `slows` and `turns` change how the direction of a
-// slip is written, and nothing of the motion; `passes` leads over a border of the surfaces.
+// The reason why a mode ends. A slip that passes zero sticks, or reverses if it goes on. `slows` and `turns` change the
+// formula of a slip's direction, but not the motion; `passes` leads over a border of the surfaces.
 enum class ModeChange : std::uint8_t { hits, leaves, slips, sticks, reverses, slows, turns, passes };
 struct ModeEvent {
-  std::size_t contact = 0;  // the number of the border if one is passed
+  std::size_t contact = 0;  // the number of the border for `passes`
   ModeChange change = ModeChange::hits;
   bool is_told() const {
     return change != ModeChange::slows && change != ModeChange::turns && change != ModeChange::passes;
   }
 };
 
-// What ends a mode: events of its model, or, for methods that look for none, conditions. These are monitors whose names begin
-// with kCondition; a mode holds as long as each has the sign that is listed, or is zero.
+// The kind of ends of a mode: events of its model, or conditions for methods that do not look for events. Conditions
+// are monitors whose names begin with kCondition; a mode holds as long as each of them has the listed sign, or is zero.
 enum class ModeEnds : std::uint8_t { events, conditions };
 inline constexpr char kCondition = '#';
 
@@ -29,36 +29,39 @@ struct ModeModel {
   std::shared_ptr<Model> model;
   std::map<std::string, ModeEvent> events;  // by their names
   std::vector<int> conditions;              // the signs, in the order of the monitors
-  // The coordinates of which a contact keeps the velocity at 0, as its gap or its slip velocity moves with one alone.
+  // The coordinates whose velocity a contact keeps at 0, because its gap or its slip velocity moves with one coordinate
+  // alone.
   std::vector<bool> stopped;
 };
 
-// Of the name NAME.WORD of this change: a resistance starts, stops and reverses.
+// The WORD of the event NAME.WORD of this change: a resistance starts, stops and reverses.
 std::string word(const Contact& contact, ModeChange change);
 
 // The columns of rows that contacts add after those of the model.
 std::vector<std::string> contact_columns(const std::vector<Contact>& contacts);
 
-// The names of the events that these contacts have, NAME.WORD, in the order of the contacts; none of switched constraints.
+// The names of the events of these contacts, NAME.WORD, in the order of the contacts; none for switched constraints.
 std::vector<std::string> contact_events(const std::vector<Contact>& contacts);
 
-// Puts the forces of a mode, N and the components of friction of each contact, into the monitors, events and rates that hold them.
+// Inserts the forces of a mode, N and the components of friction of each contact, into the monitors, events and rates
+// that contain them.
 void put_forces(const ContactForces& of, const std::vector<Expr>& normals,
                 const std::vector<std::vector<Expr>>& components, Model& model);
 
-// The model of a mode. What differs between two times at which the mode begins, its state and the numbers of its contacts
-// (the direction to which a slip refers, and what is taken for zero), is a parameter each, after those of the model.
+// Returns the model of a mode. Its initial state and the numbers of its contacts (the direction of a slip, and limits
+// of round-off), which differ whenever the mode begins, are parameters after those of the model.
 ModeModel mode_model(const Model& model, const std::vector<Contact>& contacts, const ContactModes& modes,
                      ModeEnds ends = ModeEnds::events);
-// The values of these parameters, of which all but the time are doubles.
+// The values of these parameters; all except the time are doubles.
 std::vector<double> mode_values(const ContactModes& modes, const ContactState& at);
 std::vector<Rational> mode_numbers(const ContactModes& modes, const ContactState& at);
-// Two modes have the same model, but for these values, if they are equal here.
+// Two modes have the same model, except for these values, if their shapes are equal.
 std::vector<int> mode_shape(const std::vector<Contact>& contacts, const ContactModes& modes);
 
-// Makes the model that of a mode in which the contacts exert ideal forces alone: one that touches is a constraint NAME, gap = 0, one that
-// sticks has constraints NAME.t1, … as well, that its slip velocity is zero. Their multipliers are the forces of the
-// contact. touches: of each contact, a resistance among them. Throws Failure if one slips against friction.
+// Makes the model that of a mode in which the contacts exert ideal forces alone: one that touches is a constraint NAME,
+// gap = 0; one that sticks has also constraints NAME.t1, …, which keep its slip velocity zero. Their multipliers are
+// the forces of the contact. `touches`: for each contact, resistances included. Throws Failure if a contact slips
+// against friction.
 void put_ideal_mode(Model& model, const std::vector<Contact>& contacts, const std::vector<Touch>& touches);
 
 }  // namespace anholon

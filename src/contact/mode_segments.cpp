@@ -20,7 +20,7 @@ ModeSegments::ModeSegments(const Workspace& s, const SimulationOptions& options,
   rows_.only_at(times_);
 }
 
-// Events of a mode whose gaps begin at zero.
+// The indices of events of a mode whose gaps begin at zero.
 static std::vector<std::size_t> from_zero(const ReadyMode& mode, const TouchingBodies& bodies) {
   std::vector<std::size_t> list;
   const std::vector<Event>& events = mode.own->model->events;
@@ -35,7 +35,8 @@ static std::vector<std::size_t> from_zero(const ReadyMode& mode, const TouchingB
   return list;
 }
 
-// The bound of friction vanishes with the load, and so does the friction of a contact that leaves without a slip.
+// Drops slips of contacts that leave at the same time: the bound of friction vanishes with the load, and so does the
+// friction of a contact that leaves without a slip.
 static void drop_slips_of_what_leaves(SimulationReport& r, const std::map<std::string, ModeEvent>& known,
                                       const std::vector<Contact>& contacts) {
   const auto leaves_at = [&](std::size_t contact, double t) {
@@ -67,7 +68,7 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
   }
   SimulationReport r;
   ReadyMode* mode = simulate_mode(to, r, outcome);
-  // The mode closes gaps that are round-off, and the velocities belong to places with these gaps.
+  // The mode closes gaps that are round-off, and the velocities have to fit the places with these gaps.
   if (outcome.kind == OutcomeKind::inconsistent && r.steps == 0) {
     bodies_.close_gaps();
     mode = simulate_mode(to, r, outcome);
@@ -79,7 +80,7 @@ bool ModeSegments::follow(const Rational& to, Outcome& outcome) {
   rows_.last_state(bodies_.at);
   bodies_.dynamics.pass(from, bodies_.at);
   bodies_.near.segment_has_ended((bodies_.at.t - from.t).get_d());
-  // The components that hold are chosen anew.
+  // The holding components are chosen anew.
   const bool holds_others = bodies_.at.t > from.t && may_hold_others(r);
   if (holds_others) forget_singularity(r);
   drop_slips_of_what_leaves(r, mode->of.events, bodies_.contacts);
@@ -203,7 +204,7 @@ SimulationOptions ModeSegments::asked(const Rational& to) const {
   o.estimate = ErrorEstimate::never;
   o.conserved.clear();
   o.watches_floors = o_.watches_floors && has_supports_;
-  o.watches_carriers = false;  // the note tells of the start of the whole motion
+  o.watches_carriers = false;  // the note is about the start of the whole motion
   o.note = nullptr;
   if (o_.progress) o.progress = [this](double t, std::size_t steps) { o_.progress(t, joined_.steps() + steps); };
   o.state.t = bodies_.at.t;

@@ -1,4 +1,4 @@
-// The segments of a motion with contacts: in each, one mode is followed to its end.
+// The segments of a motion with contacts: in each segment, one mode is followed to its end.
 #pragma once
 #include <functional>
 
@@ -12,51 +12,53 @@ namespace anholon {
 
 class ModeSegments {
  public:
-  // Refers to all of them. `times`: of the rows, none for rows at every step. `slips`: told which contact slips where a
-  // segment ends.
+  // All references have to outlive this object. `times`: of the rows; empty for rows at every step. `slips`: called
+  // with the contact that slips at the end of a segment.
   ModeSegments(const Workspace& s, const SimulationOptions& options, TouchingBodies& bodies, JoinedReport& joined,
                RowSink& rows, std::vector<Rational> times, Rational end, std::function<void(std::size_t)> slips);
 
-  // Follows the motion in the modes of the bodies to their end, but not beyond `to`; returns false if it ends there. The bodies
-  // are then at the end of the segment, with what its events exclude.
+  // Follows the motion in the modes of the bodies to their end, but not beyond `to`; returns false if the motion ends
+  // there. The bodies are then at the end of the segment, with what its events exclude.
   bool follow(const Rational& to, Outcome& outcome);
-  // Whether the modes last up to `to`, with the state there: the motion itself does not go on.
+  // True if the modes last up to `to`; returns the state there. The motion itself does not go on.
   bool last_until(const Rational& to, ContactState& at);
-  // The motion has ended before its end: its last state gets a row.
+  // Writes a row of the last state of a motion that has ended early.
   void end_early() { rows_.end_early(); }
   std::size_t rows() const { return rows_.rows(); }
 
  private:
-  // The mode, at its consistent state; nullptr with an outcome if there is none.
+  // Returns the mode at its consistent state; nullptr with an outcome if there is none.
   ReadyMode* begin(ModeEnds ends, Outcome& outcome);
-  // Begins the mode and simulates it up to a time at most; nullptr, and no new report, if it does not begin.
+  // Begins the mode and simulates it up to a time at most; returns nullptr, without a new report, if the mode does not
+  // begin.
   ReadyMode* simulate_mode(const Rational& to, SimulationReport& report, Outcome& outcome);
-  // What is asked of a segment up to a time, by Taylor's method, and of one by BDF.
+  // The options of a segment up to a time: by Taylor's method, and by BDF.
   SimulationOptions asked(const Rational& to) const;
   SimulationOptions asked_of_stretch(const Rational& to, const Rational& tolerance) const;
-  // Follows slips that are slow by BDF as long as the modes hold, but not beyond `to`. Returns whether the motion has come
-  // further so.
+  // Follows slow slips by BDF as long as the modes hold, but not beyond `to`. Returns true if the motion has advanced
+  // in this way.
   bool by_bdf(const Rational& to);
-  // Whether BDF may go on where Taylor's method gave up, which is not tried without end.
+  // True if BDF may go on where Taylor's method gave up; the number of tries is limited.
   bool may_be_stiff(const SimulationReport& r, const Rational& to);
-  // Whether the segment ended because components of friction that hold have become dependent: others may hold in their place.
+  // True if the segment ended because the holding components of friction have become dependent: others may hold in
+  // their place.
   bool may_hold_others(const SimulationReport& r) const;
-  // Whether the segment ended because its end lies too many of its short steps ahead.
+  // True if the segment ended because its end is too many of its short steps away.
   bool gave_up(const SimulationReport& r) const;
-  // A slip velocity with two components that vanishes on a curved line has no Taylor series there, and the steps become
-  // short without end. Returns whether that is how the segment ended; the contact then sticks.
+  // True if the segment ended because a slip velocity with two components vanishes on a curved line, where it has no
+  // Taylor series and the steps become short without end; the contact then sticks.
   bool slip_vanishes();
-  // Whether one of the events ends a slip with two components, whose direction round-off tells there.
+  // True if one of the events ends a slip with two components, whose direction there is round-off.
   bool direction_vanishes(const std::vector<EventReport>& events, const std::map<std::string, ModeEvent>& known) const;
-  // Whether the segment ended where a slip that has begun goes on as it was, up to the way its direction is written.
+  // True if the segment ended where a slip that has begun goes on unchanged, except for the formula of its direction.
   bool goes_on_slipping(const Rational& to) const;
-  // Notes what the events of a segment exclude; returns whether one has changed the modes.
+  // Notes what the events of a segment exclude; returns true if one has changed the modes.
   bool note(const std::vector<EventReport>& events, const std::map<std::string, ModeEvent>& known);
   void nothing_has_changed();
 
   const SimulationOptions& o_;
-  bool looks_for_events_;  // those of the model itself
-  bool has_supports_;      // constraints that look like floors, which may pull
+  bool looks_for_events_;  // events of the model itself
+  bool has_supports_;      // there are constraints that look like floors, which may pull
   TouchingBodies& bodies_;
   JoinedReport& joined_;
   ReadyModes ready_;
@@ -64,8 +66,8 @@ class ModeSegments {
   std::vector<Rational> times_;
   Rational end_;
   std::function<void(std::size_t)> slips_;
-  std::optional<Rational> vanished_;  // when a slip vanished last, which it does once at a time
-  int retries_ = 0;                   // how often BDF went on where Taylor's method gave up
+  std::optional<Rational> vanished_;  // the time at which a slip vanished last; it may vanish once at a time
+  int retries_ = 0;                   // the number of times that BDF continued where Taylor's method gave up
   bool events_near_ = false;          // the last segment by BDF has come near the end of a mode
 };
 

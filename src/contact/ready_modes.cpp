@@ -7,7 +7,8 @@
 
 namespace anholon {
 
-// An outcome if a number with which the mode begins is not finite, as a direction of a slip is where forces have no bound.
+// Returns an outcome if a number with which the mode begins is not finite, as the direction of a slip with unbounded
+// forces is.
 static std::optional<Outcome> without_numbers(const ContactModes& modes, const ContactState& at) {
   const std::vector<double> numbers = mode_values(modes, at);
   if (std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); })) return std::nullopt;

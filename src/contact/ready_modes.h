@@ -1,4 +1,4 @@
-// The modes of one motion with contacts, each derived once: where a mode begins anew, its numbers alone are other ones.
+// The modes of one motion with contacts, each derived once: when a mode begins again, only its numbers differ.
 #pragma once
 #include <map>
 #include <memory>
@@ -17,16 +17,16 @@ struct ReadyMode {
 
 class ReadyModes {
  public:
-  // `s`: the model with all contacts open. Both outlive the modes.
+  // `s`: the model with all contacts open. Both arguments outlive the modes.
   ReadyModes(const Workspace& s, const std::vector<Contact>& contacts) : s_(s), contacts_(contacts) {}
-  // The mode, at its consistent state near `at`. The outcome tells if there is none.
+  // Returns the mode at its consistent state near `at`. The outcome fails if there is none.
   ReadyMode& begin(const ContactModes& modes, const ContactState& at, Outcome& outcome,
                    ModeEnds ends = ModeEnds::events);
 
  private:
   Outcome derive(const ContactModes& modes, ModeEnds ends, const std::vector<Rational>& numbers, ReadyMode& mode) const;
 
-  ReadyMode nothing_;  // where a mode does not begin
+  ReadyMode nothing_;  // returned if a mode does not begin
   const Workspace& s_;
   const std::vector<Contact>& contacts_;
   std::map<std::pair<ModeEnds, std::vector<int>>, ReadyMode> known_;  // by their shapes and the sides of borders

@@ -11,7 +11,7 @@ std::vector<Rational> times_of_rows(const SimulationOptions& o, const Rational& 
   std::vector<Rational> times = o.at;
   if (o.every) {
     for (Rational t = start; t < end; t += *o.every) times.push_back(t);
-    // As RowSchedule does: a multiple whose number is that of the end has no row of its own.
+    // Like in RowSchedule, a multiple whose number is that of the end has no row of its own.
     const double last = from_rational<double>(end);
     while (times.size() > 1 && from_rational<double>(times.back()) == last) times.pop_back();
   }
@@ -20,11 +20,11 @@ std::vector<Rational> times_of_rows(const SimulationOptions& o, const Rational& 
 }
 
 void SegmentRows::only_at(const std::vector<Rational>& times) {
-  // As rows round them: get_d() cuts the digits off.
+  // The times are rounded as rows round them; get_d() would truncate.
   for (const Rational& t : times) times_.push_back(from_rational<double>(t));
 }
 
-// The forces and constraints of a contact differ from mode to mode; its monitors do not.
+// True for columns of the forces and constraints of a contact, which differ from mode to mode; its monitors do not.
 bool SegmentRows::of_contact(const RunColumn& column) const {
   return column.kind != ColumnKind::monitor && std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
            const std::string prefix = c.name + ".";
@@ -50,7 +50,7 @@ void SegmentRows::columns(const std::vector<RunColumn>& columns) {
 
 void SegmentRows::row(const Row& row) {
   last_.assign(row.values.begin(), row.values.end());
-  // The round-off of the projection is no motion.
+  // Velocities and accelerations of stopped coordinates are the round-off of the projection.
   for (std::size_t k = 0; k < own_.size() && !stopped_.empty(); ++k)
     if ((own_[k].kind == ColumnKind::velocity || own_[k].kind == ColumnKind::acceleration) && stopped_[own_[k].index])
       last_[k] = 0;
@@ -66,7 +66,7 @@ void SegmentRows::row(const Row& row) {
   while (due_ < times_.size() && times_[due_] < t) ++due_;
   untold_.clear();
   if (due_ == times_.size() || times_[due_] != t) {
-    // The end of a segment may be the row that was asked for, and is not written again.
+    // The end of a segment may be a requested row; it is not written twice.
     if (due_ == 0 || times_[due_ - 1] != t) untold_ = std::move(values);
     return;
   }

@@ -10,11 +10,11 @@
 
 namespace anholon {
 
-// A slip velocity with two components begins at this part of the velocities: at zero it has no direction.
+// A slip velocity with two components begins at this part of the velocities, because at zero it has no direction.
 static constexpr long double kSeed = 1e-10L;
 
-// By which part of the forces friction of a contact that sticks is above its bound at a state; nullopt if the equations are singular
-// there.
+// The part of the forces by which the friction of a contact that sticks is above its bound at a state; nullopt if the
+// equations are singular there.
 static std::optional<long double> beyond_bound(TouchingBodies& bodies, std::size_t c, const ContactState& at) {
   bodies.dynamics.go(at);
   const ContactProblem& p = bodies.dynamics.accelerations();
@@ -31,7 +31,7 @@ static std::optional<long double> beyond_bound(TouchingBodies& bodies, std::size
 bool only_touches_bound(TouchingBodies& bodies, std::size_t contact, const Ahead& ahead) {
   constexpr long double kRoundOff = 1e-14L;
   const long double speed = std::max(bodies.dynamics.speed(), 1.0L);
-  // Friction that hardly changes is looked at for longer.
+  // Friction that hardly changes is followed for a longer time.
   for (const long double time : {1e-6L, 1e-4L, 1e-2L}) {
     ContactState at;
     if (!ahead(Rational(bodies.at.t.get_d() + static_cast<double>(time / speed)), at)) return false;
@@ -89,7 +89,7 @@ long double SlipStart::first_slip(std::size_t c, const std::vector<long double>&
   const auto [time, rate] = held_[c];
   if (!(time > 0)) return seed;
   const long double a = bodies_.dynamics.slip_acceleration(c, accelerations);
-  // The integral of a = rate t + c t^2.
+  // This is the integral of a = rate t + c t^2.
   return std::max(seed, a * time / 3 + rate * time * time / 6);
 }
 
@@ -108,7 +108,7 @@ void SlipStart::begin(const std::vector<std::size_t>& list, const std::vector<lo
 void SlipStart::begin_alone(std::size_t c, const std::vector<long double>& accelerations) {
   const std::vector<double> before = bodies_.at.qd;
   bodies_.set_slip(c, bodies_.modes[c].direction, first_slip(c, accelerations));
-  // The way of a velocity that has grown as the square of the time.
+  // This is the way of a velocity that has grown with the square of the time.
   const long double mean = held_[c].time / 3;
   for (std::size_t a = 0; a < before.size(); ++a)
     bodies_.at.q[a] = static_cast<double>(bodies_.at.q[a] + mean * (bodies_.at.qd[a] - before[a]));
@@ -179,7 +179,7 @@ bool SlipStart::share_anew(Outcome& outcome) {
   std::vector<std::size_t> limited;
   for (std::size_t c = 0; c < bodies_.contacts.size(); ++c)
     if (bodies_.excluded[c].stick && bodies_.modes[c].touch == Touch::sticks) limited.push_back(c);
-  // Longer than before where the contacts have been held just now, and stick still.
+  // The time is longer than before if the contacts have been held just now, and still stick.
   const bool just_now = bodies_.at.t.get_d() - held_until_ <= static_cast<double>(together_);
   const long double last = just_now ? together_ : 0;
   together_ = 0;
@@ -205,7 +205,7 @@ bool SlipStart::share_anew(Outcome& outcome) {
   };
   const ContactRows& rows = p.contacts[limited[0]];
   if (rows.friction != rows.static_friction) {
-    // All at their limit slip with an acceleration.
+    // All contacts at their limit slip with an acceleration.
     for (std::size_t c = 0; sticks && c < bodies_.contacts.size(); ++c)
       if (at_limit(c)) bodies_.excluded[c].stick = true;
     return true;
@@ -259,7 +259,7 @@ bool SlipStart::hold_to_grow(Outcome& outcome) {
 long double SlipStart::time_to_grow(std::size_t c, long double rate) const {
   constexpr long double kHeld = 1e-7L, kMost = 3e-2L, kBegins = 1e-7L;
   const ContactDynamics::Place& at = bodies_.dynamics.place(c);
-  // A contact that never moved, or of which no more is known than how its slip began, has terms of unknown size.
+  // The terms are of unknown size if the contact never moved, or if only the start of its slip is known.
   const long double scale = at.slip_scale > kBegins * at.slip_reach ? at.slip_scale : 1;
   return std::min(std::sqrt(2 * kHeld * scale / rate), kMost / std::max(bodies_.dynamics.speed(), 1.0L));
 }

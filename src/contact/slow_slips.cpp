@@ -8,8 +8,8 @@ namespace anholon {
 
 namespace {
 
-// The rate at which friction turns a slip with two components into its direction: mu N by the mass against which it acts,
-// divided by the slip velocity v.
+// The rate at which friction turns a slip with two components into its direction: mu N over the mass against which it
+// acts, divided by the slip velocity v.
 long double rate_of_direction(const ContactProblem& p, const ContactModes& modes, const ContactSolution& f,
                               std::size_t c, long double v) {
   long double most = 0;
@@ -26,7 +26,8 @@ long double rate_of_direction(const ContactProblem& p, const ContactModes& modes
 }  // namespace
 
 std::optional<long double> stiff_for(const TouchingBodies& bodies, long double left) {
-  // Taylor's steps are about 6 of these rates long. A stretch is given up where the slip has become so many times as fast.
+  // Taylor's steps are about 6 divided by this rate. A stretch is given up where the slip has become kLonger times as
+  // fast.
   constexpr long double kStiff = 3000, kLonger = 30;
   const ContactProblem& p = bodies.dynamics.accelerations();
   const auto f = of_modes(p, bodies.modes);
@@ -51,7 +52,7 @@ std::optional<long double> stiff_for(const TouchingBodies& bodies, long double l
 
 std::vector<Rational> times_of_stretch(const Rational& from, const Rational& to) {
   constexpr int kTimes = 64;
-  constexpr double kSpan = 1000;  // of the last distance to the first
+  constexpr double kSpan = 1000;  // the ratio of the last distance to the first
   const double span = Rational(to - from).get_d();
   std::vector<Rational> times;
   for (int k = 1; k < kTimes; ++k) {

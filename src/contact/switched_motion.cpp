@@ -65,7 +65,7 @@ class SwitchedMotion {
     }
   }
 
-  // A parameter that is varied after the file was read may be part of where a mode starts.
+  // Fails if a parameter that is varied after the file was read has changed which constraints hold at the start.
   Outcome starts_as_read() const {
     const std::vector<bool> holds = constraints_that_hold(*s_.model, contacts_);
     for (std::size_t c = 0; c < contacts_.size(); ++c)
@@ -82,7 +82,7 @@ class SwitchedMotion {
     return list;
   }
 
-  // Values that an event sets, one after the other; all formulas of one event use those before it.
+  // Applies the values that an event sets; all formulas of one event use the values before it.
   std::vector<EventReport::Change> set(const Event& e) {
     std::vector<EventReport::Change> changes;
     if (e.set.empty()) return changes;
@@ -113,7 +113,7 @@ class SwitchedMotion {
     return changes;
   }
 
-  // Whether an event changes nothing: it sets modes alone, to the numbers that they are.
+  // True if an event changes nothing: it only sets modes to their present values.
   bool idle(const Event& e) const {
     return !e.set.empty() && !e.stop && std::all_of(e.set.begin(), e.set.end(), [&](const Assignment& a) {
       const Node& n = a.symbol.graph->node(a.symbol.id);
@@ -122,8 +122,8 @@ class SwitchedMotion {
     });
   }
 
-  // The model of the present modes, which begins at the present state. The velocities are where the constraints look for
-  // theirs, the nearest ones in the mass norm.
+  // Returns the model of the present modes, which begins at the present state. The velocities are first guesses; the
+  // nearest ones in the mass norm that satisfy the constraints are taken.
   std::shared_ptr<Model> model(std::map<std::string, ModeEvent>& setting) const {
     const std::shared_ptr<Model> m = clone(*s_.model);
     put_modes(*m, contacts_, modes());
@@ -155,7 +155,7 @@ class SwitchedMotion {
     return m;
   }
 
-  // Tells the events that have set something, with what the constraints made of the velocities.
+  // Reports the events that have set something, with the changes of the velocities by the constraints.
   void tell(const std::vector<double>& before) {
     constexpr double kRoundOff = 1e-13;
     double size = 0;
@@ -174,8 +174,9 @@ class SwitchedMotion {
     changes_.clear();
   }
 
-  // The scenario of the present modes at the present state. The velocities found for it satisfy the constraints; those of
-  // least change have all their digits from their linear equations, with which the scenario is made again.
+  // Makes the scenario of the present modes at the present state. The velocities found for it satisfy the constraints;
+  // the velocities of least change follow from linear equations with all digits, and the scenario is made again with
+  // them.
   bool begin(std::map<std::string, ModeEvent>& setting, Scenario& scenario, Outcome& outcome) {
     const std::vector<double> before = at_.qd;
     constexpr int kPasses = 3;
@@ -201,7 +202,7 @@ class SwitchedMotion {
     return true;
   }
 
-  // Follows the motion in the present modes to an event that sets something; returns false if it ends there.
+  // Follows the motion in the present modes to an event that sets something; returns false if the motion ends there.
   bool segment(Outcome& outcome) {
     std::map<std::string, ModeEvent> setting;
     Scenario scenario;
@@ -249,7 +250,7 @@ class SwitchedMotion {
   std::vector<long double> parameters_;  // with the present modes
   Rational end_;
   std::vector<Rational> times_;
-  std::string last_event_;  // that has set something
+  std::string last_event_;  // the last event that has set something
   std::vector<EventReport::Change> changes_;
 };
 

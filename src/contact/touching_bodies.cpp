@@ -10,7 +10,7 @@
 
 namespace anholon {
 
-// The jump that stops a velocity leaves this part of what the velocity has been.
+// The jump that stops a velocity leaves a remainder of this part of the largest velocity.
 static constexpr long double kLeftOver = 1e-16L;
 
 TouchingBodies::TouchingBodies(Workspace& s, const std::vector<Contact>& of, ContactState start)
@@ -153,7 +153,7 @@ bool TouchingBodies::pass_borders() {
   ContactModes held(contacts.size());
   bool any = false;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
-    // The border is located as well as an event is.
+    // The border is located with the accuracy of an event.
     if (closed[c] && near.missed(c)) near.reached(c);
     if (c >= modes.size() || modes[c].touch == Touch::open || !near.closed(c) || near.gap_rate(c) != 0) continue;
     held[c].touch = Touch::slips;

@@ -13,16 +13,17 @@ namespace anholon {
 
 namespace {
 
-// The limit of steps of a plan for machine code.
+// The limit of steps of a plan that machine code is made for.
 constexpr std::size_t kMostSteps = 40'000;
 
-// A program with the system it stands on, in a graph of its own.
+// A program with its system, in a graph of its own.
 struct FormulaProgram {
   System system;
   Program program;
 };
 
-// States: the symbols in which formulas are written, whose rates are zero, and one for each formula, whose rate it is.
+// The states of the program are the symbols in which formulas are written, with zero rates, and one for each formula,
+// which is its rate.
 std::shared_ptr<const FormulaProgram> program_of(const RateFormulas& f, const Column& es, const Column& symbols) {
   auto model = std::make_shared<Model>();
   model->graph = std::make_shared<Graph>();
@@ -103,7 +104,7 @@ class CompiledFormulas::Evaluator {
   }
 
  private:
-  // After so many points machine code is made, which takes about as long as their values by tables did.
+  // The number of points after which machine code is made: it takes about as long as these points took by tables.
   std::size_t worth_code() const { return 1000 + plan_->plan().stage.size() / 2; }
 
   struct Worker {
@@ -111,7 +112,7 @@ class CompiledFormulas::Evaluator {
     std::vector<std::vector<double>> parameters;  // of each lane, once they are set
   };
 
-  // As many points as the kernel has lanes, or fewer: the others then hold the last one.
+  // Computes as many points as the kernel has lanes, or fewer: further lanes then have the last point.
   void compute(Worker& worker, std::span<const FormulaPoint> points, std::span<double> out) const {
     Kernel& kernel = *worker.kernel;
     worker.parameters.resize(static_cast<std::size_t>(kernel.lanes()));
@@ -139,10 +140,10 @@ class CompiledFormulas::Evaluator {
         out[k * size_ + places_[i]] = kernel.derivative(symbols_ + i, 1, static_cast<int>(k));
   }
 
-  std::size_t size_, states_ = 0, symbols_ = 0;  // symbols: x, then what is solved for
+  std::size_t size_, states_ = 0, symbols_ = 0;  // symbols: x, then the unknowns of the equations
   std::vector<std::pair<std::size_t, double>> numbers_;
   std::vector<std::size_t> places_;         // of the formulas among all expressions
-  std::shared_ptr<const KernelPlan> plan_;  // null where all expressions are numbers
+  std::shared_ptr<const KernelPlan> plan_;  // nullptr if all expressions are numbers
   mutable std::atomic<std::size_t> asked_ = 0;
   mutable Idle<Worker> alone_, in_lanes_;
 };

@@ -1,4 +1,4 @@
-// The values of formulas at many points, by a kernel with machine code.
+// Computes the values of formulas at many points, by a kernel with machine code.
 #pragma once
 #include <memory>
 
@@ -6,15 +6,15 @@
 
 namespace anholon {
 
-// A point: all parameters of the model, inputs among them, and what the equations were solved for (empty where rates are
+// A point: all parameters of the model, inputs included, and the solution of the equations (empty if the rates are
 // explicit).
 struct FormulaPoint {
   double t;
   std::span<const double> x, parameters, lead;
 };
 
-// Expressions in t, x, the parameters and what is solved for. A point's values have the same bits alone and beside
-// others, with and without machine code.
+// Expressions in t, x, the parameters and the unknowns of the equations. The bits of a point's values do not depend on
+// other points, nor on machine code.
 class CompiledFormulas {
  public:
   CompiledFormulas();
@@ -24,12 +24,13 @@ class CompiledFormulas {
   ~CompiledFormulas();
 
   std::size_t size() const;
-  // The values of all expressions at the first point, then at the second one, and so on. May be called by many threads.
+  // Returns the values of all expressions at the first point, then at the second one, and so on. Many threads may call
+  // it.
   std::vector<double> values(std::span<const FormulaPoint> points) const;
 
  private:
   class Evaluator;
-  std::unique_ptr<const Evaluator> evaluator_;  // null where there is no expression
+  std::unique_ptr<const Evaluator> evaluator_;  // nullptr without expressions
 };
 
 }  // namespace anholon

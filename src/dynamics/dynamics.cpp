@@ -15,14 +15,15 @@ namespace anholon {
 
 namespace {
 
-// Below these numbers of states, code for lanes, and further threads, do not pay.
+// For fewer states, code for lanes (kManyLanes) and further threads (kManyThreads) do not pay.
 constexpr std::size_t kManyLanes = 16, kManyThreads = 4096;
 
-// Newton's method is on its branch while each correction is at most this part of the one before; a line is followed in
-// steps down to this one.
+// Newton's method stays on its branch while each correction is at most the part kContraction of the one before; a line
+// is followed in steps of at least kLeastStep.
 constexpr long double kContraction = 0.25L, kLeastStep = 1.0L / 4096;
 constexpr int kMostCorrections = 40;
-// Corrections of this size, relative to the largest number, are round-off of sums of larger terms: far below a double's.
+// Corrections of this size, relative to the largest number, are the round-off of sums of larger terms: far below that
+// of a double.
 constexpr long double kSettled = 1e-17L;
 
 // Corrects `leading` by Newton's method. Returns false if it does not contract.
@@ -41,7 +42,7 @@ bool contracts(Expansion<long double>& point, long double t, const std::vector<l
       size = std::max(size, std::abs(correction[j])), of = std::max(of, std::abs(leading[j]));
     }
     if (!std::isfinite(size)) return false;
-    // What is left is round-off of the largest number, which does not contract.
+    // The rest is round-off of the largest number, which does not contract.
     if (size <= kQuietRoundoffs * std::numeric_limits<long double>::epsilon() * of) return true;
     if (size > kContraction * before) return size <= kSettled * of;
     before = size;
@@ -51,7 +52,8 @@ bool contracts(Expansion<long double>& point, long double t, const std::vector<l
 
 }  // namespace
 
-// The program of a copy of the system, which lives as long: faults of the program name formulas of its system.
+// The program of a copy of the system that lives as long as the program: faults of the program name formulas of its
+// system.
 static std::shared_ptr<const Program> with_own_system(const System& system, const Structure& structure) {
   struct Owned {
     System system;
@@ -77,7 +79,7 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
   if (const Outcome o = initial_state(s, choice, here); !o.ok()) return no(o.message);
   made->parameters_ = parameter_values<long double>(*s.model);
   made->find_free_parameters(*s.model, wanted.inputs);
-  // These have no other value in the same equations.
+  // These parameters are not free: with other values the equations have another state.
   for (const std::size_t i : parameters_of_order(*s.mechanics, s.elimination, s.system, s.structure))
     std::erase(made->free_, i);
   const std::vector<double>& state = made->motion_start_ = {here.state.begin(), here.state.end()};
@@ -110,8 +112,8 @@ std::unique_ptr<Dynamics> Dynamics::make(Workspace& s, const StateChoice& choice
   return made;
 }
 
-// x: coordinates, independent velocities, the model's states. The kernel's unknowns: coordinates, the model's states, then
-// velocities.
+// Sets x: coordinates, independent velocities, the model's states. The kernel's unknowns are coordinates, the model's
+// states, then velocities.
 void Dynamics::put_independent_velocities(const System& s, const Representation& mapped) {
   const std::size_t n = coordinates_, velocities = mapped.plan->map()->velocities();
   map_ = std::shared_ptr<const StateMap>(mapped.plan, mapped.plan->map());
@@ -127,7 +129,7 @@ void Dynamics::put_independent_velocities(const System& s, const Representation&
                        {motion_start_.begin() + static_cast<std::ptrdiff_t>(2 * n), motion_start_.end()});
 }
 
-// x: what is below the leading derivatives d, by order and then by variable; the model's states come last.
+// Sets x: the derivatives below the leading ones d, by order and then by variable; the model's states come last.
 void Dynamics::put_state_of_motion(const System& s, const std::vector<int>& d) {
   unknowns_.resize(s.size());
   std::vector<std::size_t> offset{0};  // in the state of the motion
@@ -147,7 +149,7 @@ void Dynamics::put_state_of_motion(const System& s, const std::vector<int>& d) {
     for (int k = 0; k < d[j]; ++k) add(j, k);
 }
 
-// Parameters that follow from others are those whose values hold symbols; the inputs are the last ones.
+// A parameter follows from others if its value contains symbols; the inputs are the last parameters.
 void Dynamics::find_free_parameters(const Model& model, std::size_t inputs) {
   inputs_ = inputs;
   Graph& g = *model.graph;
@@ -214,7 +216,7 @@ void Dynamics::with_kernel(int lanes, const Call& call, const F& f) const {
   idle.give_back(std::move(worker));
 }
 
-// The state of the motion, unknown by unknown.
+// Returns the state of the motion, unknown by unknown.
 std::vector<long double> Dynamics::entries(const std::function<double(std::size_t)>& state) const {
   std::vector<long double> out;
   for (const Unknown& u : unknowns_)
@@ -222,7 +224,7 @@ std::vector<long double> Dynamics::entries(const std::function<double(std::size_
   return out;
 }
 
-// What leads one state by the reference; NaN where the equations have no solution.
+// Returns the leading derivatives of one state by the reference; NaN if the equations have no solution.
 std::vector<double> Dynamics::by_reference(double t, const std::function<double(std::size_t)>& state,
                                            const std::vector<long double>& parameters) const {
   if (!linear()) return along_branch(t, state, parameters);
@@ -239,7 +241,7 @@ std::vector<double> Dynamics::by_reference(double t, const std::function<double(
 }
 
 // Follows the solution from the start along a straight line in time, state and parameters, by steps in which Newton's
-// method contracts from its first iteration on, so that it stays on its branch; NaN where such steps become tiny.
+// method contracts from its first iteration on, so that it stays on its branch. Returns NaN if such steps become tiny.
 std::vector<double> Dynamics::along_branch(double t, const std::function<double(std::size_t)>& state,
                                            const std::vector<long double>& parameters) const {
   const std::vector<long double> to = entries(state), from(motion_start_.begin(), motion_start_.end());
@@ -274,7 +276,7 @@ void Dynamics::compute_by_reference(const Call& call, std::size_t from, std::siz
   }
 }
 
-// As many states at once as the kernel has lanes; what is left over of them holds the last one.
+// Computes as many states at once as the kernel has lanes; lanes without a state get the last one.
 template <class Put>
 void Dynamics::compute(Kernel& kernel, const Call& call, std::size_t from, std::size_t to, const Put& put) const {
   const std::size_t lanes = static_cast<std::size_t>(kernel.lanes()), count = call.count;
@@ -294,7 +296,7 @@ void Dynamics::compute(Kernel& kernel, const Call& call, std::size_t from, std::
     });
     kernel.solve_point();
     for (std::size_t lane = 0; lane < some; ++lane) {
-      // The pivots were chosen at the start: where they are small, the reference chooses others.
+      // The pivots were chosen at the start; if they are small here, the reference chooses others.
       if (kernel.pivots(static_cast<int>(lane)).health > plan_->least_health())
         put(first + lane,
             [&](std::size_t j) { return kernel.derivative(j, unknowns_[j].order(), static_cast<int>(lane)); });
@@ -319,7 +321,7 @@ void Dynamics::solve(const Call& call, const Put& put) const {
     return;
   }
   int lanes = tiers().back().lanes;
-  // Of a plan that is too large for the compiler there is code that is translated.
+  // The code of a plan that is too large for the compiler is translated.
   if (!plan_->compile(code_cache(), lanes).empty() &&
       plan_->compile(code_cache(), lanes_at_first(), CodeEffort::quick).empty())
     lanes = lanes_at_first();
@@ -331,7 +333,7 @@ void Dynamics::solve(const Call& call, const Put& put) const {
   });
 }
 
-// The rates of a state: what the state holds, and what leads it.
+// The rates of a state are entries of the state, and the leading derivatives.
 void Dynamics::rates(double t, const double* x, std::size_t count, double* rates, InputsAndParameters given) const {
   solve({t, x, count, given}, [&](std::size_t k, const auto& solved) {
     for (std::size_t j = 0; j < unknowns_.size(); ++j) {

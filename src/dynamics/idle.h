@@ -1,4 +1,4 @@
-// Objects that are expensive to make, of which one caller after the other uses one.
+// Objects that are expensive to make, and that several callers use one after the other.
 #pragma once
 #include <mutex>
 #include <optional>
@@ -6,11 +6,11 @@
 
 namespace anholon {
 
-// May be used by many threads.
+// Many threads may use it.
 template <class T>
 class Idle {
  public:
-  // An object that nobody uses now; nullopt if there is none.
+  // Returns an object that is not in use; nullopt if there is none.
   std::optional<T> take() {
     const std::lock_guard lock(mutex_);
     if (list_.empty()) return std::nullopt;

@@ -1,4 +1,4 @@
-// Loops over many states on several threads that end when a StopScope asks for it.
+// Loops over many states on several threads, which a StopScope can end.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -12,11 +12,12 @@
 
 namespace anholon {
 
-using NextPiece = std::function<std::optional<std::size_t>()>;  // the first state of a piece; none if there is no more
+using NextPiece =
+    std::function<std::optional<std::size_t>()>;  // the first state of a piece; nullopt after the last one
 
-// Calls work(next) in this thread, and in others if there are many pieces of `size` states; together they take all pieces
-// of `count` states. If work throws in one of the threads, the others take no further piece, and the exception is thrown
-// once they have ended. StopRequested, which comes from a StopScope of this thread, is such an exception.
+// Calls work(next) in this thread, and in others if there are many pieces of `size` states; together they take all
+// pieces of `count` states. If work throws in one of the threads, the others take no further piece, and the exception
+// is thrown once they have ended. StopRequested, which comes from a StopScope of this thread, is such an exception.
 template <class Work>
 void in_pieces(std::size_t count, std::size_t size, const Work& work) {
   std::atomic<std::size_t> first = 0;

@@ -8,7 +8,8 @@
 
 namespace anholon {
 
-// Numbers of formulas on both sides of a border differ by less if only the round-off of some thousand operations differs.
+// Values on both sides of a border between branches agree up to this if the branches agree there: it is the round-off
+// of some thousand operations.
 static constexpr double kSameSides = 4096 * std::numeric_limits<double>::epsilon();
 
 RateDerivatives::RateDerivatives(const RateFormulas& f, const RateFormulas::Symbols& by)
@@ -41,7 +42,7 @@ double RateDerivatives::Source::at(const FormulaPoint& point) const {
   return 0;
 }
 
-// d rates / dx  =  partial  -  d rates / d lead . (d equations / d lead)^-1 . d equations / dx
+// The result is d rates / dx  =  partial  -  d rates / d lead . (d equations / d lead)^-1 . d equations / dx.
 std::vector<RateDerivatives::Of> RateDerivatives::at(std::span<const FormulaPoint> points) const {
   const std::vector<double> partials = values_.values(points);
   std::vector<Of> all;
@@ -52,8 +53,8 @@ std::vector<RateDerivatives::Of> RateDerivatives::at(std::span<const FormulaPoin
   return all;
 }
 
-// The rows of the sides are equations, rates, outputs. A value that jumps with a condition has no derivative by what the
-// condition holds; what is solved for holds everything.
+// The rows of the sides are equations, rates, outputs. If a value jumps with a condition, it has no derivative with
+// respect to the variables in the condition; the unknowns of the equations depend on everything.
 void RateDerivatives::leave_out_kinks(const FormulaPoint& at, Of& d) const {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   const std::size_t n = formulas_.lead.size(), rows = n + d.rows;

@@ -7,34 +7,35 @@
 
 namespace anholon {
 
-// By some of x, u and p. May be used by many threads.
+// The derivatives with respect to some of x, u and p. Many threads may use it.
 class RateDerivatives {
  public:
-  // Writes expressions into the graph of the formulas, which have to live longer.
+  // Writes expressions into the graph of the formulas, which have to outlive this object.
   RateDerivatives(const RateFormulas& formulas, const RateFormulas::Symbols& by);
 
-  // Of rates, then outputs: row by row. NaN where the equations have no solution, and where a formula has no derivative:
-  // at a kink or a jump of abs, min, max, sign, piecewise or a table.
+  // The derivatives of rates, then of outputs, row by row. NaN if the equations have no solution, and if a formula has
+  // no derivative: at a kink or a jump of abs, min, max, sign, piecewise or a table.
   struct Of {
     std::size_t rows = 0, columns = 0;
     std::vector<double> values;
   };
-  // Point by point.
+  // Returns the derivatives point by point.
   std::vector<Of> at(std::span<const FormulaPoint> points) const;
 
  private:
   using Partial = OneSided::Partial;
-  // The derivatives by these partial ones, of which there are as many numbers.
+  // Returns the derivatives made from these partial ones, of which there are as many numbers.
   Of assembled(const std::vector<Partial>& places, std::span<const double> partials) const;
   // Puts NaN in the places of derivatives that differ on both sides of a border between branches.
   void leave_out_kinks(const FormulaPoint& at, Of& d) const;
 
   const RateFormulas& formulas_;
-  std::vector<Partial> partials_;  // rows: equations, rates, outputs; columns: what is solved for, then what it is by
+  std::vector<Partial>
+      partials_;  // rows: equations, rates, outputs; columns: unknowns of the equations, then the variables
   Column columns_;
   CompiledFormulas values_;  // of the partial derivatives
   OneSided sides_;           // of the same rows and columns
-  // Where the value of a symbol is in a point.
+  // The place of the value of a symbol in a point.
   enum class From : std::uint8_t { time, state, lead };
   struct Source {
     From from;

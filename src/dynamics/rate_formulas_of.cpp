@@ -22,7 +22,7 @@ constexpr double kAround = 0.3;  // in coordinates and velocities
 
 class Builder {
  public:
-  // `input_formulas`: with all inputs put in, then with the parameters that are inputs.
+  // `input_formulas`: first with all inputs replaced by their formulas, then with the parameters that are inputs.
   Builder(Workspace& s, const Dynamics& of, const std::vector<NodeId>& input_formulas)
       : s_(s), of_(of), motion_(emit::motion_between_events(s.system, s.structure, {})) {
     const Model& model = *s.model;
@@ -65,8 +65,8 @@ class Builder {
   }
 
  private:
-  // x: the state of the motion, in the order of Dynamics::put_state_of_motion; lead: what the system is solved for.
-  // Where rates of the model's states alone are nonlinear in accelerations and multipliers, they are explicit.
+  // x: the state of the motion, in the order of Dynamics::put_state_of_motion; lead: the unknowns of the system. If
+  // only rates of the model's states are nonlinear in accelerations and multipliers, these rates are explicit.
   void in_all_velocities() {
     const System& s = s_.system;
     const std::vector<int>& d = s_.structure.d;
@@ -89,7 +89,7 @@ class Builder {
     f_.equations.assign(motion_.residual.begin(), motion_.residual.begin() + static_cast<std::ptrdiff_t>(solved));
     f_.input_formulas = input_formulas_;
     if (solved == s.size()) return;
-    Column derivatives, rates;  // equation j is  (state j)' - rate
+    Column derivatives, rates;  // the form of equation j is  (state j)' - rate
     for (std::size_t j = solved; j < s.size(); ++j) {
       ANHOLON_ASSERT(d[j] == 1);
       derivatives.push_back(s.symbol(j, 1));
@@ -99,7 +99,7 @@ class Builder {
     f_.outputs = put(f_.outputs, derivatives, rates);
   }
 
-  // x = q, p, z with explicit rates. What holds multipliers or derivatives beyond accelerations is left out.
+  // x = q, p, z with explicit rates. Formulas with multipliers or derivatives beyond accelerations are left out.
   void in_independent_velocities() {
     const System& s = s_.system;
     const std::size_t n = s.coordinates, z = s_.model->states.size();
@@ -116,7 +116,7 @@ class Builder {
     Graph& g = *f_.model->graph;
     const auto written = [&](Expr e) { return written_out(e, n, q->system.rates); };
     const auto unknown = [&](std::size_t i, unsigned order) { return g.state(static_cast<std::uint32_t>(i), order); };
-    // Equation n + i is  (state i)' - rate.
+    // The form of equation n + i is  (state i)' - rate.
     Column derivatives, rates;
     for (std::size_t i = 0; i < z + q->count; ++i) {
       derivatives.push_back(unknown(i, 1));
@@ -151,7 +151,7 @@ class Builder {
     return true;
   }
 
-  // Parameters that follow from others, by their formulas.
+  // Replaces parameters that follow from others by their formulas.
   void put_parameters() {
     if (motion_.derived.empty()) return;
     Column formulas;
@@ -167,7 +167,7 @@ class Builder {
       });
   }
 
-  // By the values of the matrix around the start.
+  // Chooses pivots by the values of the matrix around the start.
   void choose_pivots() {
     const std::size_t n = f_.lead.size();
     if (n == 0 || !f_.linear) return;
@@ -196,8 +196,8 @@ class Builder {
         f_.pivots.push_back({p.row, p.column});
   }
 
-  // Leaves out what holds other symbols: derivatives beyond those solved for. Formulas of inputs hold no input and
-  // nothing that is solved for.
+  // Leaves out formulas with other symbols: derivatives beyond those solved for. Formulas of inputs contain no input
+  // and no unknown of the equations.
   void leave_out() {
     std::set<NodeId> known{f_.model->graph->time().id};
     for (const RateFormulas::Symbols* list : {&f_.x, &f_.p})
@@ -265,7 +265,7 @@ std::vector<double> FormulaValues::inputs(const Point& at, std::span<const std::
     for (std::size_t i = 0; i < given.size(); ++i) u[i] = given[i].value_or(by_formulas[i]);
   };
   put(inputs(at));
-  // No formula holds its own input, also not through others, so each pass settles the inputs of one more depth.
+  // No formula contains its own input, also not through others, so each pass settles the inputs of one more depth.
   for (std::size_t pass = 0; pass < given.size(); ++pass) {
     const Point given_here{at.t, at.x, parameters, {}};
     put(open_inputs_.values({&given_here, 1}));

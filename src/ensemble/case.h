@@ -1,4 +1,4 @@
-// The values of an ensemble: its options, the result of a case, the report of all cases.
+// The data of an ensemble: its options, the result of a case, the report of all cases.
 #pragma once
 #include <functional>
 #include <map>
@@ -26,11 +26,11 @@ struct EnsembleOptions {
   std::vector<Varied> varied;
   std::size_t cases = 0;
   std::function<EnsembleCase(std::size_t)> numbers;  // of the case with this number; called by many threads at once
-  // Cases that come bit by bit: called when all cases so far have begun, it returns how many more there are, 0 at the end.
-  // `cases` is then the most there may be. Without it all cases are there.
+  // For cases that come bit by bit: called when all cases so far have begun, it returns the number of further ones, 0
+  // at the end. `cases` is then the most there may be. Without it, all cases are known.
   std::function<std::size_t()> more;
   Rational to;
-  std::vector<Rational> at;  // rows at these times, ascending; none: the final state alone is kept
+  std::vector<Rational> at;  // rows at these times, ascending; empty: the final state alone is kept
   Reductions reductions;     // of formulas of the scenario
   Rational tolerance{1, 1000000000000};
   int order = 0;                        // of the Taylor polynomials; 0: from the tolerance
@@ -38,11 +38,11 @@ struct EnsembleOptions {
                                         // `simulate` for what it cannot finish
   std::size_t most_steps = 50'000'000;  // of a case
   ErrorEstimate estimate = ErrorEstimate::never;  // of the cases that `cases_to_compare` names
-  bool kernel = true;                             // as in SimulationOptions; without, a case has the bits of `simulate`
-  std::size_t threads = 0;                        // 0: as many as the machine has
+  bool kernel = true;       // as in SimulationOptions; without a kernel, a case has the bits of `simulate`
+  std::size_t threads = 0;  // 0: as many as the machine has
   std::function<void(std::size_t done)> progress;  // by one thread at a time
   std::function<bool()> cancelled;                 // called by many threads at once
-  // Computes the motion of a case in place of `simulate`, if it is set: every case is then put into equations anew, and
+  // If set, computes the motion of a case in place of `simulate`: the equations of every case are then made anew, and
   // its rows have these columns after those of the model.
   std::function<SimulationReport(Workspace&, const SimulationOptions&, RowSink&)> own_motion;
   std::vector<std::string> own_columns;
@@ -52,12 +52,12 @@ struct CaseResult {
   std::size_t number = 0;
   std::vector<double> values;  // of the varied numbers
   Outcome outcome;
-  double t = 0;  // reached
+  double t = 0;  // the time reached
   std::size_t steps = 0;
-  std::vector<double> last;  // of `ensemble_columns`, at the end or at the last good state; empty if there is none
+  std::vector<double> last;  // the `ensemble_columns` at the end or at the last good state; empty if there is none
   std::vector<std::vector<double>> rows;  // the same at the times asked for, t first
-  std::vector<double> reduced;  // of the reductions, over the motion as far as it came; empty if there is none
-  std::string event;            // that ended the motion; empty if none did
+  std::vector<double> reduced;  // the values of the reductions, over the motion as far as it came; may be empty
+  std::string event;            // the event that ended the motion; empty if none did
 };
 
 class CaseSink {
@@ -67,29 +67,29 @@ class CaseSink {
   virtual void result(const CaseResult& result) = 0;
 };
 
-// The error of the results: some cases, evenly spaced among all, are compared with sharper runs of the same cases.
+// The error of the results, from some cases, evenly spaced among all, that are compared with sharper runs.
 struct CasesError {
   std::vector<std::size_t> cases;    // the compared ones
   std::optional<ErrorReport> error;  // the largest error of each kind in any of these cases
   std::size_t worst = 0;             // the case with the largest error
-  std::string none;                  // the reason if an estimate was asked for and there is none
+  std::string none;                  // the reason why there is none although it was requested
 };
-// The residual reports of the same cases, which `simulate` computes once more with all rows.
+// The residual reports of the same cases, which `simulate` computes again with all rows.
 struct CasesResiduals {
   struct Worst {
     double residual = 0;
     std::size_t number = 0;  // of the case
   };
   std::vector<std::size_t> cases;
-  Worst newton, constraints, power;  // in relation to their terms, as in SimulationReport
-  std::string none;                  // the reason if they were asked for and there are none
+  Worst newton, constraints, power;  // relative to their terms, as in SimulationReport
+  std::string none;                  // the reason why there are none although they were requested
 };
 
 struct EnsembleReport {
-  Outcome outcome;  // interrupted, or finished; cases may have stopped in both
+  Outcome outcome;  // interrupted, or finished; cases may have stopped either way
   std::size_t done = 0, finished = 0;
   std::map<std::string, std::size_t> events;         // finished cases by the event that ended them
-  std::map<std::string, std::size_t> without_value;  // reduction of a formula -> finished cases in which it has none
+  std::map<std::string, std::size_t> without_value;  // reduction of a formula -> finished cases without a value of it
   std::size_t in_workspaces = 0;                     // cases that were not computed by the shared tapes
   std::size_t most_held = 0;                         // the largest number of results that were in memory at once
   std::size_t threads = 0;

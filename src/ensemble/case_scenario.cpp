@@ -26,7 +26,7 @@ SimulationOptions options_of_case(const EnsembleOptions& o, const EnsembleCase& 
   options.tolerance = o.tolerance;
   options.most_steps = o.most_steps;
   options.cancelled = o.cancelled;
-  options.watches_floors = false;  // nobody reads the notes of a case
+  options.watches_floors = false;  // the notes of a case are not used
   return options;
 }
 

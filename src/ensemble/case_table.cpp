@@ -29,10 +29,10 @@ std::string text_of_case_table(std::string bytes, const std::string& file) {
 }
 
 CaseTable::CaseTable(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
-  constexpr std::string_view kMark = "\xEF\xBB\xBF";  // of UTF-8, which some programs write first
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";  // the byte order mark of UTF-8, which some programs write first
   if (text_.compare(0, kMark.size(), kMark) == 0) text_.erase(0, kMark.size());
   bool header = false;
-  std::size_t cells = 0, named_or_not = 0;  // in the first line: without empty ones at its end, and with them
+  std::size_t cells = 0, named_or_not = 0;  // the cells of the first line: without empty ones at its end, and with them
   for (std::size_t at = 0; at < text_.size();) {
     const std::string_view here = line(at);
     const std::size_t begin = at;
@@ -40,7 +40,7 @@ CaseTable::CaseTable(std::string text, std::string file) : text_(std::move(text)
     if (here.find_first_not_of(" \t") == std::string_view::npos) continue;
     const std::vector<std::string> all = split_csv(here);
     std::size_t count = all.size();
-    // Commas at the end of lines make no cells.
+    // Commas at the end of a line do not make cells.
     while (count > std::max<std::size_t>(cells, 1) && trimmed(all[count - 1]).empty()) --count;
     if (!header) {
       header_ = begin, header = true, cells = count, named_or_not = all.size();
@@ -64,7 +64,7 @@ CaseTable::CaseTable(std::string text, std::string file) : text_(std::move(text)
       number_ = k;
       continue;
     }
-    // As a sweep names initial values.
+    // A table of a sweep calls an initial value x(0).
     if (name.ends_with("(0)")) name.erase(name.size() - 3);
     names_.push_back(name);
     places_.push_back(k);
@@ -103,7 +103,7 @@ std::vector<std::string> CaseTable::cells(std::size_t row) const {
   return list;
 }
 
-// The text that is printed has this line at its number, after empty ones.
+// The text in the message has this line at its number, after empty lines.
 void CaseTable::mistake_at(std::size_t begin, std::size_t cell, const std::string& message,
                            const std::string& hint) const {
   const auto before = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(begin), '\n');

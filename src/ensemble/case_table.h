@@ -1,6 +1,7 @@
-// A table of cases: names of what varies in its first line, a case in each further one.
+// A table of cases: the names of what varies in its first line, a case in each further one.
 //
-// The text is kept as it was read, and a cell becomes a number when its case is computed: many rows need little memory.
+// The text is kept as it was read, and a cell becomes a number when its case is computed, so many rows need little
+// memory.
 #pragma once
 #include <optional>
 #include <string>
@@ -13,13 +14,13 @@ namespace anholon {
 
 class CaseTable {
  public:
-  // The text of a CSV file. `file` names the table in messages. Empty lines are passed over. Throws MistakeInWord if there is no header, no
-  // row, or a line with another number of cells than the header.
+  // `text`: the text of a CSV file. `file` names the table in messages. Empty lines are skipped. Throws MistakeInWord
+  // if there is no header, no row, or a line whose number of cells differs from that of the header.
   CaseTable(std::string text, std::string file);
 
-  // Without a column "case", which holds numbers of cases in the table of a sweep and varies nothing. Throws
-  // MistakeInWord if a cell of such a column is no whole number or is one of these names of scenarios; also if the model
-  // gives the name "case" to something that may vary.
+  // Removes a column "case", which contains the numbers of cases in the table of a sweep and varies nothing. Throws
+  // MistakeInWord if a cell of such a column is not a whole number or is one of these names of scenarios, and also if
+  // the model gives the name "case" to something that may vary.
   void must_number_cases(const std::vector<std::string>& scenarios, bool varies) const;
   const std::vector<std::string>& names() const { return names_; }
   std::size_t rows() const { return lines_.size(); }
@@ -36,14 +37,14 @@ class CaseTable {
                                const std::string& hint) const;
 
   std::string text_, file_;
-  std::size_t header_ = 0;          // where its line begins
-  std::vector<std::size_t> lines_;  // where they begin
+  std::size_t header_ = 0;          // the begin of the line of the header
+  std::vector<std::size_t> lines_;  // the begins of the lines of the rows
   std::vector<std::string> names_;
-  std::vector<std::size_t> places_;    // of the names among the cells of a line
+  std::vector<std::size_t> places_;    // the places of the names among the cells of a line
   std::optional<std::size_t> number_;  // the place of a column "case"
 };
 
-// The text of a table from the bytes of its file, which is CSV or Parquet. Throws Failure without a place, which names
+// Returns the text of a table from the bytes of its file, CSV or Parquet. Throws Failure without a place, which names
 // the file, if the table of a Parquet file cannot be read.
 std::string text_of_case_table(std::string bytes, const std::string& file);
 

@@ -19,7 +19,7 @@ namespace {
 constexpr const char* kReductionHint =
     "max(FORMULA), min(FORMULA), mean(FORMULA), last(FORMULA), count(EVENT) or first(EVENT), such as max(theta')";
 
-// The kind of that name in another language, or the nearest one to a misspelt name; "" if there is none.
+// Returns the kind that has this name elsewhere, or the nearest one to a misspelt name; "" if there is none.
 std::string kind_meant_by(const std::string& word) {
   constexpr std::pair<const char*, const char*> kOthers[] = {
       {"maximum", "max"},  {"greatest", "max"}, {"largest", "max"}, {"minimum", "min"},   {"least", "min"},
@@ -40,7 +40,7 @@ std::optional<Reduction::Kind> kind_of(const std::string& word) {
   return std::nullopt;
 }
 
-// The names of the model, in which lambda.NAME is a multiplier, as in a monitor.
+// The names of the model; lambda.NAME is a multiplier, as in a monitor.
 class MonitorNames final : public Names {
  public:
   explicit MonitorNames(const OpenModel& model) : names_(*model.names), multipliers_(model.model->names.multipliers) {}
@@ -75,7 +75,7 @@ class MonitorNames final : public Names {
   const std::vector<std::string>& multipliers_;
 };
 
-// Throws MistakeInWord if the text is of the form NAME.mode, or names another column of these contacts.
+// Throws MistakeInWord if the text has the form NAME.mode, or names another column of these contacts.
 void must_be_no_column(const std::string& word, std::size_t at, const std::string& text,
                        const std::vector<Contact>& contacts) {
   for (const Contact& c : contacts) {
@@ -87,7 +87,7 @@ void must_be_no_column(const std::string& word, std::size_t at, const std::strin
   }
 }
 
-// The reactions and the forces of contacts differ from mode to mode, also in the equations that they belong to.
+// The reactions and the forces of contacts differ from mode to mode, also in the equations that contain them.
 [[noreturn]] void refuse_force(const std::string& word, std::size_t at, const std::string& text) {
   mistake_in(
       word, at, text.size(), "'" + text + "' holds reactions or forces of contacts, which change with the modes",
@@ -107,7 +107,7 @@ bool holds_multiplier(Expr e) {
   return std::any_of(ids.begin(), ids.end(), [&](NodeId id) { return e.graph->node(id).kind == Kind::multiplier; });
 }
 
-// The formula of a monitor, or one that is written out.
+// Returns the formula of a monitor, or one that is written out.
 Expr formula_of(const std::string& word, std::size_t at, const std::string& text, const OpenModel& model,
                 const std::vector<Contact>& moving) {
   for (const Monitor& m : model.model->monitors)
@@ -130,7 +130,7 @@ Expr formula_of(const std::string& word, std::size_t at, const std::string& text
                                                    : "a formula that is a number");
 }
 
-// The same if the contacts move. Throws MistakeInWord.
+// Throws MistakeInWord if the contacts move and the formula contains their forces.
 void must_hold_no_forces(const std::string& word, std::size_t at, const std::string& text, Expr formula,
                          const Model& model, const std::vector<Contact>& moving) {
   if (moving.empty()) return;
@@ -139,7 +139,7 @@ void must_hold_no_forces(const std::string& word, std::size_t at, const std::str
   if (holds_multiplier(formula)) refuse_force(word, at, text);
 }
 
-// The name without the spaces around it, if there is such an event. Throws MistakeInWord.
+// Returns the name without the spaces around it, if there is such an event. Throws MistakeInWord.
 std::string event_of(const std::string& word, std::size_t at, const std::string& text, const OpenModel& model,
                      const std::vector<Contact>& moving) {
   const std::size_t begin = text.find_first_not_of(' '), end = text.find_last_not_of(' ');
@@ -250,14 +250,15 @@ bool Reducer::step(const ReducedStep& step) {
   return good;
 }
 
-// As good as a polynomial can be told from a wrong one, in formulas whose terms cancel, too.
+// True if a value agrees with a polynomial as far as a good polynomial can be told from a wrong one, also in formulas
+// whose terms cancel.
 bool Reducer::agrees(double is, double foretold, double size) const {
   constexpr double kRelative = 1e3, kLeast = 1e-9, kAbsolute = 10;
   return std::abs(is - foretold) <= std::max(kRelative * tolerance_, kLeast) * size + kAbsolute * tolerance_;
 }
 
-// Whether the polynomial is the formula over the step: by its last two terms, which tell nothing if they are zero or do
-// not fall below the others; by values.
+// True if the polynomial is the formula over the step. The last two terms decide, and, if these are zero or do not fall
+// below the others, values.
 bool Reducer::holds(const ReducedStep& step, std::size_t formula) {
   hidden_.clear();
   constexpr double kFalls = 1e-3, kTolerances = 100, kNearEnd = 31.0 / 32;
@@ -285,7 +286,7 @@ bool Reducer::holds(const ReducedStep& step, std::size_t formula) {
   return std::all_of(hidden_.begin(), hidden_.end(), shows);
 }
 
-// The points at which functions may hide their variation, by the polynomials of their arguments.
+// Finds the points at which functions may hide their variation, by the polynomials of their arguments.
 void Reducer::find_hidden(const ReducedStep& step, std::size_t formula) {
   const auto add = [&](const Hiding& function, const std::vector<double>& argument) {
     const std::vector<double> nothing(argument.size(), std::numeric_limits<double>::quiet_NaN());
@@ -309,7 +310,7 @@ void Reducer::find_hidden(const ReducedStep& step, std::size_t formula) {
   hidden_.erase(std::unique(hidden_.begin(), hidden_.end()), hidden_.end());
 }
 
-// The arguments are smooth: polynomials through a few values tell where.
+// Finds these points if only values are known. The arguments are smooth, so polynomials through a few values suffice.
 void Reducer::find_by_values(const ReducedStep& step, std::size_t formula,
                              const std::function<void(const Hiding&, const std::vector<double>&)>& add) {
   const std::size_t count = step.hiding(formula, 0).size();
@@ -333,7 +334,7 @@ void Reducer::find_by_values(const ReducedStep& step, std::size_t formula,
   }
 }
 
-// polynomial_ over [0, h], in units of `scale`.
+// Sees polynomial_ over [0, h], in units of `scale`.
 void Reducer::see(Seen& s, double h, double scale) {
   std::vector<double>& c = polynomial_;
   const int degree = static_cast<int>(c.size()) - 1;
@@ -354,10 +355,10 @@ namespace {
 // A part of a step.
 struct Piece {
   double from, to;
-  int depth;  // how often it was halved
+  int depth;  // the number of halvings
 };
 
-// The pieces between these points, the first one last.
+// Returns the pieces between these points, the first one last.
 std::vector<Piece> pieces_between(const std::vector<double>& points, double h) {
   std::vector<Piece> list;
   double end = h;
@@ -368,9 +369,10 @@ std::vector<Piece> pieces_between(const std::vector<double>& points, double h) {
 
 }  // namespace
 
-// Halves the step until an interpolation of its values is as good as the tolerance. At a moment where the formula has no
-// value, or no derivatives, the pieces become as short as the time can show, and their values stand for theirs. The formula
-// is not bounded where these go far beyond all others, and its integral diverges where they weigh in spite of their length.
+// Halves the step until an interpolation of its values is as good as the tolerance. At a moment where the formula has
+// no value, or no derivatives, the pieces become as short as the time can show, and their values represent the formula.
+// The formula is unbounded if these values go far beyond all others, and its integral diverges if they weigh in spite
+// of the length of the pieces.
 void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
   constexpr int kFirst = 2, kDeepest = 48, kTiny = 30, kLongWithout = 8, kMostPieces = 1000;
   Seen& s = seen_[formula];
@@ -387,8 +389,8 @@ void Reducer::see_by_values(const ReducedStep& step, std::size_t formula) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double size = 0, weight = 0;                                 // of what is seen
   double most = -kInfinity, fewest = kInfinity, in_doubt = 0;  // of the shortest pieces
-  // Where a value is that of a small difference, no interpolation of its round-off is good: a piece is halved as long as it
-  // may hold an extreme or weighs in the mean.
+  // If a value is a small difference, no interpolation of its round-off is good: a piece is halved only as long as it
+  // may contain an extreme or weighs in the mean.
   const auto matters = [&](double lowest, double highest, double length) {
     const double spread = highest - lowest;
     return !(spread * std::abs(length) <= tolerance_ * size * std::abs(step.h)) ||

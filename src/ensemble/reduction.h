@@ -1,13 +1,13 @@
-// Numbers that sum up the whole motion of a case: the extremes, the mean, the last value of a formula; how often an event
-// fired, and when first.
+// Numbers that summarize the whole motion of a case: the extremes, the mean and the last value of a formula; how often
+// an event fired, and when first.
 //
-// Those of a formula are those of its Taylor polynomials, step by step, not of its values at some times. The steps are
-// as short as the tolerance asks for the series of these formulas (StepSettings::known). Where a polynomial is not the
-// formula over the whole step (the radius of convergence of the formula is shorter than that of the motion, or the formula
-// has no series, as a norm that is zero), pieces of the step get polynomials of their own, through values of the formula;
-// they begin and end where a function that is all but constant at the start of the step may vary, as exp in a pulse.
-// A formula that is not bounded has no greatest or no least value, and one whose integral diverges has no mean: NaN.
-// A last value is that of the formula at the end alone: no step is shorter for its sake.
+// The numbers of a formula come from its Taylor polynomials, step by step, not from its values at some times. The steps
+// are as short as the tolerance requires for the series of these formulas (StepSettings::known_from). If a polynomial
+// is not the formula over the whole step (the formula has a smaller radius of convergence than the motion, or no
+// series, like a norm that is zero), pieces of the step get polynomials of their own, through values of the formula.
+// Pieces begin and end where a function that is nearly constant at the start of the step may vary, such as exp in a
+// pulse. A formula that is unbounded has no greatest or no least value, and one whose integral diverges has no mean:
+// the number is NaN. A last value needs the formula at the end alone, and shortens no step.
 #pragma once
 #include <string>
 #include <vector>
@@ -22,39 +22,41 @@ namespace anholon {
 
 struct Reduction {
   enum class Kind : std::uint8_t { greatest, least, mean, last, count, first } kind = Kind::greatest;
-  std::size_t of = 0;  // of a last value among the ends, of a count or a first time the event, else the formula
-  std::string name;    // "max(height)", as it was written
+  std::size_t of =
+      0;  // the index: for a last value among the ends, for a count or a first time the event, otherwise the formula
+  std::string name;  // "max(height)", as it was written
   bool of_event() const { return kind == Kind::count || kind == Kind::first; }
 };
 
 struct Reductions {
-  std::vector<Expr> formulas;       // whose values along the motion are asked for
-  std::vector<Expr> ends;           // whose last values are asked for
+  std::vector<Expr> formulas;       // formulas whose values along the motion are needed
+  std::vector<Expr> ends;           // formulas whose last values are needed
   std::vector<std::string> events;  // their names in the report of a motion
   std::vector<Reduction> list;
 
-  // KIND(FORMULA), KIND one of max, min, mean, last; the formula is a monitor or any formula that a monitor may be, without
-  // multipliers if contacts move. Or count(EVENT), first(EVENT); the event is one of the model or of a contact that moves.
-  // Builds in the graph of the model. Throws MistakeInWord.
+  // Adds KIND(FORMULA), KIND one of max, min, mean, last; the formula is a monitor or any formula that a monitor may
+  // be, without multipliers if contacts move. Or adds count(EVENT) or first(EVENT); the event is one of the model or of
+  // a contact that moves. Builds in the graph of the model. Throws MistakeInWord.
   void add(const std::string& word, const OpenModel& model, const std::vector<Contact>& moving = {});
 };
 
-// A step of length h in which the reductions see the formulas.
+// A function that may hide its variation, with the polynomial of its argument over a step.
 struct HidingPolynomial {
   Hiding function;
   std::vector<double> argument;  // the coefficients of x^k
 };
 
+// A step of length h in which the reductions see the formulas.
 struct ReducedStep {
   double h = 0;
   int degree = 0;                                           // of the polynomials; 0: they hold at the beginning alone
   std::function<double(std::size_t i, int k)> coefficient;  // of formula i, k <= degree
   std::function<FormulaValue(std::size_t i, double x)> value;  // of formula i at x from the beginning
-  // There: the arguments of the functions in formula i that may hide their variation; without it there are none.
+  // The arguments, at x, of the functions in formula i that may hide their variation; without it there are none.
   std::function<std::vector<HidingArgument>(std::size_t i, double x)> hiding;
-  bool look = true;       // whether the polynomials are compared with values; else the next step tells
-  std::size_t kinks = 0;  // met in the motion so far, at which formulas may jump
-  // The polynomials of these arguments, where they are known; else `hiding` tells values.
+  bool look = true;       // compare the polynomials with values; otherwise the next step compares
+  std::size_t kinks = 0;  // met in the motion so far; formulas may jump at them
+  // The polynomials of these arguments, if they are known; otherwise `hiding` gives values.
   std::function<std::vector<HidingPolynomial>(std::size_t i)> hiding_polynomials = {};
 };
 
@@ -63,20 +65,21 @@ class Reducer {
  public:
   explicit Reducer(const Reductions& of, double tolerance = 1e-12);
   void restart();
-  // False if a formula begins elsewhere than its polynomial in the step before has ended, which nobody has looked at:
-  // what was collected is wrong.
+  // Returns false if a formula begins at another value than its polynomial of the step before has ended, if that was
+  // not compared with values: then what was collected is wrong.
   [[nodiscard]] bool step(const ReducedStep& step);
   void event(const std::string& name, double t);
-  // The values of the ends where the motion is; those at its end are told last.
+  // Sets the values of the ends where the motion is; the last call gives those at its end.
   void ends(std::vector<double> values) { ends_ = std::move(values); }
-  // The motion has stretches without polynomials: no formula has a value, and no end.
+  // Notes that the motion has stretches without polynomials: no formula and no end has a value.
   void lose_formulas();
-  // Of a formula NaN without a step or without a value on the way, of first(EVENT) NaN without an occurrence.
+  // Returns the values: for a formula NaN without a step or if it lacked a value, for first(EVENT) NaN without an
+  // occurrence.
   void values(std::vector<double>& to) const;
 
  private:
   struct Seen {
-    bool greatest = false, least = false, mean = false;  // what is asked for and can still be had
+    bool greatest = false, least = false, mean = false;  // requested, and still available
     bool lost = false;                                   // a value is missing
     bool done() const { return lost || !(greatest || least || mean); }
     double most = 0, fewest = 0, last = 0, integral = 0, carry = 0;
@@ -98,10 +101,11 @@ class Reducer {
   std::vector<double> ends_;
   std::vector<Fired> fired_;
   std::vector<double> polynomial_;
-  std::vector<double> hidden_;  // points within the step where the formula may do what its polynomial does not show
+  std::vector<double>
+      hidden_;  // points within the step where the formula may do something that its polynomial does not show
   double length_ = 0;
   std::size_t kinks_ = 0;
-  bool foretold_ = false;  // whether the last values are those of polynomials that nobody has looked at
+  bool foretold_ = false;  // the last values are those of polynomials that were not compared with values
 };
 
 }  // namespace anholon

@@ -8,7 +8,7 @@ namespace anholon {
 
 namespace {
 
-// The times lie between the start and the end of a motion. Cases share both.
+// Sets the times of rows, which lie between the start and the end of a motion. Cases share both.
 void set_times(const MotionSettings& asked, const Scenario& s, const Asker& asker, EnsembleOptions& o) {
   for (const WrittenTime& t : asked.at)
     if (o.at.empty() || o.at.back() != t.value) o.at.push_back(t.value);
@@ -20,7 +20,8 @@ void set_times(const MotionSettings& asked, const Scenario& s, const Asker& aske
   must_lie_between(o.at, start, o.to, asker);
 }
 
-// Reductions follow Taylor's polynomials, which know derivatives up to those that are solved for.
+// Throws unless the reductions can be computed: they follow Taylor's polynomials, which have derivatives up to those
+// that are solved for.
 void must_be_had(const Reductions& reductions, const Scenario& s, const Asker& asker, Method method) {
   if (reductions.list.empty()) return;
   if (method != Method::automatic && method != Method::taylor)

@@ -12,7 +12,7 @@ namespace {
 using Holds = SweepColumn::Holds;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// Places of the first columns; what varies is between kCase and the others, which follow it in this order.
+// The places of the first columns; what varies is between kCase and the others, which follow it in this order.
 constexpr std::size_t kCase = 0, kOutcome = 0, kEvent = 1, kTime = 2, kSteps = 3, kBeforeState = 4;
 
 }  // namespace
@@ -20,7 +20,7 @@ constexpr std::size_t kCase = 0, kOutcome = 0, kEvent = 1, kTime = 2, kSteps = 3
 SweepTable::SweepTable(const Model& model, const EnsembleOptions& o)
     : varied_(o.varied.size()), state_(0), reduced_(o.reductions.list.size()) {
   available_.push_back({"case", Holds::whole_numbers});
-  // A varied initial value is not the final value.
+  // A varied initial value has a name that differs from the final value's.
   for (const Varied& v : o.varied)
     available_.push_back({v.kind == Varied::Kind::initial ? v.name + "(0)" : v.name, Holds::numbers});
   const std::size_t first = available_.size();
@@ -65,7 +65,7 @@ void SweepTable::must_tell_columns_apart() const {
   };
   const std::vector<SweepColumn> written = columns();
   for (const SweepColumn& c : written)
-    // A name that chooses a column does not say which of two is meant.
+    // If columns were chosen by name, an ambiguous name among the available ones is an error, too.
     if (with_name(chooses_ ? available_ : written, c.name) > 1)
       throw Failure({}, "two columns of the sweep are called '" + c.name + "'",
                     "case, case_name, outcome, event, t and steps are columns of sweeps; another name in the model, or "

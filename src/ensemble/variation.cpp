@@ -13,16 +13,16 @@ namespace anholon {
 
 namespace {
 
-constexpr std::size_t kMostPoints = 1'000'000'000;  // of one grid; 2^30 places between two of them have numbers
+constexpr std::size_t kMostPoints = 1'000'000'000;  // points of one grid; 2^30 places between two of them have numbers
 
 constexpr const char* kVaryHint =
     "--vary m=1:3:5 (from, to, how many), m=1..3:0.5 (step), m=1,2,5, 'm~normal(1,0.1)' or 'm~uniform(0,2)'";
 
-// What a name that is none of the known ones may mean: "; did you mean …"; "" if nothing is near.
+// The hint for a name that is not known: "; did you mean …"; "" if no name is near.
 std::string meant_by(const std::string& name, std::vector<std::string> known) {
   const bool member = name.find('[') != std::string::npos;
   if (const std::string members = members_known(member ? name : name + "[", known); !members.empty()) return members;
-  known.emplace_back("case");  // varies the scenario
+  known.emplace_back("case");  // "case" varies the scenario
   // A table of a sweep calls an initial value x(0).
   constexpr std::string_view kAtStart = "(0)";
   const std::string base = name.ends_with(kAtStart) ? name.substr(0, name.size() - kAtStart.size()) : name;
@@ -31,7 +31,7 @@ std::string meant_by(const std::string& name, std::vector<std::string> known) {
   return near.empty() ? "" : "; did you mean '" + near + "'?";
 }
 
-// Initial values that the file gives as formulas are varied by a parameter in them.
+// Refuses to vary initial values that the file gives as formulas: a parameter in the formula has to be varied.
 void refuse_initial_formula(const std::string& word, const std::string& text, const std::string& name, bool multiplier,
                             const Model& model) {
   const auto knows = [&](const std::vector<std::string>& names) {
@@ -81,7 +81,7 @@ Varied named(const std::string& word, const std::string& text, const Model& mode
 
 }  // namespace
 
-// The law of random values, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO).
+// Reads the law of random values, NAME~normal(MEAN,DEVIATION) or NAME~uniform(FROM,TO).
 Variation::Values Variation::law(const std::string& word, std::size_t sign, GivenQuantity& of) {
   Values values;
   const std::size_t open = word.find('(', sign);

@@ -6,12 +6,14 @@ namespace anholon {
 
 namespace {
 
-// Steps end with up to so many times the tolerance, or so many round-offs (the shipped models: up to 10, mostly 0.5); a
-// defect that is so many times what there is near the start of the step is none of round-off.
+// A step may end with a defect of kTolerances times the tolerance or of kRoundoffs round-offs (the shipped models: up
+// to 10 tolerances, mostly 0.5). A defect of at most kAboveNoise times the defect near the start of the step is
+// round-off.
 constexpr double kTolerances = 100, kRoundoffs = 4096, kAboveNoise = 64;
-// Of digits that are lost at its start, too, a step may lose so many; with more lost the motion is another one.
+// A step may change its leading derivatives by this part although the change is round-off; if the part is larger, the
+// solutions have lost too many digits to tell where the motion goes.
 constexpr double kMostLost = 0x1p-30;
-// A step that would have to be shorter than 2^-60 of what its series allow is not helped by shortening.
+// A step is shortened at most so often.
 constexpr int kMostShortened = 60;
 
 }  // namespace
@@ -46,7 +48,7 @@ typename EndCheck<N>::Next EndCheck<N>::seen(const N& rate) {
     near_ = -1;
     if (noise_ < N(0)) noise_ = N(0);
     if (is_noise()) {
-      // The last look is to be at the end.
+      // The last look has to be at the end of the step.
       if (index_ >= on_the_way_.size()) return settled_ = true, Next::look;
       return go_on();
     }

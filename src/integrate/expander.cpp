@@ -8,7 +8,7 @@ namespace anholon {
 
 namespace {
 
-// Notes where an expansion is begun; with a kernel what is in its lane is read there later.
+// Notes where an expansion is begun. The state in a kernel's lane is read later.
 template <Number N>
 void note_begun(MotionTrack<N>& track, const std::vector<Wider<N>>& guess, bool by_kernel, bool mapped) {
   MotionState<N>& b = track.begun().at.motion;
@@ -30,7 +30,7 @@ void note_begun(MotionTrack<N>& track, const std::vector<Wider<N>>& guess, bool 
   b.record = now.record;
 }
 
-// What the reference starts from.
+// Notes what the reference starts from.
 template <Number N>
 void note_reference(MotionTrack<N>& track, const Expansion<N>& series) {
   track.begun().at.direction = series.weakest_direction();
@@ -38,7 +38,7 @@ void note_reference(MotionTrack<N>& track, const Expansion<N>& series) {
   if (track.now.carry.empty()) track.now.carry.assign(track.now.state.size(), Wider<N>(0));
 }
 
-// By the polynomials of the reference.
+// Computes the state by the polynomials of the reference.
 template <Number N>
 void reference_state_at(const ReferenceExpansion<N>& reference, const Expansion<Wider<N>>& point, const Wider<N>& h,
                         std::vector<Wider<N>>& state, std::vector<Wider<N>>& leading) {
@@ -95,7 +95,7 @@ void GuardedExpander::set_parameters(const std::vector<double>& parameters, cons
   if (solution_) solution_->set_parameters(wide_parameters);
 }
 
-// The motion is another one.
+// Forgets the motion: the next one is another motion.
 void GuardedExpander::restart() {
   if (kernel_) kernel_->drop();
   maker_ = Maker::reference;
@@ -114,8 +114,8 @@ bool GuardedExpander::kernel_serves(const StepRecord<double>& record) const {
   return kernel_ && !look && !record.careful;
 }
 
-// `again`: from where the present expansion was begun, or another place, in the same step. A kernel that belongs to
-// others, too, is then left in peace.
+// `again`: the expansion replaces the present one, from the same place or from another one of the same step. A kernel
+// with other lanes is not used for such an expansion.
 void GuardedExpander::begin(MotionTrack<double>& track, const std::vector<W>& guess, bool again) {
   awaits_kernel_ = kernel_serves(track.now.record) && (!again || alone());
   if (!again) {
@@ -162,7 +162,7 @@ void GuardedExpander::follow(MotionTrack<double>& track, const OrdinaryCourse& c
     note();
   };
   if (course.steps > 1) {
-    // Only the last two expansions are still asked for.
+    // Only the last two expansions can still be asked for.
     now.record.steps += course.steps - 2;
     step(course.before);
   }
@@ -192,7 +192,7 @@ MotionState<double> GuardedExpander::motion(const MotionTrack<double>& track, bo
   return m;
 }
 
-// Expansions by the kernel do not change the direction.
+// A kernel's expansions do not change the direction.
 StepperState<double> GuardedExpander::begun(const MotionTrack<double>& track) const {
   if (!kernel_) return track.begun().at;
   MotionTrack<double> all = track;
@@ -206,7 +206,7 @@ const Expansion<GuardedExpander::W>& GuardedExpander::point(const MotionTrack<do
     const W& begun = track.begun().at.motion.t;
     solution().load(begun, kernel()->base(begun), kernel()->leading());
     known_ = Known::solution;
-    // The kernel knows no multipliers.
+    // A kernel with unknowns of its own has no multipliers.
     if (kernel()->mapped() && solution().prepare().ok()) solution().solve();
   }
   if (values && known_ == Known::solution) {

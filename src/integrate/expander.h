@@ -1,8 +1,9 @@
-// What makes the Taylor expansions of a stepper: the reference, or, for doubles, a kernel while it is healthy and the
-// reference otherwise. Both have the same face; the number type chooses between them when the program is compiled.
+// Makes the Taylor expansions of a stepper: by the reference, or, for doubles, by a kernel while it is healthy and by
+// the reference otherwise. Both expanders have the same interface; the number type chooses one when the program is
+// compiled.
 //
-// An expansion is made in parts, as a kernel may have motions of others in its other lanes:
-//   begin() -> the kernel is expanded, if it is awaited -> end_by_kernel(), and if that says no:
+// An expansion is made in parts, because other lanes of a kernel may hold other motions:
+// begin() -> the kernel is expanded, if it is awaited -> end_by_kernel(), and if that returns false:
 //   prepare() -> solve() [-> extend(), or cut_to() where formulas have no derivatives]
 #pragma once
 #include "integrate/kernel_expansion.h"
@@ -19,7 +20,7 @@ class ReferenceExpander {
       : shrink_(step_shrink(settings.log_tolerance, order)), reference_(program, parameters, order),
         point_(program, wide_parameters, 1) {}
 
-  // The kernel that has made the present expansion; null if the reference has.
+  // The kernel that has made the present expansion; nullptr if the reference has made it.
   static constexpr KernelExpansion* kernel() { return nullptr; }
   static constexpr bool accelerated() { return false; }
   static constexpr bool foretells_consistent_states() { return false; }
@@ -29,7 +30,7 @@ class ReferenceExpander {
   int order() const { return reference_.order(); }
   const std::vector<W>& wide_parameters() const { return point_.parameters(); }
   void restart() {}  // no expansion is made
-  void reset() {}    // nor counted
+  void reset() {}    // the expansions are not counted
 
   void begin(MotionTrack<N>& track, const std::vector<W>& guess, bool again);
   static constexpr void expand_kernel() {}
@@ -45,14 +46,14 @@ class ReferenceExpander {
   void cut_to(const MotionState<N>& m, const std::vector<W>& leading) { reference_.cut_to(m, leading, point_); }
   N reach() const { return reference_.reach(shrink_); }
 
-  // What decides which functions hold in the present expansion goes into series(), where kinks are looked for, and
-  // whether it may decide otherwise within the horizon is found out.
+  // show_deciding() copies the series that decide which functions hold into series(), where kinks are looked for;
+  // look_for_turns() finds out whether one of them may change its decision within the horizon.
   static constexpr void show_deciding() {}
   static constexpr void look_for_turns(const N&) {}
 
   bool advance(MotionTrack<N>& track, const W& h) { return reference_.advance(track.now, h, point_); }
 
-  // A motion that is in a kernel's lane is read, or taken out of it.
+  // The next functions read the motion from a kernel's lane, or take it out.
   MotionState<N> motion(const MotionTrack<N>& track, bool) const { return track.now; }
   StepperState<N> begun(const MotionTrack<N>& track) const { return track.begun().at; }
   void take_back(MotionTrack<N>&, bool) {}
@@ -60,16 +61,16 @@ class ReferenceExpander {
 
   // The next iteration for the singular value of J starts anew.
   void forget_direction() { series().set_weakest_direction({}); }
-  // The expansion of the reference: that of the present step if no kernel has made that.
+  // The expansion of the reference. It is that of the present step unless a kernel has made that one.
   Expansion<N>& series() { return reference_.series(); }
   const Expansion<N>& series() const { return reference_.series(); }
   N coefficient(std::size_t j, int k) const { return series().coefficient(j, k); }
   N quadrature(std::size_t i, int k) const { return series().quadrature(i)[k]; }
   static constexpr bool constant_quadrature(std::size_t) { return false; }  // as far as is known
-  // Quadrature i over the step.
+  // The integral of quadrature i over h.
   W integral(std::size_t i, const W& h) const { return reference_.integral(i, h); }
   const Expansion<W>& point(const MotionTrack<N>&, bool) const { return point_; }
-  // State and leading derivatives h beyond where the present expansion was made.
+  // Computes state and leading derivatives at h beyond the point of the present expansion.
   void state_at(const MotionTrack<N>&, const W& h, std::vector<W>& state, std::vector<W>& leading) const;
 
  private:
@@ -78,8 +79,9 @@ class ReferenceExpander {
   Expansion<W> point_;
 };
 
-// Expansions by the kernel are those of the reference to round-off. The reference makes those that are asked for with
-// care, the first one and ever fewer others, to measure how regular J is, and all for which the kernel does not serve.
+// Makes expansions by a kernel that agree with those of the reference to round-off. The reference makes the expansions
+// of careful steps, the first one and ever fewer later ones, which measure how regular J is, and all those for which
+// the kernel does not serve.
 class GuardedExpander {
  public:
   using N = double;
@@ -89,14 +91,14 @@ class GuardedExpander {
 
   void accelerate(KernelExpansion kernel) { kernel_ = std::move(kernel); }
   const std::vector<W>& wide_parameters() const { return wide_parameters_; }
-  // Of the reference; those of a kernel's lane are set there.
+  // Sets the parameters of the reference; the parameters of a kernel's lane are set in the kernel.
   void set_parameters(const std::vector<double>& parameters, const std::vector<W>& wide_parameters);
 
   KernelExpansion* kernel() { return maker_ == Maker::kernel ? &*kernel_ : nullptr; }
   const KernelExpansion* kernel() const { return maker_ == Maker::kernel ? &*kernel_ : nullptr; }
   bool accelerated() const { return kernel_.has_value(); }
-  // Whether `state_at` gives states that satisfy the constraints as well as projected ones: velocities that come from
-  // quasi-velocities do, where no constraint is one of positions.
+  // True if state_at() returns states that satisfy the constraints as well as projected states do: velocities computed
+  // from quasi-velocities satisfy them if no constraint restricts positions.
   bool foretells_consistent_states() const { return kernel() && kernel()->mapped() && kernel()->without_positions(); }
   bool alone() const { return !kernel_ || kernel_->alone(); }
   bool suspected() const { return kernel_ && kernel_->suspected(); }
@@ -111,18 +113,20 @@ class GuardedExpander {
   }
   bool end_by_kernel(MotionTrack<double>& track);
   double drift_of_kernel() const { return kernel_->drift(); }
-  // The reference is to make the expansion instead of the kernel, which has made it.
+  // Makes the reference repeat an expansion that the kernel has made.
   void refuse_kernel(MotionTrack<double>& track) {
     kernel_->take_back_as_begun(track);
     if (kernel_->mapped()) track.now.leading = kernel_->leading();
     maker_ = Maker::reference;
     --by_kernel_;
   }
-  // Whether an expansion is awaited of the kernel that has made the one before. As end_by_kernel(), where nothing in it
-  // asks for a closer look; else false, and nothing is changed.
+  // goes_on_with_kernel(): true if an expansion is awaited of the kernel that has made the expansion before.
+  // end_at_once(): like end_by_kernel() if nothing in the expansion needs a closer look; otherwise it returns false and
+  // changes nothing.
   bool goes_on_with_kernel() const { return awaits_kernel_ && kernel() && kernel()->may_be_ordinary(); }
   bool end_at_once(MotionTrack<double>& track);
-  // Ordinary steps were made in the kernel: the track follows, up to the expansion that is awaited, or past it.
+  // Updates the track after ordinary steps that were made in the kernel: up to the expansion that is awaited, or past
+  // it.
   void follow(MotionTrack<double>& track, const OrdinaryCourse& course);
   Outcome prepare(MotionTrack<double>& track, const std::vector<W>& guess);
   Outcome solve(MotionTrack<double>& track, const std::vector<W>& guess) {
@@ -173,14 +177,15 @@ class GuardedExpander {
   }
   const Expansion<W>& point(const MotionTrack<double>& track, bool values) const;
   void state_at(const MotionTrack<double>& track, const W& h, std::vector<W>& state, std::vector<W>& leading) const;
-  // As state_at(), but a state in unknowns of the kernel comes as `own`, and one of the other two stays empty.
+  // Like state_at(), but a state in the unknowns of the kernel is returned as `own`; either `state` or `own` stays
+  // empty.
   void own_state_at(const MotionTrack<double>& track, const W& h, std::vector<W>& state, std::vector<W>& own,
                     std::vector<W>& leading) const;
 
  private:
   bool kernel_serves(const StepRecord<double>& record) const;
 
-  // Made where they are first asked for: a motion that the kernel makes alone needs neither.
+  // Both are made when they are first needed: a motion that the kernel makes alone needs neither.
   ReferenceExpansion<double>& reference() const;
   Expansion<W>& solution() const;
 
@@ -194,12 +199,13 @@ class GuardedExpander {
   std::optional<KernelExpansion> kernel_;
   enum class Maker : std::uint8_t { reference, kernel };
   Maker maker_ = Maker::reference;  // of the present expansion
-  bool awaits_kernel_ = false;      // one is begun, and the kernel has not been looked at yet
+  bool awaits_kernel_ = false;      // an expansion is begun, and the kernel's result has not been looked at yet
   std::size_t by_kernel_ = 0;
-  // The solution where the present expansion was made. After the kernel's it is computed when it is first asked for.
+  // The solution at the point of the present expansion. After an expansion by the kernel it is computed when it is
+  // first asked for.
   mutable std::unique_ptr<Expansion<W>> solution_;
   enum class Known : std::uint8_t { nothing, solution, values };
-  mutable Known known_ = Known::values;  // of it
+  mutable Known known_ = Known::values;  // which parts of solution_ are known
 };
 
 namespace expander_of {

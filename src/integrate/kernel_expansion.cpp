@@ -11,8 +11,8 @@
 
 namespace anholon {
 
-// Who asks for the last digits gets them from the reference, which refines its solutions in wider numbers, where an
-// elimination begins to lose some.
+// If the tolerance asks for the last digits, pivots have to be so healthy that the elimination loses no digits; below
+// that, the reference makes the expansion and refines its solutions in wider numbers.
 static double trusted_health(const KernelPlan& plan, double log_tolerance) {
   constexpr double kLosesNone = 0.25;
   return asks_for_last_digits(log_tolerance) && !plan.map() ? kLosesNone : plan.least_health();
@@ -23,7 +23,7 @@ KernelExpansion::KernelExpansion(std::shared_ptr<Kernel> kernel, int lane, const
     : kernel_(std::move(kernel)), lane_(lane), program_(&motion), order_(order),
       least_health_(trusted_health(kernel_->plan(), log_tolerance)) {
   kernel_->set_shrink(step_shrink(log_tolerance, order));
-  // The roots of a kernel with unknowns of its own are its own, too: of what J keeps from zero.
+  // A kernel with unknowns of its own has roots of its own; J keeps their arguments from zero, so they need no look.
   if (!mapped()) deciding_ = kernel_->plan().plan().deciding;
 }
 
@@ -44,7 +44,7 @@ void KernelExpansion::load(MotionTrack<double>& track, const std::vector<W>& gue
         m.own_leading.clear();
       }
       kernel_->place(lane_, m.own, m.own_leading);
-      // Where the map has no value, this is all that is left.
+      // The state is kept because the map may have no value here.
       track.begun().at.motion.state = m.state;
     }
     holds_ = true;
@@ -126,7 +126,7 @@ void KernelExpansion::read(MotionState<double>& m, bool expanded) const {
   if (expanded || mapped()) m.leading = leading();
 }
 
-// While an expansion is being made, there is nothing to be read of it.
+// During an expansion nothing can be read of it.
 void KernelExpansion::read_begun(MotionTrack<double>& track) const {
   if (!holds_) return;
   const auto put = [&](MotionTrack<double>::Begun& b, Kernel::Moment moment) {
@@ -175,7 +175,7 @@ std::vector<KernelExpansion::W> KernelExpansion::leading() const {
   return leading;
 }
 
-// The kernel's unknown that is the motion's unknown j.
+// Returns the kernel's unknown that is the motion's unknown j.
 std::optional<std::size_t> KernelExpansion::own_unknown(std::size_t j) const {
   return mapped() ? kernel_->plan().map()->own(j, program_->unknowns()) : std::optional<std::size_t>(j);
 }
@@ -255,7 +255,7 @@ VelocityJump KernelExpansion::velocity_jump(double t) const {
 
 bool KernelExpansion::follow(MotionTrack<double>& track, const W& h) {
   MotionState<double>& m = track.now;
-  if (mapped()) holds_ = true;  // whoever has taken the state back has left it as it was
+  if (mapped()) holds_ = true;  // the state that was taken back is unchanged
   if (holds_) {
     if (!blows_up()) return true;
     take_back(track, true);
@@ -271,8 +271,8 @@ bool KernelExpansion::follow(MotionTrack<double>& track, const W& h) {
   return false;
 }
 
-// The solution h beyond where the expansion was made, in the unknowns of the kernel, by its increments. What the kernel
-// does not see of the wider state is added: t_i h^(i-k) / (i-k)!.
+// Computes the solution at h beyond the point of the expansion, in the unknowns of the kernel, by its increments. The
+// part t of the wider state that the kernel does not see adds t_i h^(i-k) / (i-k)!.
 void KernelExpansion::advanced(const W& h, const std::vector<W>& base, std::vector<W>& state,
                                std::vector<W>& leading) const {
   kernel_->show_last();

@@ -1,4 +1,4 @@
-// The equations along the polynomial of the present step: their values, J and its LU at a point ahead.
+// Evaluates the equations along the polynomial of the present step: their values, J and its LU at a point ahead.
 #pragma once
 #include <algorithm>
 #include <memory>
@@ -18,19 +18,19 @@ class LookAhead {
     parameters_ = parameters;
     if (there_) there_->set_parameters(parameters);
   }
-  // These quadratures are those of evaluate_watched().
+  // Chooses the quadratures that evaluate_watched() evaluates.
   void watch(const std::vector<std::size_t>& quadratures);
-  // The motion there, without any values.
+  // Loads the motion at this point, without evaluating anything.
   Expansion<N>& load(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
-  // The same by the series of the step, in their numbers: coefficient(j, k) is that of order k of unknown j, which has
-  // orders up to `beyond` + d_j. `h`: from where the series begin to t.
+  // Loads the motion at t by the series of the step, in their number type: coefficient(j, k) is that of order k of
+  // unknown j, which has orders up to `beyond` + d_j. `h`: the distance of t from the point of the series.
   template <class Coefficient>
   Expansion<N>& load(const N& t, const N& h, int beyond, const Coefficient& coefficient) {
     state_.clear(), leading_.clear();
     for (std::size_t j = 0; j < program_->unknowns(); ++j) {
       const int d = program_->d[j];
-      // Horner's scheme for the polynomial and its derivatives, each divided by a factorial; the second is the highest
-      // of nearly all motions.
+      // Horner's scheme computes the polynomial and its derivatives, each divided by a factorial; for nearly all
+      // motions the second derivative is the highest.
       N value(0), first(0), second(0);
       higher_.assign(static_cast<std::size_t>(std::max(0, d - 2)), N(0));
       for (int i = h == N(0) ? d : beyond + d; i >= 0; --i) {
@@ -48,20 +48,22 @@ class LookAhead {
     }
     return load(t);
   }
-  // … with J and its LU; null if J has none. What was met elsewhere says nothing there: the iteration for the singular
-  // value starts anew, so that a run that goes on finds the same.
+  // Loads the motion and computes J and its LU; returns nullptr if J has no LU. The iteration for the singular value
+  // starts anew, so that a run that goes on from here gets the same result.
   Expansion<N>* prepare(const W& t, const std::vector<W>& state, const std::vector<W>& leading);
-  // What is watched where the motion was loaded last; of the quadratures these alone are known then.
+  // Evaluates what is watched where the motion was loaded last; other quadratures are unknown afterwards.
   void evaluate_watched();
-  // These slots decide which functions hold, and are those of evaluate_kinks().
+  // Chooses the slots that decide which functions hold, which evaluate_kinks() evaluates.
   void watch_kinks(const std::vector<std::uint32_t>& slots);
-  // What decides which functions hold, where the motion was loaded last; no other slots are known then.
+  // Evaluates what decides which functions hold, where the motion was loaded last; no other slots are known afterwards.
   void evaluate_kinks() { there_->evaluate(kinks_); }
-  // A quadrature where the motion was loaded last, and the formulas evaluated; nullopt if it has no value there.
+  // Returns a quadrature where the motion was loaded last, after evaluating the formulas; nullopt if it has no value
+  // there.
   std::optional<N> quadrature(std::size_t i);
-  // The magnitude of the terms of this value.
+  // The magnitude of the terms of this quadrature.
   N quadrature_terms(std::size_t i);
-  // The magnitude of all that the value is made of, down to the unknowns: its round-off may come from there.
+  // The magnitude of everything that enters the quadrature, down to the unknowns, each of which may cause its
+  // round-off.
   N quadrature_made_of(std::size_t i);
 
  private:
@@ -77,7 +79,7 @@ class LookAhead {
   bool quadratures_known_ = false;
 };
 
-// What those who judge a step see of it.
+// The present step, for the classes that judge it.
 template <Number N>
 struct PresentStep {
   using W = Wider<N>;
@@ -85,16 +87,16 @@ struct PresentStep {
   Expander<N>& expander;
   LookAhead<N>& look;
 
-  // Where the expansion was made. While the stepper looks back, the motion has come farther.
+  // The time of the expansion. While the stepper looks back, the motion is farther on.
   const W& t() const { return track.begun().at.motion.t; }
   const Expansion<N>& series() const { return expander.series(); }
-  // h beyond the expansion.
+  // Loads the motion at h beyond the expansion.
   Expansion<N>& load(const W& h) {
     std::vector<W> state, leading;
     expander.state_at(track, h, state, leading);
     return look.load(t() + h, state, leading);
   }
-  // By the series, which is fast: for what is compared with them.
+  // Loads the motion by the series, which is fast; for values that are compared with the series.
   Expansion<N>& load_series(const W& h) {
     return look.load(convert<N>(W(t() + h)), convert<N>(h), expander.order() - 1,
                      [&](std::size_t j, int k) { return expander.coefficient(j, k); });
@@ -104,8 +106,8 @@ struct PresentStep {
     expander.state_at(track, h, state, leading);
     return look.prepare(t() + h, state, leading);
   }
-  // Of the polynomial itself, in formulas that follow from it without derivatives beyond the leading ones; nullopt if
-  // it has no finite value.
+  // Returns a quadrature on the polynomial itself, by its formula without derivatives beyond the leading ones; nullopt
+  // if it has no finite value.
   std::optional<N> quadrature(std::size_t i, const N& h) {
     const std::optional<N> value = prepare(convert<W>(h)) ? look.quadrature(i) : std::nullopt;
     return value && is_finite(*value) ? value : std::nullopt;

@@ -4,7 +4,7 @@ namespace anholon {
 
 template <Number N>
 StepRecord<N> with_other_equations(const StepRecord<N>& record) {
-  // By structured bindings: a member that is added later and forgotten here does not compile.
+  // Structured bindings name all members, so a member that is added and forgotten here does not compile.
   [[maybe_unused]] const auto& [branch_step, steps, worst_constraint, worst_equation, first_sigma, least_regular,
                                 sigma_before, last_step, least_health, careful] = record;
   StepRecord<N> to;

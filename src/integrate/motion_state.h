@@ -1,4 +1,4 @@
-// What a stepper carries from step to step: where the motion is, and what was met on the way.
+// What a stepper carries from step to step: the motion's state, and a record of the steps so far.
 #pragma once
 #include <array>
 #include <vector>
@@ -8,12 +8,12 @@
 
 namespace anholon {
 
-// Where the scaled system Jacobian J was least regular so far.
+// The point where the scaled system Jacobian J was least regular so far.
 template <Number N>
 struct LeastRegular {
   N sigma{1};  // its smallest singular value
   Wider<N> t{0};
-  std::size_t unknown = 0;  // that J determined least there
+  std::size_t unknown = 0;  // the unknown that J determined least there
 
   // `direction`: the unit vector that J maps to the shortest image at time `at`.
   void see(const N& value, const Wider<N>& at, const std::vector<N>& direction) {
@@ -25,7 +25,7 @@ struct LeastRegular {
   }
 };
 
-// What has been met on the way so far.
+// The record of the steps so far.
 template <Number N>
 struct StepRecord {
   using W = Wider<N>;
@@ -34,18 +34,18 @@ struct StepRecord {
   W worst_constraint{0}, worst_equation{0};
   N first_sigma{0};  // the first smallest singular value of the scaled system Jacobian
   LeastRegular<N> least_regular;
-  N sigma_before{0};     // where the last step began
-  W last_step{0};        // its length
-  N least_health{1};     // of a kernel's pivots
+  N sigma_before{0};     // sigma where the last step began
+  W last_step{0};        // the length of the last step
+  N least_health{1};     // the least health of a kernel's pivots
   bool careful = false;  // the step that follows is made without a kernel
 };
 
-// The record of a stepper that goes on with other equations for the same motion: lengths of steps, pivots and values of
-// sigma before belong to the old ones.
+// Returns the record for a stepper that continues the motion with other equations. It leaves out lengths of steps,
+// pivots and values of sigma, which belong to the old equations.
 template <Number N>
 StepRecord<N> with_other_equations(const StepRecord<N>& record);
 
-// The motion at one time. A copy is all that the next steps depend on.
+// The motion at one time. The next steps depend on nothing else.
 template <Number N>
 struct MotionState {
   using W = Wider<N>;
@@ -59,12 +59,12 @@ struct MotionState {
   StepRecord<N> record;
 };
 
-// A motion at its start: no round-off is carried, nothing has been met.
+// Returns a motion at its start, with no round-off carried and an empty record.
 template <Number N>
 MotionState<N> motion_from(const Wider<N>& t, const std::vector<Wider<N>>& state, const std::vector<Wider<N>>& leading,
                            std::size_t quadratures);
 
-// A motion where an expansion of it was begun: from here the same steps follow, bit by bit.
+// The motion at the point where an expansion was begun: from here the same steps follow, bit by bit.
 template <Number N>
 struct StepperState {
   MotionState<N> motion;
@@ -72,7 +72,7 @@ struct StepperState {
   std::vector<int> sides;    // of the series watched for events
 };
 
-// The motion as a stepper has it.
+// The motion of a stepper.
 template <Number N>
 struct MotionTrack {
   struct Begun {
@@ -80,7 +80,7 @@ struct MotionTrack {
     bool by_kernel = false;
   };
   MotionState<N> now;
-  // Where the present expansion was begun, and the one before.
+  // The states where the present expansion and the one before were begun.
   Begun& begun() { return expansions[present]; }
   const Begun& begun() const { return expansions[present]; }
   Begun& previous() { return expansions[1 - present]; }
@@ -90,12 +90,13 @@ struct MotionTrack {
   std::size_t present = 0;
 };
 
-// Steps smaller than this many round-offs of the time are a collapse.
+// A step shorter than this many round-offs of the time is a collapse.
 inline constexpr int kCollapsedRoundoffs = 16;
-// Nearer to that, in relation to the time, no step is an ordinary one.
+// An ordinary step is longer than this, relative to the time.
 inline constexpr double kShortStep = 2 * kCollapsedRoundoffs * 0x1p-53;
 
-// What ordinary steps that are made in the lanes of a kernel tell the stepper of a motion (lanes/ordinary_steps.h).
+// The data of ordinary steps in the lanes of a kernel (lanes/ordinary_steps.h) that the stepper of the motion takes
+// over.
 struct OrdinaryCourse {
   struct Step {
     double to = 0, length = 0;
@@ -105,17 +106,17 @@ struct OrdinaryCourse {
   Pivots pivots;      // of the last expansion that has served
   double least_health = 0;
   std::size_t steps = 0;  // made
-  // The steps that may be made without a look at budget and pace, and how many the budget has beyond them.
+  // The number of steps that may be made without asking for budget and pace, and the steps of the budget beyond them.
   std::size_t most = 0, most_ahead = 0;
-  // The step after them: it is aimed, and the kernel is at its end.
+  // The step after the made ones: it is aimed, and the kernel is at its end.
   bool aimed = false;
   double end = 0, horizon = 0, drift = 0;
 };
 
-// A motion whose state grows beyond this is called a blow-up.
+// A motion whose state grows beyond this blows up.
 inline constexpr double kBlowUp = 1e100;
 
-// s + x with the round-off kept in `carry`.
+// Adds x to s and keeps the round-off in `carry`.
 template <Number N>
 void add_compensated(N& s, N& carry, const N& x) {
   const N y = x + carry, sum = s + y;

@@ -9,15 +9,15 @@ namespace anholon {
 
 namespace {
 
-// The neglected terms of a force like the square root of the time are then as large as the tolerance.
+// With this part, the neglected terms of a force like the square root of the time are as large as the tolerance.
 constexpr double kPartOfTolerance = 2.0 / 3;
 constexpr int kRoundoffsOfTime = 32;
 constexpr int kMostIterations = 60;
-// Iterations end when they change this part of the leading derivatives; what depends on the step by more than kSame
-// grows without bound at its start.
+// Iterations end when they change the leading derivatives by the part kSettled. Leading derivatives that change by more
+// than the part kSame with the length of the step grow without bound at its start.
 constexpr double kSettled = 1e-10, kSame = 0.05;
-// A simple iteration goes on while it shrinks its changes to this part; Newton's differences are taken over this part
-// of the derivatives.
+// A simple iteration goes on while it shrinks its changes to the part kContracts. Newton's differences are taken over
+// the part kDifference of the derivatives.
 constexpr double kContracts = 0.3, kDifference = 1e-4;
 
 template <Number W>
@@ -41,7 +41,7 @@ bool all_finite(const std::vector<W>& list) {
   return std::all_of(list.begin(), list.end(), [](const W& x) { return is_finite(x); });
 }
 
-// A direction that nothing in a model prefers.
+// Returns a direction that no model prefers.
 template <Number W>
 std::vector<W> arbitrary(std::size_t size, double sign) {
   std::vector<W> list;
@@ -58,7 +58,8 @@ OneSidedStart<N>::OneSidedStart(PresentStep<N>& step, Outcome fault) : fault_(st
     step.expander.point(step.track, false).leading(at_point_);
 }
 
-// Parts of the times in which the lower derivatives change by their size, at least 1, measured as in step_size().
+// Returns a part of the times in which the lower derivatives change by their size, at least 1, measured as in
+// step_size().
 template <Number N>
 typename OneSidedStart<N>::W OneSidedStart<N>::length(const PresentStep<N>& step, const Expansion<W>& point,
                                                       double log_tolerance) {
@@ -79,8 +80,8 @@ typename OneSidedStart<N>::W OneSidedStart<N>::length(const PresentStep<N>& step
   return part > resolved ? part : resolved;
 }
 
-// G: the leading derivatives that the equations have h beyond, on the polynomial that ends with these; nullopt where
-// they have none.
+// Computes G: the leading derivatives that the equations have at h, on the polynomial that ends with the given ones.
+// Returns nullopt if the equations have none there.
 template <Number N>
 std::optional<std::vector<typename OneSidedStart<N>::W>>
 OneSidedStart<N>::leading_after(PresentStep<N>& step, const W& h, std::vector<W> leading) const {
@@ -93,7 +94,8 @@ OneSidedStart<N>::leading_after(PresentStep<N>& step, const W& h, std::vector<W>
   return all_finite(leading) ? std::optional(std::move(leading)) : std::nullopt;
 }
 
-// A solution of a = G(a): by simple iteration as long as that contracts, by Newton's method with differences otherwise.
+// Finds a solution of a = G(a), by simple iteration as long as it contracts, by Newton's method with differences
+// otherwise.
 template <Number N>
 std::optional<std::vector<typename OneSidedStart<N>::W>> OneSidedStart<N>::fixed_point(PresentStep<N>& step, const W& h,
                                                                                        std::vector<W> a) const {
@@ -130,8 +132,8 @@ std::optional<std::vector<typename OneSidedStart<N>::W>> OneSidedStart<N>::fixed
   return std::nullopt;
 }
 
-// The one solution; nullopt if there is none or another one. Where the equations have no value at the point itself,
-// every direction has to lead to the same derivatives, their opposite included.
+// Returns the only solution; nullopt if there is none or more than one. If the equations have no value at the point
+// itself, all starting directions, opposite ones among them, have to lead to the same derivatives.
 template <Number N>
 std::optional<std::vector<typename OneSidedStart<N>::W>> OneSidedStart<N>::only_fixed_point(PresentStep<N>& step,
                                                                                             const W& h) const {
@@ -162,8 +164,8 @@ std::optional<std::vector<typename OneSidedStart<N>::W>> OneSidedStart<N>::take(
   return a;
 }
 
-// Where the equations have no value at the point, but one beside it in every direction, it is the direction that is not
-// determined.
+// If the equations have no value at the point, but the same one in an arbitrary direction at two distances from it, the
+// hint says that the direction of the motion is not determined.
 template <Number N>
 Outcome OneSidedStart<N>::fault(PresentStep<N>& step, const W& h) const {
   Outcome o = fault_;
@@ -177,7 +179,7 @@ Outcome OneSidedStart<N>::fault(PresentStep<N>& step, const W& h) const {
   return o;
 }
 
-// The search has left a trial in the expansion.
+// The search has left a trial in the expansion, which the track's leading derivatives replace.
 template <Number N>
 Outcome OneSidedStart<N>::stop(PresentStep<N>& step, const W& h) {
   stopped_ = true;

@@ -1,10 +1,10 @@
-// Goes on from where a formula has no derivatives along the motion, or no value: a root, norm or unit vector whose
-// argument is zero there (theory: taylor, "One-sided starts").
+// Makes the first step from a point where a formula has no derivatives along the motion, or no value: a root, norm or
+// unit vector whose argument is zero there (theory: taylor, "One-sided starts").
 //
-// One step, so short that the leading derivatives a say all about it: x(h) = x + ... + a h^d/d!. They are those that
-// the equations have at its end, a = G(a), found by iteration: so a formula is taken on the side that the motion
-// enters. Where they are not determined that way (dry friction that holds, a thrust along a velocity that is zero), the
-// outcome names the formula.
+// The step is so short that the leading derivatives a determine it: x(h) = x + ... + a h^d/d!. They are those that the
+// equations have at its end, a = G(a), found by iteration; so a formula is taken on the side that the motion enters. If
+// that does not determine them (dry friction that holds, a thrust along a velocity that is zero), the outcome names the
+// formula.
 #pragma once
 #include "integrate/look_ahead.h"
 
@@ -14,21 +14,21 @@ template <Number N>
 class OneSidedStart {
  public:
   using W = Wider<N>;
-  // After an expansion that has failed with `fault`.
+  // REQUIRES: an expansion has failed with `fault`.
   OneSidedStart(PresentStep<N>& step, Outcome fault);
 
-  // The length of the step, positive. `point`: where it begins.
+  // Returns the length of the step, positive. `point`: where the step begins.
   static W length(const PresentStep<N>& step, const Expansion<W>& point, double log_tolerance);
-  // Ends the expansion with the leading derivatives for a step h of either sign; nullopt if they are not determined, or
-  // grow without bound as h shrinks.
+  // Ends the expansion with the leading derivatives for a step h of either sign. Returns nullopt if they are not
+  // determined, or grow without bound as h shrinks.
   std::optional<std::vector<W>> take(PresentStep<N>& step, const W& h) const;
-  // The fault, where there is no such step.
+  // Returns the fault if there is no such step.
   Outcome fault(PresentStep<N>& step, const W& h) const;
-  // As fault(), where the motion came to the point and cannot go on from it: the expansion ends with the leading
+  // Like fault(), for a motion that came to the point and cannot go on from it; the expansion gets the leading
   // derivatives of the track again.
   Outcome stop(PresentStep<N>& step, const W& h);
-  // Whether the motion stops at the point: nothing follows whose leading derivatives stand for those that the equations
-  // do not have there.
+  // True if the motion stops at the point, so that no later leading derivatives can replace those that the equations do
+  // not have there.
   bool stopped() const { return stopped_; }
 
  private:

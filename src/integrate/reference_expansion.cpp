@@ -61,7 +61,7 @@ Outcome ReferenceExpansion<N>::solve_wide(MotionState<N>& m, Expansion<W>& point
   if (Outcome o = point.project(solver); !o.ok()) return o;
   missed_ = {convert<N>(point.drift()), point.most_missed()};
   if (Outcome o = point.solve(solver); !o.ok()) {
-    // The Jacobian moves with the leading derivatives: solve for them in N first.
+    // The Jacobian depends on the leading derivatives, so they are solved for in N first.
     if (o = expansion_.solve(); !o.ok()) return o;
     expansion_.leading(narrow_leading_);
     convert_all(narrow_leading_, m.leading);
@@ -94,12 +94,12 @@ void ReferenceExpansion<N>::polynomial(const W& h, const Expansion<W>& point, st
   leading.assign(p.unknowns(), W(0));
   for (std::size_t j = 0; j < p.unknowns(); ++j) {
     const int d = p.d[j], top = order_ - 1 + d;
-    // Up to that of the leading derivative they come from the wider point.
+    // Coefficients up to that of the leading derivative come from the wider point.
     const auto coefficient = [&](int k) {
       return k <= d ? point.coefficient(j, k) : convert<W>(expansion_.coefficient(j, k));
     };
     for (int k = 0; k <= d; ++k) {
-      // sum_i x_(k+i) (k+i)!/i! h^i, without the term of order 0 (that is the state itself).
+      // The sum is sum_i x_(k+i) (k+i)!/i! h^i without the term of order 0, which is the state itself.
       W s(0);
       for (int i = top - k; i >= 1; --i) {
         W factor(1);

@@ -5,8 +5,8 @@
 
 namespace anholon {
 
-// A diagonal similarity by powers of 2 that brings rows and columns to like sizes (Osborne 1960): the norm of a matrix
-// in badly scaled unknowns says nothing about its spectral radius.
+// Applies a diagonal similarity by powers of 2 that brings rows and columns to like sizes (Osborne 1960), because the
+// norm of a matrix in badly scaled unknowns tells nothing about its spectral radius.
 template <Number N>
 static void balance(Matrix<N>& a) {
   constexpr int kSweeps = 4;
@@ -45,7 +45,7 @@ bool near(const Expansion<N>& p0, const Expansion<N>& p1) {
   }
   double norm2 = 0;
   for (const N& v : a.data) norm2 += to_double(v) * to_double(v);
-  return norm2 <= std::pow(kNear, 16);  // false for what is not a number
+  return norm2 <= std::pow(kNear, 16);  // false if the norm is not a number
 }
 
 template <Number N>
@@ -65,7 +65,7 @@ Mode<N> weakest_mode(const Expansion<N>& at, const N& sigma) {
   return m;
 }
 
-// The cosine of the angle between parts of two vectors.
+// The cosine of the angle between two vectors, from element `from` on.
 template <Number N>
 static double cosine(const std::vector<N>& a, const std::vector<N>& b, std::size_t from = 0) {
   double dot = 0, aa = 0, bb = 0;
@@ -88,8 +88,8 @@ bool crossed(const Mode<N>& a, const Mode<N>& b, std::size_t coordinates) {
 
 namespace {
 
-// A singular value of J may fall to so many round-offs of what it was at the start: below, fewer than six digits are
-// left of a solution.
+// A singular value of J may fall to this many round-offs of its value at the start; below, a solution has fewer than
+// six digits.
 constexpr double kNoDigits = 1e6;
 
 template <Number N>
@@ -99,8 +99,8 @@ std::optional<Mode<N>> mode_of(Expansion<N>* there) {
   return weakest_mode(*there, sigma);
 }
 
-// Whether the weakest direction at one point is mapped to the opposite at another: where several singular values pass
-// zero together, the weakest direction there is any of theirs.
+// True if the weakest direction at one point is mapped to the opposite at another. If several singular values pass zero
+// together, the weakest direction there may belong to any of them.
 template <Number N>
 bool reversed(const Mode<N>& from, const Expansion<N>& there) {
   constexpr double kOpposite = -0.5;
@@ -124,8 +124,8 @@ Outcome JacobianGuard<N>::check(Expansion<N>& at, const W& t, StepRecord<N>& rec
   const std::vector<N>& v = at.weakest_direction();
   if (record.first_sigma == N(0)) record.first_sigma = sigma_;
   record.least_regular.see(sigma_, t, v);
-  // Steps shrink towards where constraints lose their hold, and would come out on the other side, with one motion of
-  // several. Where coordinates are singular (Euler's angles) there is one.
+  // Steps shrink towards a point where constraints lose their hold, and would come out on the other side with one
+  // motion of several. Where coordinates are singular (Euler's angles) the motion beyond is the only one.
   const auto larger = [](const N& a, const N& b) { return abs(a) < abs(b); };
   const bool of_constraints =
       std::max_element(v.begin(), v.end(), larger) - v.begin() >= static_cast<std::ptrdiff_t>(coordinates_);
@@ -136,7 +136,7 @@ Outcome JacobianGuard<N>::check(Expansion<N>& at, const W& t, StepRecord<N>& rec
 // Steps end where J may become singular, and shrink towards a singular point.
 template <Number N>
 typename JacobianGuard<N>::W JacobianGuard<N>::on_the_branch(PresentStep<N>& step, W h, StepRecord<N>& record) const {
-  // From a horizon of e^300 (a polynomial motion) to far below any step.
+  // The range is from a horizon of e^300 (a polynomial motion) to far below any step.
   constexpr int kMostHalvings = 600;
   if (record.branch_step > W(0) && abs(h) > record.branch_step * W(4))
     h = h > W(0) ? record.branch_step * W(4) : record.branch_step * W(-4);
@@ -160,8 +160,8 @@ class SingularPoint {
   SingularPoint(PresentStep<N>& step, std::size_t coordinates, N start)
       : step_(step), coordinates_(coordinates), start_(start) {}
 
-  // Between two distances, of which the first has this mode. What the two ends tell is taken for granted where the weakest
-  // direction is nearly the same at both; other parts are halved, at most `halvings` times, and at least `sure` times.
+  // Looks between two distances, of which the first has the mode `low`. If the weakest direction is nearly the same at
+  // both ends, the ends are trusted; other parts are halved, at most `halvings` times, and at least `sure` times.
   std::optional<W> within(const W& from, const Mode<N>& low, const W& to, int sure, int halvings) const {
     constexpr double kAlike = 0.8;
     Expansion<N>* end = step_.prepare(to);
@@ -185,7 +185,7 @@ class SingularPoint {
     return crossed(from, m, coordinates_) || reversed(from, there);
   }
 
-  // By bisection; nullopt if the singular value does not vanish where it ends.
+  // Locates the point by bisection; returns nullopt if the singular value does not vanish there.
   std::optional<W> located(W from, Mode<N> low, W to) const {
     constexpr double kVanished = 1e-6;
     constexpr int kBisections = 60, kRoundoffs = 4096;
@@ -200,7 +200,7 @@ class SingularPoint {
       else
         from = middle, low = std::move(*m);
     }
-    // A step that begins beside the singular point finds a value there that is round-off, however small it was.
+    // If a step begins beside the singular point, the value found there is round-off, not a small part of `start_`.
     const N roundoff = unit_roundoff<N>() * N(kRoundoffs);
     return low.sigma < start_ * N(kVanished) || low.sigma < roundoff ? std::optional<W>(from) : std::nullopt;
   }
@@ -216,20 +216,20 @@ template <Number N>
 std::optional<typename JacobianGuard<N>::W> JacobianGuard<N>::singular_within(PresentStep<N>& step, const W& h,
                                                                               const W& last_step) const {
   constexpr double kFaster = 0.6;
-  // Parts of a step in which the weakest direction turns; the parts in which a long one is looked at in any case; the
-  // unknowns for which this costs little.
+  // The halvings of a step in which the weakest direction turns, the halvings of a long step in any case, and the
+  // number of unknowns for which halvings cost little.
   constexpr int kHalvings = 5, kSure = 3;
   constexpr std::size_t kFewUnknowns = 64;
   const bool by_kernel = step.expander.kernel() != nullptr, is_long = longer_than(h, last_step);
-  // A singular value that vanishes within the step has fallen by more than half in one as long; what it was is not
-  // known after steps by the kernel.
+  // A singular value that vanishes within the step has fallen by more than half in a step of the same length before.
+  // Its earlier value is not known after steps by the kernel.
   const bool suspected =
       by_kernel || step.expander.suspected() || is_long || sigma_ < step.track.now.record.sigma_before * N(kFaster);
   if (!suspected) return std::nullopt;
   const std::optional<Mode<N>> here =
       by_kernel ? mode_of(step.look.prepare(step.t(), step.track.now.state, {})) : weakest_mode(step.series(), sigma_);
   if (!here) return std::nullopt;
-  // Without multipliers nothing but coordinates can lose its hold.
+  // Without multipliers only coordinates can be singular.
   const std::size_t unknowns = step.series().program().unknowns();
   const bool few = unknowns > coordinates_ && unknowns <= kFewUnknowns;
   return SingularPoint<N>(step, coordinates_, here->sigma)

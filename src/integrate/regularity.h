@@ -1,6 +1,7 @@
-// Whether the system Jacobian J is regular at a point, and stays so between two points of a motion (theory: taylor).
+// Decides whether the system Jacobian J is regular at a point, and stays so between two points of a motion (theory:
+// taylor).
 //
-// Where leading derivatives enter nonlinearly, solutions of the equations may meet where J is singular, and the Taylor
+// If leading derivatives enter nonlinearly, solutions of the equations may meet where J is singular, and the Taylor
 // polynomial would go straight on from one to another: `near` says that J is regular on all of the way. The polynomial
 // may also carry a motion across a singular point of any system: a linkage that folds flat, a multiplier that makes the
 // inertia vanish. The motion beyond is one of several: `crossed` says that there was such a point.
@@ -14,65 +15,65 @@ inline Outcome becomes_singular(const std::string& when = {}) {
   return {OutcomeKind::singular, "the system Jacobian becomes singular" + when, "end the motion before"};
 }
 
-// With A = J0^-1 (J1 - J0) of spectral radius below 1 every J on the line from J0 to J1 is regular. True if the radius,
-// estimated by the norm of the balanced A^8, is at most 1/2.
+// True if the spectral radius of A = J0^-1 (J1 - J0), estimated by the norm of the balanced A^8, is at most 1/2. If it
+// is below 1, every J on the line from J0 to J1 is regular.
 template <Number N>
 bool near(const Expansion<N>& p0, const Expansion<N>& p1);
 
-// The unit direction v that J shows least, J v, the reactions of the multipliers in v, and the smallest scaled singular
-// value.
+// The unit vector v that J maps to the shortest image, J v, the reactions of the multipliers in v, and the smallest
+// scaled singular value.
 template <Number N>
 struct Mode {
   std::vector<N> v, image, reaction;
   N sigma{0};
 };
-// REQUIRES: at.smallest_singular_value() has been asked for; it is `sigma`.
+// REQUIRES: at.smallest_singular_value() has been computed; it is `sigma`.
 template <Number N>
 Mode<N> weakest_mode(const Expansion<N>& at, const N& sigma);
 
-// While v keeps its direction, J v or the reactions change theirs: a singular value, or a combination of the rows of
-// Phi, has passed zero in between.
+// True if J v or the reactions change their direction while v keeps its own: then a singular value, or a combination of
+// the rows of Phi, has passed zero in between.
 template <Number N>
 bool crossed(const Mode<N>& a, const Mode<N>& b, std::size_t coordinates);
 
-// Looks after J along a motion: its smallest singular value sigma, and where a step has to end because of it.
+// Watches J along a motion: its smallest singular value sigma, and where a step has to end because of J.
 template <Number N>
 class JacobianGuard {
  public:
   using W = Wider<N>;
   explicit JacobianGuard(const Program& program) : coordinates_(program.system->coordinates) {}
 
-  // Another motion.
+  // Begins another motion.
   void restart() {
     sigma_ = N(0);
     singular_ahead_ = false;
   }
   const N& sigma() const { return sigma_; }
   void set_sigma(const N& sigma) { sigma_ = sigma; }
-  // Measures sigma after prepare(), and notes in the record what is new. Not ok where constraints have lost their hold.
+  // Measures sigma after prepare(), and notes new extremes in the record. Fails if constraints have lost their hold.
   Outcome check(Expansion<N>& at, const W& t, StepRecord<N>& record);
 
-  // The longest of h, h/2, h/4, … that stays on the branch: J is regular on all of the way. It is noted in the record.
+  // Returns the longest of h, h/2, h/4, … over which J is regular on all of the way, and notes it in the record.
   W on_the_branch(PresentStep<N>& step, W h, StepRecord<N>& record) const;
-  // Whether a step is so much longer than the one before, or the first one, that J may be singular within it though it has
-  // not shown so before.
+  // True if the step is the first one, or so much longer than the one before that J may be singular within it without
+  // any earlier sign.
   static bool longer_than(const W& h, const W& last_step) {
     constexpr double kLonger = 1.5;
     return last_step == W(0) || abs(h) > last_step * W(kLonger);
   }
-  // How far away the first singular point is that is met within h; nullopt if there is none.
+  // Returns the distance of the first singular point within h; nullopt if there is none.
   std::optional<W> singular_within(PresentStep<N>& step, const W& h, const W& last_step) const;
-  // J, at two points of which the motion passed from one to the other, does not show a singular point in between.
-  // False also where it has no values.
+  // True if J, at two points that the motion passed in this order, shows no singular point between them. False if J has
+  // no values.
   bool regular_between(LookAhead<N>& look, const MotionState<N>& before, const MotionState<N>& after) const;
 
-  // The present step ends shortly before a singular point.
+  // True if the present step ends shortly before a singular point.
   bool singular_ahead() const { return singular_ahead_; }
   void set_singular_ahead(bool ahead) { singular_ahead_ = ahead; }
 
  private:
   std::size_t coordinates_;
-  N sigma_{0};  // where the reference has made its last expansion
+  N sigma_{0};  // at the last expansion of the reference
   bool singular_ahead_ = false;
 };
 

@@ -1,5 +1,5 @@
-// The steps that a motion may make. It is interrupted where the caller cancels it, at the step limit, and as soon as its
-// end lies beyond that limit at its pace.
+// Limits the steps that a motion may make. The motion is interrupted if the caller cancels it, at the step limit, and
+// as soon as its end lies beyond that limit at its pace.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -9,24 +9,24 @@
 
 namespace anholon {
 
-// Another step may not be made: the caller has cancelled it, or the step limit is reached.
+// The outcome of a motion that may make no further step.
 inline Outcome interrupted(bool cancelled) {
   return cancelled ? Outcome{OutcomeKind::interrupted, "interrupted", "what was computed is kept"}
                    : Outcome{OutcomeKind::interrupted, "the step limit is reached",
                              "allow more steps, or loosen the tolerance"};
 }
 
-// Not ok if another step may not be made after so many.
+// Fails if no further step may be made after so many.
 inline Outcome may_step(const StepSettings& settings, std::size_t steps) {
   const bool cancelled = settings.cancelled && settings.cancelled();
   return cancelled || steps >= settings.most_steps ? interrupted(cancelled) : Outcome{};
 }
 
-// Judges whether the end of a motion lies beyond its step limit. Steps are short for a while after an impact, where a slip
-// begins and where a motion starts, so no single step counts: the paces of the whole motion and of the last kWindow steps
-// are both too slow, and the pace does not grow from window to window. An end that lies just beyond the limit is waited
-// for longer than a hopeless one. A motion that was fast before is out of reach when many windows one after another are
-// hopeless: it chatters at a kink, or becomes too fast to follow.
+// Judges whether the end of a motion lies beyond its step limit. Steps are short for a while after an impact, where a
+// slip begins and where a motion starts, so no single step counts: the end is out of reach if the paces of the whole
+// motion and of the last kWindow steps are both too slow, and the pace does not grow from window to window. If the end
+// lies just beyond the limit, the motion may go on for longer than a hopeless one. A motion that was fast before is out
+// of reach when many consecutive windows are hopeless: it chatters at a kink, or becomes too fast to follow.
 class StepPaces {
  public:
   // The motion starts, or goes on, at the time t after so many steps.
@@ -37,14 +37,14 @@ class StepPaces {
     first_ = steps;
   }
 
-  // The number of steps after so many for which out_of_reach() needs not be asked, if the end is not further away than
-  // the steps that are left.
+  // The number of further steps for which out_of_reach() need not be called, if the end is not farther away than the
+  // steps that are left.
   std::size_t steps_unjudged(std::size_t steps) const {
     const std::size_t made = steps - now_.steps;
     return made < kWindow ? kWindow - made : 0;
   }
 
-  // Asked before each step from the time t, whose length would be `step`; `left` is the span to the end.
+  // Call it before each step from the time t, whose length would be `step`; `left` is the time to the end.
   bool out_of_reach(const StepSettings& settings, std::size_t steps, long double t, double step, double left) {
     const double passed = std::abs(static_cast<double>(t - started_));
     const std::size_t made = steps - first_;
@@ -78,7 +78,7 @@ class StepPaces {
 
   long double started_ = 0;
   std::size_t first_ = 0;
-  int slow_windows_ = 0;  // one after another, the last one among them
+  int slow_windows_ = 0;  // consecutive slow windows up to the last one
   Mark before_, last_, now_;
 };
 

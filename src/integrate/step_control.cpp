@@ -10,7 +10,7 @@ int taylor_order(double log_tolerance) {
 }
 
 bool asks_for_last_digits(double log_tolerance) {
-  constexpr double kLog = -32.3;  // of a little less than 1e-14
+  constexpr double kLog = -32.3;  // of a tolerance slightly below 1e-14
   return log_tolerance <= kLog;
 }
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kNothing = -1e300;  // the logarithm of zero
 
-// k! c_k, the product of 1, 2, …, k being made first.
+// Returns k! c_k; the product of 1, 2, …, k is computed first.
 template <Number N>
 N derivative(const UnknownSeries<N>& x, int k) {
   N factorial(1);
@@ -28,7 +28,8 @@ N derivative(const UnknownSeries<N>& x, int k) {
   return x.c[k] * factorial;
 }
 
-// The logarithm of the coefficient of that order of x^(k). Coefficients of high order may leave the range of double.
+// The logarithm of the coefficient of this order of x^(k), because coefficients of high order may leave the range of
+// double.
 template <Number N>
 double log_coefficient(const UnknownSeries<N>& x, int k, int order) {
   double factor = 1;
@@ -37,9 +38,9 @@ double log_coefficient(const UnknownSeries<N>& x, int k, int order) {
   return v > N(0) ? to_double(N(log(v))) + std::log(factor) : kNothing;
 }
 
-// Multipliers that are no states carry no error on, but a step must not pass a pole of theirs, where a constraint loses
-// its hold: it stays within half of their radius of convergence. The logarithm of the greatest of their last
-// coefficients, in relation to their values.
+// Errors of multipliers that are no states do not affect later steps, but a step must not pass a pole of a multiplier,
+// where a constraint loses its hold: the step stays within half of the multipliers' radius of convergence. Returns the
+// logarithm of the greatest of their last coefficients, relative to their values.
 template <Number N>
 double log_pole(std::span<const UnknownSeries<N>> x, int order) {
   double pole = kNothing;

@@ -10,15 +10,15 @@ namespace anholon {
 
 namespace {
 
-// A step ends past a kink by the tolerance and this many round-offs, so that the next one starts surely on the other
+// A step ends past a kink by the tolerance and this many round-offs, so that the next step surely starts on the other
 // side.
 constexpr int kPastKink = 32;
-// Where the time alone decides, this many round-offs of it suffice, also in the wider numbers of the state.
+// If the time alone decides, this many round-offs of it suffice, also in the wider numbers of the state.
 constexpr int kPastTime = 4;
-// Kinks met so soon after another one are other kinks, until they are too many.
+// After so many steps in a row that kinks cut shortly after their start, the motion stays at the kink.
 constexpr int kMostShortKinks = 20;
 
-// A step of so many round-offs of the time is none.
+// A step of at most this many round-offs of the time is not shortened.
 constexpr int kLeastRoundoffs = 64;
 
 template <Number N>
@@ -27,8 +27,8 @@ Wider<N> least_step(const Wider<N>& t) {
   return convert<W>(unit_roundoff<N>()) * W(kLeastRoundoffs) * abs(t);
 }
 
-// Of the lengths that a step is shortened to, the largest surely below h: halves of what it would be without an end, so
-// that steps do not depend on where a run is to stop.
+// Returns the largest length surely below h to which a step may be shortened. These lengths are the length without an
+// end, halved repeatedly, so that steps do not depend on where a run stops.
 template <Number W>
 W shorter(W whole, const W& h) {
   constexpr double kSurely = 1 - 0x1p-20;  // h has been rounded with the time
@@ -76,8 +76,9 @@ void StepEnd<N>::finish() {
   check_.forget();
 }
 
-// What Newton's method would change of the leading derivatives h beyond the expansion, in relation to the size of the
-// derivatives below them; with the LU of where the step begins, which does not lose more digits than the step itself.
+// Returns the change that Newton's method would make to the leading derivatives at h beyond the expansion, relative to
+// the size of the derivatives below them. It uses the LU at the start of the step, which does not lose more digits than
+// the step itself.
 template <Number N>
 N StepEnd<N>::defect(PresentStep<N>& step, const W& h) {
   const Program& p = *program_;
@@ -104,7 +105,7 @@ N StepEnd<N>::defect(PresentStep<N>& step, const W& h) {
   return worst;
 }
 
-// Points within a step over h where a function may do what its series do not show.
+// Finds the points within a step over h where a function may do something that its series do not show.
 template <Number N>
 void StepEnd<N>::find_hidden(PresentStep<N>& step, const W& h) {
   hidden_.clear();
@@ -120,7 +121,7 @@ void StepEnd<N>::find_hidden(PresentStep<N>& step, const W& h) {
   std::sort(hidden_.begin(), hidden_.end(), [](const N& a, const N& b) { return abs(a) < abs(b); });
 }
 
-// Whether the equations hold at h beyond the expansion, and what is watched has the values of its series.
+// True if the equations hold at h beyond the expansion, and what is watched has the values of its series there.
 template <Number N>
 bool StepEnd<N>::may_end_at(PresentStep<N>& step, const EventWatch<N>& events, const W& h) {
   const N length = convert<N>(h);
@@ -142,7 +143,7 @@ bool StepEnd<N>::may_end_at(PresentStep<N>& step, const EventWatch<N>& events, c
   }
 }
 
-// Whether what is watched has the values of its series there, where the formulas have been evaluated.
+// True if what is watched has the values of its series there. REQUIRES: the formulas have been evaluated there.
 template <Number N>
 bool StepEnd<N>::as_foretold(PresentStep<N>& step, const EventWatch<N>& events, const N& where) const {
   return events.as_foretold(
@@ -150,7 +151,7 @@ bool StepEnd<N>::as_foretold(PresentStep<N>& step, const EventWatch<N>& events, 
       [&](std::size_t i) { return step.look.quadrature_made_of(i); });
 }
 
-// The same h beyond the expansion of a kernel.
+// Like as_foretold(), at h beyond the expansion of a kernel.
 template <Number N>
 bool StepEnd<N>::shows_events(PresentStep<N>& step, const EventWatch<N>& events, const W& h) {
   if (events.empty()) return true;
@@ -164,15 +165,15 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
   const bool forward = h > W(0);
   const W asked = h, t = step.t(), last_step = step.track.now.record.last_step;
   KernelExpansion* kernel = step.expander.kernel();
-  // Where a formula that is watched has no series, its values are looked at, in a short step: then it has some, or none
-  // at all.
+  // A formula that is watched may have no series. Then a short step is made: after it the formula has series, or it has
+  // none at all.
   constexpr double kShort = 0x1p-10, kAsShort = 0x1p-8;
   if (!events.empty() && (last_step == W(0) || last_step > abs(h) * W(kAsShort)) && events.without_series())
     h = shorter(whole, W(h * W(kShort)));
   Kink<N> kink;
   W where, past;
-  // Where no length serves that the time can show, as a formula loses its value ahead, the step is made: that is what
-  // ends the motion, and has a name.
+  // If no length that the time can show is good, because a formula loses its value ahead, the step is made: it ends the
+  // motion with an outcome that names the formula.
   const W first = h, least = least_step<N>(t);
   for (bool refused = false;; h = shorter(whole, h)) {
     if (refused && !(abs(h) > least))
@@ -207,7 +208,7 @@ Outcome StepEnd<N>::shorten(PresentStep<N>& step, const EventWatch<N>& events, W
   return {};
 }
 
-// Whether the motion would have to make many short steps, or end, for the sake of kinks of what only watches it.
+// True if the motion would have to make many short steps, or end, because of kinks of what only watches it.
 template <Number N>
 bool StepEnd<N>::are_too_many(const Kink<N>& kink, const W& where, const W& past, const W& whole) {
   constexpr int kMost = 1000;
@@ -221,9 +222,9 @@ bool StepEnd<N>::are_too_many(const Kink<N>& kink, const W& where, const W& past
          (theirs && !kink.at_start && in_a_row_.short_kinks >= kMostShortKinks && !(abs(where) > past * W(4)));
 }
 
-// How far a step goes beyond a kink. A motion that begins at rest at a kink leaves it with the square of the time, and is
-// not past it by what the state resolves after a step as short as `past`: the kink is met again. Steps then grow, while
-// the equations hold at their ends.
+// Returns how far a step goes beyond a kink. A motion that begins at rest at a kink leaves it with the square of the
+// time. After a step as short as `past`, the state does not yet resolve that it is past the kink, and the kink is met
+// again. Then the steps grow as long as the equations hold at their ends.
 template <Number N>
 Wider<N> StepEnd<N>::length_past(PresentStep<N>& step, const W& where, const W& past, bool forward) {
   constexpr double kLonger = 4;
@@ -233,7 +234,7 @@ Wider<N> StepEnd<N>::length_past(PresentStep<N>& step, const W& where, const W& 
   return check_.passes_at_once(defect(step, h), length) ? longer : past;
 }
 
-// What the deciding slot passes, in the wider numbers.
+// Returns the value that the deciding slot passes, in the wider numbers.
 template <Number N>
 static Wider<N> passed_exactly(const Kink<N>& kink) {
   if (kink.table)
@@ -242,8 +243,8 @@ static Wider<N> passed_exactly(const Kink<N>& kink) {
   return convert<Wider<N>>(kink.passes);
 }
 
-// A kink that the time alone decides is met at its time. An event there is located where its formula has passed zero, so the
-// step goes on as past any other kink, and ends at the event.
+// A step ends at the time of a kink that the time alone decides. An event there is located where its formula has passed
+// zero; in that case the step goes past the kink as past any other, and ends at the event.
 template <Number N>
 Wider<N> StepEnd<N>::beyond(PresentStep<N>& step, const EventWatch<N>& events, const Kink<N>& kink, const W& where,
                             const W& past, bool forward) const {
@@ -265,12 +266,12 @@ Wider<N> StepEnd<N>::beyond(PresentStep<N>& step, const EventWatch<N>& events, c
   const W to = *exact - t;
   if (!kink.enters || !has_exact_sign(*program_, *kink.slot) || !(abs(to) > roundoff))
     return roundoff > W(0) ? W(to + least) : usual;
-  // At the time that is written, or at the first one that a step can end at behind it.
+  // The step ends at the exact time, or, if that is no number N, at the first number behind it.
   const bool short_of = forward ? convert<W>(convert<N>(*exact)) < *exact : convert<W>(convert<N>(*exact)) > *exact;
   return short_of ? W(to + least) : to;
 }
 
-// At a kink functions are taken one-sided along the motion: a very short step finds the side.
+// At a kink, functions are taken one-sided along the motion: a very short step finds the side.
 template <Number N>
 Outcome StepEnd<N>::note_kink(bool at_start, const W& where, const W& past) {
   in_a_row_.short_kinks = at_kink_ && !at_start && !(abs(where) > past * W(4)) ? in_a_row_.short_kinks + 1 : 0;
@@ -293,7 +294,7 @@ void StepEnd<N>::note_passing(const Machine<N>& machine, const Kink<N>& kink, bo
   turns_.passed.push_back({*kink.slot, kink.passes, rate});
 }
 
-// Whether a projection has put the state back to where it was before the kink.
+// True if a projection has put the state back to where it was before the kink.
 template <Number N>
 bool StepEnd<N>::put_back(const Machine<N>& machine) const {
   return std::any_of(turns_.passed.begin(), turns_.passed.end(), [&](const Passing& p) {
@@ -313,8 +314,9 @@ Outcome StepEnd<N>::stays_at_constraint(std::size_t equation) const {
       "the motion at the kink"};
 }
 
-// A projection onto a constraint that turns at a kink takes velocity away, as an impulse would that no equation holds. The
-// motion passes the kink if what decides there goes on in its direction. At the kink itself the constraint has no slope.
+// A projection onto a constraint that turns at a kink takes velocity away, like an impulse that is in no equation. The
+// motion passes the kink if the deciding value goes on in its direction. At the kink itself the constraint has no
+// slope.
 template <Number N>
 Outcome StepEnd<N>::pass_turn(const MissedConstraint<N>& missed, const Machine<N>& machine, const W& t, Outcome made) {
   constexpr double kStays = 1e-9, kSoon = 1e-9;
@@ -365,7 +367,7 @@ void StepEnd<N>::aim(PresentStep<N>& step, const W& t, bool arrives) {
   send(*kernel, step.t(), convert<W>(check_.where()));
 }
 
-// The kernel goes h beyond its expansion at t, to look at the equations there.
+// Sends the kernel to h beyond its expansion at t, to look at the equations there.
 template <Number N>
 LookAtEnd StepEnd<N>::send(KernelExpansion& kernel, const W& t, const W& h) {
   sent_ = h;
@@ -374,9 +376,9 @@ LookAtEnd StepEnd<N>::send(KernelExpansion& kernel, const W& t, const W& h) {
   return LookAtEnd::elsewhere;
 }
 
-// Whether the kernel, where it was sent, gives other velocities than its series foretell, which a motion never does: at
-// a pole of a constraint, as that of y' = x' tan(u) where cos(u) changes its sign, its quasi-velocities stand for the
-// opposite velocities beyond it. A short step does not help.
+// True if the velocities that the kernel gives where it was sent differ from those that its series foretell, which is
+// impossible for a motion. It happens at a pole of a constraint, such as that of y' = x' tan(u) where cos(u) changes
+// its sign: beyond it the quasi-velocities stand for the opposite velocities. A short step does not help.
 template <Number N>
 bool StepEnd<N>::velocities_jump(const KernelExpansion& kernel, const W& t, const N& horizon) const {
   if (!kernel.mapped() || !check_.may_jump(N(kernel.defect()), horizon)) return false;

@@ -56,7 +56,7 @@ Outcome Stepper<N>::steps(const W& end, Stretch<W>& stretch) {
   }
 }
 
-// Whether the last step began where the unknowns have nearly the values that the caller knows.
+// True if the last step began where the unknowns have nearly the values that the caller knows.
 template <Number N>
 bool Stepper<N>::stays(const Stretch<W>& stretch) const {
   for (const auto& [unknown, value] : stretch.kept)
@@ -97,7 +97,7 @@ void Stepper<N>::note_length(const W& to) {
   record().sigma_before = guard_.sigma();
 }
 
-// The state is there.
+// Ends the step: the state is there already.
 template <Number N>
 void Stepper<N>::finish_at(const W& to) {
   MotionState<N>& m = track_.now;
@@ -111,7 +111,7 @@ void Stepper<N>::finish_at(const W& to) {
   ++m.record.steps;
 }
 
-// Where the next expansion is made already, its polynomial is what is left, not that of the last step.
+// If the next expansion is already made, its polynomial remains, not that of the last step.
 template <Number N>
 bool Stepper<N>::fail(Outcome why) {
   if (expanded()) {
@@ -122,7 +122,7 @@ bool Stepper<N>::fail(Outcome why) {
   return false;
 }
 
-// What is followed makes a step shorter than the motion's by this part at most.
+// A followed quadrature makes a step shorter than the motion's by this part at most.
 static constexpr double kShortestFollowed = 0x1p-6;
 
 // ---- the expansion --------------------------------------------------------------------------------------------------
@@ -153,7 +153,7 @@ template <Number N>
 bool Stepper<N>::end_by_kernel() {
   if (!expander_.end_by_kernel(track_)) return false;
   if (end_.at_kink() &&
-      expander_.drift_of_kernel() > StepEnd<N>::kTurned) {  // the reference tells whether it is passed
+      expander_.drift_of_kernel() > StepEnd<N>::kTurned) {  // the reference tells whether the motion passes the kink
     expander_.refuse_kernel(track_);
     return false;
   }
@@ -196,7 +196,7 @@ Outcome Stepper<N>::expand_regularly(const std::vector<W>& guess) {
   return {};
 }
 
-// Where the present expansion was made, the formulas of a kernel's are evaluated for the magnitude of their terms.
+// If a kernel has made the expansion, the formulas are evaluated at its point for the magnitude of their terms.
 template <Number N>
 void Stepper<N>::read_events() {
   if (events_.empty()) return;
@@ -211,8 +211,8 @@ void Stepper<N>::read_events() {
   if (record().steps == 0) events_.begin_at_zero();
 }
 
-// What decides which functions hold may change faster than the motion. Where a kernel has made the expansion, formulas are
-// evaluated for the magnitude of their terms.
+// The values that decide which functions hold may change faster than the motion. If a kernel has made the expansion,
+// formulas are evaluated for the magnitude of their terms.
 template <Number N>
 void Stepper<N>::limit_by_kinks() {
   expander_.show_deciding();
@@ -235,12 +235,12 @@ void Stepper<N>::limit_by_kinks() {
   };
   if (const N all = known(needed); all < horizon_) horizon_ = all;
   if (others.empty()) return;
-  // As what is followed, they make no step much shorter.
+  // Like followed quadratures, these slots do not make a step much shorter.
   const N shortest = horizon_ * N(kShortestFollowed);
   if (const N all = known(others); all < horizon_) horizon_ = all > shortest ? all : shortest;
 }
 
-// What is watched may change faster than the motion, on which it has no influence: the density of thin air.
+// A watched formula may change faster than the motion, on which it has no influence: the density of thin air.
 template <Number N>
 void Stepper<N>::limit_by_events() {
   if (const N known(std::exp(events_.log_reach(settings_.log_tolerance))); known < horizon_) horizon_ = known;
@@ -274,7 +274,7 @@ void Stepper<N>::limit_by_quadratures(const Series& series) {
   for (std::size_t i = settings_.known_from; i < std::min(settings_.known_to, program_->quadratures); ++i)
     if (!series.constant_quadrature(i))
       horizon_ = limited_by_value(horizon_, order_, tolerance_, [&](int k) -> N { return series.quadrature(i, k); });
-  // Near a point where a formula has no series they do not converge, however short the step is.
+  // Near a point where a formula has no series, the series do not converge, however short the step is.
   const N shortest = horizon_ * N(kShortestFollowed);
   for (std::size_t i = settings_.known_to; i < std::min(settings_.followed_to, program_->quadratures); ++i)
     if (!series.constant_quadrature(i))
@@ -282,7 +282,7 @@ void Stepper<N>::limit_by_quadratures(const Series& series) {
   if (!(horizon_ > shortest)) horizon_ = shortest;
 }
 
-// Where there is no such step in either direction of time, the fault stands.
+// If there is no such step in either direction of time, the fault is returned.
 template <Number N>
 Outcome Stepper<N>::expand_one_sided(Outcome fault) {
   const std::vector<W>& state = track_.now.state;
@@ -308,17 +308,17 @@ bool Stepper<N>::take_one_sided(const W& h) {
   return leading.has_value();
 }
 
-// Outside of a step.
+// Makes an expansion outside of a step.
 template <Number N>
 Outcome Stepper<N>::expand() {
   phase_ = Phase::placed;
-  if (!expander_.alone()) record().careful = true;  // those beside it in the kernel are left in peace
+  if (!expander_.alone()) record().careful = true;  // so that the other lanes of the kernel are not expanded
   begin_expansion();
   expander_.expand_kernel();
   return end_expansion() ? Outcome{} : trouble();
 }
 
-// In place of the present expansion.
+// Makes an expansion in place of the present one.
 template <Number N>
 Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
   expander_.begin(track_, guess, true);
@@ -327,7 +327,7 @@ Outcome Stepper<N>::expand_here(const std::vector<W>& guess) {
   return end_by_kernel() ? Outcome{} : expand_by_reference(guess);
 }
 
-// After a failure: the polynomial of the last good step is still asked for.
+// After a failure, makes the expansion of the last good step again, because callers still need its polynomial.
 template <Number N>
 void Stepper<N>::expand_again(const StepperState<N>& last) {
   MotionState<N> now = track_.now;
@@ -345,7 +345,7 @@ void Stepper<N>::expand_again(const StepperState<N>& last) {
   phase_ = Phase::placed;
 }
 
-// Whether J was singular within the last step is asked of the reference: at both ends first.
+// Asks the reference whether J was singular within the last step, at both ends first.
 template <Number N>
 Outcome Stepper<N>::look_back() {
   leave_kernel();
@@ -410,7 +410,7 @@ template <Number N>
 Outcome Stepper<N>::restart(const std::vector<W>& state, bool kernel) {
   leave_kernel();
   if (!kernel) record().careful = true;
-  before_ = time();  // the last step's polynomial is not this state's
+  before_ = time();  // the last step's polynomial does not belong to this state
   track_.now.state = state;
   track_.now.carry.assign(state.size(), W(0));
   track_.now.own.clear();
@@ -463,7 +463,7 @@ void Stepper<N>::watch_kinks() {
   const bool equations_alone =
       events_.empty() && settings_.known_from >= std::max(settings_.known_to, settings_.followed_to);
   const std::size_t end = equations_alone ? program_->tape.main_end : program_->tape.code.size();
-  // What is followed shortens steps, but neither changes the motion nor ends it.
+  // A followed quadrature shortens steps, but neither changes the motion nor ends it.
   std::vector<std::uint32_t> needed;
   for (std::size_t i = 0; i < std::min(settings_.known_to, program_->quadratures); ++i)
     needed.push_back(program_->tape.roots[program_->unknowns() + i]);
@@ -506,7 +506,7 @@ Outcome Stepper<N>::at(const W& t, Expansion<W>& point, bool leading) const {
   if (o.ok()) o = point.project();
   if (o.ok() && leading) o = point.solve();
   if (!one_sided_ || o.kind != OutcomeKind::not_a_number) return o;
-  // The equations have no value here: what the motion has right after the point stands for it, if it goes on.
+  // The equations have no value here. The derivatives right after the point replace it if the motion goes on.
   if (one_sided_->stopped()) guess.assign(guess.size(), W(std::numeric_limits<double>::quiet_NaN()));
   point.load(t, state, guess);
   point.evaluate();

@@ -1,4 +1,4 @@
-// Where a step of the stepper is to end.
+// Decides where a step of the stepper ends.
 #include <cmath>
 #include <concepts>
 #include <limits>
@@ -21,7 +21,7 @@ bool Stepper<N>::aim(const W& end) {
   return true;
 }
 
-// The kernel has gone where it was sent.
+// Judges the step after the kernel has gone where it was sent.
 template <Number N>
 EndOfStep Stepper<N>::look_at_end(const W& end) {
   ANHOLON_ASSERT(phase_ == Phase::aimed);
@@ -46,7 +46,7 @@ EndOfStep Stepper<N>::look_at_end(const W& end) {
   return aim_by_reference(*kernel, end) ? EndOfStep::good : EndOfStep::failed;
 }
 
-// What was chosen for the step that is aimed is taken back.
+// Takes back what was chosen for the step that is aimed.
 template <Number N>
 void Stepper<N>::drop_aim() {
   guard_.set_singular_ahead(false);
@@ -65,7 +65,7 @@ bool Stepper<N>::aim_again(KernelExpansion& kernel, const W& end) {
   return good;
 }
 
-// The reference makes the expansion of the step that is aimed, in place of the kernel.
+// Makes the reference repeat the expansion of the step that is aimed, in place of the kernel.
 template <Number N>
 bool Stepper<N>::aim_by_reference(KernelExpansion& kernel, const W& end) {
   drop_aim();
@@ -88,9 +88,9 @@ bool Stepper<N>::may_be_ordinary() const
          !guard_.singular_ahead() && end_.idle() && fired_.empty() && events_.empty();
 }
 
-// A step as most are, after one of the same kernel: nothing asks for a closer look at the expansion, at the way to where
-// its series reach, nor (look_at_end) there. Then nothing else is asked, and all else is as it was; whatever asks gets
-// its look by the other functions, from there on.
+// Aims an ordinary step after one of the same kernel, as most steps are: neither the expansion, nor the way to where
+// its series reach, nor (look_at_end) the equations there need a closer look. If one does, the other functions take
+// over from there.
 template <Number N>
 bool Stepper<N>::aim_ordinarily(const W& end) {
   if constexpr (std::same_as<N, double>) {
@@ -115,7 +115,7 @@ bool Stepper<N>::aim_ordinarily(const W& end) {
   }
 }
 
-// A step of a kernel, of the length that the series allow. False if there may be something in the way.
+// Aims a step of a kernel, of the length that the series allow. Returns false if something may be in the way.
 template <Number N>
 bool Stepper<N>::aim_freely(const W& end) {
   const KernelExpansion* kernel = expander_.kernel();
@@ -135,7 +135,7 @@ void Stepper<N>::aim_at(const W& to) {
   end_.aim(step, to, false);
 }
 
-// The nearest number with one binary digit less; other types of numbers are left as they are.
+// Returns the nearest number with one binary digit less; other types of numbers are left unchanged.
 template <Number N>
 static N with_one_digit_less(const N& x) {
   if constexpr (std::floating_point<N>) {
@@ -155,8 +155,8 @@ bool Stepper<N>::aim_with_care(const W& end) {
   if (one_sided_) return aim_one_sided(left);
   PresentStep<N> step = present();
   W h = horizon();
-  // Not from what is left to the end: steps must not depend on where a run is to stop, if another one is to go on from
-  // there.
+  // The length does not depend on what is left to the end: a run that continues from here must make the same steps as
+  // one that was not stopped.
   if (program_->several_solutions) h = abs(guard_.on_the_branch(step, forward ? h : W(-h), record()));
   const W floor = convert<W>(unit_roundoff<N>()) * W(kCollapsedRoundoffs) * abs(time());
   if (!(h > floor))
@@ -171,7 +171,7 @@ bool Stepper<N>::aim_with_care(const W& end) {
   if (end_.meets_again()) record().careful = true;
   if (!shorten_at_singular_point(h, floor)) return fail(becomes_singular());
   shorten_at_event(h, end_.kink());
-  // The step that t can show exactly: otherwise the time loses a round-off at every step.
+  // The end of the step is a number that t can show exactly: otherwise the time loses a round-off at every step.
   if (h == left) {
     end_.aim(step, end, true);
   } else {
@@ -181,7 +181,7 @@ bool Stepper<N>::aim_with_care(const W& end) {
   return true;
 }
 
-// Up to where J is still regular. False if that is shorter than the floor.
+// Shortens the step to where J is still regular. Returns false if that is shorter than the floor.
 template <Number N>
 bool Stepper<N>::shorten_at_singular_point(W& h, const W& floor) {
   constexpr double kShortOf = 1 - 1e-7;

@@ -1,6 +1,6 @@
-// Several steps that a caller asks for at once: the conditions that end them, and the times at which they ended. A caller
-// that has something to do after every step asks for one step; other callers ask for many, which follow each other in
-// one loop.
+// Several steps that a caller requests at once: the conditions that end them, and the times at which they ended. A
+// caller that has something to do after every step requests one step; other callers request many, which follow each
+// other in one loop.
 #pragma once
 #include <algorithm>
 #include <chrono>
@@ -20,14 +20,15 @@ struct Kept {
 
 template <Number W>
 struct Stretch {
-  // The stretch ends after so many steps, and with the first step that comes to `until`; none: the end of the motion.
+  // The stretch ends after so many steps, and with the first step that comes to `until`; nullptr: the end of the
+  // motion.
   std::size_t most = 1;
   const W* until = nullptr;
-  // It ends with a step that begins where one of these is `margin` or more away.
+  // The stretch ends with a step that begins where one of these unknowns is `margin` or more away from its value.
   std::span<const Kept> kept = {};
   double margin = 0;
 
-  // The times where its steps end; the greatest absolute value of the first integral where they begin.
+  // The times where the steps end, and the greatest absolute value of the first integral where they begin.
   std::vector<W> times = {};
   W greatest_integral{0};
 
@@ -40,14 +41,14 @@ struct Stretch {
   }
 };
 
-// How many steps are asked for at once, so that whoever waits for a motion (to stop it, for its rows, its progress, a
-// saved run) is asked often enough. That has no influence on the steps. Many stretches end early, because a row is due;
-// the clock is read after as many steps as are asked for.
+// Chooses the number of steps that are requested at once, so that code which follows a motion (to stop it, to write
+// rows, progress or a saved run) runs often enough. The number has no influence on the steps. Many stretches end early,
+// because a row is due; therefore the clock is read after as many steps as one full stretch has.
 class StretchPace {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // `made`: the steps of the stretch before.
+  // `made`: the number of steps of the stretch before.
   std::size_t steps(std::size_t made) {
     constexpr std::size_t kMost = 64;
     constexpr std::chrono::microseconds kShort(500), kLong(5000);
@@ -60,7 +61,7 @@ class StretchPace {
     read_ = now;
     return steps_;
   }
-  // When the clock was read last.
+  // The time when the clock was read last.
   Clock::time_point read() const { return read_; }
 
  private:
@@ -71,7 +72,8 @@ class StretchPace {
 // Stretches one after the other, of the lengths that StretchPace gives.
 template <Number W>
 struct PacedStretch : Stretch<W> {
-  // The next one, which ends with the first step that comes to `time`. `each_step`: something is due after every step.
+  // Begins the next stretch, which ends with the first step that comes to `time`. `each_step`: something is due after
+  // every step.
   void begin(bool each_step, const W* time) {
     const std::size_t steps = pace.steps(this->times.size());
     this->restart();

@@ -19,7 +19,7 @@ void ArenaCode::open(const char* name, unsigned places, bool answers) {
   b_.SetInsertPoint(llvm::BasicBlock::Create(m_.getContext(), "entry", function_));
 }
 
-// Functions are of moderate size: the work of the compiler grows faster than their length.
+// Functions have moderate sizes, because the work of the compiler grows faster than their length.
 void ArenaCode::open_part(const std::string& name) {
   auto* type = llvm::FunctionType::get(b_.getVoidTy(), {b_.getPtrTy(), b_.getPtrTy(), b_.getInt64Ty()}, false);
   function_ = llvm::Function::Create(type, llvm::Function::PrivateLinkage, name, m_);
@@ -54,7 +54,7 @@ llvm::Value* ArenaCode::opposite(Value* x) {
 
 // The quotient by a whole number, as in kernel/tiers/lanes.h.
 llvm::Value* ArenaCode::quotient(Value* x, Value* reciprocal, Value* beyond) {
-  // The known part is zero.
+  // The known part may be zero.
   if (const auto* nothing = llvm::dyn_cast<llvm::Constant>(x); nothing && nothing->isZeroValue()) return x;
   return fma(x, reciprocal, b_.CreateFMul(x, beyond));
 }

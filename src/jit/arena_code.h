@@ -1,5 +1,5 @@
-// LLVM IR for functions over the arena of a kernel: loads and stores, and the arithmetic of lanes, operation by operation
-// as in kernel/tiers/.
+// LLVM IR for functions over the arena of a kernel: loads and stores, and the arithmetic of lanes, operation by
+// operation as in kernel/tiers/.
 #pragma once
 #include <vector>
 
@@ -25,7 +25,8 @@ class ArenaCode {
   Value* number(double x) { return llvm::ConstantFP::get(lane_, x); }
   double factorial(int k) const { return k_.factorial[static_cast<std::size_t>(k)]; }
 
-  // A place in the arena, counted from its begin or, `relative`, from the stage with which the present block begins.
+  // The address of a place in the arena, counted from its begin or, if `relative`, from the stage with which the
+  // present block begins.
   Value* address(std::int64_t slot, bool relative);
   Value* load(std::int64_t slot, bool relative = false) {
     return b_.CreateAlignedLoad(lane_, address(slot, relative), align());

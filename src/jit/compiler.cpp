@@ -27,8 +27,8 @@ using Builder = llvm::orc::JITTargetMachineBuilder;
 
 std::string text_of(llvm::Error error) { return llvm::toString(std::move(error)); }
 
-// The build ID of the library that contains an address: the note that the linker made of its contents. Empty if there
-// is none.
+// Returns the build ID of the library that contains an address: a hash of its contents, made by the linker. Empty if
+// there is none.
 std::string build_of(const void* address) {
   struct Question {
     std::uintptr_t address;
@@ -78,7 +78,7 @@ bool name(const KernelTables& tables, int lanes, CodeEffort effort, int several_
   return true;
 }
 
-// Returns nullopt for a plan that is to be compiled.
+// Returns nullopt if the plan has to be compiled.
 std::optional<Code> translated(const KernelTables& tables, int lanes, const CalledFunctions& called) try {
   if (!translated_at_first(lanes) || Emitter::parts(tables) > 1) return std::nullopt;
   llvm::LLVMContext context;
@@ -89,8 +89,8 @@ std::optional<Code> translated(const KernelTables& tables, int lanes, const Call
   return std::nullopt;
 }
 
-// The selection of instructions takes more than half of the time, most of it for patterns that the emitter leaves
-// none of: it is asked not to look for them.
+// The selection of instructions takes more than half of the time, most of it for patterns that the emitter's code does
+// not contain, so the search for them is switched off.
 void select_quickly(llvm::Module& module) {
   for (llvm::Function& f : module) {
     if (f.isDeclaration()) continue;
@@ -121,7 +121,7 @@ std::unique_ptr<llvm::MemoryBuffer> compiled(const KernelTables& tables, int lan
 
 using Objects = std::vector<std::unique_ptr<llvm::MemoryBuffer>>;
 
-// The modules of a long plan are compiled by as many threads as the machine has. Returns nothing on failure.
+// Compiles the modules of a long plan in as many threads as the machine has. Returns an empty list on failure.
 Objects compiled_all(const KernelTables& tables, int lanes, CodeEffort effort, int several_sines,
                      const Builder& builder, std::string& message) {
   const std::size_t count = Emitter::parts(tables);
@@ -196,7 +196,7 @@ void compile(const KernelTables& tables, int lanes, CodeEffort effort, const Cal
     llvm::InitializeNativeTargetAsmPrinter();
     // The emitter fixes the order of operations; passes that reorder them would examine every pair of loads and stores.
     set_option("enable-misched", "false");
-    // In code that is made quickly every instruction would be selected by itself, and the code be slower.
+    // With this option, quick code would be selected instruction by instruction, and would be slower.
     set_option("fast-isel", "false");
   });
   auto builder = Builder::detectHost();
@@ -208,7 +208,7 @@ void compile(const KernelTables& tables, int lanes, CodeEffort effort, const Cal
   // Called functions may be anywhere and are reached by stubs; constants are beside the code and are operands.
   builder->setCodeModel(llvm::CodeModel::Small);
 
-  // The code of a long plan is made once. Better code than asked for is taken if it is there.
+  // The code of a long plan is made once. Better code than requested is used if it is there.
   const std::size_t parts = Emitter::parts(tables);
   if (parts > 1) effort = CodeEffort::full;
   std::vector<Key> keys(parts);

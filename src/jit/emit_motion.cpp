@@ -9,7 +9,7 @@
 namespace anholon::jit {
 
 namespace {
-// The increments of few states of a motion alone are added as they are computed. Elsewhere a second copy of that code
+// For one motion with few states, the increments are added as they are computed. Otherwise a second copy of that code
 // does not pay: in lanes it is a fifth of all code of a small system.
 constexpr std::size_t kFewStates = 32;
 }  // namespace
@@ -47,7 +47,7 @@ void Emitter::judge(const std::vector<Value*>& lu) {
   store(zero, k_.found.moved);
 }
 
-// Whether the solution displaces a state in any lane.
+// Returns true at run time if the solution displaces a state in any lane.
 llvm::Value* Emitter::displaced(int level) {
   Value *one = number(1), *zero = number(0), *displacement = nullptr, *drift = load(k_.found.drift);
   for (const std::vector<std::uint32_t>& scale : p_.scales) {

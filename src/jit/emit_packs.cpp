@@ -32,8 +32,8 @@ void Emitter::pack_histories() {
   });
 }
 
-// For the block just emitted: stores histories in lanes if these are all it computes, else the newest coefficients of
-// the series.
+// For the block just emitted: stores histories in lanes if the block computes nothing else, otherwise the newest
+// coefficients of the series.
 void Emitter::pack_stage() {
   const Packs& packs = memory_->packs();
   if (packs.packs.empty()) return;

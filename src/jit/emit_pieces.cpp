@@ -1,7 +1,7 @@
-// Stages of long plans, for one lane. A function as long as the plan would take the compiler more than proportional time,
-// so the steps of a stage, its elimination and its completion are functions of bounded length, in several modules that
-// are compiled side by side. What one function computes for another is in the arena. Histories are the same for all
-// places in a block except for their newest products, so loops over tables sum them, and the functions of a stage serve
+// Emits stages of long plans, for one lane. The compiler would take more than proportional time for a function as long
+// as the plan, so the steps of a stage, its elimination and its completion are functions of bounded length, in several
+// modules that are compiled side by side. Functions pass their results through the arena. Histories differ between the
+// places in a block only by their newest products, so loops over tables sum them, and the functions of a stage serve
 // all stages.
 #include <set>
 
@@ -10,7 +10,7 @@
 namespace anholon::jit {
 
 namespace {
-// Operations of an elimination, unknowns to complete, and right sides in a function.
+// The most operations of an elimination in a function, and the most unknowns to complete or right sides.
 constexpr std::size_t kOperations = 150, kUnknowns = 60;
 
 // Calls `body` for parts [from, to) of 0 .. count.
@@ -20,7 +20,7 @@ void for_parts(std::size_t count, std::size_t most, const Body& body) {
 }
 }  // namespace
 
-// The numbers of a stage that are read by other pieces than the one that computes them.
+// Finds the numbers of a stage that other pieces read than the one that computes them.
 void Emitter::find_crossing_numbers() {
   std::unordered_map<std::uint32_t, std::size_t> made;
   for (std::size_t i = 0; i < p_.stage.size(); ++i) {
@@ -44,8 +44,8 @@ void Emitter::find_crossing_numbers() {
     for (const Place& x : {s.a, s.b, s.c, s.d, s.e, s.f}) later(x);
 }
 
-// The histories that each piece is the first to need, in runs of one lead; a run is filled up to a multiple of those
-// summed at once.
+// Lists the histories that each piece is the first to need, in runs of one lead; a run is filled up to a multiple of
+// those that are summed at once.
 std::vector<std::vector<Emitter::Run>> Emitter::list_histories() {
   std::vector<std::vector<Run>> runs;
   std::set<Convolution> seen;
@@ -71,7 +71,7 @@ std::vector<std::vector<Emitter::Run>> Emitter::list_histories() {
   return runs;
 }
 
-// Declares a piece; its code is in one of the modules.
+// Declares a piece; one of the modules contains its code.
 Emitter::Piece Emitter::piece(const std::string& name, const std::function<void()>& body) {
   const std::string symbol = name + std::to_string(made_);
   auto* type = llvm::FunctionType::get(b_.getVoidTy(), {b_.getPtrTy(), b_.getPtrTy(), b_.getInt64Ty()}, false);
@@ -117,7 +117,7 @@ void Emitter::pieces_of_solution(std::vector<Piece>& out) {
   });
 }
 
-// The right sides `rhs` minus the entries of the linearized tape times the solution.
+// Emits the right sides `rhs` minus the entries of the linearized tape times the solution.
 void Emitter::pieces_of_residual(std::vector<Piece>& out) {
   std::vector<std::size_t> order(p_.entries.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -140,8 +140,8 @@ void Emitter::pieces_of_residual(std::vector<Piece>& out) {
   });
 }
 
-// Forward and backward substitution through the arena. `all_sides`: the right sides are in `rhs`; else in `side`, and
-// the other rows are zero.
+// Emits forward and backward substitution through the arena. `all_sides`: the right sides are in `rhs`; otherwise they
+// are in `side`, and the other rows are zero.
 void Emitter::pieces_of_substitution(std::vector<Piece>& out, std::int64_t solution, bool all_sides) {
   const SparseLu& e = *k_.elimination;
   std::vector<bool> written(p_.rows, all_sides);
@@ -207,7 +207,7 @@ void Emitter::pieces_of_completion(std::vector<Piece>& out) {
   });
 }
 
-// A function of the arena, the sums, a stage, and the histories [from, to).
+// Makes a function of the arena, the sums, a stage, and the histories [from, to).
 llvm::Function* Emitter::loop_over_histories(const std::string& name,
                                              const std::function<void(const std::vector<InLanes>&)>& body) {
   auto* index = b_.getInt64Ty();
@@ -248,7 +248,7 @@ llvm::Function* Emitter::loop_over_histories(const std::string& name,
   return function_;
 }
 
-// The sums that are known before a block.
+// Emits the sums that are known before a block.
 llvm::Function* Emitter::histories_known(std::uint8_t lead) {
   return loop_over_histories("known" + std::to_string(lead), [&](const std::vector<InLanes>& group) {
     std::vector<InLanes> of_block = group;
@@ -258,7 +258,7 @@ llvm::Function* Emitter::histories_known(std::uint8_t lead) {
   });
 }
 
-// The sums at one of the stages before the first block; history() tells their order.
+// Emits the sums at one of the stages before the first block, in the order of history().
 llvm::Function* Emitter::histories_of_first(std::uint8_t lead, int stage) {
   const int p = stage + lead, known = 1 + lead, i = p - known;
   return loop_over_histories(
@@ -276,7 +276,7 @@ llvm::Function* Emitter::histories_of_first(std::uint8_t lead, int stage) {
       });
 }
 
-// The sums at the stage k0 + place of a block.
+// Emits the sums at the stage k0 + place of a block.
 llvm::Function* Emitter::histories_of_place(std::uint8_t lead, int place) {
   return loop_over_histories("place" + std::to_string(place) + "_" + std::to_string(lead),
                              [&](const std::vector<InLanes>& group) {

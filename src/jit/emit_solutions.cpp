@@ -64,7 +64,7 @@ void Emitter::invert(const std::vector<Value*>& lu, const std::vector<Value*>& r
   }
 }
 
-// Omits entries that are always zero. Right sides may be vectors of several.
+// Emits a solution, without entries that are always zero. Right sides may be vectors of several.
 std::vector<llvm::Value*> Emitter::solution_for(std::vector<Value*> rhs, const std::vector<Value*>& lu,
                                                 const std::vector<Value*>& reciprocal) {
   const SparseLu& e = *k_.elimination;
@@ -86,7 +86,7 @@ std::vector<llvm::Value*> Emitter::solution_for(std::vector<Value*> rhs, const s
   return y;
 }
 
-// Every right side is an element of vectors.
+// Solves for all right sides at once: each is an element of vectors.
 void Emitter::invert_sides_at_once(const std::vector<Value*>& lu, const std::vector<Value*>& reciprocal) {
   const SparseLu& e = *k_.elimination;
   std::vector<Value*> rhs(p_.rows, nullptr);
@@ -219,7 +219,7 @@ std::uint32_t Emitter::multiply_by_inverse() {
   return static_cast<std::uint32_t>(whole);
 }
 
-// s - an entry of the linearized tape times x; for an entry 1 or -1 it is exact without the product.
+// Returns s minus an entry of the linearized tape times x; for an entry 1 or -1 this is exact without the product.
 llvm::Value* Emitter::minus_entry(std::uint32_t entry, Value* x, Value* s) {
   if (!s) s = number(0);
   if (!unit(entry)) return fma(b_.CreateFNeg(constant(k_.entries + std::int64_t{entry})), x, s);
@@ -232,7 +232,7 @@ bool Emitter::unit(std::uint32_t entry) const {
   return from < p_.coefficients.size() && (p_.coefficients[from].one() || p_.coefficients[from].minus_one());
 }
 
-// Forward and backward substitution, from side_ to solution_.
+// Emits forward and backward substitution, from side_ to solution_.
 void Emitter::substitute(bool all_sides) {
   const SparseLu& e = *k_.elimination;
   for (Value*& v : side_)

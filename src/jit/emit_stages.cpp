@@ -8,7 +8,8 @@
 namespace anholon::jit {
 
 namespace {
-// Convolutions summed side by side: enough to hide the latency of a fused multiplication, few enough for the registers.
+// The number of convolutions summed side by side: enough to hide the latency of a fused multiplication, few enough for
+// the registers.
 constexpr std::size_t kSideBySide = 8;
 // The number of isomorphic steps in a vector. Eight are not faster on machines with such vectors: more lanes stay
 // empty.
@@ -53,7 +54,8 @@ Emitter::over_known(std::uint8_t lead, const std::vector<Value*>& sums,
   return next_sums;
 }
 
-// For the four orders of a block at once: the sum over j of a_j b_(p-j) with both known before the block.
+// Computes, for the four orders of a block at once, the sum over j of a_j b_(p-j) with both factors known before the
+// block.
 void Emitter::known_before(std::uint8_t lead, const std::vector<InLanes>& group) {
   auto* four = llvm::FixedVectorType::get(b_.getDoubleTy(), kBlock);
   const std::size_t count = group.size();
@@ -72,7 +74,7 @@ void Emitter::known_before(std::uint8_t lead, const std::vector<InLanes>& group)
     for (std::size_t k = 0; k < count; ++k) r.push_back(fma(a_at(group[k].a, j), b_at(group[k].b, j), so_far[k]));
     return r;
   });
-  // The nearest orders last: only the first j orders of the block have both factors.
+  // The nearest orders come last: only the first j orders of the block have both factors.
   for (int j = kBlock - 1; j >= 1; --j)
     for (std::size_t k = 0; k < count; ++k) {
       std::vector<int> mask;
@@ -83,8 +85,8 @@ void Emitter::known_before(std::uint8_t lead, const std::vector<InLanes>& group)
   for (std::size_t k = 0; k < count; ++k) b_.CreateAlignedStore(sums[k], group[k].sums, llvm::Align(32));
 }
 
-// As above if every order is a vector of lanes: b_(K-j) .. b_(K-j+3) move by one with j. Machines with vectors of eight
-// have registers for those that come again; others load them again.
+// Like known_before(), if every order is a vector of lanes: b_(K-j) .. b_(K-j+3) move by one with j. Machines with
+// vectors of eight have registers for values that are used again; others load them again.
 void Emitter::known_before_in_lanes(llvm::Type* lane, std::uint8_t lead, const std::vector<InLanes>& group) {
   constexpr std::size_t n = kBlock;
   const std::size_t count = group.size(),

@@ -54,7 +54,7 @@ llvm::Value* Emitter::convolution(std::uint32_t a, std::uint32_t b, std::uint8_t
   return s;
 }
 
-// u_0 w_p = (r sum (j u_j) w_(p-j) - sum (j w_j) u_(p-j)) / p + r u_p w_0, j = 1..p - 1
+// Emits u_0 w_p = (r sum (j u_j) w_(p-j) - sum (j w_j) u_(p-j)) / p + r u_p w_0, j = 1..p - 1.
 void Emitter::coefficient_of_power(const Step& s) {
   const std::uint8_t l = s.lead;
   Value* r = fma(number(s.value), whole_history(s.c.at, s.out.at, l), b_.CreateFNeg(whole_history(s.d.at, s.a.at, l)));
@@ -76,7 +76,7 @@ void Emitter::coefficient_of_sine_cosine(const Step& s) {
   put(s.c, l, b_.CreateFNeg(cosine));
 }
 
-// w' = f'(u) u'
+// Emits w' = f'(u) u'.
 void Emitter::coefficient_of_function(const Step& s) {
   const std::uint8_t l = s.lead;
   if (s.b_constant) {

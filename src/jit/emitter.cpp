@@ -7,7 +7,7 @@
 namespace anholon::jit {
 
 namespace {
-// A longer elimination is a function of its own: it would be most of the code of every stage.
+// A longer elimination is a separate function, because it would be most of the code of every stage.
 constexpr double kLongElimination = 100;
 }  // namespace
 
@@ -86,7 +86,7 @@ void Emitter::level(int level) {
                                               number(-k_.factorial[static_cast<std::size_t>(order)])));
   }
   solve();
-  // All are needed: callers examine them before their use.
+  // All elements are stored, because callers examine them before their use.
   for (std::uint32_t j = 0; j < p_.x.size(); ++j) store(solution_[j], k_.solution + j);
   end(displaced(level));
 }
@@ -98,7 +98,7 @@ void Emitter::advance() {
   advance_ = function_;
 }
 
-// For a single motion, four orders are a vector.
+// For a single motion, four orders are one vector.
 std::vector<llvm::Value*> Emitter::increments() {
   const int most = p_.stages + p_.largest_d, groups = (most + kBlock - 1) / kBlock;
   const bool alone = lanes_ == 1;

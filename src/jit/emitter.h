@@ -31,8 +31,8 @@ void for_runs(const List& list, std::size_t most, const Body& body) {
 
 class Emitter : StageCode {
  public:
-  // `several_sines`: the number of angles that anholon_several_sines takes.
-  // The code of a long plan is in several modules, of which this one has number `part`.
+  // `several_sines`: the number of angles that anholon_several_sines takes. The code of a long plan is in several
+  // modules; `part` is the number of this one.
   Emitter(const KernelTables& tables, llvm::Module& module, int lanes, int several_sines, std::size_t part = 0);
   static std::size_t parts(const KernelTables& tables) { return tables.sums != 0 ? kParts : 1; }
   // Emits the parts of kernel/code.h: "values", "factor", "lead" (residual and completion of stage 0), "extend",
@@ -57,7 +57,7 @@ class Emitter : StageCode {
   };
   struct Piece {
     llvm::Function* code;
-    std::vector<Run> histories;  // that it needs
+    std::vector<Run> histories;  // the histories that it needs
   };
   void stages_in_pieces();
   void find_crossing_numbers();
@@ -90,7 +90,7 @@ class Emitter : StageCode {
   std::uint32_t multiply_by_inverse();
   void transpose(std::vector<Value*>& rows);
   Value* minus_entry(std::uint32_t entry, Value* x, Value* s);
-  bool unit(std::uint32_t entry) const;  // 1 or -1
+  bool unit(std::uint32_t entry) const;  // true for 1 or -1
   void lead();
   void level(int level);
   void advance();
@@ -160,7 +160,8 @@ class Emitter : StageCode {
   llvm::Function *substitution_ = nullptr, *advance_ = nullptr;
   std::optional<PackedMemory> memory_;  // places in the scratch memory
   Value *scratch_ = nullptr, *sines_ = nullptr;
-  bool history_is_whole_ = false;  // the scratch memory holds all sums of a convolution before the newest coefficients
+  bool history_is_whole_ =
+      false;  // the scratch memory contains all sums of a convolution before the newest coefficients
   std::vector<Value*> side_, solution_;
 };
 

@@ -121,8 +121,8 @@ void Writer::add(const KernelTables::Divisors& divisors) {
 }
 
 void Writer::add(const Plan& plan) {
-  // What decides which function holds, and hiding functions, concern only the choice of steps; the determinant is among the judged
-  // numbers.
+  // What decides which functions hold, and hiding functions, affect only the choice of steps; the determinant is among
+  // the judged numbers.
   [[maybe_unused]] const auto& [stages, stride, arena, coefficients, point, stage, after, terms, partials, weigh_again,
                                 entries, completions, x, time, roots, root_is_zero, sides, quadratures, beyond_double,
                                 deciding, hiding, rows, largest_lead, largest_d, c, d, scales, determinant] = plan;

@@ -1,5 +1,5 @@
-// The name of compiled code on disk: a hash of everything that determines the code. It hashes the plan's numbers
-// instead of the IR, which takes long to build and print.
+// The name of compiled code on disk: a hash of everything that determines the code. The hash is made of the plan's
+// numbers, not of the IR, which takes long to build and print.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -38,7 +38,8 @@ class PackedMemory {
   const std::vector<Convolution>& alone() const { return alone_; }
   Place coefficient(std::size_t bundle, int order, bool relative) const;
 
-  // The place at which all these numbers are side by side; a lane without a number is null. Constants get a place.
+  // Returns the place at which all these numbers are side by side; a lane without a number is nullptr. Constants get a
+  // place.
   std::optional<Place> find(const std::vector<const Origin*>& lanes);
   // Constants with their places.
   const std::map<Packs::Lanes, std::uint32_t>& constants() const { return constants_; }

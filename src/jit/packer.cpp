@@ -49,8 +49,8 @@ void Packer::run() {
   clear();
 }
 
-// Collects the instructions before the end of the block, and the instructions for which each has to wait: its operands
-// and, for memory, earlier stores and calls.
+// Collects the instructions before the end of the block, and, for each, the instructions that have to come before it:
+// its operands and, for memory, earlier stores and calls.
 void Packer::read() {
   for (Instruction& i : block_)
     if (!i.isTerminator()) {
@@ -61,7 +61,7 @@ void Packer::read() {
   users_.resize(code_.size());
   group_.assign(code_.size(), kNone);
   seen_.assign(code_.size(), 0);
-  // Places as base and offset; stores to other bases do not matter.
+  // An address is a base and an offset; stores to other bases do not matter.
   using Address = std::pair<const Value*, std::int64_t>;
   const auto address = [](const Value* pointer) -> Address {
     const auto* at = llvm::dyn_cast<llvm::GetElementPtrInst>(pointer);
@@ -114,7 +114,7 @@ int Packer::group_of(const Value* v) const {
   return it == index_.end() ? kNone : group_[it->second];
 }
 
-// Whether the values are one value in all lanes, constants, or the members of a group in their lanes.
+// True if the values are one value in all lanes, constants, or the members of a group in their lanes.
 bool Packer::ready(const Lanes& values) const {
   const Value* first = nullptr;
   int group = kNone;
@@ -144,7 +144,7 @@ bool Packer::same_operation(const std::vector<Instruction*>& members) const {
   return count >= fewest_lanes(width_);
 }
 
-// Whether no member waits for another, directly or through groups.
+// True if no member depends on another, directly or through groups.
 bool Packer::independent(const std::vector<Instruction*>& members) {
   ++search_;
   std::vector<int> open;
@@ -225,7 +225,7 @@ bool Packer::form(const Lanes& values) {
   return false;
 }
 
-// Adds the operations that use a group in the same way in all its lanes.
+// Forms groups of the operations that use a group in the same way in all its lanes.
 void Packer::grow(std::size_t number) {
   // Key: operation, index of the operand, the other operands.
   using Use = std::vector<unsigned>;
@@ -253,7 +253,8 @@ void Packer::grow(std::size_t number) {
     for (const std::vector<Instruction*>& lanes : list) form(Lanes(lanes.begin(), lanes.end()));
 }
 
-// Writes all instructions in an order in which none waits: the old one, but with the members of a group together.
+// Writes all instructions in an order in which each comes after those that it needs: the old order, but with the
+// members of a group together.
 void Packer::write() {
   const int groups = static_cast<int>(groups_.size());
   const auto unit = [&](int i) { return group_[i] == kNone ? groups + i : group_[i]; };

@@ -1,9 +1,9 @@
 // Vectorizes straight-line code: isomorphic operations of a block of scalar code, each on numbers of its own lane,
 // become one operation. Nothing else changes, so the bits stay the same.
 //
-// It starts from values that are needed side by side (of one kind, for isomorphic steps), adds their operands and their
-// users as long as all lanes perform the same operation, and leaves the rest scalar, for instance a chain along the
-// mechanism, in which every link waits for the one before.
+// The packer starts from values that are needed side by side (of one kind, for isomorphic steps), adds their operands
+// and their users as long as all lanes perform the same operation, and leaves the rest scalar: for instance a chain
+// along the mechanism, in which every link depends on the one before.
 #pragma once
 #include <unordered_map>
 
@@ -15,7 +15,7 @@ namespace anholon::jit {
 
 class Packer {
  public:
-  // One value in each lane; null for an empty lane.
+  // One value in each lane; nullptr for an empty lane.
   using Lanes = std::vector<llvm::Value*>;
   // `address` returns the address of a place in the packed memory; `origins` tells from which places loads read.
   Packer(llvm::BasicBlock& block, llvm::IRBuilder<>& builder, PackedMemory& memory,

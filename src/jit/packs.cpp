@@ -42,8 +42,8 @@ std::vector<Convolution> convolutions(const Step& s) {
 
 namespace {
 
-// Up to this number of sums, a stage waits for the newest of its numbers, not for the number of operations: gathering
-// sums into vectors takes time.
+// With at most this number of sums, the latency of the newest numbers determines the time of a stage, not the number of
+// operations; then gathering sums into vectors does not pay.
 constexpr std::size_t kFewSums = 16;
 
 class Chooser {
@@ -150,12 +150,12 @@ class Chooser {
     out_.packs.push_back({lanes, lead, first, second});
   }
 
-  // Packs at least the histories of steps that are too few of their kind.
+  // Packs at least the histories of steps if there are too few steps of their kind.
   void leave(const Step& s) {
     for (const Convolution& c : convolutions(s)) left_[{c.lead, newest_.at(c.a), newest_.at(c.b)}].push_back(c);
   }
 
-  // A bundle that has all of these in their lanes, or room for them.
+  // Returns a bundle that has all of these in their lanes, or room for them.
   std::size_t bundle(const Packs::Lanes& at) {
     int newest = 0;
     for (const std::uint32_t x : at)

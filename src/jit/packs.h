@@ -48,7 +48,7 @@ struct Packs {
 // The least number of lanes for which a vector of `width` pays.
 constexpr unsigned fewest_lanes(unsigned width) { return width / 2 < 3 ? 3 : width / 2; }
 
-// For the stages of a plan and vectors of `width` numbers.
+// Chooses packs for the stages of a plan and vectors of `width` numbers.
 Packs choose_packs(const Plan& plan, unsigned width);
 
 }  // namespace anholon::jit

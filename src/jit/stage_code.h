@@ -18,11 +18,11 @@ class StageCode : public ArenaCode {
 
   // Begins code for the block of stages from k0 on; `stage_` then counts from k0.
   void begin_block(Value* k0);
-  // Forgets the values: another stage begins, or another function.
+  // Forgets the values, because another stage or another function begins.
   void forget();
 
-  // Orders are given for the present stage: get() and put() take the coefficient of order stage + lead, earlier() and
-  // read() an order counted like `stage_`.
+  // Orders are relative to the present stage: get() and put() take the coefficient of order stage + lead; earlier() and
+  // read() take an order counted like `stage_`.
   Value* get(const Place& place, int lead);
   Value* newest(std::uint32_t at, int lead) { return get({at, true}, lead); }
   void put(const Place& place, int lead, Value* v);
@@ -43,9 +43,9 @@ class StageCode : public ArenaCode {
   Value* over_rising(Value* x, int m);
 
   Value* k0_ = nullptr;    // the stage with which the block begins
-  bool relative_ = false;  // whether `stage_` counts from there
+  bool relative_ = false;  // `stage_` is relative to k0_
   int stage_ = 0;
-  static constexpr int kNoOrder = -1000;                        // of a number that is no coefficient
+  static constexpr int kNoOrder = -1000;                        // marks a number that is no coefficient
   std::map<std::pair<std::uint32_t, int>, Value*> known_;       // values by place and order
   std::map<Convolution, std::pair<Value*, Value*>> histories_;  // of the present stage
   std::unordered_map<Value*, Origin> origins_;

@@ -4,7 +4,7 @@
 
 namespace anholon::jit {
 
-// Whether a file is a regular file that belongs to `user` or root and that nobody else could have written. Links, pipes
+// True if a file is a regular file that belongs to `user` or root and that nobody else could have written. Links, pipes
 // and folders are not trusted.
 inline bool trusted(const struct stat& about, uid_t user) {
   return S_ISREG(about.st_mode) && (about.st_uid == user || about.st_uid == 0) &&

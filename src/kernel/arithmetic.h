@@ -12,7 +12,7 @@ namespace anholon {
 
 inline constexpr int kMostRising = 12;
 
-// A pivot that is judged by its size: its place, and 1 / its value at the choice of pivots.
+// A pivot whose size is judged: its place, and 1 / its value at the choice of pivots.
 struct JudgedPivot {
   std::uint32_t at;
   double inverse;
@@ -27,21 +27,21 @@ inline constexpr double kLog2e = 1.4426950408889634, kFarthest = 300 * kLog2e;
 inline constexpr double kLog2[] = {1.4417624, -0.72490038, 0.51749214, -0.32964325};
 inline constexpr double kExp2[] = {0.99992807, 0.69326099, 0.24261112, 0.05517167};
 inline constexpr std::uint64_t kRootOfHalf = 0x3fe6a09e667f3bcdULL;  // bits of sqrt(1/2)
-// 1.5 2^52: added to a small integer, it moves the integer to the last bits
+// This is 1.5 2^52: added to a small integer, it moves the integer to the last bits.
 inline constexpr double kInteger = 6755399441055744.0;
 
 // Places in the arena for the findings of an expansion, one number per lane.
 struct Findings {
   std::uint32_t health = 0, determinant = 0;  // Pivots (pivots.h)
-  // of the projection; `moved` is 0 or 1: whether it moves, or has moved, the state
+  // drift, weight, moved: of the projection; `moved` is 1 if it moves, or has moved, the state, otherwise 0
   std::uint32_t drift = 0, weight = 0, moved = 0;
   std::uint32_t reach = 0;    // the step that the series allow
   std::uint32_t unfit = 0;    // not 0: a highest coefficient is not finite
   std::uint32_t largest = 0;  // largest absolute value in the state after a step; NaN if it contains one
-  // difference of the leading derivatives from their first guess, relative to the derivatives below them
+  // the difference of the leading derivatives from their first guess, relative to the derivatives below them
   std::uint32_t defect = 0;
-  // how much the arguments of functions that may hide their variation change over a step, at most, relative to the
-  // change that hides nothing
+  // the largest change, over a step, of the arguments of functions that may hide their variation, relative to the
+  // largest change that hides nothing
   std::uint32_t hidden = 0;
 };
 
@@ -65,20 +65,21 @@ struct KernelTables {
   // Places in the arena.
   std::uint32_t lu = 0, reciprocal = 0, inverse = 0, rhs = 0, side = 0, solution = 0, refined = 0, entries = 0,
                 step = 0, weights = 0, increments = 0;
-  // Of a long plan, whose machine code is in pieces (jit/emit_pieces.cpp): the sums of its histories; else 0.
+  // The sums of the histories of a long plan, whose machine code is in pieces (jit/emit_pieces.cpp); 0 for other plans.
   std::uint32_t sums = 0;
   // States of motions: x_j^(k), k < d_j, as sums of two doubles, first all larger parts, then first guesses of
   // x_j^(d_j). Three places take turns: the start of the next expansion, of the present one, of the one before.
   // `projected`, without guesses: the present state after projection.
   std::array<std::uint32_t, 3> motions{};
   std::uint32_t projected = 0;
-  std::uint32_t margin = 0;  // what a step is of the reach of its series (integrate/step_control.h), in powers of two
-  std::uint32_t inverse_pivots = 0;  // `inverse` of those that are judged
+  std::uint32_t margin =
+      0;  // the part that a step is of the reach of its series (integrate/step_control.h), in powers of two
+  std::uint32_t inverse_pivots = 0;  // `inverse` of the judged pivots
   Findings found;
   std::uint32_t size = 0;
   std::uint32_t state_size = 0;
-  // The place of the weight (k + i)! / i! h^i that coefficient k + i of a series, k + i >= 1, has in the change of
-  // x^(k) over a step h.
+  // The place of (k + i)! / i! h^i, the weight of coefficient k + i of a series, k + i >= 1, in the change of x^(k)
+  // over a step h.
   std::uint32_t weight(int k, int i) const {
     return weights + static_cast<std::uint32_t>(k * (plan->stages + plan->largest_d + 1) + i);
   }
@@ -140,7 +141,7 @@ class Arithmetic {
   virtual void adopt(const double* from) = 0;
   // Computes the reach of the series and whether they are finite.
   virtual void measure() = 0;
-  // Computes by how much the arguments of functions that may hide their variation change over `step`, at most.
+  // Computes the largest change, over `step`, of the arguments of functions that may hide their variation.
   virtual void look_for_hidden() = 0;
   // Adds the increments to the states.
   virtual void go_on(const double* base, double* to) = 0;
@@ -154,7 +155,7 @@ double power_of(double x, double exponent);
 double function_of(std::uint32_t function, double x);
 void sine_and_cosine(double x, double& sine, double& cosine);
 
-// Sine and cosine of angles in all lanes; `beyond`: the part of the angle beyond its double (null: none).
+// Sine and cosine of angles in all lanes; `beyond`: the part of the angle beyond its double, or nullptr.
 using SinesOfLanes = void (*)(const double* angle, const double* beyond, double* sine, double* cosine);
 
 // An instruction set for which this program was built.
@@ -168,7 +169,8 @@ struct Tier {
 const std::vector<Tier>& tiers();
 // The fastest tier that computes so many lanes. REQUIRES: there is one.
 const Tier& tier_of(int lanes);
-// The most lanes of a tier whose machine code is translated at first (code.h), or the most of all if it has one lane.
+// The most lanes of a tier whose machine code is translated at first (code.h); if that is one lane, the most of all
+// tiers.
 int lanes_at_first();
 extern const Tier tier_plain, tier_avx2, tier_avx512;
 

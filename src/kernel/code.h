@@ -10,18 +10,18 @@
 
 namespace anholon {
 
-// Machine code that is made quickly, or better code: up to a quarter faster. The bits are the same.
+// Machine code made quickly, or better code, which is up to a quarter faster. The bits are the same.
 enum class CodeEffort : std::uint8_t { quick, full };
 
-// The parts of one expansion, and of motions (arithmetic.h); each takes the arena. Of a long plan there is `extend`
-// alone. The code exists as long as `keeper`.
+// The parts of one expansion, and of motions (arithmetic.h); each takes the arena. A long plan has `extend` alone. The
+// code exists as long as `keeper`.
 struct Code {
   using Part = void (*)(double*);
   Part values = nullptr, factor = nullptr, lead = nullptr, extend = nullptr, measure = nullptr,
        advance = nullptr;  // `factor` also judges the pivots
   void (*begin)(double*, const double* from) = nullptr;
   void (*go_on)(double*, const double* base, double* to) = nullptr;  // and executes `advance` first
-  // [l - 1]: solves for the residuals at derivative order c_i - l; returns whether a state is displaced
+  // [l - 1]: solves for the residuals at derivative order c_i - l; returns 1 if a state is displaced, otherwise 0
   std::vector<int (*)(double*)> level;
   // Calls `find(name, part)` for each part of the code of a plan that is not long; there are `levels` hidden levels.
   template <class Find>
@@ -69,8 +69,8 @@ struct CompilerModule {
 };
 inline constexpr int kCompilerVersion = 9;
 
-// Whether code of little effort is translated for so many lanes (jit/x86), and not compiled; a tenth to a quarter of the
-// time is then enough.
+// True if code of little effort is translated for so many lanes (jit/x86) instead of compiled; this takes a tenth to a
+// quarter of the time.
 inline constexpr bool translated_at_first(int lanes) { return lanes <= 4; }
 
 // The module beside the program; null if there is none, or if this machine cannot run its code.

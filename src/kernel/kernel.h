@@ -24,7 +24,7 @@ enum class Company { alone, in_lanes };
 
 class KernelPlan {
  public:
-  // `state`: the state at and around which the pivots are chosen. Returns null if the program has no plan, or the
+  // `state`: the state at and around which the pivots are chosen. Returns nullptr if the program has no plan, or the
   // equations are singular there.
   static std::shared_ptr<const KernelPlan> make(std::shared_ptr<const Program> program, int stages,
                                                 const std::vector<long double>& parameters, double t,
@@ -43,7 +43,7 @@ class KernelPlan {
   const KernelTables& tables() const { return tables_; }
   const Program& program() const { return *program_; }
   std::size_t state_size() const { return tables_.state_size; }
-  // The map to the state of the motion if the kernel has unknowns of its own; else null.
+  // The map to the state of the motion if the kernel has unknowns of its own; otherwise nullptr.
   const StateMap* map() const { return map_.get(); }
   Company company() const { return company_; }
   int waits() const { return waits_; }
@@ -51,8 +51,9 @@ class KernelPlan {
   int levels() const { return levels_; }  // of hidden constraints
   // Makes machine code for one lane, or for this number of lanes, with the same bits; kernels use it from their next
   // expansion on. Each code is made at most once for each effort, from any thread. Returns the reason if there is no
-  // code, else an empty string.
-  // `most_translated`: the limit of steps of a plan of one stage that is translated, as that of a function of states.
+  // code, otherwise an empty string.
+  // `most_translated`: the largest number of steps of a plan of one stage whose code is translated; such a plan
+  // computes a function of states.
   static constexpr std::size_t kMostTranslated = 4000;
   std::string compile(const std::string& cache, int lanes = 1, CodeEffort effort = CodeEffort::full,
                       std::size_t most_translated = kMostTranslated) const;
@@ -60,7 +61,7 @@ class KernelPlan {
     const Code* ready = compiled(lanes).ready.load(std::memory_order_acquire);
     return ready && ready->values ? ready : nullptr;
   }
-  // The code of a long plan, which only extends: tables do the rest, which is done once per expansion.
+  // The code of a long plan, which only extends; tables compute the other parts, which run once per expansion.
   const Code* code_of_stages() const {
     const Code* ready = compiled(1).ready.load(std::memory_order_acquire);
     return ready && !ready->values ? ready : nullptr;
@@ -84,7 +85,7 @@ class KernelPlan {
   Sampled choose_pivots(const std::vector<long double>& parameters, double t, const std::vector<double>& state);
   void solve_by(const Sampled& sampled);
   void lay_out();
-  // Whether the machine code is made in pieces.
+  // True if the machine code is made in pieces.
   bool is_long() const;
 
   std::shared_ptr<const Program> program_;
@@ -114,11 +115,11 @@ class Kernel {
   int lanes() const { return lanes_; }
   const KernelPlan& plan() const { return *plan_; }
   void set_parameters(int lane, const std::vector<long double>& parameters, Rounding rounding = Rounding::nearest);
-  // The same for the equations alone: the reader of the lane keeps its parameters.
+  // Like set_parameters(), for the equations alone: the reader of the lane keeps its parameters.
   void set_coefficients(int lane, const std::vector<long double>& parameters, Rounding rounding = Rounding::nearest);
   // Converts between the kernel's state and that of the motion, with the parameters of a lane, if the plan has a map.
   StateReader& reader(int lane) { return readers_[static_cast<std::size_t>(lane)]; }
-  // A state for `expand`: x_j^(k), k < d_j, one after the other; `leading`: a first guess of x_j^(d_j).
+  // Loads a state for `expand`: x_j^(k), k < d_j, one after the other; `leading`: a first guess of x_j^(d_j).
   template <class State>
   void load(int lane, double t, const std::vector<State>& state, const std::vector<State>& leading) {
     const Plan& p = plan_->plan();
@@ -134,7 +135,7 @@ class Kernel {
     for (const Beyond& b : p.beyond_double) number(b.at, lane) = 0;
     set_time(lane, t);
   }
-  // The states of all lanes at one time, for `solve_point`: value(j, k, lane) is x_j^(k), k <= d_j.
+  // Loads the states of all lanes at one time, for `solve_point`: value(j, k, lane) is x_j^(k), k <= d_j.
   template <class Value>
   void load_point(double t, const Value& value) {
     const Plan& p = plan_->plan();
@@ -165,12 +166,12 @@ class Kernel {
   // Pivots of the last expansion.
   Pivots pivots(int lane) const { return {number(found().health, lane), number(found().determinant, lane)}; }
   bool finite(int lane) const;
-  // The distance of the state from the hidden constraints, relative to its size, and whether the state was moved.
+  // The distance of the state from the hidden constraints, relative to its size; and true if the state was moved.
   double drift(int lane) const { return number(found().drift, lane); }
   bool moved(int lane) const { return number(found().moved, lane) > 0; }
 
-  // Motions, step by step, in all lanes at once. The kernel keeps their states in the width of long double. `place`
-  // loads states that come from elsewhere; then `begin` (the expansions at the set times) and `advance` (over the set
+  // Motions are computed step by step in all lanes at once. The kernel keeps their states in the width of long double.
+  // `place` loads states from elsewhere; then `begin` (the expansions at the set times) and `advance` (over the set
   // steps) alternate.
   void place(int lane, const std::vector<long double>& state, const std::vector<long double>& leading);
   // Stores each number of the state after `advance` as `place` stores its sum in long double.
@@ -182,9 +183,9 @@ class Kernel {
     number(plan_->plan().time + 1, lane) = 1;
   }
   void begin();
-  // As `begin`, but only up to the leading derivatives, and the quadratures at the point itself. It has no reach.
+  // Like `begin`, but only up to the leading derivatives, and the quadratures at the point itself. There is no reach.
   void begin_point();
-  // After `advance`, at the set times: the part of `begin` that solves for the leading derivatives; `defect` then tells
+  // After `advance`, at the set times: the part of `begin` that solves for the leading derivatives. Then `defect` tells
   // how well the series predicted them. Until `begin` continues, or another `advance` replaces it, the last expansion's
   // series remain available; for reading them see show_last().
   void start_next();
@@ -196,7 +197,7 @@ class Kernel {
     gone_on_ = advanced;
   }
   // Call this before reading series of the last expansion after `start_next`; coefficients of unknowns and quadratures
-  // can be read without.
+  // can be read without it.
   void show_last() const {
     if (!shows_last_) swap_low_orders();
   }
@@ -205,18 +206,18 @@ class Kernel {
   const double* finding(std::uint32_t Findings::* which) const {
     return arena_ + found().*which * static_cast<std::size_t>(lanes_);
   }
-  // After `begin`: how much the arguments of functions that may hide their variation change over the set steps, at most
-  // (Findings::hidden).
+  // After `begin`: computes the largest change, over the set steps, of the arguments of functions that may hide their
+  // variation (Findings::hidden).
   void look_for_hidden() { arithmetic_->look_for_hidden(); }
   void advance();
-  // e^-shrink of the radius of convergence is a step (integrate/step_control.h).
+  // Makes a step e^-shrink of the radius of convergence (integrate/step_control.h).
   void set_shrink(double shrink);
   double reach(int lane) const { return number(found().reach, lane); }
-  // Whether the highest coefficients are finite, and the largest number of a state after a step.
+  // reaches(): true if the highest coefficients are finite. largest(): the largest number of a state after a step.
   bool reaches(int lane) const { return number(found().unfit, lane) == 0; }
   double largest(int lane) const { return number(found().largest, lane); }
-  // The state and the first guess of the leading derivatives: now, at the start of the present expansion, of the one
-  // before.
+  // Reads the state and the first guess of the leading derivatives: now, at the start of the present expansion, or of
+  // the one before.
   enum class Moment { now, begun, before };
   void fetch(int lane, Moment moment, std::vector<long double>& state, std::vector<long double>& leading) const;
   // The state at the expansion from which the last step started.
@@ -249,7 +250,7 @@ class Kernel {
   }
   // Computes the changes of x_j^(k), k = 0..d_j, one after the other, over the set steps.
   void change_over_step();
-  // After change_over_step(), for unknowns of first order: the state at the end of the step.
+  // After change_over_step(), for unknowns of first order: reads the state at the end of the step.
   void fetch_changed(int lane, std::vector<long double>& state) const;
   // Element i is at offset i * lanes().
   const double* increments(int lane) const {
@@ -295,7 +296,7 @@ class Kernel {
   // Places of motions (KernelTables): the start of the next expansion, of the present one, of the one before; the state
   // of that expansion.
   std::uint32_t next_, begun_, before_, base_;
-  bool gone_on_ = true;  // advanced or placed since the present expansion was made
+  bool gone_on_ = true;  // the state was advanced or placed since the present expansion was made
   // Parts of the series that solving for the leading derivatives overwrites: places and lengths.
   struct LowOrders {
     std::uint32_t at, count;

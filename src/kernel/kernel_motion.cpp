@@ -27,8 +27,8 @@ void Kernel::place(int lane, const std::vector<long double>& state, const std::v
   gone_on_ = true;
 }
 
-// Whether two doubles are what their sum in long double is taken apart to: the larger one is the rounded sum, and the
-// other one a multiple of the last digit of a long double beside it. Surely, as doubles tell it.
+// True if two doubles are the parts of their sum in long double: the larger one is the rounded sum, and the other one a
+// multiple of the last digit of a long double beside it. The answer is exact, although it is computed in doubles.
 static bool is_rounded_sum(double high, double low) {
   constexpr double kLastDigits = 1.5 * 0x1p-11;
   const double grid = std::bit_cast<double>(std::bit_cast<std::uint64_t>(high) & 0x7ff0000000000000ULL) * kLastDigits;
@@ -94,7 +94,7 @@ void Kernel::start(const Code* code) {
   moved_ = solve(code, true);
 }
 
-// A call for each of a few numbers would take longer than to copy them.
+// Calls of a copying function would take longer than the few copies.
 void Kernel::keep_low_orders() {
   double* to = aside_.data();
   const std::size_t lanes = static_cast<std::size_t>(lanes_);
@@ -153,7 +153,7 @@ void Kernel::fetch(int lane, Moment moment, std::vector<long double>& state, std
 
 void Kernel::fetch_base(int lane, std::vector<long double>& state) const { sum_up(base_, lane, state); }
 
-// Each unknown has two increments, that of its value and that of its derivative.
+// Each unknown has two increments: that of its value and that of its derivative.
 void Kernel::fetch_changed(int lane, std::vector<long double>& state) const {
   const std::uint32_t n = plan_->tables().state_size;
   const std::size_t stride = 2 * static_cast<std::size_t>(lanes_);
@@ -163,7 +163,7 @@ void Kernel::fetch_changed(int lane, std::vector<long double>& state) const {
     state[i] = static_cast<long double>(number(base_ + i, lane)) + number(base_ + n + i, lane) + *increment;
 }
 
-// The even and the odd terms side by side, as a sum waits for its last term.
+// The even and the odd terms are two sums, because a sum waits for its last term.
 double Kernel::integral(std::size_t i, int lane) const {
   const LastSeries& q = quadratures_[i];
   const KernelTables& t = plan_->tables();

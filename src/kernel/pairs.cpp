@@ -54,7 +54,7 @@ void PairMachine::add(const Instruction& in, std::uint32_t slot) {
     if (f != Function::sin && f != Function::cos) break;
     const auto known = std::find_if(sines_.begin(), sines_.end(), [&](const auto& s) { return s.first == in.a; });
     const bool fresh = known == sines_.end();
-    // A step of its own, whose places are beyond those of the tape.
+    // The sine and the cosine are a separate step, whose places come after those of the tape.
     const std::uint32_t sine = fresh ? std::exchange(program_.places, program_.places + 2) : known->second;
     if (fresh) {
       sines_.emplace_back(in.a, sine);
@@ -78,7 +78,7 @@ void PairMachine::add(const Instruction& in, std::uint32_t slot) {
 
 void PairMachine::evaluate() { run_(program_, numbers_.get(), other_); }
 
-// Operands are copied to the machine in long double, and its result back, lane by lane.
+// Copies the operands to the machine in long double, and its result back, lane by lane.
 void PairMachine::by_long_double(std::uint32_t slot) {
   const Instruction& in = tape_->code[slot];
   ANHOLON_ASSERT(in.op != Op::rate);

@@ -1,8 +1,8 @@
 // Straight-line code in pairs of doubles, for several motions side by side: the values of a tape at order 0.
 //
-// A number is the sum of two doubles, the first of which is the sum rounded. Sums, products and quotients keep 2^-100 of
-// their size, sines and cosines 2^-65; other functions are taken from long double, lane by lane. A lane has the same
-// bits whatever the others hold, and for any number of lanes.
+// A number is the sum of two doubles, the first of which is the rounded sum. Sums, products and quotients keep 2^-100
+// of their size, sines and cosines 2^-65; other functions are computed in long double, lane by lane. The bits of a lane
+// depend neither on the other lanes nor on their number.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace anholon {
 
-// The tape as steps; place i of a number is slot i of the tape, further places hold cosines.
+// The tape as steps; place i of a number is slot i of the tape, further places contain cosines.
 struct PairProgram {
   enum class Act : std::uint8_t {
     linear,       // the sum of terms [first, first + count)
@@ -38,7 +38,7 @@ struct PairProgram {
 
 // Computes the steps over numbers [place][high, low][lane]; `other` computes a step of that kind.
 using PairSteps = void (*)(const PairProgram&, double* numbers, const std::function<void(std::uint32_t slot)>& other);
-// For an instruction set each (tiers/tier_*.cpp), with its number of lanes.
+// One function for each instruction set (tiers/tier_*.cpp), with its number of lanes.
 void run_pairs_plain(const PairProgram&, double*, const std::function<void(std::uint32_t)>&);
 void run_pairs_avx2(const PairProgram&, double*, const std::function<void(std::uint32_t)>&);
 void run_pairs_avx512(const PairProgram&, double*, const std::function<void(std::uint32_t)>&);

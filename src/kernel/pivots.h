@@ -9,9 +9,10 @@ struct Pivots {
   double health = 0;       // the smallest ratio, by absolute value
   double determinant = 0;  // the product of the ratios: the ratio of det J
 };
-// Pivots of smaller health are not trusted; where solutions are refined, only those that leave refinement few digits.
+// Pivots of smaller health are not trusted; if solutions are refined, pivots are trusted unless they leave few digits
+// to refinement.
 inline constexpr double kHealthy = 2e-3, kHealthyIfRefined = 1e-5;
-// Whether J may have been singular between two points: its determinant has changed its sign, or has become much smaller
+// True if J may have been singular between two points: its determinant has changed its sign, or has become much smaller
 // together with a pivot (a square keeps its sign). A single pivot proves nothing: if one passes zero, the next one
 // passes infinity.
 inline bool may_have_vanished(const Pivots& before, const Pivots& after) {

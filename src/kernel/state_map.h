@@ -67,7 +67,7 @@ class StateReaders {
   // Puts a state into a lane; every lane needs one before convert().
   void load(int lane, long double t, const Numbers& own);
   void convert() { machine_.evaluate(); }
-  // The state of a lane; `own` as it was put in.
+  // Reads the state of a lane; `own`: the state that was put in.
   void motion(int lane, const Numbers& own, Numbers& state) const;
 
  private:

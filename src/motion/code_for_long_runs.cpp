@@ -30,14 +30,14 @@ void wait_for_left_behind() {
   for (Left& l : list) l.thread.join();
 }
 
-// The compiler makes statics of its own as it goes, and exit() destroys the latest first: whatever waits among them
-// comes too late for a thread that still compiles. What belongs to the main thread is destroyed before all of them.
+// The compiler makes statics while it runs, and exit() destroys the latest statics first, so a static that waits would
+// wait too late for a thread that still compiles. Objects of the main thread are destroyed before all statics.
 struct WaitsAtTheEndOfMain {
   ~WaitsAtTheEndOfMain() { wait_for_left_behind(); }
   void arm() {}
 };
 thread_local WaitsAtTheEndOfMain waits;
-[[maybe_unused]] const bool armed = (waits.arm(), true);  // by the thread that initializes the program
+[[maybe_unused]] const bool armed = (waits.arm(), true);  // runs in the thread that initializes the program
 
 }  // namespace
 
@@ -52,7 +52,7 @@ void CodeForLongRuns::leave() {
 }
 
 double CodeForLongRuns::seconds_to_make(const KernelPlan& plan, int lanes) {
-  // What the compiler takes to be loaded, and what it takes for each step of a stage.
+  // The seconds until the compiler is loaded, and its seconds for each step of a stage.
   constexpr double kLoadedSoon = 0.02;
   const double each_step = translated_at_first(lanes) ? 0.00025 : 0.0015;
   return kLoadedSoon + each_step * static_cast<double>(plan.plan().stage.size());
@@ -60,10 +60,11 @@ double CodeForLongRuns::seconds_to_make(const KernelPlan& plan, int lanes) {
 
 void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes,
                            std::optional<double> spent) {
-  // Seconds: what is observed before, and what the compiler takes for each step of a stage for better code.
+  // Seconds: how long the motion is observed before a compilation, and the compiler's time for better code, for each
+  // step of a stage.
   constexpr double kObserved = 0.001, kObservedLonger = 0.025, kEachStep = 0.006;
-  // By so much the better code is faster at least. In lanes less of the time is spent in the code, the less the shorter
-  // it is, and the compiler takes its time from the cases.
+  // The least part of the time that the better code saves. In lanes a smaller part of the time is spent in the code,
+  // the smaller the shorter the code is, and the compiler takes its time from the cases.
   const double stage = plan ? static_cast<double>(plan->plan().stage.size()) : 0;
   const double better = lanes == 1 ? 0.15 : std::min(0.1, 0.001 * stage);
   constexpr std::size_t kSometimes = 64;
@@ -87,7 +88,8 @@ void CodeForLongRuns::step(const std::shared_ptr<const KernelPlan>& plan, double
   }
 }
 
-// A motion alone is computed by one thread, whose time counts; cases in lanes by any number of threads.
+// A single motion is computed by one thread, whose time is measured; cases in lanes are computed by several threads,
+// for which the clock is read.
 CodeForLongRuns::Point CodeForLongRuns::point(double at, std::optional<double> spent, int lanes) {
   using Seconds = std::chrono::duration<double>;
   if (spent) return {*spent, at};

@@ -1,4 +1,4 @@
-// Machine code for a kernel that has been at work for a while, made beside the motion; its bits are the same.
+// Makes machine code for a kernel that has been at work for a while, beside the motion; the code gives the same bits.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -12,21 +12,21 @@ namespace anholon {
 class CodeForLongRuns {
  public:
   CodeForLongRuns() = default;
-  // Does not wait for a compilation on its way: it comes to its end with the process, see below.
+  // Does not wait for a running compilation, which ends at the latest with the process (compiling_for_nobody).
   ~CodeForLongRuns();
   CodeForLongRuns(const CodeForLongRuns&) = delete;
   CodeForLongRuns& operator=(const CodeForLongRuns&) = delete;
 
-  // Asked at every step, by one thread at a time: begins a compilation for this plan if what is left to do takes longer
-  // than that. `at`: how far the work has come on its way to `end`; `spent`: the seconds that it took until now, if these
-  // are not all that have passed. The first code is made quickly.
+  // Call it at every step, from one thread at a time. It begins a compilation for this plan if the rest of the work
+  // would take longer than the compilation. `at`: how far the work has come on its way to `end`; `spent`: the seconds
+  // of the work so far, if these are not all that have passed. The first code is made quickly.
   void step(const std::shared_ptr<const KernelPlan>& plan, double at, double end, int lanes = 1,
             std::optional<double> spent = {});
-  // About the seconds until quick code for a plan is there.
+  // Estimates the seconds in which quick code for a plan is made.
   static double seconds_to_make(const KernelPlan& plan, int lanes);
-  // The rest takes so many times as long, because the motion is computed once more.
+  // The rest of the work takes `times` as long, because the motion is computed once more.
   void expect(double times) { times_ = times; }
-  // Tells how many steps followed the last request, which stands for one of them.
+  // Notes that `steps` steps were made after the last call of step(), which itself counts as one.
   void count(std::size_t steps) { asked_ += steps > 1 ? steps - 1 : 0; }
 
  private:
@@ -40,19 +40,19 @@ class CodeForLongRuns {
   void begin(const std::shared_ptr<const KernelPlan>& plan, int lanes, CodeEffort effort);
 
   Compilation compilation_;
-  // How far the work had come after so many seconds of a clock that is always the same one.
+  // The progress `at` of the work after so many seconds of the clock of point().
   struct Point {
     double seconds, at;
   };
   static Point point(double at, std::optional<double> spent, int lanes);
 
-  std::optional<Point> first_, since_quick_;  // of the first request, and of the first with code that was made quickly
-  std::size_t asked_ = 0;                     // since the clock was read
+  std::optional<Point> first_, since_quick_;  // at the first call, and at the first call with quick code
+  std::size_t asked_ = 0;                     // steps since the clock was read
   double times_ = 1;
 };
 
-// Whether compilations are on their way that nobody asks for any more. exit() waits for them; a program that has
-// nothing left to do may leave by std::_Exit (what is kept on disk is written under another name first).
+// True if compilations are running whose objects are destroyed. exit() waits for them; a program that has nothing left
+// to do may leave by std::_Exit (cached code is written under another name first).
 bool compiling_for_nobody();
 
 }  // namespace anholon

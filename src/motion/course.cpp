@@ -6,10 +6,10 @@ namespace anholon {
 
 namespace {
 
-// Where another method cannot go, Taylor makes some steps; if that happens too often, all that follow.
+// Taylor's method makes kHelp steps where another method fails, and all further steps once it has helped too often.
 constexpr std::size_t kHelp = 8, kMostRescues = 50;
 
-// What ends a step of another method: masses and arguments of tables, which are quadratures of the program.
+// Guards end a step of another method: masses and arguments of tables, which are quadratures of the program.
 std::vector<Guard> guards_of(const Model& model, std::size_t quadratures) {
   std::vector<Guard> guards;
   for (std::size_t i = 0; i < model.masses.size(); ++i)
@@ -95,7 +95,7 @@ Outcome MethodCourse::steps_by_taylor(const W& end, Stretch<W>& stretch) {
   return o;
 }
 
-// nullopt if Taylor has to make the step.
+// Makes a step by the other method; returns nullopt if Taylor's method has to make it.
 std::optional<Outcome> MethodCourse::step_by_other(const W& end) {
   if (!other_) {
     other_ = std::make_unique<StateMotion>(motion_, parameter_values<double>(model_), stages_,
@@ -110,7 +110,7 @@ std::optional<Outcome> MethodCourse::step_by_other(const W& end) {
   code_.step(steppers_.plan(), to_double(stepper.now().t), to_double(end));
   const std::size_t steps = stepper.steps();
   const Outcome o = other_->step(end);
-  // Taylor stops at a singular point, or finds that J is regular.
+  // Taylor's method stops at the singular point, or finds that J is regular.
   if (o.ok() && other_->passed_singular_point()) return help_from(stepper.before(), kHelp);
   if (o.ok()) {
     by_other_ = true;
@@ -127,21 +127,21 @@ std::optional<Outcome> MethodCourse::step_by_other(const W& end) {
   return help_from(stepper.now(), kHelp);
 }
 
-// Taylor makes the next steps, before the other method goes on. nullopt if Taylor can begin at p.
+// Lets Taylor's method make the next steps, before the other method goes on. Returns nullopt if it can begin at p.
 std::optional<Outcome> MethodCourse::help_from(const MotionPoint& p, std::size_t steps) {
   if (Outcome o = go_on_from(p); !o.ok()) return o;
   taylor_for_ = steps;
   return std::nullopt;
 }
 
-// Taylor makes all steps from here on. nullopt if it can.
+// Lets Taylor's method make all steps from here on. Returns nullopt if it can.
 std::optional<Outcome> MethodCourse::return_to_taylor(std::string why) {
   if (Outcome o = go_on_from(other_->stepper().now()); !o.ok()) return o;
   turn({Method::taylor, std::move(why)});
   return std::nullopt;
 }
 
-// Ends the stretch of the other method: Taylor's motion goes on from p.
+// Ends the stretch of the other method: Taylor's motion continues from p.
 Outcome MethodCourse::go_on_from(const MotionPoint& p) {
   StateStepper& stepper = other_->stepper();
   if (stepper.steps() > 0) {

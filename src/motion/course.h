@@ -1,9 +1,10 @@
-// A motion by the method that was asked for, or by the one that takes the fewest operations (theory: methods).
+// A motion by the method that the user asked for, or by the one that takes the fewest operations (theory: methods).
 //
-// Taylor's motion (motion.h) is the main line: it starts, and it goes where another method cannot: to the end of a
-// table, to a mass that vanishes, past a singular point, to another elimination. What another method costs is found on
-// a stretch of the motion itself and counted in operations, never measured in time, so the same motion always takes the
-// same course. Numbers wider than double have Taylor's method alone; Course<N> names the class of each number type.
+// Taylor's motion (motion.h) is the main line: it starts, and it takes over where another method cannot go on: at the
+// end of a table, at a mass that vanishes, past a singular point, with another elimination. The cost of another method
+// is found on a stretch of the motion itself and counted in operations, never measured in time, so the same motion
+// always takes the same course. Numbers wider than double have Taylor's method alone; Course<N> names the class of each
+// number type.
 #pragma once
 #include "motion/code_for_long_runs.h"
 #include "motion/method_choice.h"
@@ -13,15 +14,15 @@ namespace anholon {
 
 struct MethodReport {
   Method asked = Method::automatic, last = Method::taylor;
-  struct Turn {  // where the method changed
+  struct Turn {  // a change of the method
     double t = 0;
     Method to = Method::taylor;
     std::string why;
   };
   std::vector<Turn> turns;
   std::size_t taylor_steps = 0, expansions = 0;
-  std::size_t steps = 0, refused = 0, evaluations = 0;  // of the other method
-  std::size_t trials = 0, trial_evaluations = 0;        // that led to nothing, or were made again
+  std::size_t steps = 0, refused = 0, evaluations = 0;  // those of the other method
+  std::size_t trials = 0, trial_evaluations = 0;        // trials that were given up, or whose steps were made again
   bool differs_from_taylor() const { return steps > 0 || trials > 0 || !turns.empty(); }
 };
 
@@ -35,19 +36,19 @@ class TaylorCourse {
       : motion_(scenario, settings, quadratures, stages), asked_(asked) {}
 
   Outcome start(const StateChoice& choice) { return motion_.start(choice); }
-  // A stretch of steps.
+  // Makes a stretch of steps.
   Outcome steps(const W& end, Stretch<W>& stretch) { return motion_.steps(end, stretch); }
-  // The solution anywhere in the last step.
+  // Computes the solution at any time of the last step.
   Outcome at(const W& t) { return motion_.at(t); }
   const Expansion<W>& point() const { return motion_.point(); }
-  // Where the last step began, its derivatives.
+  // The solution where the last step began, with its derivatives.
   const Expansion<W>& begun() const { return motion_.stepper().point(); }
   W begun_coordinate(std::size_t a) const { return motion_.stepper().begun_value(a); }
 
-  // Taylor's motion; where the last step was another method's, it lags behind.
+  // Taylor's motion; it lags behind if another method has made the last step.
   Motion<N>& taylor() { return motion_; }
   const Motion<N>& taylor() const { return motion_; }
-  bool by_taylor() const { return true; }  // the last step
+  bool by_taylor() const { return true; }  // true if Taylor's method has made the last step
 
   W time() const { return motion_.stepper().time(); }
   W before() const { return motion_.stepper().before(); }  // the time where the last step began
@@ -55,8 +56,8 @@ class TaylorCourse {
   std::size_t steps() const { return motion_.stepper().steps(); }
   int order() const { return motion_.stepper().order(); }
   W worst_constraint() const { return motion_.stepper().worst_constraint(); }
-  // Of the scaled system Jacobian: its smallest singular value so far, when it was met, the unknown that it determined
-  // least there; the first one.
+  // The smallest singular value of the scaled system Jacobian so far, its time, the unknown that was determined least
+  // there; and the first singular value.
   const N& smallest_sigma() const { return motion_.stepper().least_regular().sigma; }
   const W& smallest_sigma_time() const { return motion_.stepper().least_regular().t; }
   std::size_t weakest_unknown() const { return motion_.stepper().least_regular().unknown; }
@@ -69,7 +70,7 @@ class TaylorCourse {
   Method asked_;
 };
 
-// The same in doubles, where other methods may take over stretches of the motion.
+// A course in doubles, in which other methods may take over stretches of the motion.
 class MethodCourse {
  public:
   using W = Wider<double>;
@@ -103,7 +104,7 @@ class MethodCourse {
   std::size_t weakest_unknown() const { return least_regular().unknown; }
   double first_sigma() const { return motion_.stepper().first_sigma(); }
   MethodReport report() const;
-  // What a looser tolerance would win, told once; else empty.
+  // Tells once what a looser tolerance would save; empty if there is nothing to tell.
   std::string take_advice() { return choice_ ? choice_->take_advice() : std::string(); }
 
  private:
@@ -121,12 +122,12 @@ class MethodCourse {
   int stages_;
   StateSteppers steppers_;
   std::optional<MethodChoice> choice_;  // if the method is free
-  std::unique_ptr<StateMotion> other_;  // the stretch by another method that is under way
-  bool by_other_ = false;               // the last step
-  StateRecord met_;                     // by other methods
+  std::unique_ptr<StateMotion> other_;  // the present stretch by another method
+  bool by_other_ = false;               // another method has made the last step
+  StateRecord met_;                     // the record of other methods
   CodeForLongRuns code_;
-  std::size_t rescues_ = 0, taylor_for_ = 0;  // how often Taylor had to help; the steps it still makes
-  MethodReport report_;                       // `last` is the method by which the motion goes on
+  std::size_t rescues_ = 0, taylor_for_ = 0;  // the rescues by Taylor's method; the steps that it still makes
+  MethodReport report_;                       // `last` is the method that continues the motion
 };
 
 namespace course_of {
@@ -146,7 +147,7 @@ extern template class TaylorCourse<long double>;
 extern template class TaylorCourse<Quad>;
 extern template class TaylorCourse<Multi>;
 
-// The reason why no other method can make the motion of these equations; else an empty string.
+// Returns the reason why no other method can make the motion of these equations; an empty string if one can.
 std::string only_taylor(const Model& model, const Program& program);
 
 }  // namespace anholon

@@ -1,4 +1,4 @@
-// What an event sets, put in where the last step has ended.
+// Applies what events set where the last step has ended.
 #include "motion/motion.h"
 
 namespace anholon {
@@ -39,7 +39,7 @@ void Motion<N>::set_modes(const std::vector<W>& parameters) {
     if (s_.model->parameters[i].mode) narrow_parameters_[i] = convert<N>(parameters[i]);
 }
 
-// Whether the motion is beyond a bound, or on it and goes beyond it by more than round-off. `met`: it is on it.
+// True if the motion is beyond a bound, or on it and goes beyond it by more than round-off. `met`: the motion is on it.
 template <Number N>
 bool Motion<N>::leaves(std::size_t bound, bool met, bool forward) const {
   constexpr int kRoundoffs = 64, kAboveNoise = 1024;
@@ -55,8 +55,8 @@ bool Motion<N>::leaves(std::size_t bound, bool met, bool forward) const {
   return false;
 }
 
-// Says which event's formula has no value where the motion is; `when` in words. A motion that begins where formulas have
-// no derivatives knows no values of them yet. `first`: of the quadratures.
+// Fails if an event's formula has no value where the motion is; `when` tells the place in words. A motion that begins
+// where formulas have no derivatives has no values of them yet. `first`: the first quadrature of the events.
 template <Number N>
 static Outcome all_have_values(const Model& model, const Stepper<N>& stepper, std::size_t first,
                                const std::string& when) {
@@ -95,7 +95,7 @@ Outcome Motion<N>::to_nearest(std::vector<W>& state) {
   return effects_.nearest->put(leg_->program, leg_->stepper.time(), parameters_, leading, state);
 }
 
-// A bound that is met at the time `t`, in words.
+// The outcome of a motion that meets a bound at the time `t`.
 static Outcome beyond(const Bound& b, double t) {
   return {OutcomeKind::not_a_number, b.fault + " at t = " + number_text(t, 12),
           "end the motion before, give the table more knots, or outside = \"hold\" or \"linear\""};
@@ -107,8 +107,9 @@ Outcome Motion<N>::settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on
   const W start = leg_->stepper.before(), now = leg_->stepper.time();
   const Event* set = nullptr;  // the last event that sets something
   goes_on = true;
-  std::optional<N> changed;                        // where an event changes or ends the motion
-  std::vector<bool> met(s_.model->bounds.size());  // the bounds just there: the motion may turn back
+  std::optional<N> changed;  // the place at which an event changes or ends the motion
+  std::vector<bool> met(
+      s_.model->bounds.size());  // the bounds that were met at that place; the motion may turn back there
   std::vector<W> state, parameters = parameters_;
   if (Outcome o = at(now); !o.ok()) return o;
   leg_->point.state(state);

@@ -10,9 +10,9 @@ namespace anholon {
 
 namespace {
 
-// A form without multipliers is taken where Routh's equations cost so much more.
+// A form without multipliers is chosen if Routh's equations cost at least this many times as much.
 constexpr double kWorthIt = 1.25;
-// Beyond this many unknowns the elimination of multipliers fills what was sparse.
+// With more unknowns the elimination of multipliers fills sparse matrices.
 constexpr std::size_t kFewUnknowns = 12;
 const double kLogTolerance = std::log(1e-12);
 
@@ -48,7 +48,7 @@ FormCost cost_of(const Scenario& scenario, const StateChoice& choice, WritingEff
   const bool stays = s.elimination.pivots().empty();
   for (const Representation& r : representations(equations, stays ? most : WritingEffort::at_once))
     cost.writings.push_back({r.writing, work_of(*r.plan), {}, r.velocities, r.clears_poles});
-  // The writings of less effort come first.
+  // Writings that take less effort are enumerated first; known[effort] is the number of those up to an effort.
   const std::size_t known[] = {4, 5, 6};
   for (const WritingEffort effort : kWritingEfforts) {
     WritingCost* best = nullptr;
@@ -75,7 +75,7 @@ FormChoice choose_form(const std::shared_ptr<const Model>& model, const StateCho
     const Outcome o = make_scenario(model, form, choice, s);
     if (!o.ok() || !regular_at_start(s).ok())
       return c.costs.push_back({&form, {}, 0, o.ok() ? "its equations are singular at the start" : o.message});
-    // Where quasi-velocities serve Routh's equations, no other writing is asked for.
+    // If Routh's equations can be written in quasi-velocities, other writings are not tried.
     FormCost soon;
     if (&form == c.form && costs == Costs::where_needed) soon = cost_of(s, choice, WritingEffort::at_once);
     c.costs.push_back(in_quasi_velocities(soon) ? soon : cost_of(s, choice));

@@ -14,22 +14,24 @@ Method stiff_method() { return Method::bdf; }
 namespace {
 
 const double kLoose = std::log(1e-5), kBdf = std::log(info(Method::bdf).least_tolerance);
-// Another method has to be so many times cheaper than Taylor on a stretch of so many of its steps: BDF by more, as its
-// errors grow faster. Where a motion is stiff it is cheaper by far.
+// Another method has to be this many times cheaper than Taylor's on a stretch of so many of its steps. The factor of
+// BDF is larger, because its errors grow faster; for stiff motions it is much cheaper.
 constexpr double kCheaper = 1.3, kMuchCheaper = 4;
 constexpr std::size_t kFewSteps = 48, kManySteps = 256;
-// Where there are many kinks it is asked again when they are so many times as many.
+// A trial after many kinks is made again when there are this many times as many.
 constexpr std::size_t kOftener = 8;
-// A trial that has spent this part of what it may spend has come this far, or is given up.
+// A trial that has used the part kEarly of its operations has to have covered the part kFar of its way; otherwise it is
+// given up.
 constexpr double kEarly = 0.25, kFar = 0.05;
-// A motion of so many steps of Taylor's may be long because it is stiff. Advice tells of a BDF that is so many times
-// cheaper.
+// A motion that has taken kLong of Taylor's steps may be long because it is stiff. Advice is given if BDF is
+// kWorthAdvice times cheaper.
 constexpr std::size_t kLong = 16 * kFirstStiff;
 constexpr double kWorthAdvice = 16;
-// The same of a motion in the lanes of a kernel, whose operations are so many times cheaper than those of a trial.
+// The factor for a motion in the lanes of a kernel, whose operations are this many times cheaper than those of a trial.
 constexpr double kMuchCheaperThanLanes = 16;
 
-// Where a trial ends that goes as far as Taylor's last steps did, or to the end of the motion, and what these steps cost.
+// The end of a trial, which goes as far as Taylor's last steps did, or to the end of the motion, and the cost of
+// Taylor's method on the same way.
 struct TrialStretch {
   long double to = 0;
   double costs = 0;
@@ -41,7 +43,7 @@ struct TrialStretch {
   }
 };
 
-// Whether a stepper comes from a point to a time with at most so many operations.
+// True if a stepper gets from a point to a time with at most so many operations.
 bool comes_to(StateStepper& stepper, const MotionPoint& from, long double to, double most) {
   bool good = stepper.start(from, to).ok();
   while (good && !(stepper.now().t == to)) {
@@ -63,7 +65,7 @@ void MethodChoice::note_step(long double t) {
 std::optional<MethodChoice::Turn> MethodChoice::leave_taylor(long double end) {
   const Stepper<double>& taylor = motion_.stepper();
   const std::size_t steps = taylor.steps();
-  // Where the end is near, nothing is won by a trial.
+  // A trial does not pay if the end is near.
   const auto far = [&](std::size_t stretch, double times) {
     if (times_.size() <= stretch) return false;
     const long double pace =
@@ -86,8 +88,9 @@ std::optional<MethodChoice::Turn> MethodChoice::leave_taylor(long double end) {
   return std::nullopt;
 }
 
-// Trials begin after fixed numbers of steps. Where the end is too near for one by a tenth, it stays so: the pace of the
-// last steps loses no more than the steps that are forgotten of it.
+// Returns the steps for which leave_taylor() surely returns nullopt. Trials begin after fixed numbers of steps. An end
+// that is too near for a trial by a tenth remains too near, as far as the pace of the last steps after `most` further
+// ones can be bounded.
 std::size_t MethodChoice::stays_with_taylor(long double end, std::size_t most) const {
   constexpr long double kSurely = 0.9L;
   const Stepper<double>& taylor = motion_.stepper();
@@ -113,7 +116,7 @@ std::optional<MethodChoice::Turn> MethodChoice::leave_for_bdf(long double end) {
   return Turn{Method::bdf, "the motion is stiff: " + percent()};
 }
 
-// For a tolerance that is too tight for BDF, which may be what makes the motion long. The trial is none of the motion's.
+// Looks whether BDF would make the motion shorter, whose tolerance is too tight for BDF. The trial is not counted.
 void MethodChoice::look_for_advice(long double end) {
   const Trials before = trials_;
   if (const auto trial = steppers_.make(Method::bdf, kBdf);
@@ -129,7 +132,7 @@ bool MethodChoice::pays(Method method, std::size_t steps, double factor, long do
   return pays(*trial, steps, factor, end);
 }
 
-// Whether the stepper comes from here as far as Taylor's last `steps` did, with `factor` times fewer operations.
+// True if the stepper gets from here as far as Taylor's last `steps` did, with `factor` times fewer operations.
 bool MethodChoice::pays(StateStepper& trial, std::size_t steps, double factor, long double end) {
   const MotionPoint from = present_point(motion_);
   if (!steppers_.plan() || !std::isfinite(steppers_.work_of_expansion())) return false;

@@ -1,5 +1,5 @@
-// The choice of a method on the way (theory: methods): whether another one would come as far as Taylor's last steps did
-// with fewer operations. It is found by a trial on a stretch of the motion itself.
+// Chooses a method during the motion (theory: methods): decides whether another method would get as far as Taylor's
+// last steps did with fewer operations, by a trial on a stretch of the motion itself.
 #pragma once
 #include <utility>
 
@@ -7,7 +7,7 @@
 
 namespace anholon {
 
-// A first trial is made after so many kinks, or steps of Taylor's.
+// The first trial is made after so many kinks, or after so many of Taylor's steps.
 inline constexpr std::size_t kFirstKinks = 128, kFirstStiff = 2048;
 
 class MethodChoice {
@@ -23,21 +23,21 @@ class MethodChoice {
   MethodChoice(StateSteppers& steppers, const Motion<double>& motion, double log_tolerance)
       : steppers_(steppers), motion_(motion), log_tolerance_(log_tolerance) {}
 
-  // Taylor has made a step to t.
+  // Notes that Taylor's method has made a step to t.
   void note_step(long double t);
-  // Whether another method goes on towards `end` in place of Taylor; nullopt if Taylor does.
+  // Returns the method that goes on towards `end` in place of Taylor's; nullopt if Taylor's method does.
   std::optional<Turn> leave_taylor(long double end);
-  // The same for BDF alone.
+  // Like leave_taylor(), for BDF alone.
   std::optional<Turn> leave_for_bdf(long double end);
-  // After nullopt: for how many steps the answer is known to be the same, at least one, at most `most`, as long as they
-  // meet no kink.
+  // After leave_taylor() has returned nullopt: the number of steps, from 1 to `most`, for which it will return nullopt
+  // again if they meet no kink.
   std::size_t stays_with_taylor(long double end, std::size_t most) const;
-  // Another method has taken over where Taylor's motion is.
+  // Notes that another method has taken over where Taylor's motion is.
   void begin_other();
-  // Whether the other method has cost more than Taylor would, over its last steps.
+  // True if the other method has cost more than Taylor's would, over its last steps.
   bool slower_than_taylor(StateStepper& other);
   const Trials& trials() const { return trials_; }
-  // What a looser tolerance would win, found in a long motion, once; empty if it is nothing, or was told before.
+  // Tells once what a looser tolerance would save in a long motion; empty if that is nothing, or was told before.
   std::string take_advice() { return std::exchange(advice_, {}); }
 
  private:
@@ -49,11 +49,12 @@ class MethodChoice {
   StateSteppers& steppers_;
   const Motion<double>& motion_;
   double log_tolerance_;
-  std::vector<long double> times_;                                   // the ends of Taylor's last steps
-  std::size_t next_kinks_ = kFirstKinks, next_stiff_ = kFirstStiff;  // after which a trial is made again
-  double taylor_pace_ = 0;  // operations for a unit of time by Taylor where it was left
+  std::vector<long double> times_;  // the ends of Taylor's last steps
+  std::size_t next_kinks_ = kFirstKinks,
+              next_stiff_ = kFirstStiff;  // kinks and steps after which the next trial is made
+  double taylor_pace_ = 0;  // operations of Taylor's method for a unit of time where another method took over
   double ratio_ = 0;        // operations of the last trial, relative to Taylor's
-  // Where the present stretch of the other method began.
+  // The point where the present stretch of the other method began.
   struct Stretch {
     double t = 0, work = 0;
     std::size_t steps = 0;
@@ -63,9 +64,9 @@ class MethodChoice {
   std::string advice_;
 };
 
-// Whether a motion that many others accompany in the lanes of a kernel had better be made alone, by a method that is by far
-// cheaper. Its steps are the stepper's, and trials begin after fixed numbers of them, so that every motion is judged
-// alike in any company.
+// Decides whether a motion among many others in the lanes of a kernel is better computed alone, by a method that is
+// much cheaper. It counts the stepper's steps, and trials begin after fixed numbers of them, so the decision about a
+// motion does not depend on the others.
 class TaylorWatch {
  public:
   // The equations of the motion, with its parameters, and the kernels of Taylor's expansions and of the rates.
@@ -77,11 +78,11 @@ class TaylorWatch {
   };
 
   explicit TaylorWatch(double log_tolerance) : log_tolerance_(log_tolerance) {}
-  // Another motion, whose first step the stepper has not made.
+  // Begins with another motion, of which the stepper has made no step.
   void begin(const Stepper<double>& stepper);
-  // For how many steps another_pays() needs not be asked, if they meet no kink.
+  // The number of steps after which another_pays() has to be called, if they meet no kink.
   std::size_t steps_to_look(std::size_t steps) const;
-  // Asked after a step.
+  // Decides after a step.
   bool another_pays(Stepper<double>& taylor, const Equations& equations, long double end);
 
  private:
@@ -94,7 +95,7 @@ class TaylorWatch {
 
   double log_tolerance_;
   std::size_t kinks_before_ = 0, next_kinks_ = kFirstKinks, next_stiff_ = kFirstStiff;
-  std::optional<Mark> stiff_, kinky_;  // where the stretch begins on which the next trial is made
+  std::optional<Mark> stiff_, kinky_;  // the start of the stretch on which the next trial is made
 };
 
 }  // namespace anholon

@@ -9,8 +9,8 @@
 
 namespace anholon {
 
-// Kernels, which only doubles have, know the slots of the tape as it is derived; others share what products have in
-// common.
+// Kernels, which only doubles have, need the slots of the tape as it is derived; other programs share common parts of
+// products.
 template <Number N>
 Motion<N>::Leg::Leg(const Motion& m, std::shared_ptr<Workspace> of_leg, Elimination by, System of, Structure structured)
     : own(std::move(of_leg)), elimination(std::move(by)), system(std::move(of)), structure(std::move(structured)),
@@ -23,8 +23,8 @@ Motion<N>::Leg::Leg(const Motion& m, std::shared_ptr<Workspace> of_leg, Eliminat
   m.watch_pivots(*this);
 }
 
-// Whether other independent constraints may be chosen on the way: not where multipliers belong to the state, or are asked
-// for as series.
+// True if other independent constraints may be chosen during the motion. They may not if multipliers belong to the
+// state, or if their series are needed.
 static bool chooses_rows(const Scenario& s, const StepSettings& settings) {
   return !s.redundant.empty() && !settings.multipliers && multiplier_orders(s) == 0;
 }
@@ -40,7 +40,7 @@ Motion<N>::Motion(Workspace& s, const StepSettings& settings, std::vector<Expr> 
   begun_parameters_ = parameters_;
 }
 
-// Each number by another multiple of a round-off: changes that are alike could be such as the constraints take back.
+// Changes each number by a different multiple of a round-off: the constraints might take back changes that are alike.
 template <Number W>
 static void change_last_digits(std::vector<W>& state, const std::vector<bool>& kept, const W& roundoff) {
   constexpr int kMost = 5, kPeriod = 2 * kMost + 1, kStride = 7, kFirst = 3;
@@ -51,8 +51,8 @@ static void change_last_digits(std::vector<W>& state, const std::vector<bool>& k
   }
 }
 
-// Of each number of the state whether the formula of an event that is zero at the start holds it: changed by a round-off,
-// the start would lie before or behind the event.
+// Tells for each number of the state whether it stands in the formula of an event that is zero at the start: with
+// another last digit, the start would lie before or behind the event.
 static std::vector<bool> on_events(const Scenario& s, std::size_t size) {
   constexpr double kOnIt = 1e-9;
   std::vector<bool> held(size, false);
@@ -76,7 +76,8 @@ static std::vector<bool> on_events(const Scenario& s, std::size_t size) {
 template <Number N>
 Outcome Motion<N>::start(const StateChoice& choice) {
   if (Outcome o = initial_state(s_, choice, start_); !o.ok()) return o;
-  // Those of a motion in doubles may depend on the round-off of each, though its state is wider: a fifth of it here.
+  // A motion in doubles may depend on a round-off of each number, though its state is wider; the change here is a fifth
+  // of one.
   constexpr double kOfKernel = 0.2;
   if (other_digits_)
     change_last_digits(start_.state, on_events(s_, start_.state.size()),
@@ -98,7 +99,7 @@ void Motion<N>::take(const MotionPlans& plans, Leg& leg) {
   leg.plan = plans.plan, leg.unmapped_plan = plans.unmapped_plan, leg.writing = plans.writing;
 }
 
-// Pivots are chosen at the start of the whole motion, with the modes there, so that a run that goes on has the same.
+// Pivots are chosen at the start of the whole motion, with the modes there, so that a resumed run has the same ones.
 template <Number N>
 void Motion<N>::accelerate(Leg& leg) const {
   if constexpr (std::same_as<N, double>) {
@@ -109,7 +110,7 @@ void Motion<N>::accelerate(Leg& leg) const {
                          to_double(start_.t), {start_.state.begin(), start_.state.end()});
     leg.stepper.accelerate(derived);
     if (!leg.stepper.accelerated()) return;
-    // A segment between events is short more often than not: its equations are written anew only if it has lasted.
+    // A segment between events is usually short: its equations are rewritten only if it has lasted.
     const bool as_derived = watches() && effort_ == WritingEffort::at_once;
     const std::vector<Representation> list = as_derived ? std::vector{Representation{Writing::derived, derived, {}}}
                                                         : representations(to_represent(leg, derived), effort_);
@@ -139,15 +140,15 @@ ToRepresent Motion<N>::to_represent(const Leg& leg, std::shared_ptr<const Kernel
   return e;
 }
 
-// The effort depends on the steps made alone, so that a run that goes on makes the same. Where coordinates are
-// eliminated anew on the way, no writing lasts long enough.
+// The effort depends only on the number of steps, so that a resumed run makes the same one. If coordinates are
+// eliminated anew during the motion, no writing lasts long enough.
 template <Number N>
 void Motion<N>::write_anew() {
   const WritingEffort effort = effort_after(leg_->stepper.steps());
   if (effort <= effort_ || leg_->pivots || !leg_->stepper.accelerated()) return;
   effort_ = effort;
   given_.reset();
-  // The representations that were found without effort are those of before.
+  // The representations that were found without effort are kept.
   if (std::vector<Representation> list = leg_->at_once; !list.empty()) {
     add_representations(to_represent(*leg_, list.front().plan), effort, list);
     if (best(list).writing == leg_->writing) return;
@@ -165,7 +166,7 @@ static bool can_go_on(OutcomeKind kind) {
          kind == OutcomeKind::no_convergence;
 }
 
-// A motion that an event may stop is expected to last as long again as it has lasted.
+// If an event may stop the motion, the motion is expected to last as long again as it has lasted.
 static double expected_end(const Model& m, double begin, double now, double end) {
   const bool may_stop = std::any_of(m.events.begin(), m.events.end(), [](const Event& e) { return e.stop; });
   const double lasted = std::abs(now - begin);
@@ -173,8 +174,7 @@ static double expected_end(const Model& m, double begin, double now, double end)
   return end > now ? now + lasted : now - lasted;
 }
 
-// What is done between steps needs no step by step: the pivots of an elimination do, and the equations are written
-// anew after fixed numbers of steps.
+// The pivots of an elimination are checked after every step; the equations are rewritten after fixed numbers of steps.
 template <Number N>
 Outcome Motion<N>::steps(const W& end, Stretch<W>& stretch) {
   if (stepped_ && leg_->pivots && pivot_is_small(present())) choose_again();
@@ -187,9 +187,9 @@ Outcome Motion<N>::steps(const W& end, Stretch<W>& stretch) {
   Outcome o = leg_->stepper.steps(end, stretch);
   code_.count(leg_->stepper.steps() - steps);
   if (leg_->stepper.expansions() != expansions) choices_.begun = before, begun_parameters_ = parameters_;
-  // Near a zero of a pivot the form of the equations fails, not the motion: it goes on with another choice.
+  // Near a zero of a pivot the form of the equations fails, not the motion, which goes on with another choice.
   if (!o.ok() && leg_->pivots && can_go_on(o.kind) && choose_again()) o = leg_->stepper.step(end);
-  // The next step begins with the state as a sum in the wider type: a lane may have it as another sum of two doubles.
+  // The next step begins with the state as one sum in the wider type; a lane may hold it as another sum of two doubles.
   if (o.ok()) leg_->stepper.round_state();
   stepped_ = true;
   return o;
@@ -212,7 +212,7 @@ Outcome Motion<N>::at(const W& t) {
   return stages_ > 0 ? leg_->point.extend() : Outcome{};
 }
 
-// Keeps an eye on what the choices of a leg stand on.
+// Watches the pivots on which the choices of a leg depend.
 template <Number N>
 void Motion<N>::watch_pivots(Leg& leg) const {
   const bool rows = base_ && chooses_rows(s_, settings_);
@@ -222,13 +222,14 @@ void Motion<N>::watch_pivots(Leg& leg) const {
                                                 parameters_);
 }
 
-// The present leg once more, with the present parameters.
+// Makes the present leg again, with the present parameters.
 template <Number N>
 std::unique_ptr<typename Motion<N>::Leg> Motion<N>::same_leg() const {
   return std::make_unique<Leg>(*this, leg_->own, leg_->elimination, leg_->system, leg_->structure);
 }
 
-// A step begins with good pivots and may be so long that one of them vanishes on the way.
+// Chooses another leg for a place at which a pivot is bad: a step that begins with good pivots may be so long that one
+// of them vanishes within it.
 template <Number N>
 void Motion<N>::choose_beside(const Start<W>& place) {
   beside_.shown = false;
@@ -248,7 +249,7 @@ bool Motion<N>::pivot_is_below(double share, const Expansion<W>& at) {
   return false;
 }
 
-// Where the motion has come to; what leads it is a guess.
+// The state of the motion; its leading derivatives are a guess.
 template <Number N>
 const Expansion<typename Motion<N>::W>& Motion<N>::present() {
   leg_->stepper.leave_kernel();
@@ -277,15 +278,15 @@ InitialState<double> Motion<N>::here(const Expansion<W>& point) const {
   return here;
 }
 
-// Whether two eliminations, of two workspaces, have the same dependent coordinates and the same pivots.
+// True if two eliminations, of two workspaces, have the same dependent coordinates and the same pivots.
 static bool same(const Elimination& a, const Elimination& b) {
   if (a.dependent != b.dependent) return false;
   Graph common;
   return copied(a.pivots(), common) == copied(b.pivots(), common);
 }
 
-// The leg with the dependent coordinates and independent constraints that are best at a point; null if its equations
-// cannot be made, or if another number of constraints is independent there.
+// Returns the leg with the dependent coordinates and independent constraints that are best at a point; nullptr if its
+// equations cannot be made, or if another number of constraints is independent there.
 template <Number N>
 std::unique_ptr<typename Motion<N>::Leg> Motion<N>::derived_at(const InitialState<double>& here) const {
   try {
@@ -318,7 +319,7 @@ std::unique_ptr<typename Motion<N>::Leg> Motion<N>::derived_at(const InitialStat
   }
 }
 
-// Another choice where the motion has come to; false if there is none better.
+// Chooses anew where the motion is; returns false if there is no better choice.
 template <Number N>
 bool Motion<N>::choose_again() {
   choices_.list.push_back({here(present()), false});
@@ -326,7 +327,7 @@ bool Motion<N>::choose_again() {
   if (next && next->system.constraints == leg_->system.constraints && same(next->elimination, leg_->elimination))
     next = nullptr;
   if (next) accelerate(*next);
-  // Before the expansion, which a kernel goes on from.
+  // The pivots are taken before the expansion, which a kernel continues.
   const Expansion<W>& point = present();
   std::vector<double> as_it_is = leg_->pivots->at(point), as_chosen;
   if (next && next->pivots) as_chosen = next->pivots->at(point);
@@ -343,7 +344,7 @@ bool Motion<N>::choose_again() {
 
 template <Number N>
 void Motion<N>::save(SavedRun& to) const {
-  // By structured bindings: a member that is added later and forgotten here does not compile.
+  // Structured bindings name all members, so a member that is added and forgotten here does not compile.
   const StepperState<N> begun = leg_->stepper.begun();
   const auto& [motion, direction, sides] = begun;
   const auto& [t, state, carry, leading, own, own_leading, integrals, integral_carry, record] = motion;
@@ -380,7 +381,7 @@ void Motion<N>::save(SavedRun& to) const {
 
 template <Number N>
 Outcome Motion<N>::resume(const StateChoice& choice, const SavedRun& from) {
-  // The pivots of kernels are chosen there.
+  // The pivots of kernels are chosen at the initial state.
   if (Outcome o = initial_state(s_, choice, start_); !o.ok()) return o;
   if (const std::vector<W> modes = from.numbers<W>("modes", parameters_.size()); modes != parameters_) {
     set_modes(modes);

@@ -1,11 +1,11 @@
-// One motion on its way: the steps, the events between them, and the choices on which its equations stand.
+// A motion in progress: its steps, the events between them, and the choices on which its equations depend.
 //
-// A motion goes through legs. Forms without multipliers divide by pivots that may become small on the way; the
-// equations are then made again with other dependent coordinates, and the motion goes on from the same state (theory:
-// elimination). Where constraints are redundant, those that take part may come to depend on one another while one that is
-// left out takes their place: they are chosen again, too (theory: dae-view, redundant constraints). Each such leg is
-// derived in a workspace of its own, a copy of that in which the motion was made: its bits depend on the state where it
-// begins, and not on the legs before it.
+// A motion goes through legs. Forms without multipliers divide by pivots that may become small during the motion; the
+// equations are then made again with other dependent coordinates, and the motion continues from the same state (theory:
+// elimination). If constraints are redundant, those that take part may become dependent while one that is left out
+// becomes independent: they are chosen again, too (theory: dae-view, redundant constraints). Each such leg is derived
+// in a workspace of its own, a copy of the workspace in which the motion was made: its bits depend on the state where
+// it begins, and not on the legs before it.
 #pragma once
 #include <algorithm>
 #include <functional>
@@ -28,11 +28,11 @@ struct Occurrence {
   std::size_t event = 0;  // of the model
   W t{0};
   std::vector<ChangeByEvent<W>> changes;
-  W correction{0};  // by which constraints made what was set consistent, the largest
+  W correction{0};  // the largest change by which constraints made consistent what was set
 };
 
-// The solution at a place that was foretold (integrate/stepper.h), in `point`; `beyond`: with its orders beyond the
-// leading derivatives.
+// Computes the solution at a place that was foretold (integrate/stepper.h), in `point`; `beyond`: with the orders
+// beyond the leading derivatives.
 template <Number W>
 Outcome settle_at(Expansion<W>& point, const Start<W>& place, bool beyond) {
   point.load(place.t, place.state, place.leading);
@@ -44,27 +44,27 @@ Outcome settle_at(Expansion<W>& point, const Start<W>& place, bool beyond) {
   return o;
 }
 
-// What a kernel's motion has found about its equations, for further motions of the same equations with the same orders.
+// The plans that a motion by a kernel has found, for further motions of the same equations with the same orders.
 struct MotionPlans {
-  std::shared_ptr<const KernelPlan> plan, unmapped_plan;  // null where there is no kernel
+  std::shared_ptr<const KernelPlan> plan, unmapped_plan;  // nullptr without a kernel
   Writing writing = Writing::derived;
   WritingEffort effort = WritingEffort::at_once;
 };
 
-// What to do about an event whose formula has no value somewhere along the motion.
+// The hint for an event whose formula has no value at some point of the motion.
 inline constexpr const char* kEventWithoutValue = "write a formula that has a value all along the motion and the same "
                                                   "zeros, such as x - 2 for log(x - 1), or end the "
                                                   "motion before";
 
-// The formulas that a motion watches: those of events, then of bounds. How it does, where they are the quadratures of its
-// program from `first` on.
+// watched_formulas(): the formulas that a motion watches, those of events, then those of bounds. watched_series(): how
+// it watches them, if they are the quadratures of its program from `first` on.
 std::vector<Expr> watched_formulas(const Model& model);
 std::vector<WatchedSeries> watched_series(const Scenario& scenario, std::size_t first);
-// Whether multipliers stand in them: a kernel in unknowns of its own knows none.
+// True if multipliers occur in the watched formulas: a kernel with unknowns of its own has no multipliers.
 bool watches_multipliers(const Model& model);
 
-// Up to which time the last step tells the motion: to its end, or, if events there set something, as far beyond as the time
-// of an event is round-off, so that what is asked for at this time is the motion before the event.
+// Returns the time up to which the last step describes the motion: its end, or, if events there set something, a time
+// beyond it by the round-off of an event's time, so that a row at the event shows the motion before it.
 template <Number N>
 Wider<N> told_until(const Model& model, const Stepper<N>& stepper) {
   using W = Wider<N>;
@@ -79,55 +79,56 @@ Wider<N> told_until(const Model& model, const Stepper<N>& stepper) {
   return end < stepper.before() ? W(end - beyond) : W(end + beyond);
 }
 
-// N: the numbers of the Taylor coefficients; W: those of the state and of everything written.
+// N: the number type of the Taylor coefficients; W: that of the state and of everything written.
 template <Number N>
 class Motion {
  public:
   using W = Wider<N>;
 
-  // `quadratures`: expressions to be integrated or watched along the motion. `stages`: how many orders beyond the
-  // leading derivatives the points know.
+  // `quadratures`: expressions that are integrated or watched along the motion. `stages`: the number of orders beyond
+  // the leading derivatives in the points.
   Motion(Workspace& scenario, const StepSettings& settings, std::vector<Expr> quadratures, int stages);
 
   MotionPlans plans() const { return {leg_->plan, leg_->unmapped_plan, leg_->writing, effort_}; }
-  // Before the start: the motion takes these plans as they are.
+  // Makes the motion use these plans. Call it before the start.
   void use(const MotionPlans& plans) { given_ = plans, effort_ = plans.effort; }
   // The motion will be computed once more, with somewhat shorter steps.
   void expect_second_run() { code_.expect(kBothRuns); }
-  // From the consistent state; on request from one that differs from it by some round-offs.
+  // Makes start() begin with a state that differs from the consistent one by some round-offs.
   void start_in_other_digits(bool other) { other_digits_ = other; }
   Outcome start(const StateChoice& choice);
   // The state at the start of the whole motion.
   const Start<W>& start_state() const { return start_; }
-  // What is needed to go on from where the last expansion was made, and how: with the same bits as if the run had never
-  // ended.
+  // save() writes everything that resume() needs to continue from the last expansion, with the bits of a run that never
+  // stopped.
   void save(SavedRun& to) const;
   Outcome resume(const StateChoice& choice, const SavedRun& from);
-  // The solution at a place that was foretold (integrate/stepper.h), in `point()`: by the equations of the leg, or by those
-  // of another choice where that of the leg is bad.
+  // Computes the solution at a place that was foretold (integrate/stepper.h), in `point()`: by the equations of the
+  // leg, or by those of another choice if that of the leg is bad there.
   Outcome settle_at(const Start<W>& place) {
     choose_beside(place);
     return anholon::settle_at(shown().point, place, stages_ > 0);
   }
-  // A stretch of steps towards `end`, or one, with another elimination where this one fails or its pivots have become
-  // small.
+  // Makes a stretch of steps towards `end`, or one step, with another elimination if the present one fails or its
+  // pivots have become small.
   Outcome steps(const W& end, Stretch<W>& stretch);
   Outcome step(const W& end) {
     Stretch<W> one;
     return steps(end, one);
   }
-  // The solution anywhere in the last step, with the orders beyond where there are any.
+  // Computes the solution at any time of the last step, with the orders beyond the leading derivatives, if there are
+  // any.
   Outcome at(const W& t);
   const Expansion<W>& point() const { return shown().point; }
-  // What fired in the last step. `settle` puts in what it sets, after which the motion goes on from the end of the
-  // step; false in `goes_on` where an event ends the motion. Not ok if a table was left, or the state set has no
-  // consistent one near.
+  // fired(): true if events fired in the last step. settle() applies what they set; then the motion continues from the
+  // end of the step. `goes_on` becomes false if an event ends the motion. It fails if the motion leaves a table, or if
+  // there is no consistent state near the one that was set.
   bool fired() const { return !leg_->stepper.fired().empty(); }
   Outcome settle(std::vector<Occurrence<W>>& occurrences, bool& goes_on);
-  // Not ok if the formula of an event has no value at the start, or the argument of a table lies outside of it there or
+  // Fails if the formula of an event has no value at the start, or the argument of a table lies outside of it there or
   // leaves it.
   Outcome within_bounds(bool forward);
-  // The formula of an event at the start.
+  // The value of an event's formula at the start.
   double at_start(std::size_t event) const {
     return to_double(leg_->stepper.quadrature(quadratures_.size() + event, W(0)));
   }
@@ -136,39 +137,39 @@ class Motion {
   const Program& program() const { return leg_->program; }
   const std::vector<W>& parameters() const { return parameters_; }
   const std::vector<W>& start_parameters() const { return start_parameters_; }
-  // How often other coordinates were eliminated, or other independent constraints were chosen, on the way.
+  // The number of choices of other dependent coordinates or other independent constraints during the motion.
   std::size_t eliminations() const { return choices_.taken; }
-  // For another method (motion/course.h): the plan of the kernel, if there is one; whether the choices should be made
-  // anew at a point; Taylor steps from where it has come to.
+  // For another method (motion/course.h): the plan of the kernel, or nullptr; whether the choices should be made anew
+  // at a point; Taylor steps from where the other method is.
   const std::shared_ptr<const KernelPlan>& plan() const { return leg_->plan; }
-  // The same in the motion's unknowns, for other methods.
+  // The cheapest plan in the motion's own unknowns, for other methods.
   const std::shared_ptr<const KernelPlan>& unmapped_plan() const { return leg_->unmapped_plan; }
   bool pivot_is_small(const Expansion<W>& at) { return pivot_is_below(kSmallPivot, at); }
   Outcome go_on(const StepperState<N>& from) { return leg_->stepper.resume(from); }
 
  private:
   bool leaves(std::size_t bound, bool met, bool forward) const;
-  // A stretch of the motion with one choice of dependent coordinates and of independent constraints: its system and what
-  // steps through it.
+  // A stretch of the motion with one choice of dependent coordinates and of independent constraints: its system and its
+  // stepper.
   struct Leg {
-    // `own`: the workspace of the system and the elimination, null where it is that of the motion.
+    // `own`: the workspace of the system and the elimination; nullptr if it is that of the motion.
     Leg(const Motion& motion, std::shared_ptr<Workspace> own, Elimination by, System of, Structure structured);
     std::shared_ptr<Workspace> own;
     Elimination elimination;
     System system;
     Structure structure;
-    std::vector<Expr> quadratures;  // those of the motion, events and bounds, in the workspace
+    std::vector<Expr> quadratures;  // the quadratures of the motion, of events and of bounds, in the workspace
     Program program;
     Stepper<N> stepper;
     Expansion<W> point, present;
     std::shared_ptr<const KernelPlan> plan;  // of the stepper's kernel, if it has one
     std::shared_ptr<const KernelPlan> unmapped_plan;
     Writing writing = Writing::derived;
-    std::vector<Representation> at_once;     // among which that was chosen without effort
+    std::vector<Representation> at_once;     // the representations found without effort
     std::unique_ptr<ChoiceWatch<W>> pivots;  // null if there is nothing to choose
   };
 
-  // The choices on the way: whoever resumes makes the last one that was taken again.
+  // The choices during the motion: a resumed run repeats the last one that was taken.
   struct Choices {
     struct Choice {
       InitialState<double> here;
@@ -176,8 +177,8 @@ class Motion {
     };
     std::vector<Choice> list;
     std::size_t taken = 0;
-    std::vector<double> pivots;  // what they were when the present choice was made
-    // As they were before the last expansion.
+    std::vector<double> pivots;  // their values when the present choice was made
+    // The choices before the last expansion.
     struct Mark {
       std::size_t choices = 0;
       std::vector<double> pivots;
@@ -185,7 +186,7 @@ class Motion {
     Mark now() const { return {list.size(), pivots}; }
     Mark begun;
   };
-  // For a point at which the choice of the leg is bad: a leg with another one.
+  // A leg with another choice, for a point at which the choice of the leg is bad.
   struct Beside {
     std::unique_ptr<Leg> leg;
     bool shown = false;
@@ -213,12 +214,12 @@ class Motion {
   }
 
   static constexpr double kBothRuns = 2.25;
-  // Of its size where the choice was made: from there on the choice is made anew; a solution inside a step, which begins
-  // with good pivots, is found by another choice.
+  // Shares of a pivot's size when the choice was made. Below kSmallPivot the choice is made anew; a solution inside a
+  // step whose pivot is below kBadPivot is found by another choice.
   static constexpr double kSmallPivot = 0.4, kBadPivot = 0.1;
 
   Workspace& s_;
-  std::unique_ptr<const Workspace> base_;  // as `s_` was when the motion was made, where legs may be derived from it
+  std::unique_ptr<const Workspace> base_;  // a copy of `s_` when the motion was made, if legs may be derived from it
   StepSettings settings_;
   void set_modes(const std::vector<W>& parameters);
   const SetByEvent& set_by(std::size_t event);
@@ -228,23 +229,23 @@ class Motion {
 
   std::vector<Expr> quadratures_;
   int stages_;
-  std::vector<W> start_parameters_, parameters_;  // modes differ
+  std::vector<W> start_parameters_, parameters_;  // they differ in modes
   std::vector<N> narrow_parameters_;
-  // What events set, of those that have fired; with constraints, what makes it consistent.
+  // The numbers that the events have set; with constraints, also the solver that makes the set state consistent.
   struct EventEffects {
     std::vector<std::optional<SetByEvent>> sets;
     std::optional<NearestState<W>> nearest;
   };
   EventEffects effects_;
   Start<W> start_;
-  std::vector<W> begun_parameters_;  // where the last expansion was made
+  std::vector<W> begun_parameters_;  // the parameters of the last expansion
   std::unique_ptr<Leg> leg_;
   Beside beside_;
   bool stepped_ = false, other_digits_ = false;
   std::optional<MotionPlans> given_;
   Choices choices_;
   CodeForLongRuns code_;
-  WritingEffort effort_ = WritingEffort::at_once;  // that went into how the equations of the kernel are written
+  WritingEffort effort_ = WritingEffort::at_once;  // the effort of the present writing of the kernel's equations
 };
 
 extern template class Motion<double>;
@@ -252,7 +253,7 @@ extern template class Motion<long double>;
 extern template class Motion<Quad>;
 extern template class Motion<Multi>;
 
-// Says what the motion ran into: a mass that vanishes, two solutions that meet, a multiplier that grows without bound.
+// Explains the stop of a motion: a mass that vanishes, two solutions that meet, a multiplier that grows without bound.
 template <Number N>
 void explain_stop(Workspace& scenario, const Motion<N>& motion, Outcome& outcome);
 

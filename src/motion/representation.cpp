@@ -17,17 +17,17 @@ namespace anholon {
 
 namespace {
 
-// Beyond these, as in chains, there are few pairs, and equations written out are longer than they were.
+// In larger systems, such as chains, there are few pairs, and equations become longer when they are written out.
 constexpr std::size_t kMostUnknowns = 12, kMostNodes = 2000;
-// Beyond, a plan takes longer to make than it saves: of refined solutions, of quasi-velocities.
+// In larger systems a plan takes longer to make than it saves: with refined solutions, and in quasi-velocities.
 constexpr std::size_t kMostRefined = 64, kMostInQuasi = 64;
-// Products of terms for one equation, a fraction of a millisecond.
+// The bound of products of terms for one equation, which take a fraction of a millisecond.
 constexpr long kMostProducts = 4000;
-// Two writings of one equation agree to this, in relation to the largest coefficient of the order, or one of them loses
-// digits.
+// Two writings of one equation have to agree to this, relative to the largest coefficient of the order; otherwise one
+// of them loses digits.
 constexpr double kAgree = 1e-11;
 
-// A program with the system it stands on, in a graph of its own.
+// A program with its system, in a graph of its own.
 struct Rewritten {
   System system;
   Program program;
@@ -44,7 +44,8 @@ System names_and_graph(const System& from) {
   return s;
 }
 
-// No derivative beyond those solved for: they had cancelled before, and a program could not know their values.
+// True if no derivative beyond those solved for occurs. Such derivatives had cancelled before, and a program could not
+// compute their values.
 bool same_offsets(const System& s, const Structure& structure) {
   for (std::size_t i = 0; i < s.equations.size(); ++i)
     for (NodeId id : symbols({&s.equations[i], 1}))
@@ -82,7 +83,7 @@ std::shared_ptr<const Program> left_to_series(const ToRepresent& e) {
   return {r, &r->program};
 }
 
-// What the derived system knows of a symbol at the start.
+// The value of a symbol of the derived system at the start; 0 if there is none.
 double value_at_start(const ToRepresent& e, const Node& n) {
   const Program& p = e.derived->program();
   if (n.kind == Kind::time) return e.t;
@@ -93,7 +94,7 @@ double value_at_start(const ToRepresent& e, const Node& n) {
   return e.state[at + n.order];
 }
 
-// Largest difference of two expansions at one state, order by order.
+// The largest difference of two expansions at one state, over all orders.
 double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>& a,
                   const std::shared_ptr<const KernelPlan>& b) {
   Kernel one(a), other(b);
@@ -124,7 +125,8 @@ double difference(const ToRepresent& e, const std::shared_ptr<const KernelPlan>&
   return worst;
 }
 
-// The reason why equations are in no quasi-velocities that can be seen before these are sought; empty if there is none.
+// The reason why equations cannot be written in quasi-velocities, as far as it is known before these are sought; empty
+// if there is none.
 std::string obstacle_to_quasi_velocities(const ToRepresent& e) {
   const Program& derived = e.derived->program();
   const System& s = *derived.system;
@@ -142,7 +144,8 @@ std::string obstacle_to_quasi_velocities(const ToRepresent& e) {
   return {};
 }
 
-// Where accelerations and multipliers are all that is solved for.
+// Writes the equations in quasi-velocities. It serves only systems that are solved for accelerations and multipliers
+// alone.
 std::optional<Representation> in_quasi_velocities(const ToRepresent& e, std::string& why) {
   if (why = obstacle_to_quasi_velocities(e); !why.empty()) return std::nullopt;
   const System& s = *e.derived->program().system;
@@ -170,13 +173,13 @@ std::optional<Representation> in_quasi_velocities(const ToRepresent& e, std::str
   return found;
 }
 
-// The stepper follows what decides which function holds by the slots of the derived tape.
+// True if the stepper has to follow, by the slots of the derived tape, what decides which functions hold.
 bool followed_by_slots(const KernelPlan& plan) { return !plan.plan().deciding.empty(); }
 
 bool large(const KernelPlan& derived) { return derived.program().unknowns() > kMostUnknowns; }
 
-// If a system of few unknowns asks for refined solutions, J has rounded something away, and no writing is as good as another.
-// The condition of a long chain asks for them in any writing, sooner or later.
+// If a system of few unknowns needs refined solutions, J has lost digits to round-off, and no other writing is as good.
+// A long chain is so badly conditioned that it needs them in any writing, sooner or later.
 void add(const ToRepresent& e, Writing writing, std::shared_ptr<const Program> p, std::vector<Representation>& list) {
   if (!p) return;
   const KernelPlan& first = *e.derived;

@@ -1,7 +1,7 @@
-// A run laid down in a file, from which it goes on with the same bits: everything that steps and residuals carry, as
+// A run saved in a file, from which it continues with the same bits: everything that steps and residuals carry, as
 // exact text.
 //
-// The file is TOML, a list of texts for every name, and closes with the hash of all before it.  (theory: integrals)
+// The file is TOML, a list of texts for every name, and ends with the hash of everything before (theory: integrals).
 #pragma once
 #include <map>
 #include <string>
@@ -18,7 +18,7 @@ class SavedRun {
 
   bool has(const std::string& name) const { return entries_.count(name) > 0; }
   void set(const std::string& name, Texts texts) { entries_[name] = std::move(texts); }
-  // Throws Failure if there is no such entry; `one`: if it is not a single text.
+  // Throws Failure if there is no such entry; `one` also if it is not a single text.
   const Texts& texts(const std::string& name) const;
   const std::string& one(const std::string& name) const;
 
@@ -28,7 +28,7 @@ class SavedRun {
     for (const N& x : numbers) t.push_back(exact_text(x));
     set(name, std::move(t));
   }
-  // Throws Failure if there are not `count` of them; kAny: whatever their number.
+  // Throws Failure unless there are `count` numbers; kAny: any number.
   static constexpr std::size_t kAny = static_cast<std::size_t>(-1);
   template <Number N>
   std::vector<N> numbers(const std::string& name, std::size_t count = kAny) const {

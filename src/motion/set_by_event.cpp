@@ -23,7 +23,7 @@ SetByEvent::Place SetByEvent::place(const System& system, const Graph& graph, No
   return {};
 }
 
-// Returns null if the place is no part of the state.
+// Returns nullptr if the place does not belong to the state.
 template <Number W>
 W* SetByEvent::entry(const Place& p, const Expansion<W>& point, std::vector<W>& state, std::vector<W>& parameters) {
   if (p.kind == Place::Kind::parameter) return &parameters[p.index];

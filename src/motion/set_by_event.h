@@ -1,4 +1,4 @@
-// What one event sets: its formulas as numbers, compiled once for all motions with the same unknowns.
+// Evaluates what one event sets: its formulas as numbers, compiled once for all motions with the same unknowns.
 #pragma once
 #include "program/expansion.h"
 #include "setup/scenario.h"
@@ -17,15 +17,15 @@ class SetByEvent {
   // Builds expressions in the workspace.
   SetByEvent(Workspace& scenario, const Event& event);
 
-  // Computes the numbers from the state and the parameters as they are now, and from `point`, the solution where the
-  // event fires, what is not of the state; then puts them in. Not ok if one of them is no part of the state, or has no
-  // value.
+  // Computes the new numbers from the present state and parameters, and, for what is not in the state, from `point`,
+  // the solution where the event fires; then writes them into the state and the parameters. Fails if a target does not
+  // belong to the state, or a formula has no value.
   template <Number W>
   Outcome put(const Expansion<W>& point, std::vector<W>& state, std::vector<W>& parameters,
               std::vector<ChangeByEvent<W>>& changes) const;
 
  private:
-  // A symbol: the time, a parameter, a derivative of an unknown, or 0, the multiplier of a redundant constraint.
+  // A symbol: the time, a parameter, a derivative of an unknown, or 0 for the multiplier of a redundant constraint.
   struct Place {
     enum class Kind : std::uint8_t { time, parameter, unknown, zero } kind = Kind::zero;
     std::size_t index = 0;

@@ -23,7 +23,7 @@ Outcome regular_at_start(const Scenario& scenario) {
   Expansion<double> point(p, parameter_values<double>(*s.model), 1);
   const Outcome here = settle(s, point);
   if (here.kind == OutcomeKind::not_a_number) {
-    // The equations may have a solution beside the start all the same.
+    // The equations may have a solution beside the start nevertheless.
     Stepper<double> stepper(p, point.parameters(), parameters, {});
     const Start<double> start = start_of(s);
     Outcome beside = stepper.start(start.t, {start.state.begin(), start.state.end()});

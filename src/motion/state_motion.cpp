@@ -22,19 +22,20 @@ const Expansion<long double>& StateMotion::begin_step() {
 Outcome StateMotion::step(long double end) {
   const std::optional<Pivots> pivots = stepper_->rate().pivots();
   Outcome o = stepper_->step(end);
-  // Without a kernel there are no pivots to tell.
+  // Without a kernel there are no pivots, so the step is suspected.
   suspected_before_ = std::exchange(suspected_, !pivots || may_have_vanished(*pivots, *stepper_->rate().pivots()));
   return o;
 }
 
-// The smallest singular value of J by the reference, whose expansion is there then; nullopt if J has no values.
+// Returns the smallest singular value of J by the reference, which then has its expansion at p; nullopt if J has no
+// values.
 std::optional<double> StateMotion::sigma_at(const MotionPoint& p) {
   reference_.load(static_cast<double>(p.t), std::vector<double>(p.state.begin(), p.state.end()), p.leading);
   if (!reference_.prepare().ok()) return std::nullopt;
   return reference_.smallest_singular_value();
 }
 
-// A suspicion holds for the step after it, too.
+// A suspicion extends to the step after it.
 bool StateMotion::passed_singular_point() {
   if (!suspected_ && !suspected_before_) return false;
   const auto mode_at = [&](const MotionPoint& p) -> std::optional<Mode<double>> {

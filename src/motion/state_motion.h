@@ -1,12 +1,12 @@
-// A stretch of a motion by another method than Taylor's: its steps, the solution within the last one, and a watch on
-// the system Jacobian J, which such a method passes without a sign where it is singular.
+// A stretch of a motion by a method other than Taylor's: its steps, the solution within the last one, and a watch on
+// the system Jacobian J. Such a method passes points where J is singular without noticing them.
 #pragma once
 #include "integrate/states/state_rate.h"
 #include "motion/motion.h"
 
 namespace anholon {
 
-// What was met on all stretches so far.
+// The record of all stretches so far.
 struct StateRecord {
   long double worst_constraint = 0;
   LeastRegular<double> least_regular;
@@ -16,7 +16,7 @@ class StateMotion {
  public:
   using W = long double;
 
-  // From where Taylor's motion is. `stages`: orders beyond the leading derivatives that point() knows. The record
+  // Starts where Taylor's motion is. `stages`: the orders beyond the leading derivatives in point(). The record
   // outlives the stretch.
   StateMotion(const Motion<double>& taylor, const std::vector<double>& parameters, int stages,
               std::unique_ptr<StateStepper> stepper, StateRecord& record);
@@ -24,12 +24,12 @@ class StateMotion {
   // Loads the point where the next step begins; begun() returns it.
   const Expansion<W>& begin_step();
   Outcome step(long double end);
-  // Whether J was singular within the last step. The reference is asked if the kernel's pivots do not exclude it.
+  // True if J was singular within the last step. The reference decides if the kernel's pivots do not exclude it.
   bool passed_singular_point();
   // Notes in the record how the last step kept the constraints and, if that is due, how regular J was where it began.
   void note_step();
 
-  // The solution anywhere in the last step.
+  // Computes the solution at any time of the last step.
   Outcome at(W t);
   const Expansion<W>& point() const { return point_; }
   const Expansion<W>& begun() const { return begun_; }

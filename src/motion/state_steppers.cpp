@@ -11,12 +11,12 @@ namespace anholon {
 
 namespace {
 
-// The reference takes so many times the operations of a kernel.
+// The reference takes this many times the operations of a kernel.
 constexpr double kReference = 6;
 
-// What it takes to come to an expansion weighs as much as so many operations.
+// The overhead of an expansion, in operations.
 constexpr double kExpansion = 300;
-// Of the rates alone: values are quicker than series, and all that is known of J is asked for at every point.
+// The operations of the rates alone: values are quicker than series, but J is examined at every point.
 double work_of_rates(const KernelPlan& plan) {
   constexpr double kStep = 11, kEntry = 6;
   const double steps = static_cast<double>(plan.plan().point.size() + plan.plan().after.size());
@@ -33,7 +33,7 @@ std::shared_ptr<const Program> program_of(const std::shared_ptr<const KernelPlan
 
 }  // namespace
 
-// What it takes to come to a step of a stage weighs as much as so many operations.
+// The operations of an expansion; kStep is the overhead of a step of a stage.
 double work_of_expansion(const KernelPlan& plan) {
   constexpr double kStep = 16;
   const double steps = static_cast<double>(plan.plan().stage.size() + plan.plan().after.size());
@@ -54,7 +54,7 @@ StateSteppers::StateSteppers(const Motion<double>& motion, const Model& model, c
                              std::vector<Guard> guards, bool counts)
     : motion_(motion), model_(model), settings_(settings), guards_(std::move(guards)), counts_(counts) {}
 
-// The plans serve as long as the equations are the same.
+// Makes the plans again if the equations have changed.
 void StateSteppers::make_plans() {
   const Program* equations = motion_.plan() ? &motion_.plan()->program() : &motion_.program();
   if (planned_ == equations) return;

@@ -4,7 +4,7 @@
 
 namespace anholon {
 
-// That to which `auto` turns where Taylor's steps are short, as the motion is stiff.
+// Returns the method to which `auto` turns if Taylor's steps are short because the motion is stiff.
 Method stiff_method();
 
 }  // namespace anholon

@@ -14,7 +14,7 @@ static std::string joined(const std::vector<std::string>& list) {
   return all;
 }
 
-// A root or logarithm in the equations whose argument has come to zero.
+// Names a root or logarithm in the equations whose argument has come to zero; empty if there is none.
 template <Number N>
 static std::string vanishing_root(const Motion<N>& motion) {
   const Tape& tape = motion.program().tape;
@@ -28,7 +28,7 @@ static std::string vanishing_root(const Motion<N>& motion) {
   return {};
 }
 
-// The state has grown beyond all that it was: a position, a velocity or a higher derivative that belongs to the state.
+// Names a position, velocity or higher derivative of the state that has grown far beyond its earlier size.
 template <Number N>
 static std::string unbounded(const Scenario& s, const Motion<N>& motion) {
   constexpr double kUnbounded = 1e5;
@@ -45,7 +45,8 @@ static std::string unbounded(const Scenario& s, const Motion<N>& motion) {
   return {};
 }
 
-// The constraint whose row in Phi has vanished, or depends on the others, in comparison with the start; empty if none.
+// Names the constraint whose row in Phi has vanished, or depends on the others, compared with the start; empty if there
+// is none.
 template <Number N>
 static std::string lost_hold(Workspace& s, const Motion<N>& motion) {
   using W = Wider<N>;
@@ -80,7 +81,7 @@ static std::string lost_hold(Workspace& s, const Motion<N>& motion) {
   return "the constraint '" + s.model->constraints[taken[which]].name + "' becomes dependent on the others";
 }
 
-// Whether a mode switches a constraint: what is left of it may hold no unknown.
+// True if a mode switches a constraint; a switched-off constraint may contain no unknown.
 static bool switched(const Scenario& s) {
   return std::any_of(s.independent.begin(), s.independent.end(), [&](std::size_t r) {
     const Expr phi = s.model->constraints[r].phi;
@@ -92,8 +93,8 @@ static bool switched(const Scenario& s) {
   });
 }
 
-// What to do where a constraint becomes dependent on the others. A component that was left out at the start, because it
-// followed from the others there, may be independent elsewhere.
+// The hint for a constraint that becomes dependent on the others. A component that was left out at the start, because
+// it followed from the others there, may be independent elsewhere.
 static std::string hint_of_dependence(const Scenario& s) {
   std::vector<std::string> left_out;
   for (std::size_t r : s.redundant) left_out.push_back("'" + s.model->constraints[r].name + "'");
@@ -105,7 +106,8 @@ static std::string hint_of_dependence(const Scenario& s) {
          "constraints stay independent, along = […]";
 }
 
-// " (x = 1, y = 2)": where the motion is, if that is not too long to be read. The last step may have begun elsewhere.
+// Returns the coordinates of the motion, as " (x = 1, y = 2)", unless they are too many to be read. The last step may
+// have begun elsewhere.
 template <Number N>
 static std::string where(const Scenario& s, const Motion<N>& motion) {
   constexpr std::size_t kMost = 6;
@@ -145,7 +147,7 @@ void explain_stop(Workspace& s, const Motion<N>& motion, Outcome& outcome) {
   }
   const double first = to_double(stepper.first_sigma()), least = to_double(stepper.least_regular().sigma);
   const std::string lost = lost_hold(s, motion);
-  // Not where the motion has passed a singular configuration long before.
+  // A singular configuration that the motion has passed long before does not count.
   const Wider<N> steps = abs(W(stepper.time() - stepper.before())) * W(kRecentSteps);
   const bool here = abs(W(stepper.least_regular().t - stepper.time())) <= steps;
   const bool fallen = outcome.kind == OutcomeKind::singular || (here && least < kFallen * first) || !lost.empty();

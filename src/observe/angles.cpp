@@ -10,7 +10,7 @@ namespace anholon {
 
 namespace {
 
-// Of a body with second moments: by which velocities it turns.
+// The velocities by which a body with second moments turns.
 std::vector<bool> turned_by(const Body& body, const Column& qd) {
   std::vector<bool> by(qd.size(), false);
   if (body.axes.empty() || !body.orientation) return by;
@@ -22,8 +22,8 @@ std::vector<bool> turned_by(const Body& body, const Column& qd) {
   return by;
 }
 
-// Another body that turns by some of three angles only (a gimbal with an inertia, a link of an arm) has kinetic energy
-// where the three fall into a plane: nothing becomes singular there.
+// True if another body turns by only one or two of the three angles (a gimbal with an inertia, a link of an arm). Such
+// a body has kinetic energy where the three vectors fall into a plane, so nothing becomes singular there.
 bool held_by_another(const Model& model, const std::vector<std::size_t>& angles, const Column& qd) {
   return std::any_of(model.bodies.begin(), model.bodies.end(), [&](const Body& other) {
     const std::vector<bool> by = turned_by(other, qd);
@@ -53,7 +53,7 @@ std::vector<AngleTriple> angle_triples(const Model& model) {
     const bool known =
         std::any_of(list.begin(), list.end(), [&](const AngleTriple& t) { return t.angles == triple.angles; });
     if (angles.size() != 3 || known || held_by_another(model, angles, qd)) continue;
-    // Two joints about the same axis are in a plane with any third, always: that is no singularity.
+    // Two joints about the same axis lie in a plane with any third one at all times, which is no singularity.
     if (!proved_zero(dot(triple.rates[0], cross(triple.rates[1], triple.rates[2])))) list.push_back(triple);
   }
   return list;
@@ -65,7 +65,7 @@ Column AngleWatch::expressions(const Model& model, const std::vector<AngleTriple
     es.push_back(dot(t.rates[0], cross(t.rates[1], t.rates[2])));
     for (const Vector& v : t.rates) es.push_back(dot(v, v));
   }
-  // Turning the body's own axes changes none of these, so they do not depend on the angles that do so.
+  // Turning the body's own axes changes none of these expressions, so they do not depend on the angles of such turns.
   const auto without = [](const Expr& e, const Expr& q) {
     return substitute({&e, 1}, [&](NodeId id) { return id == q.id ? q.graph->zero() : Expr{}; })[0];
   };
@@ -94,7 +94,7 @@ void AngleWatch::save(std::vector<double>& to) const {
   for (const Least& l : least) to.insert(to.end(), {l.value, l.t});
   to.push_back(margin_);
   to.insert(to.end(), looked_.begin(), looked_.end());
-  to.resize(to.size() + coordinates_.size() - looked_.size(), 0);  // not looked yet: the margin is 0
+  to.resize(to.size() + coordinates_.size() - looked_.size(), 0);  // before the first look the margin is 0
 }
 
 void AngleWatch::resume(const std::vector<double>& from) {

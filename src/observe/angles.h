@@ -1,9 +1,10 @@
-// Angles that are about to fail: a body whose orientation is made of three angles has an angular velocity
+// Watches angles near their singularity: a body whose orientation is made of three angles has an angular velocity
 //   omega = sum_a omega_a q_a',  a = 1, 2, 3,
-// and the three vectors omega_a fall into a plane at the singularity of the angles (theta = 0 of Euler's). Watched is
+// and the three vectors omega_a fall into a plane at the singularity of the angles (theta = 0 of Euler's). The measure
+// is
 //   |omega_1 . (omega_2 x omega_3)| / (|omega_1| |omega_2| |omega_3|).  (theory: integrals)
-// Angles of joints are none of these: neither those that lie in a plane always, nor those of which some turn another
-// body with inertia.
+// Angles of joints are left out: those that always lie in a plane, and those of which one or two turn another body with
+// inertia.
 #pragma once
 #include "integrate/stretch.h"
 #include "setup/output_tape.h"
@@ -14,15 +15,16 @@ struct AngleTriple {
   std::string body, angles;  // "disc", "psi, theta, phi"
   Vector rates[3];           // omega_a, components along the body's own axes
 };
-// Of the bodies with three angles, each set of angles once.
+// The triples of all bodies with three angles, each set of angles once.
 std::vector<AngleTriple> angle_triples(const Model& model);
 
-// In doubles, whatever the numbers of the motion are: a measure of nearness needs no more. It is evaluated again when a
-// coordinate has changed by an eighth of the smallest measure: for angles, that changes by no more than they do.
+// The measures are computed in doubles, whatever the numbers of the motion are, because they need no more. They are
+// evaluated again when a coordinate has changed by an eighth of the smallest measure: a change of angles changes a
+// measure by no more than that.
 class AngleWatch {
  public:
   AngleWatch(Workspace& scenario, const std::vector<double>& parameters);
-  // At a time of the motion; coordinate(a) is the value of coordinate a there.
+  // Looks at a time of the motion; coordinate(a) is the value of coordinate a there.
   template <class F>
   void see(double t, F coordinate) {
     if (!outputs_) return;
@@ -35,7 +37,8 @@ class AngleWatch {
     outputs_->evaluate_at([&](const Node& n, NodeId) { return n.kind == Kind::time ? t : coordinate(n.index); });
     note(t);
   }
-  // What it looks at next is far: as long as no coordinate of `stretch` leaves its value. Else after each step.
+  // Lets a stretch go on as long as no coordinate leaves the range in which no look is needed; without such a range, by
+  // single steps.
   template <class W>
   void keep_in(Stretch<W>& stretch) {
     if (!outputs_) return;
@@ -49,11 +52,11 @@ class AngleWatch {
     if (outputs_) outputs_->set_parameters(parameters);
     margin_ = 0;
   }
-  // All that has been seen, as `saved` numbers, from which it goes on.
+  // saved(): the count of numbers by which save() and resume() transfer what was seen.
   std::size_t saved() const { return 2 * least.size() + coordinates_.size() + 1; }
   void save(std::vector<double>& to) const;
   void resume(const std::vector<double>& from);
-  // The smallest value so far and when, for every triple.
+  // The smallest value so far and its time, for every triple.
   struct Least {
     double value = 1, t = 0;
   };
@@ -63,12 +66,12 @@ class AngleWatch {
  private:
   static Column expressions(const Model& model, const std::vector<AngleTriple>& triples);
   void note(double t);
-  std::optional<OutputTape<double>> outputs_;  // if there are any
-  std::vector<std::size_t> coordinates_;       // on which the measures depend
-  bool by_coordinates_ = true;                 // on nothing else
-  std::vector<double> looked_;                 // their values when the measures were evaluated last
+  std::optional<OutputTape<double>> outputs_;  // nullopt without triples
+  std::vector<std::size_t> coordinates_;       // the coordinates on which the measures depend
+  bool by_coordinates_ = true;                 // the measures depend on nothing else
+  std::vector<double> looked_;                 // the values of the coordinates at the last evaluation
   double margin_ = 0;
-  std::vector<Kept> kept_;  // the same for a stretch of steps
+  std::vector<Kept> kept_;  // the same values for a stretch of steps
 };
 
 }  // namespace anholon

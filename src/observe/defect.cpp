@@ -10,11 +10,11 @@ namespace {
 
 // A step is halved this often before a remainder that is too large is accepted as it is.
 constexpr int kMostHalvings = 7;
-// Beside a kink there is no remainder: what is left is halved until its values say no more than the other pieces do, so
-// often and for so many pieces at most.
+// Beside a kink there is no remainder. The piece there is halved until its bounds are no larger than those of the other
+// pieces, at most so often and into so many pieces.
 constexpr int kMostHalvingsAtKinks = 60, kMostPieces = 200;
 
-// The polynomials about begin + by: Horner's scheme, again and again.
+// Returns the polynomials about begin + by, by repeated Horner schemes.
 BallSeries shifted(BallSeries x, const Ball& by) {
   for (std::vector<Ball>& c : x)
     for (std::size_t i = 0; i + 1 < c.size(); ++i)
@@ -22,7 +22,8 @@ BallSeries shifted(BallSeries x, const Ball& by) {
   return x;
 }
 
-// Bounds, not values: balls of remainders hold 0.
+// True if the bound a is larger than the bound b. The balls are compared as intervals about 0, because the balls of
+// remainders contain 0.
 bool reaches_beyond(const Ball& a, const Ball& b) { return a.symmetric().contains_inside(b.symmetric()); }
 
 }  // namespace
@@ -59,13 +60,13 @@ Defect::PieceBounds Defect::over(const BallSeries& centered, const Ball& center,
   std::vector<Ball> power(last + 1, Ball(1));
   for (std::size_t k = 1; k <= last; ++k) power[k] = power[k - 1] * radius;
 
-  // The polynomials about the center, then the coefficients that follow on all of the interval.
+  // The polynomials about the center come first, then the coefficients that are valid on the whole interval.
   const std::size_t n = residuals_.coordinates();
   const std::vector<int>& hidden = residuals_.hidden();
   struct Part {
     std::size_t root, derivative;
     bool projected;
-    Ball polynomial, remainder, value;  // value: enclosed on all of the interval
+    Ball polynomial, remainder, value;  // value: enclosed on the whole interval
   };
   std::vector<Part> parts;
   for (std::size_t a = 0; a < n; ++a)
@@ -99,7 +100,7 @@ Defect::PieceBounds Defect::over(const BallSeries& centered, const Ball& center,
     const bool counts = reaches_beyond(p.remainder, p.polynomial) && reaches_beyond(p.remainder / scale, quiet_);
     if (!taylor.is_finite() || counts) b.sharp = false;
     if (!taylor.is_finite()) b.smooth = false;
-    // The values on the interval are a bound as well; beside a kink there is no other.
+    // The enclosed values on the interval are a bound, too; beside a kink they are the only one.
     Ball& worst = p.root >= n ? b.constraints : p.projected ? b.projected : b.newton;
     worst = max(worst, (taylor.is_finite() && !reaches_beyond(taylor, p.value) ? taylor : p.value) / scale);
   }
@@ -113,7 +114,7 @@ void Defect::piece(const DenseStep& step, const Ball& begin, const Ball& end, in
       !b.smooth && b.is_finite() && halvings < kMostHalvingsAtKinks && pieces_of_step_ < kMostPieces && says_more(b);
   if (b.sharp || (halvings >= kMostHalvings && !beside_kink)) {
     if (!b.smooth && says_more(b)) gave_up_at(center);
-    // Shorter pieces are those beside a kink, by whose rounded time they may have the formula of its other side.
+    // Shorter pieces lie beside a kink, whose time is rounded, so they may contain the formula of its other side.
     if (b.smooth && halvings <= kMostHalvings) put_larger(b, worst_smooth_);
     return keep(b);
   }
@@ -133,7 +134,7 @@ void Defect::put_larger(const Bounds& b, Bounds& in) {
   in.constraints = max(in.constraints, b.constraints);
 }
 
-// Whether the bounds are larger than those of the pieces before.
+// True if one of the bounds is larger than those of the earlier pieces.
 bool Defect::says_more(const Bounds& b) const {
   return reaches_beyond(b.newton, max(worst_.newton, quiet_)) ||
          reaches_beyond(b.projected, max(worst_.projected, quiet_)) ||
@@ -142,7 +143,7 @@ bool Defect::says_more(const Bounds& b) const {
 
 void Defect::keep(const Bounds& b) {
   worst_.newton = max(worst_.newton, b.newton);
-  // The multipliers at hand are as good as any.
+  // Any multipliers may be used, so those of the motion may, too.
   worst_.projected = max(worst_.projected, reaches_beyond(b.projected, b.newton) ? b.newton : b.projected);
   worst_.constraints = max(worst_.constraints, b.constraints);
   ++pieces_, ++pieces_of_step_;
@@ -152,7 +153,7 @@ void Defect::step(const DenseStep& step) {
   for (std::size_t j = 0; j < step.coefficients.size(); ++j)
     ANHOLON_ASSERT(step.coefficients[j].size() >= static_cast<std::size_t>(d_[j]));
   const BallScope precision(bits_);
-  // Where the last step ended and this one begins, the state as far as it belongs to the unknowns.
+  // The state at the joint, where the last step ended and this one begins.
   const BallSeries ends = shifted(step.coefficients, step.end - step.begin);
   for (std::size_t j = 0; j < last_.size(); ++j)
     for (std::size_t k = 0; k < static_cast<std::size_t>(d_[j]); ++k) {
@@ -172,7 +173,7 @@ void Defect::step(const DenseStep& step) {
 
 std::optional<RigorousReport> Defect::report() const {
   if (pieces_ == 0) return std::nullopt;
-  // Beside a kink that is no jump the bounds are about those of the other pieces.
+  // Beside a kink that is no jump the bounds are about as large as those of the other pieces.
   const auto larger = [&](const Ball& all, const Ball& smooth) {
     constexpr int kMuch = 1'000'000;
     return reaches_beyond(all, max(smooth, quiet_) * Ball(kMuch));

@@ -10,12 +10,13 @@ namespace anholon {
 
 namespace {
 
-// The error between the rows that are compared may be somewhat larger, and the sharper run has an error of its own.
+// The error between the compared rows may be somewhat larger, and the sharper run has an error of its own.
 constexpr double kSafety = 2;
 constexpr int kSharper = 100;
 constexpr std::size_t kMostTimesLonger = 10;
 constexpr int kMoreDigits = 10;
-// What two runs in long double round alike is looked for at so many rows; how it adds up, in motions of so few steps.
+// Errors that two runs in long double have in common are sought at so many rows; their accumulation, in motions of so
+// few steps.
 constexpr std::size_t kMostInQuad = 16, kFewSteps = 32;
 
 // The sharper run, in numbers M, of a motion computed in numbers N.
@@ -32,9 +33,9 @@ class SharperRun {
     compared_.resize(rows_.size());
   }
 
-  // Until the last row, or as far as it goes.
+  // Follows the motion to the last row, or as far as it goes.
   Outcome go() {
-    // Both runs in one type of numbers would round their start alike, and grow alike from what is lost there.
+    // Two runs in one type of numbers would round their start alike, and the lost digits would grow alike.
     motion_.start_in_other_digits(std::same_as<W, V>);
     if constexpr (std::same_as<M, double>)
       if (const std::optional<MotionPlans> known = known_plans()) motion_.use(*known);
@@ -71,7 +72,7 @@ class SharperRun {
     }
   }
 
-  // What was found, until where the run came.
+  // Returns the comparison of the rows up to where the run came.
   RowComparison comparison(double roundoff) {
     RowComparison c(kept(columns_after_time(s_, highest())), roundoff, o_.tolerance.get_d());
     for (std::optional<RowComparison::Row>& row : compared_)
@@ -122,7 +123,7 @@ class SharperRun {
     return std::max(orders_beyond(s, s.structure.d), orders_needed(s, monitors));
   }
 
-  // As it was asked for, if these numbers can say that.
+  // The time as the user wrote it, if these numbers can represent it.
   static W time_of(const SampledRow<V>& r) {
     if (const auto t = r.label.empty() ? std::nullopt : parse_rational(r.label)) return from_rational<W>(*t);
     return convert<W>(r.t);
@@ -131,7 +132,7 @@ class SharperRun {
     return run_.knows_resets ? uncounted_ + rows_[row].resets : resets_;
   }
 
-  // Of all columns of a row those of the run.
+  // Returns the columns of a row that the run has.
   template <class T>
   std::vector<T> kept(std::vector<T> all) const {
     if (run_.columns.empty()) return all;
@@ -144,8 +145,8 @@ class SharperRun {
   W last_step() const { return abs(W(motion_.stepper().time() - motion_.stepper().before())); }
   W from_now(std::size_t row) const { return abs(W(times_[row] - motion_.stepper().time())); }
 
-  // What lies in the last step. Where a kink ends it, the kink of the other run may lie on the other side of a row: the
-  // row is compared with the motions before and after it, and the nearer one counts.
+  // Compares the rows in the last step. If a kink ends the step, the kink of the other run may lie on the other side of
+  // a row: such a row is compared with the motions before and after the kink, and the smaller difference counts.
   Outcome rows_of_step() {
     constexpr double kAboutAKink = 1e-3;
     const std::size_t first = next_;
@@ -160,12 +161,12 @@ class SharperRun {
     return {};
   }
 
-  // The other run may have met the event somewhat sooner or later: rows are compared on the side of it on which they
-  // were made.
+  // Applies events. The other run may have met an event somewhat sooner or later, so rows are compared on the side of
+  // the event on which they were computed.
   Outcome settle(bool& goes_on) {
     const W within = last_step();
     std::vector<Occurrence<W>> occurrences;
-    // All rows of a run that goes on lie behind the events before it.
+    // All rows of a continued run come after its earlier events.
     const bool counted = !run_.since || (forward_ ? motion_.stepper().time() > convert<W>(*run_.since)
                                                   : motion_.stepper().time() < convert<W>(*run_.since));
     for (; counted && next_ < rows_.size() && run_.knows_resets && resets_before(next_) == resets_ && sets() &&
@@ -193,20 +194,20 @@ class SharperRun {
            (passed(times_[next_]) || !goes_on) && from_now(next_) < within;
          ++next_)
       if (Outcome at = compare(next_); !at.ok()) return at;
-    // Events of one moment may come in another order.
+    // Events at one moment may come in another order.
     if (!goes_on && next_ < rows_.size() && from_now(next_) > later()) lose(next_);
     return {};
   }
 
-  // Whether what fired in the last step changes the state.
+  // True if an event of the last step changes the state.
   bool sets() const {
     for (const auto& f : motion_.stepper().fired())
       if (f.series < s_.model->events.size() && !s_.model->events[f.series].set.empty()) return true;
     return false;
   }
 
-  // All rows are compared, or cannot be. A row after an event that is still to come lets the run go on a little
-  // further.
+  // True if no further row can be compared. If a row comes after an event that has not happened yet, the run goes on a
+  // little further.
   bool done() {
     if (lost_) return true;
     const bool at_end = motion_.stepper().time() == end_;
@@ -224,7 +225,7 @@ class SharperRun {
     return false;
   }
 
-  // By so much the moments of an event may differ.
+  // The times of an event may differ by this much.
   W later() const { return abs(W(times_.back() - t0_)) * W(1e-6); }
 
   void lose(std::size_t row) {
@@ -244,20 +245,20 @@ class SharperRun {
     Foretold f = foretold(i);
     if (wanted_in_quad(i) && solved_in_quad()) {
       f.lost = lost_on_the_way(i);
-      f.in_quad = !run_.waiting;  // else a kernel in doubles has made it
+      f.in_quad = !run_.waiting;  // otherwise a kernel in doubles has made the row
     }
     compare_with_point(f);
     return at;
   }
 
-  // What the polynomials of a step say of the leading derivatives of the coordinates at a row; the length of the step,
-  // or 0 where the row is not inside of a step that ends by itself.
+  // The leading derivatives of the coordinates at a row, by the polynomials of a step; and the length of the step, or 0
+  // if the row is not inside of a step that ends at its horizon.
   struct Foretold {
     std::size_t row;
     std::vector<W> leading;
     double step;
-    std::vector<double> lost = {};  // of each column, by what both runs round alike on their way
-    bool in_quad = false;           // the row is at hand in quadruple precision
+    std::vector<double> lost = {};  // the errors of each column that both runs have in common on their way
+    bool in_quad = false;           // the row is computed in quadruple precision
   };
   Foretold foretold(std::size_t i) const {
     return {i, leading_of_polynomials(times_[i]), inside_step(times_[i]) ? to_double(last_step()) : 0};
@@ -302,8 +303,8 @@ class SharperRun {
     if (!compared_[i] || weight(row) < weight(*compared_[i])) compared_[i] = std::move(row);
   }
 
-  // Looks at a row of a second run in long double, of a motion in double, in quadruple precision. Rows beside kinks and
-  // events stay on their side of them. REQUIRES: the motion has been taken to the row.
+  // Computes a row in quadruple precision, for a second run in long double of a motion in double. Rows beside kinks and
+  // events are left out. REQUIRES: the motion has been taken to the row.
   bool solved_in_quad() {
     if constexpr (std::same_as<M, long double> && std::same_as<N, double>) {
       if (!quad_) quad_.emplace(s_, highest(), orders_of_rows(s_));
@@ -318,7 +319,8 @@ class SharperRun {
            (rows_.size() - 1 - i) % stride == 0;
   }
 
-  // In few steps the leading derivatives of both runs may have the same error all along.
+  // Returns the errors of the columns if the leading derivatives of both runs have the same error all along, which is
+  // possible in few steps.
   std::vector<double> lost_on_the_way(std::size_t i) const {
     if (motion_.stepper().steps() > kFewSteps) return {};
     const double time = to_double(abs(W(times_[i] - t0_)));
@@ -336,9 +338,9 @@ class SharperRun {
     return lost;
   }
 
-  // What short and sudden things both runs may have stepped over: where the polynomial of the step does not satisfy the
-  // equations at a row, by far more than the tolerance, the state misses their difference times the step. Kinks and
-  // events make jumps at its ends.
+  // Returns the errors from sudden changes that both runs may have stepped over: if the polynomial of the step misses
+  // the equations at a row by far more than the tolerance, the state misses by this difference times the step. Kinks
+  // and events cause jumps at the ends of a step, so such steps do not count.
   template <class Point>
   std::vector<double> missed_at(const Foretold& foretold, const Point& here) {
     constexpr double kFarMore = 1e4;
@@ -365,7 +367,7 @@ class SharperRun {
     return forward_ ? t > stepper.before() && !(t > stepper.time()) : t < stepper.before() && !(t < stepper.time());
   }
 
-  // The derivatives that lead the coordinates, of the last step's polynomials.
+  // The leading derivatives of the coordinates, by the last step's polynomials.
   std::vector<W> leading_of_polynomials(const W& t) const {
     std::vector<W> list;
     for (std::size_t a = 0; a < s_.system.coordinates; ++a) list.push_back(leading_of_polynomial(a, t));
@@ -402,7 +404,7 @@ class SharperRun {
   std::vector<W> times_;
   std::vector<std::optional<RowComparison::Row>> compared_;
   struct {
-    WaitingRows* rows = nullptr;  // null if rows are made by the reference
+    WaitingRows* rows = nullptr;  // nullptr if the reference computes the rows
     std::optional<WaitingBlock> block;
     std::vector<Foretold> foretold;
   } waiting_;
@@ -412,7 +414,7 @@ class SharperRun {
   bool forward_ = true, extended_ = false;
   struct {
     bool here = false, before = false;
-  } kink_;  // whether one has ended the last step, or the one before
+  } kink_;  // whether a kink has ended the last step, and the one before
   std::size_t next_ = 0, resets_ = 0, uncounted_ = 0;
   PacedStretch<W> stretch_;
   std::optional<V> lost_;
@@ -447,8 +449,8 @@ double written_roundoff(const SimulationOptions& o) {
     return to_double(unit_roundoff<N>());
 }
 
-// Whether the second run of a motion in doubles is made by a kernel in doubles, with other roundings. Where the
-// tolerance is near the round-off of doubles, and in a few steps, it would not differ from the motion by enough.
+// True if a kernel in doubles, with other roundings, makes the second run of a motion in doubles. If the tolerance is
+// near the round-off of doubles, or the motion has few steps, such a run would not differ from the motion by enough.
 static bool in_doubles(const SimulationOptions& o, bool by_kernel, std::size_t steps) {
   constexpr std::size_t kFew = 32;
   constexpr double kLastDigits = 1e-13;
@@ -461,9 +463,9 @@ void estimate_error(Workspace& s, const SimulationOptions& o, RunToJudge<Wider<N
   const bool doubles = std::same_as<N, double> && in_doubles(o, run.by_kernel, report.steps);
   if (doubles) tolerance = std::max(tolerance, Rational(1, 100'000'000'000'000));
   StepSettings settings{natural_logarithm(tolerance), 0, o.most_steps, o.cancelled};
-  // Both runs would round the times of events alike.
+  // Otherwise both runs would round the times of events alike.
   settings.other_rounding = settings.coarse_times = doubles;
-  // A stiff motion that is short by another method is long for Taylor.
+  // A stiff motion may have few steps by another method, and many by Taylor's.
   if (o.estimate == ErrorEstimate::short_runs)
     settings.most_steps = std::min(settings.most_steps, kMostTimesLonger * kShortRun);
   settings.order = taylor_order(settings.log_tolerance) + 2;

@@ -1,7 +1,8 @@
-// The global error of a run, by a second and sharper one: at a tolerance 100 times smaller and two orders higher, in
-// wider numbers where there are any, or by a kernel in doubles that rounds its coefficients otherwise; from a start that
-// differs in its last digits where both would round it alike. The two are compared in every column, at rows all along
-// the run. A motion that forgets its start (a double pendulum after long) shows as digits lost.  (theory: integrals)
+// Estimates the global error of a run by a second, sharper run: at a tolerance 100 times smaller and two orders higher,
+// in wider numbers if there are any; or by a kernel in doubles that rounds its coefficients otherwise, at the order of
+// the run and a tolerance of at least 1e-14. The second run starts at a state that differs in its last digits if both
+// runs would round the start alike. The runs are compared in every column, at rows all along the run. A motion that
+// forgets its start (a double pendulum after a long time) shows as lost digits (theory: integrals).
 #pragma once
 #include "motion/motion.h"
 #include "observe/options.h"
@@ -23,16 +24,16 @@ template <Number W>
 struct RunToJudge {
   SampledRows<W> rows;
   std::vector<EventMoment<W>> events;
-  std::vector<std::size_t> columns;  // of a row, that its values are; none: all
-  std::optional<W> since;            // events up to there are not counted: it goes on with an earlier run
-  bool knows_resets = true;          // else an event may have changed the state any number of times
+  std::vector<std::size_t> columns;  // the columns of a row that its values belong to; empty: all
+  std::optional<W> since;            // events up to this time are not counted, because the run continues an earlier one
+  bool knows_resets = true;          // if false, an event may have changed the state any number of times
   bool by_kernel = false;            // its expansions were made by a kernel in doubles
-  // If there are any: the motion, whose plans the second one uses, what is integrated along it, and its rows.
+  // These may be set: the motion, whose plans the second run uses, the quadratures along the motion, and its rows.
   const Motion<double>* motion = nullptr;
   std::vector<Expr> quadratures = {};
   WaitingRows* waiting = nullptr;
-  // Otherwise: what the second run of another motion has left, in the same workspace and with the same options; then what
-  // this one leaves.
+  // If they are not set: on entry what the second run of another motion has left, in the same workspace and with the
+  // same options; on return what this one leaves.
   struct Plans {
     MotionPlans motion;
     std::unique_ptr<WaitingRows> rows;
@@ -40,7 +41,7 @@ struct RunToJudge {
   Plans* plans = nullptr;
 };
 
-// N: the numbers of the run. Fills `error`, or `no_error`.
+// N: the number type of the run. Fills `error` or `no_error` of the report.
 template <Number N>
 void estimate_error(Workspace& scenario, const SimulationOptions& options, RunToJudge<Wider<N>>& run,
                     SimulationReport& report);
@@ -49,7 +50,7 @@ void estimate_error(Workspace& scenario, const SimulationOptions& options, RunTo
 template <Number N>
 double written_roundoff(const SimulationOptions& options);
 
-// The differences of two rows; `outputs` are of the sharper one.
+// Returns the differences of two rows; `outputs` belong to the sharper run.
 template <Number W, class Outputs>
 RowComparison::Row difference(const Scenario& s, double t, const std::vector<W>& run, const std::vector<W>& sharper,
                               const Outputs& outputs) {

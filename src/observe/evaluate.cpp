@@ -19,7 +19,7 @@ NewtonResidual<N> certify(const std::vector<N>& inertia, const std::vector<N>& f
     a[i] = inertia[i] - force[i];
     if (N miss = abs(N(a[i] - reaction[i])); miss > c.newton) c.newton = miss;
   }
-  // a - Phi^T lambda* with lambda* by least squares over independent rows.
+  // a - Phi^T lambda*, where lambda* is found by least squares over independent rows.
   const std::vector<std::size_t> rows = choose_rows(phi, N(1e-9)).independent;
   Matrix<N> normal(rows.size(), rows.size());
   std::vector<N> rhs(rows.size(), N(0)), lambda;
@@ -149,7 +149,7 @@ class StateWriter {
     for (const auto& [name, at] : {e_.inertia, e_.reaction}) r_.forces.push_back({name, texts(at)});
   }
 
-  // `values`: of the multipliers of all constraints.
+  // `values`: the multipliers of all constraints.
   void multipliers(const std::vector<N>& values) {
     for (std::size_t k = 0; k < s_.model->constraints.size(); ++k) {
       const auto j = s_.system.variable(s_.mechanics->lambda[k].id);
@@ -224,7 +224,7 @@ class StateWriter {
   N moved_law_{0}, moved_power_{0};  // by OutputTape::evaluate_moved
 };
 
-// The point of the consistent state, with the orders beyond its leading derivatives if there are any.
+// Computes the point of the consistent state, with the orders beyond its leading derivatives if they are needed.
 template <Number N>
 Outcome solve_at_start(Workspace& s, const StateChoice& choice, bool beyond, Expansion<N>& point) {
   Start<N> start;

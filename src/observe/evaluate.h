@@ -1,5 +1,5 @@
-// Everything about one state: each generalized force separately, accelerations, multipliers,
-// reactions, power, and the residual report. Numbers come out as text, in any precision.
+// Computes everything about one state: each generalized force separately, accelerations, multipliers, reactions, power,
+// and the residual report. Numbers are returned as text, in any precision.
 #pragma once
 #include "setup/scenario.h"
 
@@ -22,18 +22,18 @@ struct StateReport {
   Named residuals;  // newton (C1), projected (C2), constraints (C3), equations, power
 };
 
-// real, long_real: computed in long double and rounded to double. digits: of the numbers written in the others, and of
-// the computation in multi.
+// real and long_real are computed in long double and rounded to double. `digits`: of the numbers written in the other
+// precisions, and of the computation in multi.
 Outcome evaluate(const Scenario& scenario, const StateChoice& choice, Precision precision, int digits,
                  StateReport& report);
-// digits <= 16: long_real; else multi.
+// Computes in long_real if digits <= 16, otherwise in multi.
 Outcome evaluate(const Scenario& scenario, const StateChoice& choice, int digits, StateReport& report);
 
 // Residuals C1 and C2 (theory: certificate) from E - G and Phi at a state.
 template <Number N>
 struct NewtonResidual {
   N newton{0};     // |E - G - N| by the points themselves
-  N projected{0};  // what is left of E - G after the best multipliers: needs no lambda
+  N projected{0};  // of |E|, |G|, |N|
   N largest{0};    // of |E|, |G|, |N|
 };
 template <Number N>

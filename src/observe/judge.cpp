@@ -49,11 +49,11 @@ void Judge<N>::events(const std::vector<Occurrence<W>>& occurrences) {
     ++resets_;
 }
 
-// Of the rows of another integrator the motion beside it tells, of others a second run.
+// The rows of another integrator are judged by the motion beside it, other rows by a second run.
 template <Number N>
 void Judge<N>::estimate(const Course<N>& course, const std::vector<Expr>& quadratures, WaitingRows* waiting,
                         SimulationReport& report) {
-  constexpr double kBeside = 2;  // that motion has an error, too
+  constexpr double kBeside = 2;  // because that motion has an error, too
   if (o_.estimate == ErrorEstimate::never) return;
   if (report.outcome.kind == OutcomeKind::not_a_number) {
     report.no_error = "a formula had no value where the motion ended";

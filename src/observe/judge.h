@@ -1,5 +1,4 @@
-// What is kept of a run for the estimate of its error: rows, and moments of events, or the comparison with the motion
-// beside it.
+// Keeps what the error estimate of a run needs: rows and times of events, or the comparison with the motion beside it.
 #pragma once
 #include "motion/course.h"
 #include "observe/estimate.h"
@@ -13,24 +12,24 @@ class Judge {
 
   Judge(Workspace& scenario, const SimulationOptions& options) : s_(scenario), o_(options) {}
 
-  // The run goes on from here; what events did before is not known.
+  // Notes that the run continues from here; earlier effects of events are not known.
   void goes_on_from(const W& t) { run_.since = t; }
 
-  // The rows are those of another integrator, and compared with the motion beside it.
+  // Notes that the rows are those of another integrator; they are compared with the motion beside it.
   void look_beside(const Course<N>& course);
-  // A row, at the time that is written, after so many steps of the course.
+  // Takes a row, at the time that is written, after so many steps of the course.
   void row(const W& t, const std::string& label, const std::vector<W>& numbers, const Course<N>& course);
   // Takes a row in doubles. `counts`: the run was short enough for an estimate (wanted) when it came to the row.
   void row(const W& t, const std::string& label, const std::vector<double>& numbers, bool counts);
-  // Whether an estimate is made if the run ends here.
+  // True if an estimate is made if the run ends here.
   bool wanted(const Course<N>& course) const {
     return o_.estimate == ErrorEstimate::always ||
            (o_.estimate == ErrorEstimate::short_runs && course.steps() <= kShortRun);
   }
-  // What fired at one moment.
+  // Takes the events of one moment.
   void events(const std::vector<Occurrence<W>>& occurrences);
-  // Fills `error`, or `no_error`, of a run that has ended. `quadratures`: what was integrated along it; `waiting`: what
-  // computed its rows, or null.
+  // Fills `error` or `no_error` of a run that has ended. `quadratures`: the formulas integrated along the run;
+  // `waiting`: the object that computed its rows, or nullptr.
   void estimate(const Course<N>& course, const std::vector<Expr>& quadratures, WaitingRows* waiting,
                 SimulationReport& report);
 
@@ -41,7 +40,7 @@ class Judge {
   Workspace& s_;
   const SimulationOptions& o_;
   RunToJudge<W> run_;
-  std::size_t resets_ = 0;  // how often events have changed the state
+  std::size_t resets_ = 0;  // the number of times that events have changed the state
   struct Beside {
     Beside(Workspace& s, const std::vector<W>& parameters, RowComparison c)
         : outputs(s, parameters), comparison(std::move(c)) {}

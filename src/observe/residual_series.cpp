@@ -25,7 +25,7 @@ ResidualSeries::ResidualSeries(Workspace& s, slong bits) : s_(s), bits_(bits), c
   for (std::size_t a = 0; a < inertia.size(); ++a) es.push_back(inertia[a] - force[a] - reaction[a]);
   std::vector<int> leads(es.size(), 0);
   for (std::size_t r = 0; r < m.phi.size(); ++r) {
-    // Those that take part hide as many derivatives as the structure says; redundant ones follow from them.
+    // Constraints that take part hide as many derivatives as the structure tells; redundant ones follow from them.
     const auto row = std::find(s.system.constraints.begin(), s.system.constraints.end(), r);
     const std::size_t equation = s.system.coordinates + static_cast<std::size_t>(row - s.system.constraints.begin());
     hidden_.push_back(row == s.system.constraints.end() ? std::max(0, 2 - m.order[r]) : s.structure.c[equation]);
@@ -35,7 +35,7 @@ ResidualSeries::ResidualSeries(Workspace& s, slong bits) : s_(s), bits_(bits), c
   phi_ = es.size();
   for (const std::size_t r : s.system.constraints)
     for (Expr e : m.Phi[r]) es.push_back(put_masses(model, e)), leads.push_back(0);
-  // What the residuals are related to: needed as values only.
+  // The numbers to which the residuals are relative; their values suffice.
   scale_ = es.size();
   for (const Column* part : {&inertia, &force, &reaction}) es.insert(es.end(), part->begin(), part->end());
   tape_ = compile(OutputTape<double>::put(s, es), leads);

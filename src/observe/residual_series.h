@@ -10,16 +10,16 @@ namespace anholon {
 
 using BallSeries = std::vector<std::vector<Ball>>;  // the coefficients of several series
 
-// (order + k)! / order!
+// Returns (order + k)! / order!.
 Ball rising(std::size_t order, std::size_t k);
 
 class ResidualSeries {
  public:
-  // `bits`: of the balls.
+  // `bits`: the precision of the balls.
   ResidualSeries(Workspace& scenario, slong bits);
 
   std::size_t coordinates() const { return coordinates_; }
-  // Derivatives of each constraint that are to vanish.
+  // The number of derivatives of each constraint that have to vanish.
   const std::vector<int>& hidden() const { return hidden_; }
 
   // Makes room for series up to this order.
@@ -27,20 +27,19 @@ class ResidualSeries {
   // Computes the residuals up to this order about the time t, where the unknowns have the series x.
   void evaluate(const BallSeries& x, const Ball& t, int orders);
 
-  // Coefficient k is at [k].
+  // Coefficient k of residual i is at [k].
   const Ball* residual(std::size_t i) const { return machine_->series(tape_.roots[i]); }
   // The sum of the absolute values of the terms of a coefficient.
   Ball terms(std::size_t i, std::size_t order) const { return machine_->terms(i, order); }
   // A lower bound of the largest of |E|, |G|, |N| at the time t, and at least 1. Parts that no ball bounds are left
-  // out: a bound in relation to less is a bound as well.
+  // out: a bound relative to a smaller number is a bound, too.
   Ball newton_scale();
 
-  // The formula with a kink or a jump within the ball of the time at which the residuals have been evaluated last; empty
-  // if there is none.
+  // The formula with a kink or a jump within the ball of the time of the last evaluation; empty if there is none.
   std::string turning() const;
 
-  // Series that, added to the multipliers, leave least of Newton's residual, order by order, by least squares; empty if
-  // there are none. No bound rests on their being right: balls say what is left.
+  // Series whose addition to the multipliers makes Newton's residual least, order by order, by least squares; empty if
+  // there are none. The bounds do not depend on these series: balls enclose what is left.
   BallSeries correction(std::size_t orders) const;
   // A coefficient of Newton's residual with the multipliers corrected by delta.
   Ball corrected(std::size_t coordinate, std::size_t order, const BallSeries& delta) const;
@@ -52,11 +51,11 @@ class ResidualSeries {
   slong bits_;
   std::size_t coordinates_;
   Tape tape_;
-  std::size_t phi_ = 0, scale_ = 0;  // the first root of Phi; of E, G, N
+  std::size_t phi_ = 0, scale_ = 0;  // the first root of Phi, and that of E, G, N
   std::vector<int> hidden_;
   std::vector<Ball> parameters_;
   std::unique_ptr<Machine<Ball>> machine_;
-  int orders_ = -1;  // that the machine has room for
+  int orders_ = -1;  // the orders that the machine has room for
 };
 
 }  // namespace anholon

@@ -6,7 +6,8 @@ namespace anholon {
 
 namespace {
 
-// The state and the leading derivatives that one program wants, out of those of another for the same unknowns.
+// Converts the state and the leading derivatives of one program to those of another for the same unknowns. Returns
+// false if that needs higher derivatives.
 bool translate(const Program& from, const std::vector<double>& state, const std::vector<double>& leading,
                const Program& to, std::vector<long double>& to_state, std::vector<long double>& to_leading) {
   std::size_t offset = 0;
@@ -72,7 +73,7 @@ Outcome SecondMotion::put(long double t, const Expansion<long double>& taylor) {
   if (!translate(*program_, motion_->state(), motion_->leading(), taylor.program(), state, leading))
     return {OutcomeKind::inconsistent, "the form asks for derivatives that are no part of the second motion",
             "--form routh"};
-  point_ = taylor;  // of the form that is written, whatever its elimination is here
+  point_ = taylor;  // of the form that is written, with its present elimination
   point_->load(t, state, leading);
   if (Outcome o = point_->prepare(); !o.ok()) return o;
   point_->measure();

@@ -7,8 +7,8 @@
 
 namespace anholon {
 
-// The constraints that may take part along the motion, by their index in the model: with redundant ones which do may
-// change on the way, and each may.
+// The constraints that may take part in the motion, by their index in the model: all, if there are redundant ones,
+// because other constraints may become independent during the motion.
 static std::vector<std::size_t> watched_rows(const Scenario& s) {
   if (s.redundant.empty()) return s.system.constraints;
   std::vector<std::size_t> all(s.model->constraints.size());
@@ -16,17 +16,17 @@ static std::vector<std::size_t> watched_rows(const Scenario& s) {
   return all;
 }
 
-// How many derivatives of a constraint, with itself, hold beside the state's: those that hide in the structure, or that
-// one of its order has.
+// The number of derivatives of a constraint, itself counted, that are hidden constraints: by the structure, or, for a
+// redundant one, by its order.
 static int hidden_derivatives(const Scenario& s, std::size_t r) {
   const auto row = std::find(s.system.constraints.begin(), s.system.constraints.end(), r);
   if (row == s.system.constraints.end()) return std::max(0, 2 - s.mechanics->order[r]);
   return s.structure.c[s.system.coordinates + static_cast<std::size_t>(row - s.system.constraints.begin())];
 }
 
-// The power of all forces for the energy balance. Constraints that do no work on the motion (first
-// order and homogeneous, holonomic without t) are left out: their power is zero, and its terms, which
-// are large and cancel, would only add round-off to the balance.
+// The power of all forces for the energy balance. Constraints that do no work on the motion (first order and
+// homogeneous, holonomic without t) are left out: their power is zero, and its large terms, which cancel, would only
+// add round-off to the balance.
 static Expr balance_power(Workspace& s, const Power& p) {
   const Mechanics& m = *s.mechanics;
   Graph& g = m.graph();
@@ -92,7 +92,7 @@ void Track<W>::see_double(double value, double terms, double made_of) {
   if (W(v) > missed || !std::isfinite(v)) missed = W(v);
 }
 
-// What sums may leave of the numbers that their terms are made of. Rows of motions in double are computed in doubles.
+// The round-off of sums of numbers. Rows of motions in double are computed in doubles.
 template <Number W>
 static W round_off() {
   const W unit = std::is_same_v<W, long double> ? W(unit_roundoff<double>()) : unit_roundoff<W>();
@@ -101,11 +101,11 @@ static W round_off() {
 
 template <Number W>
 double Track<W>::relative_change() const {
-  // Far above what integration leaves of the terms, and of the numbers that these are made of.
+  // Far above the error that integration leaves, relative to the terms and to the numbers that they are made of.
   constexpr double kNoise = 1e-6;
   if (missed > W(kNoise) && is_finite(made) && change <= W(kNoise) * made) return to_double(W(change / made));
   if (missed > W(0) || change == W(0)) return to_double(missed);
-  // A number that is zero but for round-off has no size to which a change could be compared.
+  // A number that is zero up to round-off has no size to which a change could be relative.
   if (is_finite(made) && size <= round_off<W>() * made) return 0;
   return to_double(W(change / size));
 }
@@ -116,7 +116,7 @@ Watch<W>::Watch(Workspace& s, const Power& power, const std::vector<Conserved>& 
     : s_(s), rows_(watched_rows(s)), outputs_(s, expressions(power, conserved), parameters), redundant_(s, parameters) {
 }
 
-// N, then what the residual report needs: h, E, G, Phi; the terms of what is watched.
+// The expressions: N, then what the residual report needs (h, E, G, Phi), then the terms of what is watched.
 template <Number W>
 Column Watch<W>::expressions(const Power& power, const std::vector<Conserved>& conserved) {
   const Model& model = *s_.model;
@@ -197,7 +197,7 @@ void Watch<W>::see_moved(const Expansion<W>& point) {
       if (constant_[i]) moved_[i] += outputs_.made_of(at);
 }
 
-// Of N, E and G.
+// The size of what N, E and G are made of.
 template <Number W>
 W Watch<W>::made_of_forces() const {
   W most(0);
@@ -218,7 +218,7 @@ Outcome Watch<W>::still_redundant(const Expansion<W>& point, SimulationReport& r
   return o;
 }
 
-// The constraints that take part at a point: the places among those watched, in the order of their unknowns.
+// The constraints that take part at a point: their indices among the watched ones, in the order of their unknowns.
 template <Number W>
 std::vector<std::size_t> Watch<W>::rows_at(const Expansion<W>& point) const {
   const std::vector<std::size_t>& kept = point.program().system->constraints;
@@ -233,7 +233,7 @@ std::vector<std::size_t> Watch<W>::rows_at(const Expansion<W>& point) const {
   return rows;
 }
 
-// C3, and each constraint that takes part with its derivatives by itself. `rows`: their places among those watched.
+// Computes C3, and each constraint that takes part with its derivatives. `rows`: their indices among the watched ones.
 template <Number W>
 void Watch<W>::constraints(const Expansion<W>& point, const std::vector<std::size_t>& rows, const Matrix<W>& phi,
                            SimulationReport& report) const {
@@ -361,7 +361,7 @@ template <Number W>
 void Watch<W>::end(const Expansion<W>& point, const W& work, SimulationReport& report) {
   outputs_.evaluate(point);
   const W h = energy();
-  // Forces in balance turn energy over, though none is left: what each does on its way.
+  // Forces in balance turn no energy over. Then the measure is the work that each does on its way, whatever its sign.
   constexpr double kNone = 1e-8;  // half the digits of a double
   const std::size_t n = s_.system.coordinates;
   W ways(0), made_of = outputs_.made_of(n);

@@ -1,10 +1,10 @@
-// What is watched along a motion, point by point: the residual report by another way than the equations integrated, and
-// the reactions N that the rows show.
+// Watches a motion point by point: the residual report, by another way than the equations that were integrated, and the
+// reactions N in the rows.
 //
 //   C1, C2  Newton's law by the points themselves, with and without multipliers  (theory: certificate)
 //   C3      hidden constraints
 //   power   h - h(0) - W, W the integral of the right side of the power identity
-// each in relation to the greatest of its terms so far: a motion that comes to rest is measured by what it was
+// each relative to the greatest of its terms so far, so that a motion that comes to rest is measured by its past,
 // and the model's [monitor] formulas and the integrals of the motion  (theory: integrals).
 #pragma once
 #include "mechanics/conserved.h"
@@ -16,29 +16,30 @@
 
 namespace anholon {
 
-// What has to be integrated for it: the power of all forces first, then the masses that vary.
+// The formulas that have to be integrated: the power of all forces first, then the masses that vary.
 std::vector<Expr> watched_quadratures(Workspace& s, const Power& p);
 
-// The constraints with a residual for each derivative that has to vanish, none seen yet.
+// The reports of the constraints, with zero residuals for each derivative that has to vanish.
 std::vector<ConstraintReport> constraint_reports(const Scenario& s);
 
-// Whether [output] conserved = true says of a monitor that it keeps its value: of a vector all components do.
+// True if [output] conserved = true declares a monitor constant; for a vector, all its components.
 bool declared_conserved(const Model& model, const Monitor& m);
 
-// A number along the motion: its range, and how far it went from its first value.
+// A number along the motion: its range, and its distance from its first value.
 template <Number W>
 struct Track {
   bool any = false;
   W first{0}, last{0}, least{0}, greatest{0}, change{0}, size{0}, missed{0};
-  W made{0};  // the greatest of the numbers that the terms are made of, where these are known
+  W made{0};  // the greatest of the numbers that the terms are made of, if these are known
   void see(const W& value);
-  // What ought to be constant. `terms`: the sum of the magnitudes of its terms; `made_of`: of the numbers these are
-  // made of (numeric/relative.h); `moved`: of those with which it may change by round-off.
+  // Sees a number that should be constant. `terms`: the sum of the magnitudes of its terms; `made_of`: of the numbers
+  // from which the terms are made (numeric/relative.h); `moved`: of the numbers with which it may change by round-off.
   void see(const W& value, const W& terms, const W& made_of, const W& moved);
-  // The same of a number that was computed in doubles.
+  // Sees such a number that was computed in doubles.
   void see_double(double value, double terms, double made_of);
-  // Of its size; or of its terms, if it ought to be constant; or of the numbers these are made of, if it is large
-  // beside the terms and small beside those: where terms cancel, what is left of them is the error of the motion.
+  // The change relative to its size; for a number that should be constant, relative to its terms, or to the numbers
+  // that the terms are made of, if the change is large relative to the terms and small relative to these: if terms
+  // cancel, their error is that of the motion.
   double relative_change() const;
 };
 
@@ -48,11 +49,11 @@ class Watch {
   Watch(Workspace& scenario, const Power& power, const std::vector<Conserved>& conserved,
         const std::vector<W>& parameters);
 
-  // At a point of the motion: fills the residuals of the report. Not ok if a redundant constraint no longer follows
-  // from the others.
+  // Sees a point of the motion, and fills the residuals of the report. Fails if a redundant constraint does not follow
+  // from the others any more.
   Outcome see(const Expansion<W>& point, SimulationReport& report);
-  // What is tracked alone, at a row that was computed in doubles: value(k) and terms(k) of the k-th sum of the monitors
-  // and the integrals, one after the other.
+  // Sees the tracked numbers alone, at a row that was computed in doubles: value(k) and terms(k) of the k-th sum of the
+  // monitors and the integrals, one after the other.
   template <class Value, class Terms>
   void track(Value value, Terms terms) {
     ++times_;
@@ -66,14 +67,15 @@ class Watch {
         tracks_[i].see(W(sum));
     }
   }
-  // Whether outputs are declared conserved; sees what is to be constant alone, at a point between rows.
+  // any_declared(): true if outputs are declared conserved. look(): sees only the numbers that should be constant, at a
+  // point between rows.
   bool any_declared() const {
     const auto end = constant_.begin() + static_cast<std::ptrdiff_t>(s_.model->monitors.size());
     return std::find(constant_.begin(), end, true) != end;
   }
   void look(const Expansion<W>& point);
-  // Whether there are monitors whose range is reported; these alone are seen at a point between rows, or at one that was
-  // computed in doubles: value(i) of the i-th monitor.
+  // any_ranges(): true if there are monitors whose range is reported. look_at_ranges() sees these alone at a point
+  // between rows, track_ranges() at one that was computed in doubles: value(i) of the i-th monitor.
   bool any_ranges() const {
     const auto end = constant_.begin() + static_cast<std::ptrdiff_t>(s_.model->monitors.size());
     return std::find(constant_.begin(), end, false) != end;
@@ -85,34 +87,36 @@ class Watch {
       if (!constant_[i]) tracks_[i].see(W(value(i)));
     ++times_;
   }
-  // How many times of the motion the ranges are made of: the rows, and the points between them. The start counts by
-  // count_start() if it has no row; the two sides of an event are at the end of a step, and do not count again.
+  // The number of times from which the ranges come: the rows, and the points between them. The start is counted by
+  // count_start() if it has no row; the two sides of an event are at the end of a step, and are not counted again.
   void count_start() { ++times_; }
   std::size_t times() const { return times_; }
-  // Whether constraints are left out that have to follow from the others.
+  // True if there are redundant constraints, which have to follow from the others.
   bool any_redundant() const { return redundant_.any(); }
-  // Whether they do.
+  // Fails if they do not follow any more.
   Outcome still_redundant(const Expansion<W>& point, SimulationReport& report);
   // The monitors of the model, then the integrals.
   const std::vector<Track<W>>& tracks() const { return tracks_; }
-  // What was seen, for a run that goes on.
+  // save() and resume() pass what was seen to a continued run.
   void save(SavedRun& to) const;
   void resume(const SavedRun& from, const std::vector<W>& parameters);
-  // lambda of every constraint, N and the monitors at the point seen last.
+  // The multiplier of a constraint, the reaction N and the monitors at the last point.
   const W& multiplier(std::size_t constraint) const { return multipliers_[constraint]; }
   const W& reaction(std::size_t coordinate) const { return outputs_[coordinate]; }
   const W& monitor(std::size_t i) const { return tracks_[i].last; }
-  // There: the numbers that a monitor is made of (numeric/relative.h); what the terms of Newton's law are made of, in
-  // relation to the greatest of these so far.
+  // At the last point: the numbers that a monitor is made of (numeric/relative.h); and the size of what the terms of
+  // Newton's law are made of, relative to the greatest of these terms so far.
   double made_of_monitor(std::size_t i) const { return to_double(outputs_.made_of(first_monitor_ + i)); }
   double cancellation() const { return forces_ > W(0) ? to_double(W(made_of_forces() / forces_)) : 1; }
 
-  // The first and the last point: the energy balance goes from one to the other, between which the work is integrated.
+  // start() sees the first point, end() the last one: the energy balance goes from one to the other, with the work
+  // between them.
   void start(const Expansion<W>& point);
-  // What an event changes at a moment is no work: the energy before and after it, and the modes from there on.
+  // The change of energy by an event is no work: leave() takes the energy before it, enter() the energy and the modes
+  // after it.
   void leave(const Expansion<W>& point);
   void enter(const Expansion<W>& point, const std::vector<W>& parameters);
-  // The work so far, where a step begins.
+  // Takes the work so far, at the start of a step.
   void turn_over(const W& work) { turned_over_ = std::max(turned_over_, W(abs(work))); }
   void end(const Expansion<W>& point, const W& work, SimulationReport& report);
 
@@ -131,21 +135,21 @@ class Watch {
   const Scenario& s_;
   std::vector<std::size_t> rows_;  // the constraints that may take part, by their index in the model
   std::vector<Track<W>> tracks_;
-  std::vector<std::size_t> terms_;  // of which each is the sum
-  std::vector<bool> constant_;      // which ought to be
-  std::size_t times_ = 0;           // at which monitors were seen
-  std::vector<double> made_of_;     // of the numbers behind their terms, at the point seen last
-  // Constraints that no derivative hides: their accelerations, … are solved for with the equations.
+  std::vector<std::size_t> terms_;  // the number of terms of each
+  std::vector<bool> constant_;      // whether each should be constant
+  std::size_t times_ = 0;           // the number of times at which monitors were seen
+  std::vector<double> made_of_;     // of the numbers behind their terms, at the last point
+  // Constraints without hidden derivatives: their accelerations, … are solved for with the equations.
   std::vector<std::size_t> open_;
-  std::size_t first_open_ = 0, first_monitor_ = 0;  // among the outputs
+  std::size_t first_open_ = 0, first_monitor_ = 0;  // indices among the outputs
   OutputTape<W> outputs_;
   Redundant<W> redundant_;
   std::vector<W> multipliers_;
   W h0_{0}, start_{0}, before_{0};
-  // The greatest so far: of the terms of Newton's law, of energies and work.
+  // The greatest so far of the terms of Newton's law, and of energies and work.
   W forces_{0}, turned_over_{0};
-  // What Newton's law and the constants are made of if accelerations are as large as the terms of the equations, at the
-  // point seen last (OutputTape::evaluate_moved).
+  // The size of what Newton's law and the constants are made of if accelerations are as large as the terms of the
+  // equations, at the last point (OutputTape::evaluate_moved).
   W moved_forces_{0};
   std::vector<W> moved_;
   std::vector<W> from_;  // the coordinates at the start

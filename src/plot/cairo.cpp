@@ -67,7 +67,7 @@ void font(cairo_t* c, const Word& w, const TextPiece& p) {
   library().cairo_set_font_size(c, p.sub ? 0.7 * w.size : w.size);
 }
 
-// Draws the dots: the position of a combining mark depends on the font.
+// Draws the dots separately, because the position of a combining mark depends on the font.
 void dots(cairo_t* c, const Word& w, double x, double y, const cairo_text_extents_t& letter, unsigned count) {
   const double radius = 0.055 * w.size, apart = 0.2 * w.size;
   const double middle = x + letter.x_bearing + letter.width / 2 + 0.04 * w.size,
@@ -113,7 +113,8 @@ std::string draw_cairo(const Figure& figure, CairoFormat format, const std::stri
 
 std::string draw_cairo(const Drawing& d, const std::string& title, CairoFormat format, const std::string& path) {
   if (!no_cairo().empty()) return no_cairo();
-  // cairo reports neither why a file cannot be written nor that its last bytes are missing, so it draws into memory.
+  // cairo reports neither why a file cannot be written nor that its last bytes are missing, so the figure is drawn into
+  // memory.
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) return std::strerror(errno);
   std::string bytes;
@@ -127,7 +128,7 @@ std::string draw_cairo(const Drawing& d, const std::string& title, CairoFormat f
     surface = library().cairo_pdf_surface_create_for_stream(keep, &bytes, d.width, d.height);
     if (library().cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS) {
       if (!title.empty()) library().cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_TITLE, title.c_str());
-      // Without a creation date the same figure has the same bytes.
+      // Without a creation date, the same figure has the same bytes.
       library().cairo_pdf_surface_set_metadata(surface, CAIRO_PDF_METADATA_CREATE_DATE, "");
     }
   } else {
@@ -143,7 +144,7 @@ std::string draw_cairo(const Drawing& d, const std::string& title, CairoFormat f
   }
   library().cairo_set_line_join(c, CAIRO_LINE_JOIN_ROUND);
   library().cairo_set_line_cap(c, CAIRO_LINE_CAP_ROUND);
-  // Patches that share a border would show the paper between them.
+  // Antialiasing would show the paper between patches that share a border.
   library().cairo_set_antialias(c, CAIRO_ANTIALIAS_NONE);
   for (const Patch& p : d.patches) {
     library().cairo_set_source_rgb(c, static_cast<double>(p.rgb >> 16 & 255U) / 255,

@@ -1,5 +1,6 @@
-// The library cairo, which is loaded when a figure is first drawn as PDF or PNG: with the twenty libraries that it needs
-// it takes longer to load than all others of the program together. Included only if cairo is available to the build.
+// The library cairo, which is loaded when a figure is first drawn as PDF or PNG: with the twenty libraries that it
+// needs, loading it takes longer than loading all others of the program together. Included only if cairo is available
+// to the build.
 #pragma once
 #include <string>
 
@@ -8,14 +9,14 @@
 
 namespace anholon::plot::cairo {
 
-// Every function that is used, by its own name.
+// All functions that are used, by their own names.
 struct Library {
 #define FUNCTION(name) decltype(&::name) name = nullptr;
 #include "plot/cairo_functions.def"
 #undef FUNCTION
 };
 
-// Loads it at the first call. Returns an empty string, or the reason why it cannot be loaded.
+// Loads the library at the first call. Returns an empty string, or the reason why it cannot be loaded.
 const std::string& load_cairo();
 // REQUIRES: load_cairo() succeeds.
 const Library& library();

@@ -21,7 +21,7 @@ const Dash& dash_of(std::size_t series) { return kDash[series / kColours % kDash
 namespace {
 
 constexpr double kPointsPerCm = 72 / 2.54;
-constexpr double kSize = 9, kSmall = 8;  // of words
+constexpr double kSize = 9, kSmall = 8;  // the sizes of words
 constexpr double kLetter = 0.62;         // mean width of a letter, relative to its size
 constexpr double kTick = 3, kGap = 4,
                  kEntry = 18;  // marks at ticks; gaps; the line of an entry of the legend
@@ -41,7 +41,7 @@ RichText minus_signs(std::string label) {
   return {{label}};
 }
 
-// A text in lines that are not longer than `width`; a word alone may be.
+// Breaks a text into lines that are not longer than `width`, except single words.
 std::vector<std::string> lines_of(const std::string& text, double size, double width) {
   std::vector<std::string> lines(1);
   std::istringstream words(text);
@@ -56,7 +56,7 @@ std::vector<std::string> lines_of(const std::string& text, double size, double w
   return lines;
 }
 
-// A dot of visible size.
+// Returns the outline of a dot of visible size.
 std::vector<Point> dot(Point at) {
   constexpr double kRadius = 1;
   return {{at.x - kRadius, at.y}, {at.x, at.y - kRadius}, {at.x + kRadius, at.y},
@@ -89,7 +89,7 @@ class Layout {
     // All panels start at the same left edge, below one another.
     const double each = (bottom - top) / static_cast<double>(f_.panels.size());
     std::vector<Ticks> y_ticks = scales(each);
-    // The box is as wide as the labels of its ticks allow; the first round determines their width.
+    // The box is as wide as the labels of its ticks allow; the first round finds their width.
     for (int round = 0; own_ && round < 2; ++round) {
       make_equal(*own_, right_ - left_, box_ = box_height(each));
       const double left = left_;
@@ -109,7 +109,7 @@ class Layout {
   }
 
  private:
-  // The height of a panel that is certainly left under its legend.
+  // Returns a height of a panel that is certainly left under its legend.
   double box_height(double each) const {
     std::size_t most = 1;
     for (const Panel& p : f_.panels) most = std::max(most, p.series.size());
@@ -118,7 +118,7 @@ class Layout {
     return std::max(10.0, each - (lines + 1) * (kSmall + kGap) - 3.5 * kGap);
   }
 
-  // The ticks of all panels, and the left and right ends of their boxes.
+  // Computes the ticks of all panels, and the left and right ends of their boxes.
   std::vector<Ticks> scales(double each) {
     std::vector<Ticks> y_ticks;
     double labels = 0;
@@ -135,7 +135,7 @@ class Layout {
 
   void line(Point a, Point b, Role role) { d_.strokes.push_back({{a, b}, role, 0}); }
 
-  // One line of entries, or more for long ones; returns the top of the box.
+  // Draws one line of entries, or more for long ones; returns the top of the box.
   double legend(const Panel& p, double top) {
     double x = left_, y = top + kSmall;
     for (const Series& s : p.series) {
@@ -161,7 +161,7 @@ class Layout {
           {{kGap + kSize, (top + bottom) / 2}, series_label(p.series[0], f_.labels), kSize, Anchor::middle, true});
       top += kGap;
     }
-    constexpr double kLeast = 20;  // of both sides of a box
+    constexpr double kLeast = 20;  // the least length of both sides of a box
     const double height = own_ ? box_ : bottom - top, width = right_ - left_;
     if (height < kLeast || width < kLeast)
       throw Failure(Span{},
@@ -186,7 +186,7 @@ class Layout {
     }
     d_.strokes.push_back(
         {{{left_, top}, {right_, top}, {right_, bottom}, {left_, bottom}, {left_, top}}, Role::axis, 0});
-    // Points of the decimation per point of paper: finer than print.
+    // The decimation uses more points than there are points of paper: finer than print.
     constexpr double kFiner = 4;
     for (const Series& s : p.series)
       for (auto& piece : curve(f_, p, s, kFiner * width, kFiner * height)) {

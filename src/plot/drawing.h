@@ -1,5 +1,5 @@
 // A figure laid out on paper: lines and words with their positions, in points of 1/72 inch, y downwards. The drawing
-// functions know nothing of axes.
+// functions do not know axes.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -44,11 +44,11 @@ Drawing lay_out(const Figure& figure);
 inline constexpr std::size_t kColours = 8;
 extern const char* const kColour[kColours];
 struct Dash {
-  const char *css, *pgf;         // a class of the SVG, a style of pgfplots; empty for a whole line
+  const char *css, *pgf;         // a class of the SVG, a style of pgfplots; empty for a solid line
   std::array<double, 4> on_off;  // lengths in points; 0 ends them
   std::size_t lengths() const { return on_off[0] == 0 ? 0 : on_off[2] == 0 ? 2 : 4; }
 };
-// The dash of the curve of that number.
+// Returns the dash of the curve with this number.
 const Dash& dash_of(std::size_t series);
 inline constexpr std::size_t kDashes = 4;
 extern const Dash kDash[kDashes];
@@ -57,11 +57,12 @@ extern const Dash kDash[kDashes];
 // --paper.
 std::string draw_svg(const Figure& figure);
 std::string draw_svg(const Drawing& drawing, const std::string& title);
-// An axis of pgfplots, to be \input.
+// Returns an axis of pgfplots, to be \input.
 std::string draw_tex(const Figure& figure);
 
 enum class CairoFormat { pdf, png };
-// Why this program cannot draw them here; empty if it can. What helps then.
+// no_cairo(): the reason why this program cannot draw these formats here; empty if it can. kCairoRemedy: what to do
+// then.
 const std::string& no_cairo();
 extern const char* const kCairoRemedy;
 // Returns an empty string, or the reason why the file could not be written.

@@ -14,7 +14,7 @@ namespace anholon::plot {
 
 namespace {
 
-// Columns that have a derivative beside them; all columns if none has.
+// Returns the columns that have a derivative beside them; all columns if none has.
 std::vector<std::size_t> coordinates(const RunTable& table, std::size_t x) {
   constexpr std::size_t kMost = 8;
   std::vector<std::size_t> list;
@@ -34,8 +34,8 @@ struct Range {
   bool empty() const { return least > greatest; }
 };
 
-// The slopes of a column at its rows: the derivative if it is a column, else those of a curve that stays between the
-// rows (Fritsch and Carlson).
+// Returns the slopes of a column at its rows: the derivative if it is a column, otherwise those of a curve that stays
+// between the rows (Fritsch and Carlson).
 std::vector<double> slopes(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<double> s(y.size(), 0);
   for (std::size_t i = 1; i + 1 < y.size(); ++i) {
@@ -48,7 +48,7 @@ std::vector<double> slopes(const std::vector<double>& x, const std::vector<doubl
   return s;
 }
 
-// Whether a column without a derivative is a mode: whole numbers that mostly stay.
+// True if a column without a derivative is a mode: whole numbers that mostly stay the same.
 bool is_mode(const std::vector<double>& y) {
   std::size_t same = 0;
   for (std::size_t i = 1; i < y.size(); ++i) same += y[i] == y[i - 1];
@@ -56,8 +56,8 @@ bool is_mode(const std::vector<double>& y) {
          std::all_of(y.begin(), y.end(), [](double v) { return std::isfinite(v) && v == std::round(v); });
 }
 
-// The cubic with both slopes between two rows, over u in [0, 1] of an interval of length h. If the slopes do not fit the
-// rows, there is a jump in between, and the line stays straight.
+// The cubic with both slopes between two rows, over u in [0, 1] of an interval of length h. If the slopes do not fit
+// the rows, there is a jump in between, and the line stays straight.
 class Between {
  public:
   Between(double y0, double y1, double d0, double d1, double h) : y0_(y0), y1_(y1), d0_(h * d0), d1_(h * d1) {
@@ -76,8 +76,8 @@ class Between {
   bool curved_ = false;
 };
 
-// Rows at the ends of steps are far apart: points of a curve are put between them. On a logarithmic axis the curve of
-// positive numbers is that of their logarithms. A mode keeps its value up to the next row.
+// Puts points of a curve between rows, which are far apart if they are at the ends of steps. On a logarithmic axis the
+// curve of positive numbers is that of their logarithms. A mode keeps its value up to the next row.
 void smooth(Figure& f, const std::vector<std::vector<double>>& derivatives, bool log) {
   constexpr std::size_t kPoints = 1000, kMost = 20;
   const std::size_t n = f.x.size(), parts = n < 2 ? 1 : std::min(kMost, kPoints / n);
@@ -114,9 +114,9 @@ void smooth(Figure& f, const std::vector<std::vector<double>>& derivatives, bool
     }
 }
 
-// An axis over the numbers of a column.
+// Returns an axis over the numbers of a column.
 Axis axis_of(const Range& range, const std::string& column, bool log, bool tight) {
-  constexpr double kLongest = 1e307;  // a double holds the positions of the ticks
+  constexpr double kLongest = 1e307;  // so that a double can represent the positions of the ticks
   if (!log && !(range.greatest - range.least < kLongest))
     throw Failure(Span{}, "the numbers of '" + column + "' are too far apart for an axis",
                   "--log, or --from and --to for a part of the motion");

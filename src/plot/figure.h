@@ -1,5 +1,5 @@
-// A figure: columns of a table over one abscissa, in panels. It holds the content; `draw_terminal`, `draw_svg`,
-// `draw_tex` and `draw_cairo` give it a form.
+// A figure: columns of a table over one abscissa, in panels. It is the content, which `draw_terminal`, `draw_svg`,
+// `draw_tex` and `draw_cairo` draw.
 #pragma once
 #include <optional>
 #include <string>
@@ -12,7 +12,7 @@
 namespace anholon::plot {
 
 struct FigureOptions {
-  std::vector<std::string> names;  // of columns, or patterns with * and ?; none: the coordinates
+  std::vector<std::string> names;  // of columns, or patterns with * and ?; empty: the coordinates
   std::string x;                   // the abscissa; empty: t, or the first column
   std::optional<double> from, to;  // only rows with t between these
   bool log = false, each = false;
@@ -26,13 +26,13 @@ struct FigureOptions {
 struct Series {
   std::string name, unit;
   std::vector<double> y;
-  std::size_t number = 0;      // its colour
-  std::string of = {};         // the run or the case that it belongs to, where a figure has several
+  std::size_t number = 0;      // the number of its colour
+  std::string of = {};         // the run or the case to which it belongs, in a figure of several
   std::vector<double> x = {};  // its own abscissa; empty: that of the figure
 };
-// The label of a series: its name with its unit, and what it belongs to.
+// The label of a series: its name with its unit, and the run or case to which it belongs.
 RichText series_label(const Series& series, LabelStyle style);
-// As above, in one line of a terminal, or for TeX.
+// Like series_label(), in one line of a terminal, or for TeX.
 std::string series_text(const Series& series, LabelStyle style);
 std::string series_latex(const Series& series);
 
@@ -43,7 +43,7 @@ struct Panel {
 
 struct Figure {
   std::string title, x_name, x_unit;
-  std::size_t rows = 0;   // rows shown; smooth curves have more points
+  std::size_t rows = 0;   // the number of rows shown; smooth curves have more points
   std::vector<double> x;  // empty if each series has its own
   Axis x_axis;
   std::vector<Panel> panels;
@@ -59,8 +59,8 @@ struct NamedRun {
   RunFile run;
   std::string name;
 };
-// The same columns of several runs in the same panels. Throws Failure as above, also if a run has no rows to be shown; a
-// message that concerns one of the runs names it.
+// Puts the same columns of several runs into the same panels. Throws Failure like the other make_figure(), also if a
+// run has no rows to show; a message about one of the runs names it.
 Figure make_figure(const std::vector<NamedRun>& runs, const FigureOptions& options);
 
 // Extends the axes so that one unit has the same length along x as along y, if each panel is a box of this width and
@@ -73,9 +73,9 @@ std::vector<std::size_t> select_columns(const RunTable& table, const std::vector
 struct Point {
   double x, y;
 };
-// The curve in a box of that many points of the output, y upwards: one piece for every interval without gaps. If many
-// rows fall on one column of points, the first, least, greatest and last of them are kept, so that no visible part is
-// lost.
+// Returns the curve in a box of that many points of the output, y upwards: one piece for every interval without gaps.
+// If many rows fall on one column of points, the first, least, greatest and last of them are kept, so that no visible
+// part is lost.
 std::vector<std::vector<Point>> curve(const Figure& figure, const Panel& panel, const Series& series, double width,
                                       double height);
 

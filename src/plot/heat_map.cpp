@@ -30,7 +30,7 @@ std::uint32_t scale_colour(double place) {
   return rgb;
 }
 
-// The cell of each row along one axis; leaves the middles of the cells in the column.
+// Returns the cell of each row along one axis, and leaves the middles of the cells in the column.
 std::vector<std::size_t> cells_along(NamedColumn& c) {
   std::vector<double> different = c.points;
   for (const double v : c.values)
@@ -57,7 +57,7 @@ std::vector<std::size_t> cells_along(NamedColumn& c) {
   return cells;
 }
 
-// The borders of cells with these middles.
+// Returns the borders of cells with these middles.
 std::vector<double> borders(const std::vector<double>& middles) {
   if (middles.size() == 1) return {middles[0] - 0.5, middles[0] + 0.5};
   std::vector<double> list{middles[0] - (middles[1] - middles[0]) / 2};
@@ -97,7 +97,8 @@ class MapLayout {
   }
 
  private:
-  // Of an axis. Cells of further generations are known up to the first and the last value alone: there the map ends.
+  // Returns the range of an axis. The cells of further generations lie between the first and the last value, and so
+  // does the map.
   Axis range(const std::vector<double>& values, const std::vector<double>& ends) const {
     return m_.finer.empty() || values.size() < 2 ? Axis{ends.front(), ends.back()}
                                                  : Axis{values.front(), values.back()};
@@ -115,7 +116,7 @@ class MapLayout {
   double x_at(double x) const { return left_ + (right_ - left_) * x_.place(x); }
   double y_at(double y) const { return bottom_ - (bottom_ - top_) * y_.place(y); }
 
-  // The words and their colours, in lines above the cells.
+  // Draws the words and their colours, in lines above the cells.
   void legend() {
     double x = left_, y = top_ + kMarkSize;
     for (std::size_t k = 0; k < m_.words.size(); ++k) {
@@ -129,7 +130,7 @@ class MapLayout {
     top_ = y + 2 * kMapGap;
   }
 
-  // The scale of the numbers, at the right of the cells.
+  // Draws the scale of the numbers, at the right of the cells.
   void bar() {
     const Axis axis{least_, greatest_};
     const Ticks marks = ticks(axis, static_cast<int>((bottom_ - top_) / 28));
@@ -155,7 +156,7 @@ class MapLayout {
   void cells(const std::vector<double>& xs, const std::vector<double>& ys) {
     const std::size_t columns = m_.x.values.size();
     for (std::size_t k = 0; k < m_.y.values.size(); ++k) {
-      // Neighbours of one colour in a row are one patch.
+      // Neighbours of one colour in a row become one patch.
       bool open = false;
       for (std::size_t i = 0; i < columns; ++i) {
         const double v = m_.values[k * columns + i];
@@ -173,7 +174,7 @@ class MapLayout {
     }
     for (const HeatMap::Finer& f : m_.finer) patch(f.from, f.to, colour(f.value));
   }
-  // What lies within the map of a cell with these corners.
+  // Draws the part of a cell with these corners that lies within the map.
   void patch(Point from, Point to, std::uint32_t rgb) {
     d_.patches.push_back({{std::max(x_at(from.x), left_), std::max(y_at(to.y), top_)},
                           {std::min(x_at(to.x), right_), std::min(y_at(from.y), bottom_)},
@@ -225,7 +226,7 @@ RichText axis_label(const NamedColumn& c, const std::string& note, LabelStyle st
 
 namespace {
 
-// The mean of the numbers, or the most frequent word, of cases in one place.
+// The mean of the numbers, or the most frequent word, of the cases at one place.
 class Summary {
  public:
   void add(double v, bool word) {
@@ -246,7 +247,7 @@ class Summary {
   std::map<std::size_t, std::size_t> words_;
 };
 
-// Half of the width of a cell that is 2^g times as small as the first ones, at each side of its middle.
+// Returns half of the width, at each side of its middle, of a cell that is 2^g times as small as the first ones.
 std::pair<double, double> around(const std::vector<double>& first, double at, unsigned g) {
   const auto next = std::upper_bound(first.begin(), first.end(), at);
   const auto width = [&](std::vector<double>::const_iterator upper) {
@@ -260,7 +261,7 @@ std::pair<double, double> around(const std::vector<double>& first, double at, un
   return {at - width(left), at + width(right)};
 }
 
-// The cells of the further generations, the coarse ones first.
+// Adds the cells of the further generations, the coarse ones first.
 void add_finer(HeatMap& m, const NamedColumn& x, const NamedColumn& y, const NamedColumn& of,
                const std::vector<unsigned>& generations) {
   std::map<std::tuple<unsigned, double, double>, Summary> places;

@@ -30,7 +30,7 @@ Histogram make_histogram(NamedColumn of, std::vector<std::string> words) {
   }
   const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
   h.from = *least, h.to = *greatest;
-  // One value has a bar around it.
+  // A single value gets a bar around it.
   if (!(h.from < h.to)) {
     const double half = h.from == 0 ? 0.5 : std::abs(h.from) / 2;
     h.from -= half, h.to += half;

@@ -1,4 +1,4 @@
-// How often the numbers or words of a column occur.
+// The frequencies of the numbers or words of a column.
 #pragma once
 #include "plot/heat_map.h"
 
@@ -15,8 +15,8 @@ struct Histogram {
   double width = 16, height = 9;  // cm
 };
 
-// A bar for each word; 2 n^(1/3) bars for n numbers (the rule of Rice), from 5 to 100. Throws Failure without a place if
-// no row has a number.
+// Makes a bar for each word; for n numbers 2 n^(1/3) bars (the rule of Rice), from 5 to 100. Throws Failure without a
+// place if no row has a number.
 Histogram make_histogram(NamedColumn of, std::vector<std::string> words);
 
 Drawing lay_out(const Histogram& histogram);

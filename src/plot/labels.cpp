@@ -41,7 +41,7 @@ struct Symbol {
   std::string after;  // an initial value's (0), the part of a quantile: x(0), x 10 %
 };
 
-// Where that begins that follows the name of a column of a sweep.
+// Returns where the name of a column of a sweep ends.
 std::size_t end_of_name(const std::string& column) {
   constexpr std::string_view kAtStart = "(0)", kPart = " %";
   std::size_t end = column.size();
@@ -73,7 +73,7 @@ Symbol symbol(const std::string& whole) {
     s.order = 0;
     return s;
   }
-  // lambda.blade, phi_wheel, x12, P[1,2]
+  // Examples are lambda.blade, phi_wheel, x12, P[1,2].
   std::size_t split = s.name.find_first_of("._[");
   std::string index;
   if (split == 0) split = std::string::npos;
@@ -84,7 +84,7 @@ Symbol symbol(const std::string& whole) {
     s.sub = s.name.substr(s.name[split] == '[' ? split : split + 1);
   }
   s.root = greek(s.name.substr(0, split));
-  // The Greek letter of a subscript that is a coordinate: N.theta.
+  // A subscript that is a coordinate may be a Greek letter: N.theta.
   if (const std::size_t bracket = s.sub.find('['); bracket != std::string::npos) {
     index = s.sub.substr(bracket + 1);
     if (!index.empty() && index.back() == ']') index.pop_back();
@@ -150,7 +150,7 @@ std::string latex_label(const std::string& column, const std::string& unit) {
   const std::string base = column.substr(0, column.size() - s.after.size());
   if (s.root == base && utf8_length(base) != 1 && !is_identifier(base)) return latex_escape(column + in_unit(unit));
   std::string name = s.name;
-  // A point makes a subscript, like an underscore.
+  // A point begins a subscript, like an underscore.
   if (const std::size_t point = name.find('.'); point != std::string::npos && name.find('_') > point) name[point] = '_';
   return "$" + derivative_name(latex_name(name), s.order, Format::latex) + "$" + latex_escape(s.after) +
          (in_unit(unit).empty() ? "" : " (" + latex_escape(unit) + ")");

@@ -1,4 +1,4 @@
-// The label of a column: theta' as θ̇ or $\dot{\theta}$, lambda.blade as λ_blade, D(x,4) as x⁽⁴⁾.
+// The labels of columns: theta' as θ̇ or $\dot{\theta}$, lambda.blade as λ_blade, D(x,4) as x⁽⁴⁾.
 #pragma once
 #include <string>
 #include <vector>
@@ -17,11 +17,11 @@ using RichText = std::vector<TextPiece>;
 
 // The unit may be empty.
 RichText rich_label(const std::string& column, const std::string& unit, LabelStyle style);
-// As above, in one line of a terminal.
+// Like rich_label(), in one line of a terminal.
 std::string text_label(const std::string& column, const std::string& unit, LabelStyle style);
 std::string latex_label(const std::string& column, const std::string& unit);
 
-// The width on a terminal: combining characters have none.
+// The width on a terminal; combining characters have no width.
 std::size_t shown_width(const std::string& text);
 std::string plain_text(const RichText& text);
 

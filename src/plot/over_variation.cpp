@@ -9,7 +9,7 @@ namespace anholon::plot {
 
 namespace {
 
-// A number below which lies this part of the sorted numbers, between them linearly; NaN if there are none.
+// Returns the quantile of sorted numbers for this part, linear between them; NaN if there are none.
 double quantile(const std::vector<double>& sorted, double part) {
   if (sorted.empty()) return std::numeric_limits<double>::quiet_NaN();
   const double at = part * static_cast<double>(sorted.size() - 1);
@@ -21,7 +21,7 @@ double quantile(const std::vector<double>& sorted, double part) {
 }  // namespace
 
 RunFile over_variation(const NamedColumn& x, const std::vector<NamedColumn>& columns) {
-  std::map<double, std::vector<std::vector<double>>> groups;  // of each x the numbers of each column
+  std::map<double, std::vector<std::vector<double>>> groups;  // for each x the numbers of each column
   bool several = false;
   for (const double point : x.points) groups[point].resize(columns.size());
   for (std::size_t k = 0; k < x.values.size(); ++k)

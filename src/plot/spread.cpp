@@ -48,7 +48,7 @@ class Spread {
     for (std::size_t i = 0; i < cases_.size(); ++i) far_[i] = std::min(far_[i], distance(cases_[i].at, cases_[k].at));
   }
 
-  // The first of the cases that are farthest from those that are taken; the number of cases if none is left.
+  // Returns the first of the cases that are farthest from the chosen ones; the number of cases if none is left.
   template <class Condition>
   std::size_t farthest(const Condition& condition) const {
     std::size_t found = cases_.size();
@@ -56,7 +56,7 @@ class Spread {
       if (!taken_[k] && condition(cases_[k]) && (found == cases_.size() || far_[k] > far_[found])) found = k;
     return found;
   }
-  // The first of the cases next to a point.
+  // Returns the first of the cases nearest to a point.
   template <class Condition>
   std::size_t next_to(const Point& at, const Condition& condition) const {
     std::size_t found = cases_.size();
@@ -79,7 +79,7 @@ class Spread {
     }
   }
 
-  // The middles of `count` equal parts of a list.
+  // Returns the middles of `count` equal parts of a list.
   static std::vector<double> middles(const std::vector<double>& values, std::size_t count) {
     std::vector<double> list;
     for (std::size_t k = 0; k < count; ++k) list.push_back(values[(2 * k + 1) * values.size() / (2 * count)]);
@@ -105,7 +105,7 @@ class Spread {
   const std::vector<SpreadCase>& cases_;
   std::size_t most_;
   std::vector<bool> taken_;
-  std::vector<double> far_;  // from the nearest case that is taken
+  std::vector<double> far_;  // from the nearest chosen case
   std::vector<double> xs_, ys_;
   double width_ = 1, height_ = 1;
   std::vector<std::size_t> chosen_;

@@ -8,7 +8,7 @@ namespace anholon::plot {
 
 namespace {
 
-// Hundredths of a point.
+// Writes a number with two decimals at most.
 std::string number(double x) {
   char buffer[64];
   const auto r = std::to_chars(buffer, buffer + sizeof buffer, x, std::chars_format::fixed, 2);

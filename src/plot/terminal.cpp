@@ -30,7 +30,7 @@ class Canvas {
   int width() const { return 2 * columns_; }
   int height() const { return 4 * rows_; }
 
-  // y points upwards.
+  // The y axis points upwards.
   void dot(int x, int y, std::size_t owner) {
     if (x < 0 || y < 0 || x >= width() || y >= height()) return;
     static constexpr std::uint8_t kBit[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
@@ -104,7 +104,7 @@ class Terminal {
 
   std::string draw() {
     std::vector<Ticks> y_ticks = scales();
-    // Dots are as wide as high.
+    // Dots are as wide as they are high.
     for (int round = 0; own_ && round < 2; ++round) {
       make_equal(*own_, 2 * columns_ - 1, 4 * size_.rows - 1);
       const int columns = columns_;

@@ -14,7 +14,7 @@ std::string number(double x) {
   return std::string(buffer, r.ptr);
 }
 
-// TeX computes with few digits: rows are written unchanged, after a decimation that is invisible in print.
+// TeX computes with few digits, so rows are written unchanged, after a decimation that is invisible in print.
 void series(std::string& out, const Figure& f, const Panel& p, const Series& s, std::size_t number_of) {
   constexpr double kDots = 1200;
   const auto back = [](const Axis& a, double place) {

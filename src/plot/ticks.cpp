@@ -18,7 +18,7 @@ std::string fixed(double x, int decimals) {
   return s;
 }
 
-// k m 10^e, rounded once if possible.
+// Returns k m 10^e, rounded once if possible.
 double multiple(double k, int m, int e) { return e < 0 ? k * m / std::pow(10.0, -e) : k * m * std::pow(10.0, e); }
 
 constexpr double kNear = 1e-9;  // fraction of a step: the round-off of an axis
@@ -101,7 +101,7 @@ Axis axis_for(double least, double greatest, bool log, bool tight) {
     const double room = tight ? 1 : std::pow(greatest / least, kRoom);
     return {least / room, greatest * room, true};
   }
-  // Numbers that are equal up to the round-off of a double: a plot would show only round-off.
+  // If numbers are equal up to the round-off of a double, a plot would show only round-off.
   const double size = std::max(std::abs(least), std::abs(greatest));
   if (!(greatest - least > 32 * 2.3e-16 * size)) {
     const double around = size > 0 ? 0.1 * size : 1;

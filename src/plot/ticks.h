@@ -19,10 +19,10 @@ struct Ticks {
   std::string note;
 };
 
-// At most about `most` ticks, at least two if the axis has a length.
+// Returns at most about `most` ticks, at least two if the axis has a length.
 Ticks ticks(const Axis& axis, int most);
 
-// The axis for numbers in this range, with some margin; the numbers are finite, and positive for log.
+// Returns the axis for numbers in this range, with some margin; the numbers are finite, and positive for `log`.
 Axis axis_for(double least, double greatest, bool log, bool tight);
 
 std::string power_of_ten(int exponent);

@@ -21,13 +21,13 @@ namespace {
 // plots.
 constexpr std::size_t kMostNumbers = 40000, kMostThinned = 120'000, kMostFrameNumbers = 240'000, kMostColumns = 96;
 constexpr std::size_t kLeastRows = 200, kLeastFrames = 60, kMostFrames = 20'000;
-// Of the intervals between rows: paths are left out where more are doubtful.
+// The largest part of the intervals between rows that may be doubtful; with more, paths are left out.
 constexpr double kMostDoubtful = 0.05;
 
 constexpr const char* kDerivatives[] = {"coordinates", "velocities", "accelerations", "third derivatives",
                                         "fourth derivatives"};
 
-// The new value of a mode after an event; no column holds it.
+// The new value of a mode after an event; the run has no column for it.
 struct ModeChange {
   double t;
   std::size_t parameter;
@@ -45,8 +45,8 @@ std::vector<ModeChange> mode_changes(const Model& model, const std::optional<Sim
   return list;
 }
 
-// Values of expressions at the rows of a table. A row at the time of an event is the one before it; of two, the second is
-// the one after it.
+// The values of expressions at the rows of a table. A row at the time of an event is the one before the event; if there
+// are two, the second is the one after it.
 class AtRows {
  public:
   AtRows(const Model& model, const RunTable& table, const Column& es, std::vector<double> parameters,
@@ -55,7 +55,7 @@ class AtRows {
     const ColumnOf column = column_of(model, table);
     for (const Input& in : tape_.inputs) columns_.push_back(column(model.graph->node(in.symbol)));
   }
-  // Whether every input is a column.
+  // True if every input is a column.
   bool possible() const {
     return std::all_of(columns_.begin(), columns_.end(), [](const auto& c) { return c.has_value(); });
   }
@@ -122,7 +122,7 @@ class Plots {
     return {list.begin(), list.end()};
   }
 
-  // The mode of a contact changes at events, and not on the way from row to row.
+  // The mode of a contact changes at events, not gradually from row to row.
   void modes_as_steps() {
     for (const ContactBand& b : contact_bands(table_, events()))
       for (PlotColumn& c : data_.columns) {
@@ -169,7 +169,7 @@ class Plots {
     }
   }
 
-  // Without a constraint that acts there are no reactions. What was asked for by its name is shown.
+  // Without a constraint that acts there are no reactions. Columns that were requested by name are shown.
   void leave_out_zero_reactions() {
     const auto acts = [](const PlotColumn& c) {
       return c.group == "reactions" && std::any_of(c.values.begin(), c.values.end(), [](double x) { return x != 0; });
@@ -317,7 +317,7 @@ class Plots {
     c.values = std::move(values);
   }
 
-  // The positions that the picture interpolates.
+  // Returns the positions that the picture interpolates.
   std::vector<MovingColumn> moving() const {
     const ColumnOf column = column_of(model_, table_);
     std::vector<MovingColumn> list;
@@ -334,7 +334,7 @@ class Plots {
     return list;
   }
 
-  // Whether the motion is known between the rows.
+  // Judges whether the motion is known between the rows.
   void look_at_rows() {
     if (data_.rows < 3) return;
     const std::size_t doubtful = doubtful_intervals(table_.values[0], moving());
@@ -378,7 +378,7 @@ class Plots {
   RunTable table_;  // the rows of the run, with both sides of jumps
   PlotData data_;
   Dimensions dimensions_;                    // of the columns of the run
-  std::vector<PlotGroup> groups_;            // that may have columns
+  std::vector<PlotGroup> groups_;            // the groups that may have columns
   std::map<std::string, std::size_t> size_;  // columns of each group
   std::size_t most_kept_ = 0;                // rows of the column with the most rows
 };

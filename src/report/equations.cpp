@@ -55,7 +55,8 @@ class Derive {
   }
 
  private:
-  // A final equation, in which the second moments of bodies have their formulas: their names say nothing to a reader.
+  // Returns a final equation, in which the second moments of bodies have their formulas, because their names are not
+  // known to a reader.
   Expr finished(Expr e) {
     Column weights, values;
     for (std::size_t i = 0; i < d_.model->masses.size(); ++i) {
@@ -105,7 +106,7 @@ class Derive {
     return out;
   }
 
-  // -dV/dx, called -dV_O.x in text.
+  // The terms -dV/dx, called -dV_O.x in text.
   Labels of_potential(const Label& of, const std::string& text) const {
     Labels out;
     for (const Coordinate& c : d_.model->coordinates) {

@@ -26,7 +26,8 @@ struct Derivation {
   std::vector<Expr> parts;                          // named in `names`, if the equations are printed in parts
 };
 
-// Arranges expressions, each only once: many forms share equations, or have equations that are equal when expanded.
+// Arranges expressions, each only once: many forms share equations, or have equations that are equal when they are
+// expanded.
 class Arranger {
  public:
   // auto or paper (grouped), none, full (expanded), parts (unchanged, with names for repeated subexpressions); auto
@@ -40,19 +41,19 @@ class Arranger {
   std::unordered_map<NodeId, Expr> known_, of_written_out_;
 };
 
-// `of_reactions`: an elimination of the ideal constraints by coordinates, if the reactions are needed; for a form
-// without multipliers its own elimination.
+// `of_reactions`: an elimination of the ideal constraints by coordinates, if the reactions are needed; a form without
+// multipliers uses its own elimination.
 Derivation derivation(const Mechanics& m, const Formulation& form, const Elimination& e, Arranger& arranger, bool steps,
                       const Elimination* of_reactions = nullptr);
 
-// Lines of steps for a reader: of one family the vanishing lines are joined, "Q.x = Q.y" = 0.
+// Joins lines of steps for a reader: the vanishing lines of one family become "Q.x = Q.y" = 0.
 std::vector<Line> joined(const std::vector<Line>& lines);
 
 // Prints one derivation after the other. JSON: an object, or with `list` {"forms": [objects]}.
 std::string as_text(const std::vector<Derivation>& list);
 std::string as_latex(const std::vector<Derivation>& list);
 std::string as_mathml(const std::vector<Derivation>& list);
-// The same formulas as lines that wrap, for a notebook.
+// Prints the formulas as lines that wrap, for a notebook.
 std::string as_html(const std::vector<Derivation>& list);
 std::string as_json(const std::vector<Derivation>& list, bool as_list);
 

@@ -10,7 +10,7 @@ namespace anholon {
 
 namespace {
 
-// The formula of a mass under the name it has in the equations.
+// The formula of a mass under its name in the equations.
 std::string mass_text(const Derivation& d, std::size_t i, Format format) {
   SymbolNames plain = d.model->names;
   plain.defined.erase(d.model->masses[i].value.id);
@@ -35,7 +35,7 @@ Sides printed(const Derivation& d, const std::vector<Line>& lines, Format format
   return s;
 }
 
-// Whether a line holds the symbol of a mass.
+// True if a line contains the symbol of a mass.
 bool holds(const Derivation& d, std::size_t mass) {
   Column all;
   const auto add = [&](const std::vector<Line>& lines) {
@@ -51,7 +51,7 @@ bool holds(const Derivation& d, std::size_t mass) {
   return std::binary_search(in.begin(), in.end(), d.model->graph->mass(static_cast<std::uint32_t>(mass)).id);
 }
 
-// The masses that vary, without those whose formula is their name, and the second moments that are left.
+// The varying masses whose formula is not their name, and the second moments that are still in the equations.
 std::vector<std::pair<std::string, std::string>> masses(const Derivation& d, Format format) {
   std::vector<std::pair<std::string, std::string>> list;
   for (std::size_t i = 0; i < d.model->masses.size(); ++i) {
@@ -211,8 +211,8 @@ std::string as_mathml(const std::vector<Derivation>& all) {
   std::string out;
   for (const Derivation& d : all)
     for (const Table& table : tables(d)) {
-      // MathML Core has no columnalign; readers of MathML 3 have no style. Chromium aligns formulas, which are blocks, by
-      // -webkit-right.
+      // MathML Core has no columnalign; readers of MathML 3 have no style. Chromium aligns formulas, which are blocks,
+      // by -webkit-right.
       out += "<math xmlns=\"http://www.w3.org/1998/Math/MathML\" display=\"block\">\n<mtable displaystyle=\"true\" "
              "columnalign=\"right center left\">\n";
       for (const auto& [left, right] : table)

@@ -48,7 +48,7 @@ std::size_t width(std::string_view s) {
 
 constexpr std::string_view kOpen = "<mo>(</mo>", kClose = "<mo>)</mo>", kRow = "<mrow>", kRowEnd = "</mrow>";
 
-// The content of a bracketed element; empty if it is none.
+// The content of an element with brackets; empty for other elements.
 std::string_view bracketed(std::string_view e) {
   if (e.substr(0, kRow.size()) != kRow) return {};
   e = e.substr(kRow.size(), e.size() - kRow.size() - kRowEnd.size());
@@ -61,7 +61,7 @@ std::string_view bracketed(std::string_view e) {
 struct Fraction {
   std::string_view top, bottom;  // bottom is an element, top a row
 };
-// A fraction with a long numerator; an empty top for other elements.
+// Returns a fraction with a long numerator; for other elements its top is empty.
 Fraction long_fraction(std::string_view e) {
   constexpr std::string_view open = "<mfrac>", close = "</mfrac>";
   if (e.substr(0, open.size()) != open) return {};

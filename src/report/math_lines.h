@@ -1,5 +1,5 @@
-// MathML that wraps: a long formula is written as many short ones in a line of text, between which a browser may break
-// the line.
+// MathML that wraps: a long formula is written as many short ones in a line of text, and a browser may break the line
+// between them.
 //
 // MathML Core has no line breaking. A formula of this program is a row of elements; it may be broken before every + and
 // − outside brackets, and within long brackets. A long numerator is taken out of its fraction: a/b = (1/b)(a).

@@ -4,7 +4,7 @@
 //   A' = A [omega x],  A the rotation from the observer's axes to the inertial ones, A = 1 at t = 0
 //   r' = A v, v the given velocity of the origin along the observer's axes; without one r'' = A a0, at rest in r = 0 at t = 0
 //
-// Only for pictures: Runge-Kutta steps of order 4, much shorter than a turn.
+// The path is only for pictures. It is computed by Runge-Kutta steps of order 4, much shorter than a turn.
 #pragma once
 #include <array>
 #include <vector>
@@ -18,7 +18,7 @@ struct ObserverPose {
   std::array<double, 3> origin{0, 0, 0};         // along inertial axes
 };
 
-// The poses at these times, ascending or descending.
+// Returns the poses at these times, ascending or descending.
 std::vector<ObserverPose> observer_path(const Model& model, const std::vector<double>& parameters,
                                         const std::vector<double>& times);
 

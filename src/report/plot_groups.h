@@ -14,17 +14,19 @@ struct PlotColumn {
 struct PlotGroup {
   std::string id, title;
   bool log = false;
-  std::size_t columns = 0;  // how many there are, those that are not plotted among them
+  std::size_t columns = 0;  // the number of columns, those included that are not plotted
 };
 
 // All kinds of panels, in their order on a page.
 const std::vector<PlotGroup>& all_plot_groups();
 
-// Of a column: its dimension in a word, such as its unit. Columns of one kind with different words get a panel for each word.
+// For each column a word for its dimension, such as its unit. Columns of one kind with different words get a panel for
+// each word.
 using Dimensions = std::vector<std::string>;
 
-// Parts the panels of columns by dimension, as beside large numbers small ones are a flat line. `dimensions` is as long as
-// `columns`. The id of a part begins with that of its kind and a space. Returns all panels that may have columns.
+// Divides the panels of columns by dimension, because small numbers are a flat line beside large ones. `dimensions` is
+// as long as `columns`. The id of a part begins with that of its kind and a space. Returns all panels that may have
+// columns.
 std::vector<PlotGroup> parted_groups(std::vector<PlotColumn>& columns, const Dimensions& dimensions);
 
 }  // namespace anholon

@@ -81,7 +81,7 @@ class SceneMaker {
   }
 
   // A body without a shape is drawn as the homogeneous box with its moments of inertia: along its axis k, with the
-  // second moment E_k, it is sqrt(12 E_k/m) long.
+  // second moment E_k, the box is sqrt(12 E_k/m) long.
   void inertia_box(SceneItem& i, const Body& b) {
     i.shape = "point";
     Graph& g = *model_.graph;
@@ -133,7 +133,7 @@ class SceneMaker {
     if (e.kind == View::Kind::trace) i.of = e.name;
   }
 
-  // Default traces: of particles, else of points, if they move.
+  // Default traces are those of particles, or, without particles, those of points, if they move.
   void traces() {
     constexpr std::size_t kMost = 6;
     std::size_t count = 0;
@@ -177,7 +177,7 @@ class SceneMaker {
     }
   }
 
-  // Whether all places are in one plane z = const of the observer.
+  // True if all places are in one plane z = const of the observer.
   bool flat() const {
     const auto fixed = [&](const Vector& v) { return is_zero(v.z); };
     return std::all_of(model_.bodies.begin(), model_.bodies.end(),
@@ -189,7 +189,7 @@ class SceneMaker {
            std::all_of(view_.points.begin(), view_.points.end(), [&](const auto& p) { return fixed(p.second); });
   }
 
-  // Whether there is a ground level: a named point stays in the plane z = 0.
+  // True if there is a ground level: a named point stays in the plane z = 0.
   bool level() const {
     return std::any_of(view_.points.begin(), view_.points.end(), [](const auto& p) { return is_zero(p.second.z); });
   }

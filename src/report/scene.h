@@ -1,9 +1,9 @@
 // The picture of a motion as data: the drawn items, and the straight-line program that computes their places from a row
 // of the run.
 //
-// The viewer computes positions from coordinates that are interpolated between rows: so a rolling wheel rolls at every
-// moment, and the page contains formulas instead of poses. Lengths as in the model; vectors and axes in the observer's
-// axes.
+// The viewer computes positions from coordinates that are interpolated between rows, so a rolling wheel rolls at every
+// moment, and the page contains formulas instead of poses. Lengths are those of the model; vectors and axes are in the
+// observer's axes.
 #pragma once
 #include <array>
 #include <functional>
@@ -39,16 +39,15 @@ struct Scene {
   std::string follow;
 };
 
-// The default without [view]: bodies, points, tensions; the velocity of every mass centre, the reaction on every body
-// that has one. contacts: whether contacts act on bodies, whose forces are reactions as well.
+// The default without [view]: bodies, points, tensions; the velocity of every mass centre, and the reaction on every
+// body that has one. `contacts`: contacts act on bodies, so their forces are reactions, too.
 Scene scene(const Mechanics& mechanics, bool contacts = false);
 
-// Returns the index of the column that holds a symbol; -1: the time; nullopt: no column.
+// Returns the index of the column of a symbol; -1: the time; nullopt: no column.
 using ColumnOf = std::function<std::optional<int>(const Node& symbol)>;
 // The columns of the scene's inputs, without the time.
 std::vector<int> columns_of(const Scene& scene, const Graph& graph, const ColumnOf& column);
-// Writes the format of the viewer (viewer/CONTRACT.md); `observer` is written by the caller's function, null without
-// one.
+// Writes the format of the viewer (viewer/CONTRACT.md); `observer` writes the observer, or null if there is none.
 void write_scene(JsonWriter& json, const Scene& scene, const Graph& graph, const ColumnOf& column,
                  const std::function<void(JsonWriter&)>& observer);
 

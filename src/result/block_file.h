@@ -1,5 +1,5 @@
-// A growing file to which text is added in blocks. After some blocks another thread writes them, in their order, so that
-// whoever makes the text does not wait for the system.
+// A growing file to which text is added in blocks. After some blocks another thread writes them, in their order, so
+// that the thread that makes the text does not wait for the system.
 #pragma once
 #include <atomic>
 #include <string>
@@ -14,19 +14,19 @@ class BlockFile {
  public:
   // An empty path or "-" is the standard output. Check `error` before use.
   explicit BlockFile(const std::string& path);
-  // The text so far is in the file.
+  // Writes the text so far to the file.
   ~BlockFile() { flush(); }
 
   bool open() const { return file_.stream() && error().empty(); }
   bool is_terminal() const;
 
-  // Room for so many bytes after the text of the block that is filled. `added` says how many were used.
+  // Returns room for this many bytes after the text of the present block. `added` tells how many were used.
   char* room(std::size_t bytes);
   void added(std::size_t bytes) { blocks_.filling().used += bytes; }
   void add(std::string_view text);
   // The size of the text in the block.
   std::size_t waiting() { return blocks_.filling().used; }
-  // Ends the block: it is written, now or soon.
+  // Ends the block: it is written, at once or soon.
   void end_block();
   // Ends the block; after this call, all text is in the file, whatever happens to the program.
   void flush();

@@ -13,7 +13,7 @@ std::string list_of_columns(const std::vector<std::string>& names) {
   return list + (names.size() > kMost ? " …" : "");
 }
 
-// What a name that is no column may mean: ", did you mean …"; "" if nothing is near.
+// The hint for a name that is not a column: "; did you mean …"; "" if no name is near.
 static std::string meant_by(const std::vector<std::string>& columns, const std::string& name) {
   for (const std::string& c : columns) {
     // The normal force of a contact is lambda.NAME in formulas.

@@ -74,7 +74,8 @@ class CsvReader {
 
   // Adds a cell at the place `from` of the line.
   void add(std::size_t column, std::string_view cell, std::string_view line, std::size_t from) {
-    // A column whose first cell that is not empty is a word is a column of words, like outcomes and events of a sweep.
+    // A column is a column of words if its first cell that is not empty is a word, as outcomes and events of a sweep
+    // are.
     const bool first = empty_[column];
     empty_[column] = first && cell.empty();
     if (table_.add(column, cell) || words_[column]) return;
@@ -123,7 +124,7 @@ class CsvReader {
   std::vector<char> words_, empty_;  // columns of words; those whose cells have been empty so far
 };
 
-// Cases have outcomes among their numbers, so their lines are written as cells.
+// Cases have outcomes among their numbers, so their lines are written cell by cell.
 class CsvSweepWriter final : public SweepWriter {
  public:
   CsvSweepWriter(const std::string& path, const SweepInfo& info) : lines_(path), columns_(info.columns) {

@@ -13,8 +13,8 @@ namespace anholon {
 // Throws Failure.
 RunFile read_csv(std::string_view text);
 
-// The lines of a CSV file. Lines are written whole: on a terminal one by one, else many together or those of half a
-// second.
+// The lines of a CSV file. Lines are written whole: on a terminal one by one, otherwise many together, or those of half
+// a second.
 class CsvLines {
  public:
   // An empty path or "-" is the standard output. Check `error` before use.

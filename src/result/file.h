@@ -68,16 +68,16 @@ std::string target_of_link(const std::string& path);
 // Writes beside the file and renames: a kill leaves the old file or the new one. Returns an empty string, or the reason
 // of a failure.
 std::string write_whole(const std::string& path, const std::string& text);
-// As above, by a function that returns false at its first failure.
+// Like write_whole(path, text), by a function that returns false at its first failure.
 std::string write_whole(const std::string& path, const std::function<bool(std::FILE*)>& write);
-// As above; an empty path or "-" is the standard output.
+// Like write_whole(); an empty path or "-" is the standard output.
 std::string write_stream(const std::string& path, const std::function<bool(std::FILE*)>& write);
-// As write_whole, by a function that gets the name to write to and returns the reason of a failure.
+// Like write_whole(), by a function that gets the name to write to and returns the reason of a failure.
 std::string write_whole_by_name(const std::string& path,
                                 const std::function<std::string(const std::string& beside)>& write);
 
-// Call it before a long computation: returns an empty string, or the reason why no file can be written there. An
-// existing file is not changed.
+// Returns an empty string, or the reason why no file can be written there. An existing file is not changed. Call it
+// before a long computation.
 std::string obstacle_to_writing(const std::string& path);
 
 }  // namespace anholon

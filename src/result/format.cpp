@@ -11,7 +11,7 @@ namespace anholon {
 
 namespace {
 
-// "a, b or c"
+// Returns "a, b or c".
 std::string alternatives(const std::vector<std::string>& words) {
   std::string out;
   for (std::size_t i = 0; i < words.size(); ++i)

@@ -15,7 +15,7 @@
 
 namespace anholon {
 
-// How much of a run a file of a format holds; each holds what the one before it holds.
+// The parts of a run that a file of a format contains; each value includes the one before it.
 enum class Holds : std::uint8_t {
   rows,        // the rows
   report,      // the rows and the report
@@ -36,7 +36,7 @@ struct ResultFormat {
   const char* missing = nullptr;
   const char* missing_hint = nullptr;
 
-  // Whether a file that begins so is of this format; null for the format that is tried after all others.
+  // True if a file with this beginning has this format; null for the format that is tried after all others.
   bool (*recognizes)(std::string_view beginning) = nullptr;
   // Reads a run from the text of a file, or from the file of a name; one of the two is null. Throws Failure.
   RunFile (*read_text)(std::string_view text) = nullptr;
@@ -53,7 +53,7 @@ struct ResultFormat {
 // All formats, in the order in which messages list them.
 const std::vector<const ResultFormat*>& result_formats();
 
-// Those that hold sweeps.
+// The formats that can contain sweeps.
 std::vector<const ResultFormat*> sweep_formats();
 
 // The format that the ending of a name determines; null if no format has that ending.
@@ -63,7 +63,7 @@ const ResultFormat& plain_format();
 // The format of a text that holds the report, too: --json asks for it.
 const ResultFormat& report_format();
 
-// What messages and help texts say of the formats.
+// The formats in the words of messages and help texts.
 //
 // "FILE.h5, FILE.csv or FILE.json" for "FILE".
 std::string known_files(const std::string& stem, const std::vector<const ResultFormat*>& formats = result_formats());

@@ -173,7 +173,7 @@ class JsonReader {
     return written;
   }
 
-  // Calls `element` for each one.
+  // Calls `element` for each element.
   template <class F>
   void array(F element) {
     if (!take('[')) fail("a list [ … ] is missing");
@@ -198,7 +198,7 @@ class JsonReader {
         if (column >= table.columns.size())
           fail(table.columns.empty() ? "the columns come before the rows"
                                      : "this row is longer than the list of columns");
-        // The file of a sweep holds words, too: outcomes and events.
+        // The file of a sweep contains words, too: outcomes and events.
         if (peek() == '"')
           table.add(column++, string());
         else
@@ -258,7 +258,7 @@ void append_json_number(std::string& to, const RunTable& table, std::size_t row,
   }
 }
 
-// Hands columns and rows piece by piece to write(text), in the form that they have within the JSON of `simulate`.
+// Calls write(text) for columns and rows piece by piece, in the form that they have in the JSON of `simulate`.
 template <class F>
 void write_json_rows(const RunTable& table, F write) {
   constexpr std::size_t kPiece = 1u << 20;
@@ -281,7 +281,7 @@ void write_json_rows(const RunTable& table, F write) {
   write(piece += ']');
 }
 
-// Hands the whole file piece by piece to write(text).
+// Calls write(text) for the whole file piece by piece.
 template <class F>
 void write_json_run(const RunFile& run, F write) {
   const std::string& report = run.report;
@@ -290,14 +290,14 @@ void write_json_run(const RunFile& run, F write) {
     write_json_rows(run.table, write);
     return write("\n}\n");
   }
-  // At the place where `simulate` writes them: after the model and the form.
+  // The rows are at the place where `simulate` writes them: after the model and the form.
   const std::size_t found = report.find("\n  \"residuals\":"), place = found == std::string::npos ? 1 : found;
   write(report.substr(0, place));
   write_json_rows(run.table, write);
   write("," + report.substr(place) + "\n");
 }
 
-// Keeps the rows until the report is there.
+// Keeps the rows until there is a report.
 class JsonRunWriter final : public RunWriter {
  public:
   JsonRunWriter(const std::string& path, const RunInfo& info) : file_(path) { static_cast<RunInfo&>(run_) = info; }
@@ -318,7 +318,7 @@ class JsonRunWriter final : public RunWriter {
   RunSink rows_{run_};
 };
 
-// Written line by line: there may be more cases than memory holds.
+// Writes line by line, because there may be more cases than memory can contain.
 class JsonSweepWriter final : public SweepWriter {
  public:
   JsonSweepWriter(const std::string& path, const SweepInfo& info) : file_(path), columns_(info.columns) {

@@ -11,7 +11,7 @@ namespace anholon {
 
 namespace {
 
-// Below it the heap is faster, and what it keeps is little.
+// For smaller pieces the heap is faster, and it keeps little memory.
 constexpr std::size_t kLeastPages = std::size_t{1} << 20;
 
 }  // namespace

@@ -1,8 +1,8 @@
 // Columns of numbers of the same length, which lie side by side in one block of memory once they are settled.
 //
-// While rows come in, each column grows by itself. settle() moves the columns into the block one by one and frees each as
-// soon as it is moved, so memory never holds all numbers twice. Copies of settled columns share the block, which does not
-// change; threads may read it.
+// While rows come in, each column grows by itself. settle() moves the columns into the block one by one and frees each
+// as soon as it is moved, so memory never holds all numbers twice. Copies of settled columns share the block, which
+// does not change; threads may read it.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -11,8 +11,8 @@
 
 namespace anholon {
 
-// Takes large pieces of memory from the system and gives them back when they are freed: a column that has moved would
-// otherwise stay in the heap.
+// Takes large pieces of memory from the system and gives them back when they are freed: otherwise a column that has
+// moved would stay in the heap.
 void* take_pages(std::size_t bytes);
 void free_pages(void* place, std::size_t bytes);
 

@@ -1,4 +1,4 @@
-// Rows of numbers, and what takes them: the columns once, then row by row.
+// Rows of numbers, and the interface that takes them: the columns once, then row by row.
 #pragma once
 #include <span>
 #include <string>

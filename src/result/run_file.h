@@ -1,4 +1,4 @@
-// A run as a result file holds it: its rows, and the data that identify their origin.
+// A run as it is in a result file: its rows, and the data that identify their origin.
 #pragma once
 #include <map>
 #include <string>
@@ -15,7 +15,7 @@ struct RunInfo {
     std::string name, text;
   };
   std::string title, command, created_by;
-  std::vector<File> model;  // the named file, then its base files, in turn
+  std::vector<File> model;  // the named file, then its base files, in their order
   // The settings of the run by names of options: "tolerance" -> {"1e-9"}, "set" -> {"m=2", "J=1"}.
   std::map<std::string, std::vector<std::string>> settings;
   std::map<std::string, std::string> units;  // of columns, if they are known
@@ -26,7 +26,7 @@ struct RunFile : RunInfo {
   // the JSON of `simulate` without its columns and rows; empty before the end of the run
   std::string report;
   std::vector<double> steps;       // end times of the accepted steps
-  std::vector<std::string> notes;  // the parts that the reader had to omit
+  std::vector<std::string> notes;  // notes on the parts that the reader had to omit
 };
 
 // Keeps a run in memory.

@@ -54,7 +54,7 @@ const Power* powers() {
   return list.data() - kLeast;
 }
 
-// The whole part of g c 2^-128, made odd if it is not the whole product.
+// Returns the whole part of g c 2^-128, made odd if it is not the whole product.
 std::uint64_t round_to_odd(const Power& g, std::uint64_t c) {
   const Wide low = Wide(g.low) * c, product = Wide(g.high) * c + (low >> 64);
   return static_cast<std::uint64_t>(product >> 64) | (static_cast<std::uint64_t>(product) > 1 ? 1 : 0);
@@ -65,8 +65,8 @@ struct Decimal {
   int exponent;
 };
 
-// The shortest decimal within the half-way marks around a normal number, the nearest one if several are as short.
-// `fraction`: the bits of the number below the first; `exponent`: biased.
+// Returns the shortest decimal between the half-way marks around a normal number, the nearest one if several are as
+// short. `fraction`: the bits of the number below the first; `exponent`: biased.
 Decimal shortest_decimal(std::uint64_t fraction, int exponent) {
   const bool first_of_its_power = fraction == 0;  // the number below is half as far
   const std::uint64_t c = fraction | (std::uint64_t{1} << 52);
@@ -78,7 +78,8 @@ Decimal shortest_decimal(std::uint64_t fraction, int exponent) {
   const std::uint64_t below = round_to_odd(g, (4 * c - (first_of_its_power ? 1 : 2)) << h),
                       here = round_to_odd(g, (4 * c) << h), above = round_to_odd(g, (4 * c + 2) << h);
   const std::uint64_t lower = below + (even ? 0 : 1), upper = above - (even ? 0 : 1), s = here / 4, t = s / 10;
-  // With one digit less, if that is unique; else with all. Chosen without branches, as either is as likely.
+  // The decimal has one digit less if that one is unique, otherwise all digits. The choice has no branches, because
+  // both cases are equally likely.
   const bool down_less = lower <= 40 * t, up_less = 40 * t + 40 <= upper, less = (down_less != up_less) & (s >= 10);
   const bool down = lower <= 4 * s, up = 4 * s + 4 <= upper;
   const std::uint64_t half = 4 * s + 2;
@@ -87,7 +88,8 @@ Decimal shortest_decimal(std::uint64_t fraction, int exponent) {
   return {less ? t + up_less : all, k + less};
 }
 
-// The eight digits of n < 10^8 as characters, in the order of memory: halves, pairs and digits are split side by side.
+// Returns the eight digits of n < 10^8 as characters, in the order of memory: halves, pairs and digits are split side
+// by side.
 std::uint64_t eight_digits(std::uint64_t n) {
   std::uint64_t x = n / 10'000 | (n % 10'000) << 32;
   const std::uint64_t hundreds = (x * 10'486 >> 20) & 0x7f'0000'007f;
@@ -99,7 +101,7 @@ std::uint64_t eight_digits(std::uint64_t n) {
 constexpr int kDigits = 17;  // of any double
 constexpr std::uint64_t kEight = 100'000'000;
 
-// The digits of n < 10^17 with leading zeros.
+// Writes the digits of n < 10^17 with leading zeros.
 void write_digits(char* to, std::uint64_t n) {
   const std::uint64_t rest = n % (kEight * kEight), high = eight_digits(rest / kEight),
                       low = eight_digits(rest % kEight);
@@ -135,7 +137,7 @@ struct Piece {
   char text[24];
 };
 
-// In fixed notation if that is not longer. `to` has room for a piece after the number.
+// Writes in fixed notation if that is not longer. `to` has room for a piece after the number.
 char* write_decimal(char* to, const Decimal& d) {
   const int n = count_digits(d.digits);
   const std::uint64_t digits = d.digits * kPowersOfTen[static_cast<std::size_t>(kDigits - n)];

@@ -1,8 +1,8 @@
-// The shortest digits that read back to a double, as std::to_chars writes them, in less time.
+// Writes the shortest digits that read back to a double, as std::to_chars does, in less time.
 //
 // Schubfach (R. Giulietti, The Schubfach way to render doubles, 2021): the boundaries of the numbers that read back to
 // a double are multiplied by a power of ten of 128 bits, so that their whole parts decide which decimal lies between
-// them and is nearest. Numbers beyond 1e-100 to 1e100, and whole ones from 2^53 on, are left to std::to_chars.
+// them and is nearest. std::to_chars writes numbers outside 1e-100 to 1e100, and whole ones from 2^53 on.
 #pragma once
 
 namespace anholon {

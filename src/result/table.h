@@ -1,7 +1,7 @@
 // A table of numbers with names, column by column.
 //
-// A number is held as a double. If its written digits differ from the shortest ones that read back to that double
-// (30-digit runs, times printed as given), they are kept beside it: conversion between formats loses nothing.
+// A number is stored as a double. If its written digits differ from the shortest ones that read back to that double
+// (30-digit runs, times printed as given), they are stored beside it, so conversion between formats loses nothing.
 #pragma once
 #include <cstddef>
 #include <limits>
@@ -14,7 +14,7 @@
 
 namespace anholon {
 
-// A number as a double, with its digits if these hold more than the double: in a run with wider numbers.
+// A number as a double, and its digits if they contain more than the double: in a run with wider numbers.
 struct WrittenNumber {
   double value = std::numeric_limits<double>::quiet_NaN();
   std::string digits;
@@ -42,16 +42,16 @@ struct RunTable {
 
 // Converts a written number to a double: decimals, fractions such as 1/3, nan, inf. Returns false for other texts.
 bool parse_number(std::string_view written, double& value);
-// Whether `written` is the text that is written for a double of this value.
+// True if `written` is the text of a double with this value.
 bool says_all(std::string_view written, double value);
-// The digits of column k if they hold more than its double; else empty.
+// The digits of column k if they contain more than its double; otherwise empty.
 std::string_view digits_beside(const Row& row, std::size_t k);
 // The number in JSON's syntax, which has neither .5 nor 1/3.
 std::string json_number(std::string_view written);
 
 // The names in the first row of a CSV file. A comma in brackets or quotes belongs to a name: P[1,2], D(x,4).
 std::vector<std::string> split_csv(std::string_view line);
-// The cells of a further row: a comma in quotes alone belongs to a cell (RFC 4180).
+// The cells of a further row: only a comma in quotes belongs to a cell (RFC 4180).
 std::vector<std::string> csv_cells(std::string_view line);
 
 }  // namespace anholon

@@ -1,4 +1,4 @@
-// Writers of results: one format of a file is behind each of them (result/format.h).
+// Writers of results; each writes one format of files (result/format.h).
 //
 // A writer stops at the first failure of its file, which `error` and `close` report.
 #pragma once
@@ -59,8 +59,8 @@ class SweepWriter {
   virtual const std::string& error() const = 0;
   // Writes one cell for each column.
   virtual void row(std::span<const SweepCell> cells) = 0;
-  // Ends the file with the report of the sweep, a JSON object; a format that holds rows only ignores the report. Returns
-  // an empty string, or the reason why the file could not be written.
+  // Ends the file with the report of the sweep, a JSON object; a format that holds rows only ignores the report.
+  // Returns an empty string, or the reason why the file could not be written.
   virtual std::string close(const std::string& report) = 0;
 };
 

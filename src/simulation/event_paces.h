@@ -1,5 +1,5 @@
-// Events that accumulate: one that comes sooner and sooner has infinitely many before some moment, beyond which nothing
-// is computed.
+// Finds events that accumulate: an event that comes at ever shorter intervals happens infinitely often before some
+// moment, beyond which nothing is computed.
 #pragma once
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@ class EventPaces {
  public:
   explicit EventPaces(const std::vector<Event>& events) : events_(events), paces_(events.size()) {}
 
-  // Sees an occurrence in a motion of this duration. The outcome ends the motion if the event accumulates.
+  // Notes an occurrence in a motion of this duration. The outcome ends the motion if the event accumulates.
   Outcome see(const Occurrence<W>& o, const W& duration) {
     constexpr int kShrinking = 3;
     constexpr double kNoTime = 1e-8;
@@ -35,7 +35,7 @@ class EventPaces {
  private:
   struct Pace {
     std::size_t times = 0;
-    int shrinking = 0;  // how often in a row the time since the occurrence before has become shorter
+    int shrinking = 0;  // the number of times in a row that the interval has become shorter
     W last{0}, interval{0};
   };
   const std::vector<Event>& events_;

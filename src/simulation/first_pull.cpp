@@ -23,7 +23,7 @@ class FirstRow final : public RowSink {
   std::optional<double> value_;
 };
 
-// The time of the first event of a formula, or, if it has none, the one at which the motion begins.
+// The time of the first event of a formula; if it has none, the time at which the motion begins.
 struct FirstPassing {
   bool passes = false;
   double t = 0;
@@ -32,11 +32,11 @@ struct FirstPassing {
 
 std::optional<FirstPassing> first_event(const Scenario& s, const SimulationOptions& o, const FormulaOf& formula,
                                         const Support* support, int direction, double until, const Follow& simulate) {
-  // The multipliers are unknowns of the form in which the event is located; the motion is the same in all forms.
+  // The event is located in a form whose unknowns contain the multipliers; the motion is the same in all forms.
   const Formulation& form = s.system.form->eliminates() ? *find_formulation("routh") : *s.system.form;
   const std::shared_ptr<Model> model = given_model(s);
   Graph& g = *model->graph;
-  const std::string name = "begins to pull";  // no name that a user can write
+  const std::string name = "begins to pull";  // a name that a user cannot write
   const Expr when =
       formula ? formula(*model)
               : g.number(Rational(support->upwards)) * g.multiplier(static_cast<std::uint32_t>(support->constraint), 0);

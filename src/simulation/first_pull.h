@@ -1,4 +1,4 @@
-// When a floor begins to pull or rolling to need much friction, located on the Taylor polynomials.
+// Locates, on the Taylor polynomials, when a floor begins to pull or rolling to need much friction.
 #pragma once
 #include <functional>
 #include <optional>
@@ -11,15 +11,16 @@
 
 namespace anholon {
 
-// By a motion of its own with an event where the force of the support passes zero downwards, up to the time `until`;
-// the motion that is reported stays as it is. No time if that motion has no such event, nullopt if it stops before. `simulate`
-// follows a motion.
+// Computes another motion up to the time `until`, with an event where the force of the support passes zero downwards;
+// the reported motion is not changed. The result has no time if that motion has no such event; it is nullopt if the
+// motion stops before. `simulate` computes a motion.
 using Follow = std::function<SimulationReport(const Scenario&, const SimulationOptions&, RowSink&)>;
 std::optional<SupportWatch::Begin> first_pull(const Scenario& s, const SimulationOptions& o, const Support& support,
                                               double until, const Follow& simulate);
 
-// The same for a formula of the model that passes zero in this direction. It has passed zero at `until`: the start of the motion if it does
-// not do so on the way.
+// Returns the time at which a formula of the model passes zero in this direction, in a motion up to `until`, by which
+// it has passed. Returns the start of the motion if the formula does not pass zero on the way, nullopt if the motion
+// stops before.
 using FormulaOf = std::function<Expr(const Model&)>;
 std::optional<double> first_passing(const Scenario& s, const SimulationOptions& o, const FormulaOf& formula,
                                     int direction, double until, const Follow& simulate);

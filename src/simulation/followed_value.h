@@ -1,5 +1,5 @@
-// The value of a formula at a time within the last step, by the equations there; the arguments of the functions in it that
-// may hide their variation.
+// The value of a formula at a time within the last step, by the equations there; and the arguments of the functions in
+// it that may hide their variation.
 #pragma once
 #include <limits>
 #include <map>
@@ -10,8 +10,8 @@
 
 namespace anholon {
 
-// NaN where the quadrature of the program has no value; and the magnitude of all that the value is made of. The point is
-// an expansion of the caller.
+// Returns the value, NaN if the quadrature of the program has none, and the magnitude of everything that the value is
+// made of. The point is an expansion of the caller.
 template <Number N>
 std::pair<double, double> value_of_quadrature(const Stepper<N>& stepper, const Wider<N>& t, std::size_t quadrature,
                                               Expansion<Wider<N>>& point) {
@@ -30,7 +30,7 @@ struct HidingSlot {
   std::uint32_t argument;
 };
 
-// Those of the quadratures of a program. Quotients and powers are none of them: their series show from afar where they
+// The hiding functions in each quadrature of a program. Quotients and powers are left out: their series show where they
 // vary.
 class HidingSlots {
  public:
@@ -48,7 +48,8 @@ class HidingSlots {
   std::map<std::size_t, std::vector<HidingSlot>> known_;
 };
 
-// Their arguments; none where the motion has no solution. The point is an expansion of the caller.
+// Returns the arguments of these functions; none if the motion has no solution at t. The point is an expansion of the
+// caller.
 template <Number N>
 std::vector<HidingArgument> hiding_arguments(const Stepper<N>& stepper, const Wider<N>& t,
                                              const std::vector<HidingSlot>& slots, Expansion<Wider<N>>& point) {

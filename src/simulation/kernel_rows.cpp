@@ -7,21 +7,21 @@ namespace anholon {
 
 namespace {
 
-// Rows at which the residual report looks: the first ones, then ever fewer, so that they are not what takes the time of
-// a run.
+// True for the rows that the residual report checks: the first ones, then ever fewer, so that checks do not dominate
+// the time of a run.
 bool looked_at(std::size_t row) {
   constexpr std::size_t kFirst = 128;
   return row % std::bit_ceil(row / kFirst + 1) == 0;
 }
 
-// Rows that are worked on together, blocks under way, and rows from which on another thread is worth its start.
+// The rows in a block, the number of blocks, and the number of rows from which a second thread pays.
 constexpr std::size_t kTogether = 256, kBlocks = 8, kFew = 512;
-// Steps without rows that are told together.
+// The steps without rows that are passed on together.
 constexpr std::size_t kSteps = 4096;
 
 }  // namespace
 
-// The program of the motion is copied, as the motion may write its equations anew on the way.
+// The program of the motion is copied, because the motion may rewrite its equations later.
 KernelRows::KernelRows(Workspace& s, const SimulationOptions& o, const Motion<double>& motion, int stages,
                        std::shared_ptr<WaitingRows> waiting, const RowTakers& takers)
     : s_(s), o_(o), takers_(takers), waiting_(std::move(waiting)), stages_(stages), program_(motion.program()),
@@ -78,7 +78,7 @@ void KernelRows::tell_steps(Block& block) {
     takers_.writer.step(block.steps[block.told].t);
 }
 
-// After a row without a solution there are none.
+// Works on a block. After a row without a solution no rows are computed.
 void KernelRows::work(Block& block) {
   block.taken = block.told = 0;
   if (!failed_)
@@ -127,7 +127,7 @@ Outcome KernelRows::take(const WaitingRows::Computed& row, bool judged) {
   return {};
 }
 
-// A point without a solution is left out: if a row needs it, that ends the motion.
+// A point without a solution is skipped: if a row needs the point, that row ends the motion.
 void KernelRows::look(const WaitingRows::Computed& row) {
   if (row.good())
     takers_.watch.track_ranges([&](std::size_t i) { return row.monitor(i); });
@@ -135,7 +135,7 @@ void KernelRows::look(const WaitingRows::Computed& row) {
     takers_.watch.look_at_ranges(point_);
 }
 
-// A row whose numbers differ by more than round-off waits until the kernel is free to compute it again.
+// A row whose numbers differ by more than round-off is noted, and computed again when the kernel is free.
 void KernelRows::compare(const WaitingRows::Computed& row) {
   twice_.t = static_cast<double>(row.place().t);
   twice_.written = numbers_;
@@ -154,7 +154,7 @@ void KernelRows::count_doubtful() {
 
 std::vector<double> KernelRows::of_round_off(const RowPlace& place, const std::vector<double>& numbers) {
   constexpr long double kRoundoff = 0x1p-52L;
-  // As the signs of four independent changes: one alone may leave a column as it is.
+  // The signs are those of four independent changes, because one change alone may leave a column unchanged.
   constexpr std::array<std::size_t, 4> kSigns = {0, 1, 2, 3};
   std::vector<double> changes(numbers.size(), 0), other;
   WaitingBlock block(kSigns.size());
@@ -168,7 +168,7 @@ std::vector<double> KernelRows::of_round_off(const RowPlace& place, const std::v
   waiting_->compute(block, [&](const WaitingRows::Computed& row) {
     row.numbers(other);
     for (std::size_t j = 0; j < numbers.size(); ++j) {
-      // A root of about 0 may lose its value.
+      // The root of a number near 0 may have no value after a change.
       const bool lost = std::isnan(other[j]) != std::isnan(numbers[j]);
       const double change = lost ? std::numeric_limits<double>::infinity() : std::abs(other[j] - numbers[j]);
       changes[j] = std::max(changes[j], change);

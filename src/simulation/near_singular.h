@@ -7,11 +7,11 @@
 
 namespace anholon {
 
-// Its message begins so.
+// The beginning of its message.
 inline constexpr std::string_view kPassesNearSingular = "the motion passes near a singular configuration";
 
-// Takes the warning, and the smallest singular value of which it tells, out of the report of a motion whose singularity is
-// one of a choice that is made anew.
+// Removes the warning and the smallest singular value from the report of a motion, because the singularity belongs to a
+// choice that is made anew.
 inline void forget_singularity(SimulationReport& r) {
   std::erase_if(r.warnings, [](const Warning& w) { return w.message.starts_with(kPassesNearSingular); });
   r.smallest_sigma = 1;

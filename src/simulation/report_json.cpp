@@ -201,7 +201,7 @@ class ReportWriter {
 
 using Json = nlohmann::ordered_json;
 
-// Builds the document; a number that a double does not hold becomes its text.
+// Builds the document; a number that does not fit a double becomes its text.
 class DigitKeeper : public nlohmann::detail::json_sax_dom_parser<Json> {
  public:
   explicit DigitKeeper(Json& document) : json_sax_dom_parser(document, false) {}
@@ -212,7 +212,7 @@ class DigitKeeper : public nlohmann::detail::json_sax_dom_parser<Json> {
   }
 };
 
-// An object of the report. A key that is missing, or holds another kind of value, reads as empty, zero or NaN.
+// An object of the report. A key that is missing, or has a value of another kind, reads as empty, zero or NaN.
 class Fields {
  public:
   explicit Fields(const Json& j) : j_(j.is_object() ? j : kNone) {}

@@ -1,7 +1,7 @@
-// The report of a run as JSON, and back. `simulate --json` prints it with the rows (result/json_run.h), and result files
-// hold it.  (doc/json.md)
+// Writes the report of a run as JSON, and reads it. `simulate --json` prints it with the rows (result/json_run.h), and
+// result files contain it (doc/json.md).
 //
-// Numbers have all their digits: a report that is written and read is the same report.
+// Numbers have all their digits: writing a report and reading it gives the same report.
 #pragma once
 #include <optional>
 
@@ -10,9 +10,9 @@
 
 namespace anholon {
 
-// The report as one object.
+// Returns the report as one object.
 std::string report_json(const SimulationReport& report);
-// Returns nullopt if the text is no report of a run that has ended. A number that is not there is NaN.
+// Returns nullopt if the text is not the report of a run that has ended. A missing number is NaN.
 std::optional<SimulationReport> read_report(const std::string& json);
 
 // Writes the keys of an error estimate into an open object.

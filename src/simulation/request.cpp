@@ -10,7 +10,7 @@ namespace anholon {
 
 namespace {
 
-// More rows are refused before they fill memory or disk.
+// A request for more rows is refused, before they fill memory or disk.
 constexpr long kMostRows = 5'000'000;
 
 Rational power_of_ten(int exponent) {
@@ -19,7 +19,7 @@ Rational power_of_ten(int exponent) {
   return exponent < 0 ? Rational(1, power) : Rational(power);
 }
 
-// The initial time, exactly where it is given.
+// The initial time; it is exact if it was given.
 Rational start_of(const Scenario& s, const SimulationOptions& o) {
   if (o.state.t) return *o.state.t;
   return is_number(s.model->initial.t) ? number_value(s.model->initial.t) : Rational(s.state.t);
@@ -29,13 +29,13 @@ bool lies_between(const Rational& t, const Rational& start, const Rational& end)
   return std::min(start, end) <= t && t <= std::max(start, end);
 }
 
-// Whether times of rows are those of the file: others have a text.
+// True if the times of rows are those of the file; other times have a text.
 bool of_file(const std::vector<WrittenTime>& at) {
   return std::all_of(at.begin(), at.end(), [](const WrittenTime& t) { return t.text.empty(); });
 }
 
-// Whether a text is one number that each format of results reads, such as 0.25 or -1e-3: a formula or a number with a unit
-// is none.
+// True if a text is one number that each format of results reads, such as 0.25 or -1e-3. Formulas and numbers with
+// units are not.
 bool is_number_as_written(const std::string& text) {
   static const std::regex number(R"(-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][-+]?[0-9]+)?)");
   return std::regex_match(text, number);
@@ -47,7 +47,7 @@ Rational set_times(const MotionSettings& settings, const Scenario& s, const Aske
   o.every = settings.every;
   const Rational start = start_of(s, o);
   std::vector<WrittenTime> at = settings.at;
-  // An end that somebody asks for takes the place of what the file asks for beyond it.
+  // If the user sets another end, rows of the file beyond it are left out.
   const bool left_out =
       o.to && of_file(at) && o.to != s.model->simulate.to &&
       std::erase_if(at, [&](const WrittenTime& t) { return !lies_between(t.value, start, *o.to); }) > 0;
@@ -79,7 +79,7 @@ Rational set_times(const MotionSettings& settings, const Scenario& s, const Aske
   return end;
 }
 
-// N, or all.
+// Returns the number of times of the bounds, 0 for all times, or nullopt without the option.
 std::optional<std::size_t> rigorous(const MotionSettings& settings, const Asker& asker) {
   constexpr long kMostTimes = 1'000'000;
   if (!settings.rigorous) return std::nullopt;
@@ -98,7 +98,7 @@ MethodDemands demands(const SimulationOptions& o, const Asker& asker) {
           o.tolerance.get_d()};
 }
 
-// The option that makes a demand.
+// Returns the option that makes a demand.
 std::string option_of(MethodRefusal::Of demand, const SimulationOptions& o, const Asker& asker) {
   switch (demand) {
   case MethodRefusal::Of::numbers:
@@ -121,7 +121,7 @@ void note_raised(const MethodInfo& method, const SimulationOptions& o, const Ask
   asker.note("a tolerance below " + least + " means " + least + " to " + method.name);
 }
 
-// SUNDIALS computes in double, and not below its own least tolerance.
+// Returns the integrator; SUNDIALS computes in double, and not below its own least tolerance.
 Method integrator(const MotionSettings& settings, const Model& model, const SimulationOptions& o, const Asker& asker) {
   const Method chosen =
       settings.integrator ? find_method(*settings.integrator, MethodInfo::Use::second_opinion).value_or(Method::taylor)
@@ -135,7 +135,7 @@ Method integrator(const MotionSettings& settings, const Model& model, const Simu
   if (const auto refused = refusal(method, demands(o, asker))) refuse(refused->why, option_of(refused->of, o, asker));
   if (std::any_of(model.events.begin(), model.events.end(), [](const Event& e) { return e.ends_step(); }))
     refuse("does not stop at events", "the events");
-  // The difference from Taylor's motion says how many digits of the rows can be trusted.
+  // The rows' digits to trust come from the difference from Taylor's motion.
   if (o.estimate == ErrorEstimate::always)
     refuse("has its difference from Taylor's motion for an estimate", asker.called("error-estimate"));
   note_raised(method, o, asker);
@@ -216,7 +216,7 @@ std::size_t most_steps(const MotionSettings& settings) {
 }
 
 Rational ask(const MotionSettings& settings, const Scenario& s, const Asker& asker, SimulationOptions& o) {
-  // The tolerance of quad without --digits: it leaves some digits for round-off.
+  // The tolerance of quad without --digits leaves some digits for round-off.
   constexpr int kQuadTolerance = 32;
   o.most_steps = most_steps(settings);
   o.estimate = error_estimate(settings);

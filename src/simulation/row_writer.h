@@ -1,4 +1,5 @@
-// Writes the rows of a run in its number type to a sink of doubles, with the digits that a double does not hold.
+// Writes the rows of a run, in its number type, to a sink of doubles, with texts for the digits beyond those of a
+// double.
 #pragma once
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ class RowWriter {
   RowWriter(RowSink& sink, int digits) : sink_(sink), digits_(digits) {}
 
   void columns(const std::vector<RunColumn>& columns) { sink_.columns(columns); }
-  // label: the time as it is to be written; empty for its number.
+  // `label`: the time as it is to be written; empty if its number is to be written.
   void row(const W& t, const std::string& label, const std::vector<W>& numbers) {
     values_.assign(1, to_double(t));
     for (const W& x : numbers) values_.push_back(to_double(x));
@@ -47,7 +48,7 @@ class RowWriter {
   // A number with all its digits.
   WrittenNumber written(const W& x) const { return {to_double(x), kWide ? text(x) : std::string()}; }
 
-  // Rows and steps since the start of the motion, which a continued run takes over.
+  // Rows and steps since the start of the motion, also those before a continued run.
   std::size_t rows() const { return rows_; }
   std::size_t steps() const { return steps_; }
   void go_on(std::size_t rows, std::size_t steps) { rows_ = rows, steps_ = steps; }

@@ -1,5 +1,5 @@
-// The rows of one run: each is made where it is due, by the kernel beside the motion or by the reference, and is then
-// watched, judged and written.
+// The rows of one run: each is computed where it is due, by the kernel beside the motion or by the reference, and is
+// then watched, judged and written.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -14,14 +14,14 @@
 
 namespace anholon {
 
-// The steps at whose ends the ranges of monitors are watched: the first ones, then ever fewer, so that they are not what
-// takes the time of a run.
+// The ranges of monitors are watched at the ends of some steps: of the first ones, then of ever fewer, so that this
+// does not dominate the time of a run.
 inline std::size_t steps_between_looks(std::size_t step) {
   constexpr std::size_t kFirst = 1024;
   return std::bit_ceil(step / kFirst + 1);
 }
 inline bool is_looked_at(std::size_t step) { return step % steps_between_looks(step) == 0; }
-// How many steps lead from this one to the next at which they are watched.
+// Returns the number of steps from this one to the next one at which the ranges are watched.
 inline std::size_t steps_to_next_look(std::size_t step) {
   std::size_t next = step + 1;
   while (!is_looked_at(next)) {
@@ -36,7 +36,7 @@ class RunRows {
  public:
   using W = Wider<N>;
 
-  // What the rows are made of, and who looks at them; all outlive the rows.
+  // The objects that the rows read and the watches that see them; all outlive the rows.
   struct Parts {
     Workspace& s;
     const SimulationOptions& options;
@@ -46,7 +46,7 @@ class RunRows {
     Watch<W>& watch;
     Judge<N>& judge;
     std::optional<FloorWatch>& floors;
-    SimulationReport& report;  // its outcome says why a row has no solution
+    SimulationReport& report;  // its outcome becomes the reason why a row has no solution
   };
 
   RunRows(const Parts& parts, RowSink& sink) : of_(parts), writer_(sink, parts.options.digits) {}
@@ -61,7 +61,8 @@ class RunRows {
   RowWriter<N>& writer() { return writer_; }
   const RowWriter<N>& writer() const { return writer_; }
 
-  // Rows of Taylor's steps may be computed side by side; `known` is what computes them, if it was made before.
+  // Lets rows of Taylor's steps be computed side by side, if possible. `known`: the object that computes them, if it
+  // was made before.
   void begin_beside(std::optional<std::shared_ptr<WaitingRows>>& known) {
     if constexpr (std::same_as<N, double>) {
       const Motion<N>& motion = of_.course.taylor();
@@ -78,12 +79,12 @@ class RunRows {
                                              RowTakers{of_.watch, of_.judge, of_.floors, writer_, of_.report});
     }
   }
-  // From now on the reference makes all rows.
+  // Makes the reference compute all further rows.
   void by_reference() { beside_.reset(); }
 
   // ---- during the motion ---------------------------------------------------------------------------
 
-  // Those that lie in the last step, up to `stop`; of times that are asked for, those up to `told` (told_until).
+  // Makes the rows in the last step up to `stop`; those at times that the user asked for, up to `told` (told_until).
   void until(const W& stop, const W& told) {
     W given = stop;
     while (of_.report.outcome.ok() && schedule_.due(told)) {
@@ -99,10 +100,10 @@ class RunRows {
       look(stop);
     schedule_.set_given(given);
   }
-  // Whether the ranges of monitors count where Taylor's steps end, too.
+  // True if the ranges of monitors are watched at the ends of Taylor's steps, too.
   bool watches_ranges() const { return of_.options.watches_ranges && of_.watch.any_ranges() && !of_.shown.second(); }
 
-  // Tells the end of a step. While rows are under way, their thread tells it, after the rows before it.
+  // Passes on the end of a step. While rows are in work, their thread passes it on, after the rows before it.
   void tell_step(const W& end) {
     if (beside_)
       beside_->step(to_double(end));
@@ -110,7 +111,7 @@ class RunRows {
       writer_.step(end);
   }
 
-  // The end of a step, after its rows. `now`: when the clock was read last.
+  // Ends a step, after its rows. `now`: when the clock was read last.
   void end_step(const W& end, std::chrono::steady_clock::time_point now) {
     tell_step(end);
     if (!beside_) return;
@@ -118,20 +119,20 @@ class RunRows {
     if (beside_->failed()) settle();
   }
 
-  // Waits for the rows that are under way. What has ended the motion stands, unless one of them has no solution.
+  // Waits for the rows in work. If one of them has no solution, the outcome becomes its reason.
   void settle() {
     if (!beside_) return;
     if (Outcome o = beside_->settle(); !o.ok()) of_.report.outcome = std::move(o);
   }
 
-  // The rows that follow have the present parameters of the motion. Call it after settle().
+  // Sets the present parameters of the motion for the rows that follow. Call it after settle().
   void set_parameters() {
     if constexpr (std::same_as<N, double>)
       if (beside_) beside_->set_parameters(of_.course.taylor().parameters());
   }
 
   void at(const typename RowSchedule<W>::Due& due) { at(due.t, due.label); }
-  // A row by the reference. `judged`: it counts for the estimate of the error.
+  // Makes a row by the reference. `judged`: the row counts for the estimate of the error.
   void at(const W& t, const std::string& label, bool judged = true) {
     of_.report.outcome = of_.shown.at(t);
     if (!of_.report.outcome.ok()) return;
@@ -147,23 +148,23 @@ class RunRows {
     if (of_.options.rows_lost) of_.options.rows_lost();
   }
 
-  // A row by the reference at the time of the row before, with the state after an event; the estimate of the error counts
-  // the row before alone.
+  // Makes a row by the reference with the state after an event, at the time of the row before. Only the row before
+  // counts for the estimate of the error.
   void after_event(const W& t) { at(t, "", false); }
 
-  // Whether rows have been given up to t or beyond it.
+  // True if rows were written up to t or beyond it.
   bool has_passed(const W& t) const { return last_ && schedule_.reaches(*last_, t); }
 
   // ---- for the report, after settle() --------------------------------------------------------------
 
   std::optional<Warning> warning() const { return beside_ ? beside_->warning() : std::nullopt; }
-  // What computes the rows beside the motion; null if the reference makes them.
+  // The object that computes the rows beside the motion; nullptr if the reference computes them.
   WaitingRows* waiting() { return beside_ ? &beside_->waiting() : nullptr; }
 
  private:
   int highest() const { return largest_order(of_.s, of_.course.taylor().program().d); }
 
-  // Rows up to the end of the last step, and there.
+  // Makes the rows within the last step, and at its end.
   void in_parts(const W& begin, const W& end) {
     int parts = 1;
     if (const auto& picture = of_.options.picture) {
@@ -188,7 +189,7 @@ class RunRows {
     if (of_.report.outcome.ok()) at(t, label);
   }
 
-  // Sees the monitors at a time of the last step.
+  // Watches the monitors at a time of the last step.
   void look(const W& t) {
     if constexpr (std::same_as<N, double>)
       if (const Motion<N>& motion = of_.course.taylor(); beside_ && !motion.stepper().one_sided()) {
@@ -203,9 +204,10 @@ class RunRows {
   Parts of_;
   RowSchedule<W> schedule_;
   std::optional<W> last_;   // the time of the last row
-  std::vector<W> numbers_;  // of a row
+  std::vector<W> numbers_;  // of one row
   RowWriter<N> writer_;
-  std::unique_ptr<KernelRows> beside_;  // null if rows are made by the reference; the last: uses the others
+  std::unique_ptr<KernelRows>
+      beside_;  // nullptr if the reference computes the rows; the last member, because it uses the others
 };
 
 }  // namespace anholon

@@ -10,17 +10,17 @@
 
 namespace anholon {
 
-// Rows are due at the times that are asked for; if none are asked for, at the end of every step.
+// Rows are due at the times that the user asks for; without such times, at the end of every step.
 template <class W>
 class RowSchedule {
  public:
   struct Due {
     W t;
-    std::string label;  // the time as it was written; empty if it was not
+    std::string label;  // the time as it was written; may be empty
   };
 
   RowSchedule() = default;
-  // given: all rows up to this time have been given by an earlier part of the run.
+  // `given`: an earlier part of the run has written all rows up to this time.
   RowSchedule(const SimulationOptions& o, const W& start, std::optional<W> given = {})
       : start_(start), given_(std::move(given)) {
     for (const Rational& r : o.at) times_.push_back(from_rational<W>(r));
@@ -44,29 +44,29 @@ class RowSchedule {
   bool forward() const { return forward_; }
   bool every_step() const { return every_step_; }
 
-  // Whether a motion that has come to `stop` has passed t.
+  // True if a motion that has come to `stop` has reached t.
   bool reaches(const W& stop, const W& t) const { return forward_ ? t <= stop : t >= stop; }
 
-  // Whether a row is due at a time up to `stop`, or at t itself.
+  // due(): true if a row is due at a time up to `stop`. due_at(): true if the next row is due at t itself.
   bool due(const W& stop) const { return next_ < times_.size() && reaches(stop, times_[next_]); }
-  // The time of the next row; null if there is none.
+  // The time of the next row; nullptr if there is none.
   const W* next() const { return next_ < times_.size() ? &times_[next_] : nullptr; }
   bool due_at(const W& t) const { return next_ < times_.size() && times_[next_] == t; }
   Due take() {
     const std::size_t k = next_++;
     return {times_[k], k < labels_.size() ? labels_[k] : std::string()};
   }
-  // How many times are left; 0 if a row is due at the end of every step.
+  // The number of times left; 0 if a row is due at the end of every step.
   std::size_t left() const { return times_.size() - next_; }
-  // Whether the last row that was taken is that of t.
+  // True if the last row taken is that of t.
   bool took(const W& t) const { return next_ > 0 && times_[next_ - 1] == t; }
 
-  // All rows up to this time have been given; nullopt before the first one.
+  // All rows up to this time are written; nullopt before the first one.
   const std::optional<W>& given() const { return given_; }
   void set_given(const W& t) { given_ = t; }
 
  private:
-  // in_doubles: those are the times that rows have.
+  // `in_doubles`: the rows have their times in doubles.
   void evenly(const Rational& every, bool in_doubles) {
     const Multiples<W> steps(end_ < start_ ? Rational(-every) : every);
     for (long k = 0;; ++k) {
@@ -83,7 +83,7 @@ class RowSchedule {
   W start_{0}, end_{0};
   bool forward_ = true, every_step_ = false;
   std::vector<W> times_;
-  std::vector<std::string> labels_;  // of the first times: those that are asked for one by one
+  std::vector<std::string> labels_;  // of the first times, which the user asked for one by one
   std::size_t next_ = 0;
   std::optional<W> given_;
 };

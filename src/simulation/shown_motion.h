@@ -1,4 +1,4 @@
-// The motion whose rows are written: that of the course, or the one of another integrator beside it.
+// The motion whose rows are written: that of the course, or that of another integrator beside it.
 #pragma once
 #include <memory>
 
@@ -13,12 +13,12 @@ class ShownMotion {
   using W = Wider<N>;
   explicit ShownMotion(Course<N>& course) : course_(course) {}
 
-  // Shows the motion of another integrator, which computes in double.
+  // Shows the motion of another integrator, which computes in doubles.
   void show(std::unique_ptr<SecondMotion> second) { second_ = std::move(second); }
-  // The other integrator; null if the motion of the course is shown.
+  // The other integrator; nullptr if the motion of the course is shown.
   const SecondMotion* second() const { return second_.get(); }
 
-  // Goes to time t, whose state `point` and `work` then hold.
+  // Goes to time t; then `point` and `work` belong to that time.
   Outcome at(const W& t) {
     Outcome o = course_.at(t);
     if constexpr (std::same_as<N, double>)
@@ -30,7 +30,7 @@ class ShownMotion {
       if (second_) return second_->point();
     return course_.point();
   }
-  // The work of the forces so far.
+  // The work of the forces since the start.
   const W& work() const {
     if constexpr (std::same_as<N, double>)
       if (second_) return second_->work();

@@ -15,7 +15,7 @@ namespace anholon {
 
 namespace {
 
-// The formulas that are integrated for the report, then those that are followed.
+// Returns the formulas that are integrated for the report, then those that are followed.
 std::vector<Expr> quadratures(Workspace& s, const Power& power, const SimulationOptions& o) {
   std::vector<Expr> es = watched_quadratures(s, power);
   Column own;
@@ -28,7 +28,7 @@ std::vector<Expr> quadratures(Workspace& s, const Power& power, const Simulation
 StepSettings step_settings(const Model& model, const SimulationOptions& o) {
   StepSettings s{natural_logarithm(o.tolerance), o.order, o.most_steps, o.cancelled, o.kernel};
   s.integrals = 1;   // the power
-  s.known_from = 1;  // the masses, whose sign is looked at
+  s.known_from = 1;  // the masses, whose sign is watched
   s.known_to = s.known_from + model.masses.size();
   s.followed_to = s.known_to + o.followed.size() - o.followed_at_ends;
   s.multipliers = o.rigorous.has_value();
@@ -50,7 +50,7 @@ Column monitored(const Model& model) {
   return es;
 }
 
-// One run: prepares the motion, follows it step by step, writes the rows, watches it and reports.
+// One run: prepares the motion, follows it step by step, writes and watches the rows, and reports.
 template <Number N>
 class Run {
  public:
@@ -118,7 +118,7 @@ class Run {
     return {};
   }
 
-  // Another integrator, whose motion is then the one that is written.
+  // Starts another integrator, whose motion is then written.
   void show_second() {
     if (o_.integrator == Method::taylor) return;
     rows_.by_reference();
@@ -139,7 +139,7 @@ class Run {
     return list;
   }
 
-  // Stores the state from which a run goes on with the same bits.
+  // Stores the state from which a run continues with the same bits.
   void save() {
     rows_.settle();
     turn_over();
@@ -148,7 +148,7 @@ class Run {
     watch_.save(to);
     to.set_numbers<W>("start", {schedule().start()});
     to.set_numbers<W>("rows", {*schedule().given()});
-    // The last step will be made again.
+    // The continued run makes the last step again.
     const std::size_t steps = written().steps() > 0 ? written().steps() - 1 : 0;
     to.set_numbers<double>("given", {static_cast<double>(written().rows()), static_cast<double>(steps)});
     std::vector<double> worst, angles;
@@ -192,7 +192,7 @@ class Run {
     }
     if (o_.rigorous)
       defect_.emplace(s_, *o_.rigorous, Ball(*schedule().given()), Ball(schedule().end()), significand_bits<W>());
-    // Soon at first, so that a run that is killed early can go on, too; then at longer and longer intervals.
+    // The first state is saved soon, so that a run that is killed early can be continued; then the intervals grow.
     constexpr double kFirst = 0.5, kLonger = 1.5;
     auto saved = std::chrono::steady_clock::now();
     double pause = std::min(kFirst, o_.save_seconds);
@@ -220,7 +220,7 @@ class Run {
     angles_.keep_in(stretch_);
   }
 
-  // A stretch of steps, with what is due after them: rows and events; returns false if it ends the motion before its
+  // Makes a stretch of steps, and what is due after it: rows and events. Returns false if it ends the motion before its
   // end.
   bool step() {
     work_ = std::max(work_, W(abs(course_.integrals()[0])));
@@ -228,7 +228,7 @@ class Run {
     Outcome o = course_.steps(schedule().end(), stretch_);
     if (const std::string advice = course_.take_advice(); !advice.empty()) note(advice);
     work_ = std::max(work_, W(stretch_.greatest_integral));
-    // Before its last step there is nothing to do.
+    // Nothing is due before the last step of the stretch.
     for (std::size_t i = 0; i + (o.ok() ? 1 : 0) < stretch_.times.size(); ++i) rows_.tell_step(stretch_.times[i]);
     if (!o.ok()) {
       report_.outcome = std::move(o);
@@ -252,8 +252,9 @@ class Run {
     return !(report_.outcome.ok() && course_.by_taylor() && motion().fired()) || events();
   }
 
-  // What is declared conserved is looked at between rows, too: a motion may be one step, and have rows at its ends alone.
-  // The first steps are taken one by one for it, so that what is seen does not hang on the time that they take.
+  // Outputs that are declared conserved are watched between rows, too, because a motion may be a single step with rows
+  // at its ends alone. For this, the first steps are made one by one, so that the result does not depend on their
+  // speed.
   bool looks_between() const {
     constexpr std::size_t kMostLooks = 32;
     return watch_.any_declared() && looks_ < kMostLooks;
@@ -261,7 +262,7 @@ class Run {
   void look_between() {
     constexpr int kParts = 4;
     if (!looks_between()) return;
-    rows_.settle();  // they are watched, too
+    rows_.settle();  // because the thread of the rows uses the watch, too
     ++looks_;
     const W begin = course_.before(), length = course_.time() - begin;
     for (int k = 1; k < kParts; ++k)
@@ -296,7 +297,7 @@ class Run {
               stepper.one_sided(), value, hiding});
   }
 
-  // Takes the events that fired in the last step; returns false if they end the motion.
+  // Applies the events that fired in the last step; returns false if they end the motion.
   bool events() {
     rows_.settle();
     if (!report_.outcome.ok()) return false;
@@ -326,14 +327,14 @@ class Run {
     return goes_on && report_.outcome.ok();
   }
 
-  // A row with the state after events that have set something, for a picture.
+  // Makes a row with the state after events that have set something, for a picture.
   void show_after(const std::vector<Occurrence<W>>& occurrences) {
     const bool set =
         std::any_of(occurrences.begin(), occurrences.end(), [](const auto& o) { return !o.changes.empty(); });
     if (set && o_.picture && schedule().every_step() && report_.outcome.ok()) rows_.after_event(course_.time());
   }
 
-  // Ends the motion by an event: the state there is worth a row of its own.
+  // Ends the motion by an event; the state there gets a row of its own.
   void ended() {
     const W t = course_.time();
     reached_ = t;
@@ -344,7 +345,7 @@ class Run {
   void stopped() {
     if (report_.outcome.message.find(" t = ") == std::string::npos) {
       report_.outcome.message += " at t = " + number_text(to_double(course_.time()), 12);
-      // Nobody asked for an end here.
+      // The user did not ask for an end here.
       const bool stopped_by_itself =
           report_.outcome.kind == OutcomeKind::interrupted && !(o_.cancelled && o_.cancelled());
       if (report_.outcome.kind == OutcomeKind::step_collapse || report_.outcome.kind == OutcomeKind::singular ||
@@ -352,23 +353,24 @@ class Run {
           stopped_by_itself)
         explain_stop(s_, motion(), report_.outcome);
     } else if (report_.outcome.kind != OutcomeKind::singular) {
-      return;  // it has its row
+      return;  // its end has a row already
     }
-    // The last good state is worth a row of its own: the one reached, unless the motion cannot go on from there.
+    // The last good state gets a row of its own: the state reached, or that before if the motion cannot go on from
+    // there.
     const W last = report_.outcome.kind == OutcomeKind::interrupted ? course_.time() : course_.before();
     if (course_.steps() > 0 && !schedule().every_step() && !rows_.has_passed(last)) {
       const Outcome why = report_.outcome;
       report_.outcome = {};
       rows_.at(last, "");
-      // So near to where J is singular that it cannot be solved to all digits any more: the series reach as far back as
-      // forward.
+      // So near to a singular J, the equations cannot be solved to all digits. The series hold as far back as forward,
+      // so the row is made at the mirrored time.
       if (!report_.outcome.ok() && course_.by_taylor())
         report_.outcome = {}, rows_.at(course_.before() - (course_.time() - course_.before()), "");
       report_.outcome = why;
     }
   }
 
-  // The watch may be in use beside the motion; it hears of the work so far when it is not.
+  // The rows may be using the watch beside the motion, so the watch gets the work only here.
   void turn_over() { watch_.turn_over(work_); }
 
   // ---- the report --------------------------------------------------------------------------------
@@ -442,24 +444,24 @@ class Run {
   Workspace& s_;
   const SimulationOptions& o_;
   Power power_;
-  int stages_;  // orders beyond the leading derivatives that rows show
+  int stages_;  // orders beyond the leading derivatives in rows
   Course<N> course_;
   ShownMotion<N> shown_;
   Watch<W> watch_;
   AngleWatch angles_;
   Judge<N> judge_;
   std::optional<FloorWatch> floors_;
-  HidingSlots hiding_;  // of what is followed, in the program since so many eliminations
+  HidingSlots hiding_;  // of the followed formulas, in the program since `hiding_since_` eliminations
   std::size_t hiding_since_ = 0;
-  std::size_t looks_ = 0;  // between rows
+  std::size_t looks_ = 0;  // looks between rows
   EventPaces<W> paces_;
   PacedStretch<W> stretch_;
   std::optional<Defect> defect_;
   std::optional<W> reached_;  // the time at which the motion ended before its end
-  W work_{0};                 // the greatest so far, where a step began
+  W work_{0};                 // the greatest work so far at the start of a step
   SimulationReport report_;
-  SimulationPlans plans_;  // those of the motion are in the motion
-  RunRows<N> rows_;        // the last: uses the others
+  SimulationPlans plans_;  // the plans of the motion are in the motion
+  RunRows<N> rows_;        // the last member, because it uses the others
 };
 
 SimulationReport in_doubles(Workspace& s, const SimulationOptions& o, RowSink& sink, SimulationPlans* plans) {
@@ -481,7 +483,7 @@ SimulationReport simulate_in(Workspace& s, const SimulationOptions& options, Row
   const auto start = std::chrono::steady_clock::now();
   SimulationOptions o = options;
   for (Conserved& c : o.conserved) for_each_expression(c, [&](Expr& e) { e = s.graph().own(e); });
-  // Rows that cannot be written end the motion, whichever thread finds that.
+  // Rows that cannot be written end the motion, whichever thread notices.
   std::atomic<bool> lost = false;
   if (options.rows_lost) {
     o.rows_lost = [&] { return lost = lost || options.rows_lost(); };

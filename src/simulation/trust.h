@@ -1,4 +1,4 @@
-// What limits the trust in a motion that has been computed: warnings, limits of events, masses that become negative.
+// The limits of trust in a computed motion: warnings, limits of events, masses that become negative.
 #pragma once
 #include "integrate/series/sign_change.h"
 #include "motion/course.h"
@@ -13,10 +13,10 @@ namespace anholon {
 template <class W>
 struct MassLimit {
   W t{0};
-  std::size_t mass = 0;  // which one, of the model
+  std::size_t mass = 0;  // the index of the mass in the model
 };
 
-// Whether a mass may pass zero in a step.
+// True if a mass may pass zero in a step.
 template <Number N>
 bool masses_vary(const Model& model, const Stepper<N>& stepper) {
   for (std::size_t i = 0; i < model.masses.size(); ++i)
@@ -24,8 +24,8 @@ bool masses_vary(const Model& model, const Stepper<N>& stepper) {
   return false;
 }
 
-// Where a quadrature is first below zero before the end of the last step, by more than round-off: from the start of the
-// step; nullopt if that is nowhere.
+// Returns the first point before the end of the last step at which a quadrature is negative by more than round-off,
+// from the start of the step; nullopt if there is none.
 template <Number N>
 std::optional<Wider<N>> first_negative(const Stepper<N>& stepper, std::size_t quadrature) {
   using W = Wider<N>;
@@ -45,7 +45,7 @@ std::optional<Wider<N>> first_negative(const Stepper<N>& stepper, std::size_t qu
 template <Number N>
 MassLimit<Wider<N>> masses_positive_until(const Model& model, const Course<N>& course) {
   using W = Wider<N>;
-  if (!course.by_taylor()) return {course.time(), 0};  // Taylor's steps go to where one vanishes
+  if (!course.by_taylor()) return {course.time(), 0};  // Taylor's steps go to where a mass vanishes
   const Stepper<N>& stepper = course.taylor().stepper();
   const W whole = stepper.time() - stepper.before();
   W good = whole;
@@ -77,7 +77,7 @@ inline Outcome negative_mass(const Model& model, std::size_t mass, double t) {
           "end the motion before, or let the mass end at zero flow"};
 }
 
-// Notes on events that look out for a limit which is passed at the start: they do not happen until it has come back.
+// Notes on events whose limit is passed at the start: such an event does not happen until its formula has come back.
 template <Number N>
 std::vector<std::string> passed_limits(const Model& model, const Motion<N>& motion) {
   // A limit at which the motion starts is not passed by round-off.
@@ -94,13 +94,13 @@ std::vector<std::string> passed_limits(const Model& model, const Motion<N>& moti
   return notes;
 }
 
-// Warnings of jumps that the equations do not hold: a potential, a position, the observer or a constraint that jumps, or whose
-// rate does, would need an impulse. They show in integrals of the motion that change, and in constraints that a step after a
-// kink misses where it begins.
+// Warns of jumps that the equations do not contain: if a potential, a position, the observer or a constraint jumps, or
+// its rate does, an impulse would be needed. Jumps show in integrals of the motion that change, and in constraints that
+// are missed at the start of a step after a kink.
 template <Number N>
 std::vector<Warning> warnings_of_jumps(const Course<N>& course, const Watch<Wider<N>>& watch,
                                        const SimulationOptions& o, bool something_set) {
-  constexpr double kLeast = 1e-6, kTolerances = 1e4;  // far above what integration leaves
+  constexpr double kLeast = 1e-6, kTolerances = 1e4;  // far above the errors of integration
   const double limit = std::max(kLeast, kTolerances * o.tolerance.get_d());
   std::vector<Warning> list;
   if (!course.by_taylor()) return list;
@@ -121,8 +121,8 @@ std::vector<Warning> warnings_of_jumps(const Course<N>& course, const Watch<Wide
   return list;
 }
 
-// Warnings of a motion near a singular configuration, of outputs that were said to be conserved and are not, and of
-// angles near their singularity.
+// Warns if a motion passes near a singular configuration, if outputs that were declared conserved are not, and if
+// angles come near their singularity.
 template <Number N>
 std::vector<Warning> warnings(const Workspace& s, const Course<N>& course, const Watch<Wider<N>>& watch,
                               const AngleWatch& angles) {

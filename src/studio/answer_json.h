@@ -1,4 +1,4 @@
-// Parts of the answers of the studio that are written the same way wherever they occur. (doc/json.md)
+// Parts of the answers of the studio that are the same in all answers (doc/json.md).
 #pragma once
 #include <string>
 
@@ -8,16 +8,16 @@
 
 namespace anholon {
 
-// A diagnostic; a place in another file than `source` has the name of that file.
+// Writes a diagnostic; a place in another file than `source` has the name of that file.
 void write(JsonWriter& json, const Diagnostic& d, const SourceText& source);
 
-// "error": what is shown in place of an answer. `name`: of the text, whose places have no name of a file.
+// Writes "error", which is shown in place of an answer. `name`: of the text, whose places have no name of a file.
 void write(JsonWriter& json, const v1::Error& error, const std::string& name);
 
-// A section of a page, unless it is empty.
+// Writes a section of a page, unless it is empty.
 void section(JsonWriter& json, const char* id, const char* title, const std::string& body);
 
-// An answer that holds an error alone.
+// Returns an answer that contains only an error.
 std::string error_answer(const v1::Error& error, const std::string& name);
 
 }  // namespace anholon

@@ -46,7 +46,7 @@ class Answers::Desk {
     diagnostics_ = {}, known_ = false;
   }
 
-  // Reads the text unless it is the last one. Only files that the opened model named are read.
+  // Reads the text unless it was the last one that was read. Only files that the opened model named are read.
   void take_up(const Question& q) {
     const bool same_file = q.text == source_.text && q.name == source_.name && q.readable == readable_;
     if (known_ && same_file && q.case_name == (cases_.empty() ? "" : cases_.front())) return;
@@ -70,7 +70,7 @@ class Answers::Desk {
     known_ = true;
   }
 
-  // A message about the option --case tells of the page's choice.
+  // Rewrites messages about the option --case for the choice of the page.
   void name_the_choice() {
     constexpr std::string_view kOption = "--case: ";
     Diagnostics told;
@@ -95,7 +95,7 @@ class Answers::Desk {
     json.close().key("title").string(model_ ? model_->title : "").key("moves").boolean(static_cast<bool>(model_));
   }
 
-  // Returns false if the text is no model; the answer then says so.
+  // Returns false if the text is no model; then the answer contains the error.
   bool has_model(JsonWriter& json) const {
     if (model_) return true;
     v1::Error error = v1::error_of(diagnostics_, source_);
@@ -125,12 +125,12 @@ class Answers::Desk {
     motion_->write(json);
   }
 
-  // The command line that does the same of the saved file.
+  // Returns the command line that does the same with the saved file.
   std::string command(const char* name) const {
     return std::string("anholon ") + name + " " + source_.name + (cases_.empty() ? "" : " --case " + cases_.front());
   }
 
-  // Computes the motion unless it is there. False if there is none; the answer then says why.
+  // Computes the motion unless it is known. Returns false if there is none; then the answer contains the reason.
   bool move(JsonWriter& json) {
     if (motion_) return true;
     auto data = std::make_shared<v1::Model::Data>();
@@ -171,7 +171,7 @@ class Answers::Desk {
     json.close();
   }
 
-  // The equations of a model that has no motion, for want of numbers or of a start.
+  // Writes the equations of a model that has no motion, because numbers or a start are missing.
   void derive_alone(JsonWriter& json) const {
     auto data = std::make_shared<v1::Model::Data>();
     data->source = source_, data->cases = cases_, data->model = model_;
@@ -203,7 +203,7 @@ class Answers::Desk {
 
   SourceText source_;
   std::vector<std::string> readable_;
-  std::vector<std::string> cases_;  // the chosen one, if any
+  std::vector<std::string> cases_;  // the chosen case, if any
   bool known_ = false;
   Diagnostics diagnostics_;
   std::shared_ptr<const Model> model_;

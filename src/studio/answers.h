@@ -1,4 +1,4 @@
-// What the studio computes of a text: check, derive, simulate, prove. Each answer is a text of JSON (doc/json.md).
+// The studio's computations from a text: check, derive, simulate, prove. Each answer is a text of JSON (doc/json.md).
 #pragma once
 #include <memory>
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace anholon {
 
-// Keeps the model and the motion of the last text, so that the equations and the proof of a text that moves need not read
-// it again.
+// Keeps the model and the motion of the last text, so that equations and proof of a text with a motion do not read it
+// again.
 class Answers {
  public:
   Answers();

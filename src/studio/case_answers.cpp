@@ -11,7 +11,7 @@ namespace anholon {
 
 namespace {
 
-// Throws Failure without a place.
+// Returns the number of a case. Throws Failure without a place.
 std::size_t number_of_case(const std::string& text) {
   std::size_t number = 0;
   const char* end = text.data() + text.size();

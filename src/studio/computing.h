@@ -1,4 +1,4 @@
-// Computations of the studio: a question of a page goes to a worker, and a newer one of the same page ends it.
+// Computations of the studio: a worker answers the question of a page, and a newer question of the same page ends it.
 #pragma once
 #include <array>
 #include <atomic>
@@ -12,23 +12,23 @@
 
 namespace anholon {
 
-// What may be asked, and for how long.
+// A kind of question, and its limit of time.
 struct Task {
   const char* name;
   double seconds;
-  bool brief = false;  // it does not wait for motions
+  bool brief = false;  // does not wait for motions
 };
 
-// A reply of JSON.
+// Makes a reply of JSON.
 HttpReply json_reply(std::string body, int status = 200);
-// The JSON of an error without a place.
+// Returns the JSON of an error without a place.
 std::string trouble(const std::string& text, const std::string& hint);
 
-// The newest edition of each page of a browser: a computation of an older one is given up.
+// The newest edition of each page of a browser: the computation of an older one is given up.
 class Editions {
  public:
-  // Returns the worker of the edition, 0 or 1. A new edition gets the other one: it need not wait until the process of
-  // the older one is replaced.
+  // Returns the worker of the edition, 0 or 1. A new edition gets the other worker, so that it does not have to wait
+  // until the process of the older edition is replaced.
   std::size_t seen(const std::string& page, unsigned long long edition);
   bool is_old(const std::string& page, unsigned long long edition);
 
@@ -44,12 +44,12 @@ class Editions {
 
 class Computing {
  public:
-  // The program's own command line that makes a process into a worker.
+  // `worker`: the command line of the program that makes a process into a worker.
   explicit Computing(const std::vector<std::string>& worker)
       : checker_(worker), movers_{Worker(worker), Worker(worker)} {}
-  // Many threads may call these. `request` tells the page and the edition of the question.
+  // Many threads may call these functions. `request`: contains the page and the edition of the question.
   HttpReply answer(const Task& task, const HttpRequest& request, const Question& question);
-  // A question that no other one ends.
+  // Answers a question that no other one ends.
   HttpReply answer(const Task& task, const Question& question);
   void stop() { stopping_ = true; }
 

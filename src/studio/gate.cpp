@@ -25,7 +25,7 @@ bool same_secret(std::string_view a, std::string_view b) {
   return difference == 0;
 }
 
-// Browsers leave the port of HTTP out.
+// Browsers leave out the port 80 of HTTP.
 static std::string named(int port) { return port == 80 ? "" : ":" + std::to_string(port); }
 
 Gate::Gate(std::string token, int port)
@@ -42,7 +42,7 @@ std::optional<HttpReply> Gate::refuse(const HttpHead& head) const {
   const std::size_t end = target.find('/', 1);
   if (target.empty() || target[0] != '/' || !same_secret(target.substr(1, end == target.npos ? end : end - 1), token_))
     return no(403, "the address needs the token that 'anholon studio' printed");
-  // The address without its last slash leads to the one with it.
+  // The address without its last slash leads to the one with the slash.
   if (end == target.npos)
     return HttpReply{200, "text/html; charset=utf-8",
                      "<!doctype html><title>Anholon studio</title><meta http-equiv=\"refresh\" content=\"0; url=" +

@@ -1,4 +1,4 @@
-// Who may talk to the studio: the page that has the token of its address, from this machine's own browser.
+// Decides who may talk to the studio: the page that has the token of its address, in a browser of this machine.
 //
 // Another page that the browser shows can send requests to the loopback address, and a name server can make a foreign
 // name point to it. So each request must name this host (Host), carry the token in its path, and, if it changes or
@@ -12,10 +12,10 @@
 
 namespace anholon {
 
-// 128 random bits of the system, in hexadecimal digits. Throws std::runtime_error if the system gives none.
+// Returns 128 random bits of the system, in hexadecimal digits. Throws std::runtime_error if the system gives none.
 std::string random_token();
 
-// Takes the same time for all texts of one length.
+// True if the texts are equal. It takes the same time for all texts of one length.
 bool same_secret(std::string_view a, std::string_view b);
 
 class Gate {
@@ -23,9 +23,9 @@ class Gate {
   Gate(std::string token, int port);
   // The address of the page.
   std::string address() const;
-  // The reply to a request that is refused; nullopt if it may pass.
+  // Returns the reply to a refused request; nullopt if the request may pass.
   std::optional<HttpReply> refuse(const HttpHead& head) const;
-  // The part of the path behind the token, "check". REQUIRES: the request was not refused.
+  // Returns the part of the path behind the token, such as "check". REQUIRES: the request was not refused.
   std::string behind_token(const HttpHead& head) const;
 
  private:

@@ -28,24 +28,24 @@ namespace {
 using Refuse = std::function<std::optional<HttpReply>(const HttpHead&)>;
 using Handle = std::function<HttpReply(const HttpRequest&)>;
 
-// What all connections share.
+// The data that all connections share.
 struct Service {
   HttpLimits limits;
   Refuse refuse;
   Handle handle;
   asio::thread_pool* pool = nullptr;
-  std::size_t connections = 0;  // of the one thread that moves bytes
+  std::size_t connections = 0;  // used by the one thread that moves bytes
 };
 
 std::string text(boost::string_view view) { return {view.data(), view.size()}; }
 
-// The value of a field that occurs once.
+// Returns the value of a field that occurs once; otherwise an empty text.
 template <class Fields, class Name>
 std::string only(const Fields& fields, Name name) {
   return fields.count(name) == 1 ? text(fields[name]) : std::string();
 }
 
-// The text of a field that is percent-encoded; a % without two digits stays as it is.
+// Returns the text of a percent-encoded field; a % without two digits is kept.
 std::string decoded(const std::string& field) {
   std::string out;
   for (std::size_t i = 0; i < field.size(); ++i) {
@@ -95,7 +95,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void read_body(error_code error) {
     if (error) return refused(error);
     request_.body = std::move(parser_.get().body());
-    stream_.expires_never();  // the handler has limits of its own
+    stream_.expires_never();  // the handler has its own limits
     asio::post(*service_.pool, [self = shared_from_this()]() mutable {
       HttpReply reply = self->service_.handle(self->request_);
       // The session ends in the thread that moves bytes.
@@ -125,7 +125,7 @@ class Session : public std::enable_shared_from_this<Session> {
     response_.set("Referrer-Policy", "no-referrer");
     response_.set("Cross-Origin-Resource-Policy", "same-origin");
     response_.set("Cross-Origin-Opener-Policy", "same-origin");
-    // Styles are inline because the editor and the sections of a report write them so; scripts are files of the studio.
+    // Styles are inline because the editor and the sections of a report contain them; scripts are files of the studio.
     response_.set(
         "Content-Security-Policy",
         "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; font-src data:; img-src "
@@ -136,7 +136,7 @@ class Session : public std::enable_shared_from_this<Session> {
     http::async_write(stream_, response_, [self = shared_from_this()](error_code, std::size_t) { self->close(); });
   }
 
-  // Bytes that were not read would make the system reset the connection before the reply arrives.
+  // Reads the remaining bytes: otherwise the system would reset the connection before the reply arrives.
   void close() {
     error_code ignored;
     stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
@@ -211,7 +211,7 @@ class HttpServer::Inner {
   }
 
   HttpLimits limits_;
-  Service service_;  // outlives the sessions, which the context holds
+  Service service_;  // outlives the sessions, which belong to the context
   asio::io_context io_{1};
   tcp::acceptor acceptor_{io_};
   asio::signal_set signals_{io_, SIGINT, SIGTERM};

@@ -7,7 +7,7 @@
 
 namespace anholon {
 
-// The head of a request, before its body is read. A field is empty if the request does not have it or has it twice.
+// The head of a request, before its body is read. A field is empty if it is missing or occurs twice.
 struct HttpHead {
   std::string method, target, host, origin, site;  // site: Sec-Fetch-Site
 };
@@ -27,19 +27,19 @@ struct HttpReply {
 
 struct HttpLimits {
   std::size_t head = 16 << 10, body = 1 << 20;  // bytes
-  int seconds = 10;                             // to send a request, and to take a reply
+  int seconds = 10;                             // to send a request, and to receive a reply
   std::size_t connections = 32;
-  int threads = 4;  // that handle requests
+  int threads = 4;  // the threads that handle requests
 };
 
 class HttpServer {
  public:
-  // Binds 127.0.0.1; port 0 takes a free one. Throws std::runtime_error that says why it cannot.
+  // Binds 127.0.0.1; port 0 takes a free one. Throws std::runtime_error with the reason if it cannot.
   HttpServer(int port, const HttpLimits& limits);
   ~HttpServer();
   int port() const;
-  // Serves until SIGINT or SIGTERM; `stopping` is called then, before the threads are awaited. `refuse` sees the
-  // head alone and may answer in place of `handle`, which many threads call.
+  // Serves until SIGINT or SIGTERM; then `stopping` is called, before the threads are awaited. `refuse` gets the head
+  // alone and may reply in place of `handle`, which many threads call.
   void run(std::function<std::optional<HttpReply>(const HttpHead&)> refuse,
            std::function<HttpReply(const HttpRequest&)> handle, std::function<void()> stopping);
 

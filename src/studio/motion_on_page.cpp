@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::chrono::seconds kLongestMotion{4};
 
-// What events set, impacts and friction do not conserve what is an integral between them.
+// Integrals of the motion between events are not conserved by values that events set, by impacts and by friction.
 std::vector<Conserved> conserved_of(const v1::Run& run, const Workspace& workspace) {
   const bool kept = !sets_values(*workspace.model) && run.data().system.data().model->contacts.empty();
   return kept ? conserved(*workspace.mechanics) : std::vector<Conserved>();

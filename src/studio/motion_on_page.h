@@ -1,4 +1,4 @@
-// A motion as the studio shows it: the player and the plots, and how far it can be trusted.
+// A motion as the studio shows it: the player and the plots, and the sections that tell how far it can be trusted.
 #pragma once
 #include <functional>
 #include <string>
@@ -11,11 +11,11 @@ namespace anholon {
 
 class MotionOnPage {
  public:
-  // `command` makes a page of the motion again. REQUIRES: the run has rows.
+  // `command`: makes a page of the motion again. REQUIRES: the run has rows.
   MotionOnPage(const v1::Run& run, const std::string& command);
-  // Equations and proof are added to these.
+  // The parts of the page, to which equations and proof can be added.
   PageInParts& parts() { return parts_; }
-  // "title", "sections" and "data".
+  // Writes "title", "sections" and "data".
   void write(JsonWriter& json) const;
 
  private:
@@ -23,10 +23,10 @@ class MotionOnPage {
   PageInParts parts_;
 };
 
-// Ends a motion after 4 s, which is then shown as far as it has come.
+// Returns a function that ends a motion after 4 s; the motion is then shown up to there.
 std::function<bool()> end_of_motion();
 
-// Why a run without rows cannot be shown.
+// Returns the reason why a run without rows cannot be shown.
 v1::Error without_rows(const v1::Run& run);
 
 }  // namespace anholon

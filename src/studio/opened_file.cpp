@@ -29,7 +29,7 @@ OpenedFile::OpenedFile(SourceText source, bool shipped) : source_(std::move(sour
   try {
     for (const NamedFile& f : files_named(source_)) readable_.push_back(f.name);
   } catch (const Failure&) {
-    // The page shows the mistake. A file that the text names after it is corrected is readable after a restart.
+    // The page shows the mistake. Files that the corrected text names become readable after a restart.
   }
   if (shipped) {
     no_saving_ = "this model comes with the program and is not changed; copy its text, or open a file of your own";

@@ -14,10 +14,10 @@ namespace anholon {
 namespace {
 
 constexpr std::array<Task, 4> kTasks = {{{"check", 5, true}, {"simulate", 30}, {"derive", 30}, {"prove", 60}}};
-// Of a sweep in a folder.
+// The tasks of a sweep in a folder.
 constexpr Task kMap = {"sweep", 60, true}, kCase = {"case", 30};
 
-// A page that loads these scripts; `opens`, "model" or "sweep", tells the last one what to show.
+// Returns a page that loads these scripts; `opens`, "model" or "sweep", tells the last script what to show.
 std::string page(const std::string& opens, const std::vector<std::string>& scripts) {
   std::string text = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
                      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -30,7 +30,7 @@ std::string page(const std::string& opens, const std::vector<std::string>& scrip
 
 HttpReply no_such_page() { return {404, "text/plain; charset=utf-8", "there is no such page\n"}; }
 
-// The files that every page of the studio consists of.
+// Returns a file that belongs to every page of the studio.
 HttpReply file(const std::string& name) {
   if (name == "studio.js") return {200, "text/javascript; charset=utf-8", std::string(studio_script())};
   if (name == "map.js") return {200, "text/javascript; charset=utf-8", std::string(map_script())};
@@ -40,7 +40,7 @@ HttpReply file(const std::string& name) {
   return no_such_page();
 }
 
-// What the server hands out: of a model, or of a sweep.
+// The pages of the server: of a model, or of a sweep.
 class Pages {
  public:
   Pages() = default;

@@ -29,7 +29,7 @@ void append(std::string& out, const std::string& part) {
   out.append(reinterpret_cast<const char*>(&n), sizeof n).append(part);
 }
 
-// Takes the next part off a message; false if the message is shorter than it says.
+// Takes the next part off a message; returns false if the message is shorter than its length tells.
 bool take(const std::string& from, std::size_t& at, std::string& part) {
   std::uint64_t n = 0;
   if (from.size() - at < sizeof n) return false;
@@ -41,7 +41,7 @@ bool take(const std::string& from, std::size_t& at, std::string& part) {
   return true;
 }
 
-// Waits until the pipe is ready. False if time is up or `stop` returns true.
+// Waits until the pipe is ready. Returns false if time is up or `stop` returns true.
 bool wait(int file, short event, Clock::time_point deadline, const std::function<bool()>& stop) {
   for (;;) {
     pollfd p{file, event, 0};
@@ -104,7 +104,7 @@ void Worker::start() {
   posix_spawnattr_init(&attributes);
   posix_spawn_file_actions_adddup2(&files, in[0], 0);
   posix_spawn_file_actions_adddup2(&files, out[1], 1);
-  // Ctrl-C is for the studio, which ends its workers: they have a process group of their own.
+  // Ctrl-C is for the studio, which ends its workers; therefore they have a process group of their own.
   sigset_t none;
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&attributes, &none);
@@ -157,7 +157,7 @@ void work(const WorkerLimits& limits, const std::function<std::string(const Ques
     const rlimit limit{most, most};
     setrlimit(what, &limit);
   }
-  // Text that a library prints must not get among the answers.
+  // Text that a library prints must not be mixed with the answers.
   const int out = fcntl(1, F_DUPFD_CLOEXEC, 3), nothing = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (out < 0 || nothing < 0) return;
   dup2(nothing, 1);

@@ -1,6 +1,6 @@
-// A process of its own for computations: a text that asks for too much time or memory ends the process, not the studio.
+// A separate process for computations: a text that needs too much time or memory ends this process, not the studio.
 //
-// Questions and answers go through two pipes, each as its length and its bytes.
+// Questions and answers go through two pipes, each as its length followed by its bytes.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -12,8 +12,8 @@
 
 namespace anholon {
 
-// What the worker is asked. `name` and `path` are those of the model's file, `case_name` is a case of the text or empty,
-// `readable` the files that the text may refer to, as the text writes them.
+// A question to the worker. `name` and `path`: of the model's file; `case_name`: a case of the text, or empty;
+// `readable`: the files to which the text may refer, under the names in the text.
 struct Question {
   std::string command, name, path, case_name, text;
   std::vector<std::string> readable;
@@ -26,7 +26,7 @@ struct WorkerLimits {
 
 class Worker {
  public:
-  // The program's own command line that makes a process into a worker.
+  // `command`: the command line of the program that makes a process into a worker.
   explicit Worker(std::vector<std::string> command);
   ~Worker();
   Worker(const Worker&) = delete;
@@ -37,8 +37,8 @@ class Worker {
     End end = End::answered;
     std::string text;  // JSON
   };
-  // Waits for its turn. `give_up` is asked again and again; the process is ended if it returns true. A process that was
-  // ended is replaced at once, so that the next question finds one that is ready.
+  // Waits for its turn and asks. `give_up` is called repeatedly; the process is ended if it returns true. A process
+  // that was ended is replaced at once, so that the next question finds one that is ready.
   Answer ask(const Question& question, double seconds, const std::function<bool()>& give_up);
 
  private:

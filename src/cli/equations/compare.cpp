@@ -94,7 +94,7 @@ void write_json(JsonWriter& j, const EquationFinding& f) {
   j.close();
 }
 
-// A file, a shipped one, or what comes through a pipe.
+// Reads the equations from a file, a shipped file, or the standard input ("-").
 SourceText equations_named(const std::string& name) {
   if (name != "-") return equation_text(name);
   SourceText source{"<standard input>", {}};

@@ -17,7 +17,7 @@ namespace anholon::cli {
 
 namespace {
 
-// --format, else the format of the file's extension.
+// Returns the format that --format names, else that of the file's extension.
 std::string format_of_equations(const DeriveCommand& o) {
   const std::string end = std::filesystem::path(o.output).extension().string();
   if (!o.format_given && !o.output.empty())
@@ -41,7 +41,7 @@ Elimination pivots_of(const Reader& in, const Mechanics& m, const StateChoice& c
   }
 }
 
-// The motion as a program in C or Python.
+// Writes the motion as a program in C or Python.
 int write_program(const DeriveCommand& o, const Reader& in, const Formulation& f) {
   if (o.json)
     throw UsageError{"error: --format " + o.format + " is not JSON\nhint: leave one of --json and --format out\n"};

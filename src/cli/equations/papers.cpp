@@ -50,7 +50,7 @@ std::vector<Paper> read_papers() {
   return papers;
 }
 
-// "papers/systems/order-3.toml" is beside the tables; "papers/luo-zhao-example-1" is a shipped model.
+// Opens a model: "papers/systems/order-3.toml" is beside the tables, "papers/luo-zhao-example-1" is a shipped model.
 OpenModel load(const std::string& name) {
   std::string path;
   if (name.ends_with(".toml"))
@@ -203,7 +203,7 @@ void write_json(JsonWriter& j, const Paper& p, const Claim& c, const std::vector
   j.close().close();
 }
 
-// Cells of a Markdown table: no line ends, no bars.
+// Makes a text a cell of a Markdown table: without line ends, with escaped bars.
 std::string cell(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '\n' ? ' ' : c;
@@ -227,7 +227,7 @@ void print_markdown(const std::vector<Paper>& papers) {
   hand_out(out);
 }
 
-// The claims that the options name; empty if the papers are only to be listed.
+// Returns the claims that the options name; the list is empty if the papers are only to be listed.
 std::vector<FoundClaim> wanted_claims(const PapersCommand& o, const std::vector<Paper>& papers) {
   std::vector<FoundClaim> wanted;
   if (o.tag.empty()) {
@@ -257,7 +257,7 @@ struct Counts {
   bool all_right() const { return numbered == numbered_right && others == others_right; }
 };
 
-// The claims on their way to the terminal or to JSON.
+// Prints the claims one by one, on the terminal or as JSON.
 class Listing {
  public:
   Listing(const PapersCommand& o, const std::vector<Paper>& papers, std::size_t claims)

@@ -22,7 +22,7 @@ namespace {
 
 std::vector<const Formulation*> wanted_forms(const ProveCommand& o, const Mechanics& m) {
   std::vector<const Formulation*> forms;
-  const auto order = static_cast<unsigned>(o.m);  // forms that do not depend on it are compared unchanged
+  const auto order = static_cast<unsigned>(o.m);  // forms without an order m are compared unchanged
   if (o.forms.empty()) {
     for (const Formulation* f : formulations())
       if (obstacle(*f, m).empty() && (!order || f->highest_m == 0 || order_obstacle(*f, m, order).empty()))
@@ -38,8 +38,8 @@ std::vector<const Formulation*> wanted_forms(const ProveCommand& o, const Mechan
   return forms;
 }
 
-// The points at which forms are distinguished satisfy all constraints, lifted to order m; so the constraints must be
-// liftable for any forms.
+// Throws if the constraints cannot be lifted to the order m. Any forms need this: they are distinguished at points that
+// satisfy all lifted constraints.
 void must_lift(const Mechanics& m, unsigned order) {
   for (const Formulation* f : formulations())
     if (f->eliminates() && f->highest_m == kHighestM && obstacle(*f, m).empty()) must_have_order(*f, m, order);
@@ -125,8 +125,8 @@ std::string json(const Model& model, const Proof& p, const Certificate& c, const
   return j.text();
 }
 
-// Ctrl-C ended the proof: its text says which forms were compared until then, with their verdicts. Without the tangents of
-// the constraints nothing is proved of the forms that rest on them.
+// Says, after Ctrl-C, which forms were compared, with their verdicts. As long as the tangents of the constraints are
+// not shown, nothing is proved of the forms that rest on them.
 int say_stopped(const ProveCommand& o, const Proof& p) {
   say(stderr, "stopped (interrupted): %zu of %zu forms were compared with Routh's equations\n", p.compared,
       p.forms.size());
@@ -145,7 +145,7 @@ int say_stopped(const ProveCommand& o, const Proof& p) {
   return kStopped;
 }
 
-// The proof, which Ctrl-C ends; `eliminations` are those that it offers to the forms.
+// Computes the proof until Ctrl-C; stores in `eliminations` those that the forms may use.
 Proof proof(const ProveCommand& o, const Reader& in, const Mechanics& m, const std::vector<const Formulation*>& forms,
             std::vector<Eliminations>& eliminations) {
   ProofOptions options;

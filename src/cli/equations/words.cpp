@@ -1,4 +1,4 @@
-// The words of the commands that derive, prove and compare.
+// The command line words of the commands that derive, prove and compare.
 #include "cli/command_words.h"
 #include "result/format.h"
 

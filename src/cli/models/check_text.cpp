@@ -13,13 +13,13 @@ namespace anholon::cli {
 
 namespace {
 
-constexpr std::size_t kLongestPower = 120;  // a longer formula is not printed here; --json has it
+constexpr std::size_t kLongestPower = 120;  // characters; a longer formula is only in --json
 
 std::string counted(std::size_t n, const char* one, const char* many) {
   return std::to_string(n) + " " + (n == 1 ? one : many);
 }
 
-// The hypotheses on the reactions that occur, each with its constraints if there are several.
+// Prints the hypotheses on the reactions, each with its constraints if not all constraints have it.
 void reactions(const Scenario& s, const Explanation& x) {
   const auto with = [&](Hypothesis h) {
     std::vector<std::size_t> list;

@@ -6,12 +6,13 @@
 
 namespace anholon::cli {
 
-// A formula longer than this is no help on a terminal; --json has it.
+// The length of the longest formula that is printed, in characters; --json has all formulas.
 static constexpr std::size_t kLongest = 160;
 
 static bool cyclic(const Conserved& c) { return c.name.rfind("momentum of ", 0) == 0; }
 
-// In which modes of contacts and of constraints with 'active' the equations hold, if the model has any.
+// Returns the modes of contacts and of constraints with 'active' for which the equations hold; empty if the model has
+// none.
 static std::string modes(const Model& model) {
   for (const ModelNote& note : model.notes)
     if (note.of_modes())
@@ -19,7 +20,8 @@ static std::string modes(const Model& model) {
   return "";
 }
 
-// Those of a list that may jump, or the others; `where` says for which part of a motion.
+// Prints the integrals of the list that may jump, or those that may not; `where` names the part of a motion in which
+// they are conserved.
 static void print_conserved(const Mechanics& m, const std::vector<Conserved>& list, bool jumps,
                             const std::string& where) {
   std::string names;

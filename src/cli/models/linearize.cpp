@@ -21,7 +21,7 @@ std::string text(const Multi& x, int digits) {
 
 // ---- output -----------------------------------------------------------------------------------------
 
-// "; with --eliminate x,y the motion is steady", empty if no elimination makes it so.
+// Returns "; with --eliminate x,y the motion is steady"; empty if no elimination makes the motion steady.
 std::string remedy(const LinearModel& m) {
   std::string list;
   for (const std::string& name : m.eliminate) list += (list.empty() ? "" : ",") + name;
@@ -161,13 +161,13 @@ std::string json(const Scenario& s, const Linearization& l, const std::optional<
   return j.close().text() + "\n";
 }
 
-// "-0.5 ± 2i" for a pair, whose second member is not printed again.
+// Returns "-0.5 ± 2i" for a pair of complex conjugates; the second of the pair is not printed again.
 std::string pair_text(const Eigenvalue& e, int digits) {
   if (e.value.im == Multi(0)) return text(e.value.re, digits);
   return (e.value.re == Multi(0) ? "" : text(e.value.re, digits) + " ") + "± " + text(abs(e.value.im), digits) + "i";
 }
 
-// Whether an eigenvalue is the second of a pair, or a repeated multiple one, which is already printed.
+// True if an earlier eigenvalue of the list has the same text: the conjugate of this one, or an equal one.
 bool told(const std::vector<Eigenvalue>& list, std::size_t i) {
   for (std::size_t k = 0; k < i; ++k)
     if (list[k].value.re == list[i].value.re && abs(list[k].value.im) == abs(list[i].value.im)) return true;
@@ -192,7 +192,7 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
 
 std::string short_text(const Multi& x) { return number_text(to_double(x), 6); }
 
-// Numbers of tables: few digits, unless some were asked for.
+// Returns a number of a table, with few digits unless the user asks for a number of digits.
 std::string table_text(const Multi& x, std::optional<int> digits, int few) {
   if (x == Multi(0)) return "0";
   return digits ? text(x, *digits) : number_text(to_double(x), few);

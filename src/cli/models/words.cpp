@@ -1,4 +1,4 @@
-// The words of the commands of what a model is.
+// The command line words of the commands that describe a model.
 #include "cli/command_words.h"
 #include "result/format.h"
 

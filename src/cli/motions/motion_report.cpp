@@ -10,7 +10,7 @@ namespace anholon::cli {
 
 namespace {
 
-// By which methods the motion went; nothing if Taylor's made every step and no other was tried.
+// Prints the methods of integration; prints nothing if Taylor's made every step and no other was tried.
 void method(const MethodReport& r) {
   if (!r.differs_from_taylor()) return;
   std::string text;
@@ -35,7 +35,8 @@ void method(const MethodReport& r) {
   say(stderr, "method: %s\n", text.c_str());
 }
 
-// "blade'" for the first derivative of the constraint with the largest residual.
+// Returns ", worst 'blade''" for the first derivative of the constraint `blade` with the largest residual; empty if all
+// residuals are zero.
 std::string worst_constraint(const SimulationReport& r) {
   std::string name;
   double worst = 0;
@@ -63,13 +64,13 @@ void second_opinion(const Scenario& s, const SimulationReport& r) {
 
 using Units = std::map<std::string, std::string>;
 
-// " m" behind a number in m; empty for a pure number and where the unit is unknown.
+// Returns " m" to follow a number in m; empty for a pure number and for an unknown unit.
 std::string behind(const Units& units, const std::string& name) {
   const auto it = units.find(name);
   return it == units.end() || it->second.empty() || it->second == "1" ? "" : " " + it->second;
 }
 
-// "event burn_out at t = 160: stage 1 -> 2, fuel 0 -> 90000"
+// Prints lines such as "event burn_out at t = 160: stage 1 -> 2, fuel 0 -> 90000".
 void events(const SimulationReport& r, const Units& units) {
   constexpr std::size_t kMostLines = 20;
   for (std::size_t k = 0; k < r.events.size() && k < kMostLines; ++k) {
@@ -86,7 +87,7 @@ void events(const SimulationReport& r, const Units& units) {
     say(stderr, "… and %zu more events (all of them with --json)\n", r.events.size() - kMostLines);
 }
 
-// "constraint c5 depends on the others …", as `check` says.
+// Notes the constraints that depend on others at the initial state, in the words of `check`.
 void redundant(const Scenario& s) {
   constexpr std::size_t kNamed = 8;
   std::string list;

@@ -6,8 +6,8 @@
 
 namespace anholon::cli {
 
-// units: of columns and parameters by name, as far as they are known. `goes_on`: the motion continues a saved one, whose
-// residuals count, too.
+// Prints the report. units: of columns and parameters by name, as far as they are known. goes_on: the motion continues
+// a saved run, and the residuals of that run count, too.
 void print_report(const Scenario& scenario, const SimulationReport& report,
                   const std::map<std::string, std::string>& units, bool goes_on);
 

@@ -34,7 +34,7 @@ void make_ready(const SystemCommand& o, Told& x) {
   if (!reset && contacts(*x.in.names).empty()) x.conserved = conserved(*x.scenario->mechanics);
 }
 
-// The columns that the page is to plot. Throws UsageError.
+// Returns the columns to plot on the page. Throws UsageError.
 std::vector<std::string> columns_of_page(const PageFile& page, const RunTable& table) {
   try {
     std::vector<std::string> names;

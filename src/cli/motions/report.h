@@ -14,21 +14,21 @@ namespace anholon::cli {
 struct Told {
   std::string name;  // of the case
   Reader in;
-  std::unique_ptr<Workspace> scenario;  // in which the motion was made, and its page is
+  std::unique_ptr<Workspace> scenario;  // the workspace of the motion and of its page
   std::vector<Conserved> conserved;
   RunFile run;
 };
 
-// `simulate`; with `told` the motion is stored there as well, and without an output only there.
+// Runs `simulate`. If `told` is given, the motion is stored there, too; without an output file it is stored only there.
 int simulate_motion(const SimulateCommand& asked, const SavedRun* resume, Told* told);
 
-// Whether the path is an existing result file, by its name.
+// True if a file of this name exists and the name has the ending of a result file.
 bool is_a_run(const std::string& path);
 
 // Reads the run o.model, or the run `rows` of the model o.model, with its model. Throws UsageError.
 void take_up(const SystemCommand& o, const std::string& rows, Told& x);
 
-// Call it before the motion is computed: throws UsageError if the page cannot be written.
+// Throws UsageError if the page cannot be written; called before the motion is computed.
 void check_page(const PageFile& page);
 
 // Writes the page of these motions of one model. Throws UsageError.

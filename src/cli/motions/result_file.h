@@ -5,10 +5,10 @@
 
 namespace anholon::cli {
 
-// Throws UsageError with the position of the error.
+// Reads a run. Throws UsageError with the position of the error.
 RunFile read_result(const std::string& path);
 
-// Throws UsageError if the name has an ending that no format of `formats` has. A name without an ending passes, and so do
+// Throws UsageError if the name has an ending of no format in `formats`. A name without an ending passes, and so do
 // pipes and devices.
 void check_ending(const std::string& output, const std::vector<const ResultFormat*>& formats);
 

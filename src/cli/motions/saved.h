@@ -1,17 +1,18 @@
-// Continued runs: the data that --save writes beside the state, and how --continue reads them.
+// Continued runs: the options that --save writes into a saved run, and their reading by --continue.
 #pragma once
 #include "cli/input.h"
 #include "simulation/simulate.h"
 
 namespace anholon::cli {
 
-// The options that determine the motion, taken from a saved run; throws if the command line gives them as well.
+// Reads the saved run o.resume and sets the options that determine the motion. Throws if the command line gives them,
+// too.
 SavedRun continued(SimulateCommand& o);
-// Throws if the saved run belongs to another model.
+// Throws if the saved run belongs to another model, or if a file of the model has changed.
 void same_model(const SavedRun& run, const Reader& in);
-// Adds the data that `continued` needs.
+// Adds the options that `continued` reads.
 void describe_run(SavedRun& run, const SystemCommand& o, const Reader& in, const MotionSettings& settings);
-// Throws if not all requested rows are beyond those of the saved run.
+// Throws if `end` or a time of --at is not beyond the rows of the saved run.
 void beyond(const SavedRun& run, const SimulateCommand& o, const Rational& end);
 
 }  // namespace anholon::cli

@@ -31,14 +31,15 @@ namespace anholon::cli {
 
 namespace {
 
-// The format of the rows: by the name of the file; --json asks for the report, too, if that format does not hold it.
+// Returns the format that the file name selects. With --json, a format without the report is replaced by that of
+// reports.
 const ResultFormat& output_format(const SimulateCommand& o) {
   const ResultFormat* named = format_of(o.output);
   if (o.json && (!named || named->holds == Holds::rows)) return report_format();
   return named ? *named : plain_format();
 }
 
-// Writes the saved runs that --save asks for; stops at the first failure and keeps its message.
+// Writes the saved runs for --save; stops at the first failure and keeps its message.
 class Saver {
  public:
   Saver(const SimulateCommand& o, const Reader& in, const MotionSettings& settings)
@@ -71,7 +72,7 @@ SimulationReport run(Workspace& s, const Reader& in, const SimulationOptions& op
   }
 }
 
-// A run that continues in its own file appends its rows to the existing ones; any other file is replaced.
+// Appends the rows to the existing ones if a run continues in its own file; any other file is replaced.
 void go_on(RunWriter& rows, const SimulateCommand& o, const SavedRun& resume, const Reader& in) {
   std::error_code none;
   if (!rows.error().empty() || !resume.has("given") || !std::filesystem::is_regular_file(o.output, none)) return;
@@ -90,8 +91,8 @@ void go_on(RunWriter& rows, const SimulateCommand& o, const SavedRun& resume, co
   }
 }
 
-// Drawn motions have an end and rows of their own where nobody names them on the command line: what the file asks for may
-// be too coarse to be looked at.
+// Sets the end of a motion that is to be drawn, if none is given, and its rows, unless the command line gives them: the
+// rows that the file asks for may be too coarse for a picture.
 void settle_drawing(MotionSettings& settings, const SimulateCommand& o, const Workspace& s,
                     SimulationOptions& options) {
   const Rational start(s.state.t);
@@ -115,7 +116,7 @@ void settle_drawing(MotionSettings& settings, const SimulateCommand& o, const Wo
     options.picture = PictureRows{kInEachStep, abs(Rational(*settings.to - start)).get_d() / rows};
 }
 
-// A format that is held in memory has a limit of its own.
+// Throws UsageError if more numbers are asked for than the format, which is held in memory, can take.
 void must_fit(const ResultFormat& format, const SimulationOptions& asked, const Workspace& s, const Rational& last) {
   const auto columns = static_cast<long>(1 + 4 * s.system.coordinates + s.system.constraints.size());
   if (format.most_numbers > 0 && asked.every &&
@@ -124,7 +125,7 @@ void must_fit(const ResultFormat& format, const SimulationOptions& asked, const 
                      format.name + "\nhint: write HDF5 or CSV: -o run.h5\n"};
 }
 
-// All that is asked of the motion of this system. drawn: the motion is for a page or a film alone.
+// Sets all options of the motion of this system. drawn: the motion is only for a page or a film.
 void ask(MotionSettings& settings, const SimulateCommand& o, const Workspace& s, bool drawn,
          SimulationOptions& options) {
   if (drawn) settle_drawing(settings, o, s, options);
@@ -132,7 +133,7 @@ void ask(MotionSettings& settings, const SimulateCommand& o, const Workspace& s,
   const Rational last = anholon::ask(settings, s, asker(saving), options);
   if (options.resume) beyond(*options.resume, o, last);
   must_fit(output_format(o), options, s, last);
-  // An event that sets values does not conserve what is an integral between events.
+  // An event that sets values may change an integral of the motion between events.
   if (!sets_values(*s.model)) options.conserved = conserved(*s.mechanics);
   settings.tolerance = options.tolerance;
   std::erase_if(settings.at, [&](const WrittenTime& t) {
@@ -141,15 +142,15 @@ void ask(MotionSettings& settings, const SimulateCommand& o, const Workspace& s,
   settings.form = s.system.form->name;
 }
 
-// What became of a motion and of the file of its rows.
+// The end of a motion and of the file of its rows.
 struct Written {
   SimulationReport report;
-  std::string error;  // why the file could not be written; empty if it was
-  std::string part;   // where the rows lie that could be written
+  std::string error;  // the reason why the file could not be written; empty if it was
+  std::string part;   // the file with the rows that could be written
   bool started = true;
 };
 
-// Computes the motion and writes its rows to where the options say.
+// Computes the motion and writes its rows as the options say.
 class Writer {
  public:
   Writer(const SimulateCommand& o, const Reader& in, Workspace& s, const RunInfo& info, const Outcome& start,
@@ -195,7 +196,7 @@ class Writer {
   }
 
   void into(RunWriter& rows, Written& w) {
-    // What --save writes is never ahead of the rows.
+    // Saves a run only after the rows before it are in the file.
     if (!o_.save.empty())
       options_.save = [this, &rows](const SavedRun& saved) {
         rows.flush();
@@ -215,11 +216,11 @@ class Writer {
   Told* told_;
 };
 
-// Says how the motion ended and where its rows are; returns the exit status.
+// Prints how the motion ended and where its rows are; returns the exit status.
 int say_end(const SimulateCommand& o, const SourceText& source, const Written& w, const std::string& save_error) {
   const SimulationReport& r = w.report;
   std::string write_error = w.error;
-  // A run that is ended because its rows have no place was not interrupted by anybody.
+  // A run that ended because its rows could not be written was not interrupted by the user.
   if (!r.outcome.ok() && (write_error.empty() || stop_requested())) {
     print_outcome(r.outcome, source);
     if (r.rows > 0 && !o.output.empty() && write_error.empty())
@@ -270,7 +271,7 @@ int simulate_motion(const SimulateCommand& asked, const SavedRun* resume, Told* 
   options.cancelled = stop_requested;
   if (told) {
     static_cast<RunInfo&>(told->run) = info;
-    // Nor does an impact, or friction.
+    // An impact and friction do not keep the integrals either.
     if (contacts(*in.names).empty()) told->conserved = options.conserved;
   }
   Written w;

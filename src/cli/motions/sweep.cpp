@@ -27,7 +27,7 @@ namespace anholon::cli {
 
 namespace {
 
-// -n, or a number given to --cases.
+// Reads -n, or a number given to --cases; nullopt if neither is given.
 std::optional<std::size_t> count_of(const SweepCommand& o) {
   if (o.case_count.empty()) return std::nullopt;
   const auto n = parse_rational(o.case_count);
@@ -73,7 +73,7 @@ struct Part {
   std::optional<SweepTable> table;
 };
 
-// --vary, --cases, -n, --draw and --seed.
+// Reads --vary, --cases, -n, --draw and --seed.
 Variation variation_of(const SweepCommand& o, const Model& model, const std::shared_ptr<const CaseTable>& table,
                        bool of_cases) {
   Variation v(o.seed, o.draw == "sobol" ? Variation::Draws::sobol : Variation::Draws::random);
@@ -101,11 +101,11 @@ Reductions reductions_of(const SweepCommand& o, const Reader& in) {
   return list;
 }
 
-// Returns false if --show has printed what was asked for.
+// Makes the part ready. Returns false if --show asks for a stage of the derivation instead of a sweep.
 bool prepare(Part& p, const std::shared_ptr<const CaseTable>& table) {
   p.in = read(p.asked);
   must_spare_inputs(p.asked, p.in, {p.asked.case_table}, {{"-o", p.asked.output}});
-  // Without a mode the contacts move, too.
+  // Without --mode the contacts change their modes during the motion.
   if (!p.asked.mode.empty()) p.in = in_mode(std::move(p.in), p.asked, "sweep");
   const SweepCommand o = p.asked = with_form(p.asked, p.in);
   p.variation = variation_of(o, *p.in.model, table, !p.word.empty());
@@ -147,14 +147,14 @@ std::vector<SweepPiece> pieces_of(std::deque<Part>& parts) {
   return list;
 }
 
-// Everything on which the rows depend.
+// Returns the names and texts of all data on which the rows depend.
 std::vector<std::pair<std::string, std::string>>
 asked_of(const RunInfo& info, const SweepCommand& o, const std::deque<Part>& parts, const std::string& table_text) {
   std::vector<std::pair<std::string, std::string>> all;
   const auto add = [&](const std::string& name, const std::string& text) {
     if (!text.empty()) all.emplace_back(name, text);
   };
-  // The mode comes first: messages name it before the title that tells it, too.
+  // The mode comes first, because messages about differences must name it before the title, which tells it, too.
   if (const auto mode = info.settings.find("mode"); mode != info.settings.end()) add("mode", joined(mode->second, " "));
   add("title", info.title);
   add("model", parts.front().in.source.text);

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kProgram = "anholon " ANHOLON_VERSION;
 
-// --shard i/N: every N-th part, from the i-th on.
+// The share --shard i/N: every N-th part, from the i-th part on.
 struct Shard {
   std::size_t number = 1, of = 1;
 };
@@ -48,7 +48,7 @@ Shard shard_of(const std::string& word) {
   return s;
 }
 
-// A whole number from `least` to `most`.
+// Reads a whole number from `least` to `most`. Throws UsageError.
 std::size_t count_asked(const char* option, const char* what, const std::string& word, std::size_t least,
                         std::size_t most) {
   std::size_t count = 0;
@@ -59,7 +59,7 @@ std::size_t count_asked(const char* option, const char* what, const std::string&
   return count;
 }
 
-// --refine and --refine-by.
+// The request of --refine and --refine-by.
 struct Refinement {
   std::size_t generations = 0;  // after the first one
   RefineRule rule;
@@ -99,7 +99,7 @@ double left(const SweepStore::Progress& p) {
   return p.cases_per_second > 0 ? static_cast<double>(p.all_cases - p.cases) / p.cases_per_second : 0;
 }
 
-// "160 + 24 + 31 cases", empty if there is one generation.
+// Returns a text such as "160 + 24 + 31 cases"; empty if there is one generation.
 std::string generation_list(const SweepStore& store) {
   std::string list;
   if (store.generations().size() == 1) return list;
@@ -107,14 +107,14 @@ std::string generation_list(const SweepStore& store) {
   return list + " cases";
 }
 
-// The sentences that say how far the cases can be trusted.
+// Prints the sentences that say how far the cases can be trusted.
 void say_judgement(const SweepStore& store, std::FILE* to) {
   const auto lines = judgement_text(store.judgement());
   if (!lines) return;
   for (const std::string& line : *lines) say(to, "%s\n", line.c_str());
 }
 
-// A JSON object, to which the judgement of the folder is added.
+// Returns the JSON object with the judgement of the folder added to it.
 std::string with_judgement(std::string object, const SweepStore& store) {
   const std::string judgement = store.judgement();
   if (judgement.empty()) return object;
@@ -129,14 +129,15 @@ void say_progress(const SweepStore& store, const SweepStore::Progress& p) {
   if (const std::string list = generation_list(store); !list.empty()) say(stderr, "generations: %s\n", list.c_str());
 }
 
-// Cases that stopped, of the parts that tell it.
+// Returns the counts of stopped cases by kind, from the notes of the parts.
 StoppedByKind stopped_of(const SweepStore::Progress& p) {
   StoppedByKind all;
   for (const std::string& note : p.stopped) add_stopped(all, note);
   return all;
 }
 
-// How many cases finished. Outcomes are those of rows, as many of each case; without them the cases that stopped tell it.
+// Returns the number of finished cases. Outcomes are counted by rows, equally many for each case; without outcomes the
+// stopped cases are subtracted.
 std::size_t finished_of(const SweepStore::Progress& p) {
   std::size_t rows = 0, finished = p.cases;
   for (const auto& [outcome, count] : p.outcomes) rows += count;
@@ -162,10 +163,10 @@ bool names_folder(const std::string& output) {
 
 namespace {
 
-// What `fill_missing` did for one generation.
+// The result of `fill_missing` for one generation.
 struct Missing {
   bool complete = false;
-  int status = kOk;  // if it is not complete
+  int status = kOk;  // the exit status if the generation is not complete
 };
 
 // Computes the parts of the share that are missing.
@@ -240,7 +241,7 @@ int sweep_into_folder(const SweepCommand& o, const FolderSweep& sweep) {
     say(stderr, "note: the parts of %s have %zu cases; --chunk holds for new folders\n", store.folder().c_str(),
         store.request().chunk);
 
-  bool waits = false, ended = false;  // for other shares; without a border
+  bool waits = false, ended = false;  // waits: other shares are missing; ended: no border is left
   for (;;) {
     const Missing now = fill_missing(o, sweep, store, shard);
     if (!now.complete) return now.status == kStopped ? stopped_early(o, store) : now.status;
@@ -249,7 +250,7 @@ int sweep_into_folder(const SweepCommand& o, const FolderSweep& sweep) {
     waits = !store.missing().empty();
     if (waits && shard.of > 1) break;
     if (waits) continue;
-    // Another process may have planned them in the meantime.
+    // Another process may have planned the next generation in the meantime.
     if (store.generations().size() > refinement.generations) break;
     if (stop_requested()) return stopped_early(o, store);
     ended = add_generation(store, *sweep.variation, refinement.rule) == 0;
@@ -272,8 +273,8 @@ int sweep_into_folder(const SweepCommand& o, const FolderSweep& sweep) {
 
 namespace {
 
-// Prints one line every few seconds until all parts are there, or Ctrl-C. What was written since the last line tells how
-// fast the cases come now.
+// Prints one line every few seconds until all parts are there, or until Ctrl-C. The speed is computed from the cases
+// that were written since the last line.
 void watch(SweepStore& store) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::seconds kPause{2};

@@ -1,4 +1,4 @@
-// Sweeps in folders: computed part by part, looked at, collected into one file. (doc/sweeps.md)
+// Sweeps in folders: they are computed part by part, looked at, and collected into one file. (doc/sweeps.md)
 #pragma once
 #include "cli/input.h"
 #include "ensemble/parts/fill.h"
@@ -6,17 +6,17 @@
 
 namespace anholon::cli {
 
-// Whether -o names a folder: by a slash at its end, or because a folder of that name is there.
+// True if -o names a folder: the name ends with a slash, or a folder of that name exists.
 bool names_folder(const std::string& output);
 
 struct FolderSweep {
   std::vector<SweepPiece> pieces;
   std::vector<std::pair<std::string, std::string>> asked;  // as in SweepRequest
   std::size_t cases = 0;
-  const Variation* variation = nullptr;  // of the only piece; null if there are several
+  const Variation* variation = nullptr;  // the variation of the only piece; null if there are several pieces
 };
 
-// Computes what is missing in the folder, or what is missing in the share that --shard names. Returns the exit status.
+// Computes the missing parts of the folder, or of the share that --shard names. Returns the exit status.
 int sweep_into_folder(const SweepCommand& o, const FolderSweep& sweep);
 
 }  // namespace anholon::cli

@@ -1,4 +1,4 @@
-// The file of a sweep and what is said of its cases at the end.
+// The file of a sweep, and the report on its cases.
 #pragma once
 #include <atomic>
 #include <cstdio>
@@ -14,8 +14,8 @@ namespace anholon::cli {
 class SweepOutput final : public CaseSink {
  public:
   SweepOutput(const ResultFormat& format, const std::string& path, const SweepInfo& info);
-  // The cases that follow are those of this table, which has the columns of the file. Their numbers follow on; `word` is
-  // in the added column.
+  // Turns to the next table, which has the columns of the file, for the cases that follow. The numbers of these cases
+  // continue those of the cases before; `word` is the text of their added column.
   void turn_to(SweepTable& table, const std::string& word) { table_ = &table, word_ = word, before_ = taken_; }
   void result(const CaseResult& r) override;
   // Called by all threads.
@@ -33,13 +33,13 @@ class SweepOutput final : public CaseSink {
   StoppedByKind stopped_;
 };
 
-// The format of the file that -o names; without a file --json decides. Throws UsageError.
+// Returns the format of the file that -o names; without a file --json decides. Throws UsageError.
 const ResultFormat& sweep_format(const std::string& output, bool json);
 
-// On stderr: how many cases finished, how far they can be trusted; why the others stopped.
+// Prints on stderr how many cases finished, why the others stopped, and how far the cases can be trusted.
 void report_sweep(const EnsembleReport& report, std::size_t cases, const SweepOutput& output);
 void report_stopped(const StoppedByKind& stopped, std::FILE* to = stderr);
-// Which formulas of reductions have no value, and in how many of the finished cases.
+// Notes on stderr the formulas of reductions that have no value, and in how many of the finished cases.
 void report_without_value(const EnsembleReport& report);
 
 }  // namespace anholon::cli

@@ -1,4 +1,4 @@
-// The words of the commands that compute motions.
+// The command line words of the commands that compute motions.
 #include "cli/command_words.h"
 #include "result/format.h"
 
@@ -50,7 +50,7 @@ void add_report(CommandLine& line) {
   c->add_flag("--no-proof", o.page.no_proof, "leave out the proof that the forms agree");
 }
 
-// Commands of `sweep` on a folder.
+// Adds the commands of `sweep` on a folder.
 static void add_sweep_folder(CommandLine& line, CLI::App* sweep) {
   const auto part = [&](const char* name, const char* what, int (*run)(const SweepFolderCommand&), const char* footer) {
     const Words<SweepFolderCommand> w = line.command(name, what, run, footer, sweep);

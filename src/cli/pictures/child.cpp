@@ -45,7 +45,7 @@ struct Pipe {
   ~Pipe() { close_write(), close_read(); }
 };
 
-// False at the end of the stream.
+// Appends to `into` the bytes that the pipe holds. Returns false at the end of the stream.
 bool take(int from, std::string& into) {
   std::array<char, 65536> part;
   const ssize_t n = ::read(from, part.data(), part.size());

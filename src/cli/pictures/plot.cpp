@@ -26,7 +26,7 @@ namespace anholon::cli {
 
 namespace {
 
-// In cm: as tall as panels below one another need to be read.
+// Returns the height of a figure in cm: room for all panels, one below the other.
 double height_of(std::size_t panels) {
   constexpr double kPlain = 9, kComfortable = 3.5, kPage = 26, kLeast = 1.9;
   const auto n = static_cast<double>(panels);
@@ -72,7 +72,7 @@ std::optional<Length> length(const std::string& text) {
   return std::nullopt;
 }
 
-// WIDTHxHEIGHT, of paper or in characters.
+// Reads WIDTHxHEIGHT, lengths on paper for a figure or characters for the terminal, into the options of the target.
 void take_size(const std::string& text, Target t, FigureOptions& figure, TerminalSize& terminal) {
   if (text.empty()) return;
   const std::size_t x = text.find('x');
@@ -106,7 +106,7 @@ bool colours() {
   return isatty(1) && !(no && *no) && !(kind && std::strcmp(kind, "dumb") == 0);
 }
 
-// The size of the terminal, or COLUMNS x LINES; `rows` is the height of one of `panels` boxes.
+// Returns the size of the terminal, or COLUMNS x LINES; `rows` is the height of one of `panels` boxes.
 TerminalSize terminal_size(std::size_t panels) {
   TerminalSize size;
   int lines = 26;
@@ -118,7 +118,7 @@ TerminalSize terminal_size(std::size_t panels) {
     if (const int n = std::atoi(columns); n > 0) size.columns = n;
   }
   size.columns = std::clamp(size.columns, 30, 500);
-  // Legend, axis, its labels, its name, the prompt.
+  // kBeside: rows for the legend, the axis, its labels, its name and the prompt.
   constexpr int kBeside = 6, kLeast = 6, kMost = 30;
   size.rows = panels > 1 ? std::clamp((lines - kBeside) / static_cast<int>(panels) - 2, kLeast, kMost)
                          : std::clamp(lines - kBeside, 2 * kLeast, kMost);
@@ -175,7 +175,7 @@ std::string write_figure(const Figure& f, Target t, const std::string& path) {
   return t == Target::terminal ? std::string() : write_drawing(lay_out(f), f.title, t, path);
 }
 
-// Draws a sweep as a map or a histogram; of curves, which are drawn as runs are, returns the runs and sets the options.
+// Draws a sweep as a map or a histogram. If it is drawn as curves, returns them as runs and sets the options.
 std::vector<NamedRun> drawn_sweep(const PlotCommand& o, Target t, FigureOptions& options) {
   const auto must_be_written = [](const std::string& why) {
     if (!why.empty()) throw UsageError{"error: " + why + "\n"};
@@ -210,8 +210,8 @@ std::vector<NamedRun> drawn_sweep(const PlotCommand& o, Target t, FigureOptions&
   return std::move(picture.curves);
 }
 
-// The run, and those that stand among the words of columns: names of files that are no columns of the run. `columns` is
-// left with the others.
+// Reads the run o.run and the runs named in `columns`; removes their names from `columns`. A word names a run if it is
+// a file name and no column of the run o.run.
 std::vector<NamedRun> read_runs(const PlotCommand& o, std::vector<std::string>& columns) {
   std::vector<NamedRun> runs{{read_result(o.run), ""}};
   const RunTable first = runs[0].run.table;  // `runs` grows

@@ -22,7 +22,7 @@ struct Recording {
   bool dark = false;
 };
 
-// Throws UsageError for mistakes of the user.
+// Returns the recording that the options ask for. Throws UsageError for mistakes of the user.
 Recording recording(const RenderCommand& o);
 
 // Times of the motion, and the rate at which they are shown.
@@ -50,7 +50,7 @@ Pictures pictures(const std::string& dom, std::size_t first, std::size_t last, i
 // Width and height of a PNG; nullopt for other data.
 std::optional<std::pair<int, int>> png_size(const std::string& bytes);
 
-// "frame-0001.png" for the first of `count` pictures
+// Returns "frame-0001.png" for the first of `count` pictures.
 std::string frame_name(std::size_t index, std::size_t count);
 
 }  // namespace anholon::cli

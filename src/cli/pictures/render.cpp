@@ -34,7 +34,7 @@ namespace fs = std::filesystem;
 
 struct Stopped {};
 
-// The last lines of a program's messages.
+// Returns the last lines of a program's messages.
 std::string said(const std::string& err) {
   std::size_t at = err.find_last_not_of("\n\r ");
   if (at == std::string::npos) return "it said nothing";
@@ -82,7 +82,7 @@ void check_place(const Recording& r) {
   if (const std::string why = obstacle_to_writing(r.output); !why.empty()) refuse(why, "");
 }
 
-// The motion with its model.
+// Reads or computes the motion and its model.
 int motion(const RenderCommand& o, Told& x) {
   if (!o.rows.empty() || is_a_run(o.model)) {
     take_up(o, o.rows, x);

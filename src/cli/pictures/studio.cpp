@@ -36,7 +36,7 @@ void open_browser(const std::string& address) {
   posix_spawn_file_actions_destroy(&files);
 }
 
-// What a name opens: a folder of a sweep, or a model. Throws UsageError.
+// Opens the folder of a sweep or the model that a name stands for. Throws UsageError.
 void open(const std::string& name, StudioOptions& options) {
   std::error_code none;
   if (SweepStore::is_there(name)) {

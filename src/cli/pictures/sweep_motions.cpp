@@ -14,9 +14,9 @@ namespace anholon::cli {
 
 namespace {
 
-constexpr int kRows = 300;  // of a motion, beside those of its events
+constexpr int kRows = 300;  // of a motion, besides those of its events
 
-// Of the cases that have a place in the map.
+// Returns the numbers of at most `most` cases, spread over the map; cases without a place in the map are left out.
 std::vector<std::size_t> chosen_cases(const std::vector<MappedCase>& cases, std::size_t most) {
   std::vector<plot::SpreadCase> places;
   std::vector<std::size_t> numbers, chosen;
@@ -35,7 +35,7 @@ std::string in_words(const v1::Outcome& outcome) {
   return outcome.hint.empty() ? text : text + " " + outcome.hint;
 }
 
-// Why there is no motion.
+// Returns the reason why there is no motion.
 std::string in_words(const v1::Error& error) {
   if (!error.diagnostics.empty()) return error.diagnostics.front().message;
   return error.outcome ? error.outcome->message : error.text;

@@ -22,12 +22,12 @@ const std::string kHead =
     "<meta name=\"color-scheme\" content=\"light dark\">\n"
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; style-src "
     "'unsafe-inline'; font-src data:; img-src data: blob:\">\n<title>";
-// Begins the page when its data are there.
+// The script that begins a page without motions.
 constexpr const char* kStart = R"js(
 anholon_map(document.querySelector("main"), JSON.parse(document.getElementById("data").textContent),
   {invitation: "A click on a cell tells its case.", picked: () => {}});
 )js";
-// The same with the motions that the page holds, when the viewer is there.
+// The script that begins a page with motions, as soon as the viewer is loaded.
 constexpr const char* kStartWithMotions = R"js(
 addEventListener("DOMContentLoaded", () => {
   const held = new Map(JSON.parse(document.getElementById("motions").textContent).map(m => [m.number, m]));
@@ -53,9 +53,10 @@ addEventListener("DOMContentLoaded", () => {
 });
 )js";
 
-constexpr std::size_t kMostNumbers = 4'000'000;  // of a page: some 40 MB
+constexpr std::size_t kMostNumbers = 4'000'000;  // numbers in a page, some 40 MB
 
-// The last row of each case; of many cases one in each of 256 x 256 cells.
+// Returns the last row of each case. If these have more than kMostNumbers numbers, at most one row is kept in each of
+// 256 x 256 cells.
 std::vector<std::size_t> rows_to_show(const std::vector<double>& numbers, const std::vector<plot::NamedColumn>& axes,
                                       std::size_t columns) {
   std::vector<std::size_t> rows;
@@ -88,13 +89,13 @@ std::string label(const plot::NamedColumn& c) {
   return plot::plain_text(plot::axis_label(c, "", plot::LabelStyle::unicode));
 }
 
-// An element that holds data for the scripts. The text of a model may hold the end of a script.
+// Returns an element that holds data for the scripts, with '<' escaped: the text of a model may hold an end tag.
 std::string script_data(const std::string& id, std::string data) {
   for (std::size_t at = 0; (at = data.find('<', at)) != std::string::npos; at += 6) data.replace(at, 1, "\\u003c");
   return "<script type=\"application/json\" id=\"" + id + "\">" + data + "</script>\n";
 }
 
-// The axes of the map: those that are asked for, then what varies.
+// Returns the axes of the map: the columns that the options name, then the varied ones, at most two in all.
 std::vector<std::string> axes_of(const v1::SweepCases& cases, const PlotCommand& o) {
   std::vector<std::string> names;
   for (const std::string& given : {o.abscissa, o.ordinate})
@@ -106,7 +107,7 @@ std::vector<std::string> axes_of(const v1::SweepCases& cases, const PlotCommand&
   return names;
 }
 
-// What is there of a folder, and who made it.
+// Writes how much of the folder is computed, and by which program.
 void write_progress(JsonWriter& j, const SweepStore& store) {
   const std::size_t there = store.present().size();
   j.key("parts").integer(static_cast<long long>(there)).key("all_parts").integer(static_cast<long long>(store.parts()));
@@ -116,7 +117,7 @@ void write_progress(JsonWriter& j, const SweepStore& store) {
   j.key("program").string(made_by).key("other_program").string(made_by == kThis ? "" : kThis);
 }
 
-// How the cases ended, as numbers that differ where the outcomes do; empty if the sweep does not tell.
+// Returns for each row a number that stands for its outcome; empty if the sweep has no column `outcome`.
 std::vector<double> outcomes(const v1::SweepCases& cases, const std::vector<std::size_t>& rows) {
   std::vector<std::string> words;
   const std::vector<std::string>& names = cases.names();
@@ -134,7 +135,7 @@ void write_column(JsonWriter& j, const v1::SweepCases& cases, const std::string&
   j.close().close();
 }
 
-// The title that is asked for, that of the model, or the name of its file, as on a report page.
+// Returns the title of the options, else that of the model, else the name of the model or of the sweep.
 std::string title_of(const v1::SweepCases& cases, const PlotCommand& o) {
   if (!o.title.empty()) return o.title;
   if (!cases.store()) return o.run;
@@ -169,7 +170,7 @@ SweepMap map_of_sweep(const PlotCommand& o) {
   j.key("folder").string(cases.command().empty() && cases.store() ? o.run : "");
   j.key("varied").open_array();
   for (const std::string& name : cases.varied()) j.string(name);
-  // A scenario that varies is no axis.
+  // A scenario that varies is not an axis.
   if (std::find(cases.names().begin(), cases.names().end(), "case_name") != cases.names().end()) j.string("case_name");
   j.close().key("axes").open_array();
   for (const plot::NamedColumn& a : axes)

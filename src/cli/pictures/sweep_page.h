@@ -1,5 +1,5 @@
-// A page of a sweep: cells over two variations, or points over one; a click tells the numbers of a case and the command
-// that computes its motion, and shows the motion of a case that the page holds. (doc/sweeps.md)
+// A page of a sweep: cells over two variations, or points over one. A click on a case shows its numbers, the command
+// that computes its motion, and the motion if the page holds it. (doc/sweeps.md)
 #pragma once
 #include "cli/pictures/sweep_motions.h"
 
@@ -9,13 +9,13 @@ namespace anholon::cli {
 struct SweepMap {
   std::string title;
   std::string data;               // JSON
-  std::vector<MappedCase> cases;  // that the map shows
+  std::vector<MappedCase> cases;  // the cases that the map shows
 };
-// Throws Failure without a place.
+// Returns the map of the sweep o.run. Throws Failure without a place.
 SweepMap map_of_sweep(const PlotCommand& o);
 
-// Writes the page as HTML that needs no other file, and returns the exit status. Throws UsageError, and Failure without a
-// place.
+// Writes the page as HTML that needs no other file, and returns the exit status. Throws UsageError, and Failure without
+// a place.
 int write_page_of_sweep(const PlotCommand& o);
 
 }  // namespace anholon::cli

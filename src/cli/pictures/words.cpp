@@ -1,4 +1,4 @@
-// The words of the commands that draw.
+// The command line words of the commands that draw.
 #include "cli/command_words.h"
 #include "result/format.h"
 

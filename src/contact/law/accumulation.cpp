@@ -9,7 +9,7 @@ void Accumulation::impact(std::size_t contact, double t) {
   constexpr double kRatio = 1e-3, kNoise = 0.1, kDigits = 1e-5, kTime = 16 * std::numeric_limits<double>::epsilon();
   Impacts& i = impacts_[contact];
   const double interval = i.count > 0 ? t - i.last : 0, ratio = i.count > 1 ? interval / i.interval : 0;
-  // Near the limit an interval has few digits, and the ratio stays that of before. It changes where gravity does.
+  // Near the limit an interval has few digits, so the earlier ratio is kept. It may change where gravity changes.
   const bool known = i.alike >= kAlike, alike = std::abs(ratio - i.ratio) < (known ? kNoise : kRatio);
   i.alike = i.count > 2 && ratio < 1 && alike ? i.alike + 1 : 0;
   i.ratio = known && alike && !(kTime * std::abs(t) < kDigits * interval) ? i.ratio : ratio;

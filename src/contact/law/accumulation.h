@@ -1,5 +1,5 @@
-// Impacts of a contact whose intervals shrink by one ratio r add up to a limit: after an interval d it is d r/(1 - r) away
-// (theory: contact).
+// Finds the limit of impacts of a contact whose intervals shrink by one ratio r: after an interval d it is d r/(1 - r)
+// away (theory: contact).
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -11,13 +11,13 @@ class Accumulation {
  public:
   explicit Accumulation(std::size_t contacts) : impacts_(contacts) {}
 
-  // An impact of this contact at the time t.
+  // Notes an impact of this contact at the time t.
   void impact(std::size_t contact, double t);
-  // The time to which the impacts add up; nullopt if their intervals do not shrink by one ratio.
+  // The limit of the times of the impacts; nullopt if their intervals do not shrink by one ratio.
   std::optional<double> limit(std::size_t contact) const;
-  // Whether there is such a limit and the time t has come so near to it that the impacts left over do not count.
+  // True if there is such a limit, and the time t is so near to it that the remaining impacts are negligible.
   bool near_limit(std::size_t contact, double t) const;
-  // The contact has come to rest, and its impacts count no more.
+  // Forgets the impacts of a contact that has come to rest.
   void forget(std::size_t contact) { impacts_[contact] = {}; }
 
  private:

@@ -16,7 +16,7 @@ namespace {
 using Real = long double;
 using Numbers = ContactNumbers;
 
-// What is round-off of a slip acceleration; `size`: of the accelerations, `free`: as below.
+// The round-off of a slip acceleration; `size`: the size of the accelerations, `free`: that without contacts.
 Real round_off_of_slip(const ContactRows& rows, Real size, Real free) {
   constexpr Real kRounded = 1e-14L;
   Real most = 0;
@@ -26,8 +26,8 @@ Real round_off_of_slip(const ContactRows& rows, Real size, Real free) {
   return most;
 }
 
-// free: the size of the accelerations without contacts. Where the contacts leave no acceleration, those of the modes
-// are the round-off of this size.
+// `free`: the size of the accelerations without contacts. If the contacts leave no acceleration, the accelerations of
+// the modes are round-off of this size.
 bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
   const Real force = largest(p.b), size = std::max(largest(f.x), free);
   for (std::size_t c = 0; c < p.contacts.size(); ++c) {
@@ -60,14 +60,15 @@ bool consistent(const ContactProblem& p, const ContactSolution& f, Real free) {
   return true;
 }
 
-// The slip acceleration, along its direction, of a contact at rest that may stick and is said to slip; nullopt of another one.
+// The slip acceleration along the direction of a contact at rest that may stick, and slips in this mode; nullopt for
+// another contact.
 std::optional<Real> slip_that_begins(const ContactRows& rows, const ContactMode& mode, const Numbers& x) {
   if (mode.touch != Touch::slips || !rows.rough || rows.moves || !rows.may_stick) return std::nullopt;
   const auto v = slip_rate(rows, x);
   return v[0] * mode.direction[0] + v[1] * mode.direction[1];
 }
 
-// Whether a contact at rest that may stick, and that the others hold, is said to slip though it hardly does.
+// True if a contact at rest that may stick, and that the others hold, slips in this solution by round-off only.
 bool slips_by_round_off(const ContactProblem& p, const ContactSolution& f, Real free) {
   const auto sticks = [](const ContactMode& m) { return m.touch == Touch::sticks; };
   if (std::none_of(f.modes.begin(), f.modes.end(), sticks)) return false;
@@ -86,7 +87,7 @@ ContactMode mode(Touch touch, const std::array<Real, 2>& direction) {
   return m;
 }
 
-// The modes that one contact may take, those that touch first, and of them those that stick.
+// The modes that one contact may take: first those that touch, sticking before slipping.
 ContactModes choices(const ContactRows& rows, bool may_touch) {
   ContactModes list;
   if (may_touch) {
@@ -102,7 +103,8 @@ ContactModes choices(const ContactRows& rows, bool may_touch) {
   return list;
 }
 
-// Sticking is the way in which a contact that may stick goes on, whether or not it could begin to slip as well.
+// True if two solutions are different motions. A contact that may stick does so, whether or not it could begin to slip
+// as well, so only open and touching make a difference.
 bool alternatives(const ContactSolution& a, const ContactSolution& b) {
   bool open = false;
   for (std::size_t c = 0; c < a.modes.size(); ++c)
@@ -110,8 +112,8 @@ bool alternatives(const ContactSolution& a, const ContactSolution& b) {
   return open;
 }
 
-// Whether b is a with further contacts that touch, whose gaps stay closed in a as well: others hold them there, and they carry
-// nothing. `free`: as above.
+// True if b differs from a by further touching contacts that carry nothing: their gaps stay closed in a, too, because
+// others hold them. `free`: see consistent().
 bool is_part(const ContactProblem& p, const ContactSolution& a, const ContactSolution& b, Real free) {
   bool more = false;
   for (std::size_t c = 0; c < a.modes.size(); ++c) {
@@ -126,7 +128,7 @@ bool is_part(const ContactProblem& p, const ContactSolution& a, const ContactSol
   return more;
 }
 
-// Whether what touches in one of two solutions stays closed in both.
+// True if the contacts that touch in one of two solutions stay closed in both.
 bool same_gaps_closed(const ContactProblem& p, const ContactSolution& a, const ContactSolution& b, Real free) {
   for (std::size_t c = 0; c < a.modes.size(); ++c) {
     const ContactRows& rows = p.contacts[c];
@@ -138,7 +140,8 @@ bool same_gaps_closed(const ContactProblem& p, const ContactSolution& a, const C
   return true;
 }
 
-// Whether the loads of a have less that exerts nothing along the gaps than those of b, of contacts that touch in one of them.
+// True if the loads of a have a smaller part without effect along the gaps than those of b; contacts count that touch
+// in one of the two.
 bool takes_less(const ContactProblem& p, const ContactSolution& a, const ContactSolution& b) {
   std::vector<std::size_t> list;
   for (std::size_t c = 0; c < p.contacts.size(); ++c)
@@ -146,7 +149,7 @@ bool takes_less(const ContactProblem& p, const ContactSolution& a, const Contact
   return load_without_effect(p, list, a) < load_without_effect(p, list, b);
 }
 
-// Resistance is open where its contact is, unless a given force presses it.
+// Resistance is open if its contact is, unless a given force presses it.
 bool possible(const ContactProblem& p, const ContactModes& modes) {
   for (std::size_t c = 0; c < modes.size(); ++c)
     if (const auto& under = p.contacts[c].under)
@@ -155,7 +158,7 @@ bool possible(const ContactProblem& p, const ContactModes& modes) {
   return true;
 }
 
-// The solutions that are found, of which each is one motion.
+// The solutions found; each of them is another motion.
 class Solutions {
  public:
   explicit Solutions(const ContactProblem& p) : p_(p) {
@@ -163,13 +166,15 @@ class Solutions {
     free_ = std::max(open ? largest(open->x) : 0, Real(1e-300L));
   }
 
-  // The solution of modes, whose directions of slips that begin are guesses; nullopt if they are not consistent.
+  // Returns the solution of modes; the directions of slips that begin are guesses. Returns nullopt if the modes are not
+  // consistent.
   std::optional<ContactSolution> judge(const ContactModes& modes) const {
     auto f = solve(modes);
     if (f && !consistent(p_, *f, free_)) f.reset();
     return f;
   }
-  // The same for modes of least constraint. A contact at its limit that is said to slip, and would slip backwards, sticks.
+  // Like judge(), for modes of least constraint. A contact at its limit that slips in these modes, and would slip
+  // backwards, sticks instead.
   std::optional<ContactSolution> settle(ContactModes modes) const {
     for (std::size_t k = 0; k <= modes.size(); ++k) {
       const auto f = solve(modes);
@@ -183,7 +188,8 @@ class Solutions {
     return std::nullopt;
   }
   bool slips_by_round_off(const ContactSolution& f) const { return anholon::slips_by_round_off(p_, f, free_); }
-  // Solutions in which the same gaps stay closed differ in the loads of contacts that hold them together: the least are taken.
+  // Adds a solution. Solutions in which the same gaps stay closed differ in the loads of contacts that hold them
+  // together; the least loads are kept.
   void add(const ContactSolution& f) {
     if (known(f)) return;
     std::erase_if(list_, [&](const ContactSolution& o) {
@@ -226,7 +232,7 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
     count *= each.back().size();
   }
   Solutions solutions(p);
-  // By what touches: whether a solution is found.
+  // Tells for each set of touching contacts whether a solution is found.
   std::map<std::vector<bool>, bool> found;
   for (std::size_t k = 0; k < count; ++k) {
     ContactModes modes;
@@ -242,7 +248,7 @@ std::vector<ContactSolution> consistent_modes(const ContactProblem& p) {
       if (const auto guess = modes_of_least_constraint(p, touches))
         if (const auto f = solutions.settle(*guess)) at->second = true, solutions.add(*f);
     if (at->second) continue;
-    // A second solution with the same contacts is none beside it.
+    // A second solution with the same touching contacts would be the same motion.
     if (const auto f = solutions.judge(modes); f && !solutions.slips_by_round_off(*f))
       at->second = true, solutions.add(*f);
   }

@@ -17,7 +17,7 @@ void check_constraints(const Scenario& s) {
   }
 }
 
-// In the order in which ContactDynamics::go reads them.
+// Returns the formulas in the order in which ContactDynamics::go reads them.
 Column formulas(Workspace& s, const std::vector<Contact>& contacts) {
   const Mechanics& m = *s.mechanics;
   Column es;
@@ -133,7 +133,7 @@ void ContactDynamics::go(const ContactState& at) {
     const long double size = std::hypot(place.slip[0], place.slip[1]);
     rows.direction = size > 0 ? std::array<long double, 2>{place.slip[0] / size, place.slip[1] / size}
                               : std::array<long double, 2>{1, 0};
-    // A velocity within round-off of those that the motion had is zero.
+    // A velocity within the round-off of the earlier velocities is zero.
     constexpr long double kZero = 1e-13L;
     for (std::size_t along = 0; along < rows.tangential.size(); ++along) {
       const std::vector<long double>& t = rows.tangential[along];
@@ -164,7 +164,7 @@ bool ContactDynamics::note_fall(const ContactState& at) {
 }
 
 void ContactDynamics::pass(const ContactState& from, const ContactState& to) {
-  // Of a difference this part of its terms is round-off, and a segment may be short.
+  // This part of the terms of a difference is round-off, which matters for a short segment.
   constexpr long double kDifference = 1e-15L;
   const long double time = Rational(to.t - from.t).get_d();
   if (!(time > 0)) return;
@@ -188,7 +188,7 @@ ContactProblem ContactDynamics::impact(const std::vector<bool>& touches, std::op
     const long double e = restitution.value_or(place.restitution);
     rows.normal_rate = (1 + e) * place.gap_rate;
     rows.tangential_rate = place.slip;
-    rows.static_friction = rows.friction;  // of impulses there is one coefficient
+    rows.static_friction = rows.friction;  // impulses have one coefficient
     rows.moves = false;
     rows.may_touch = touches[c];
     if (!touches[c]) rows.normal.assign(n_, 0), rows.normal_rate = 0;

@@ -16,8 +16,8 @@ void add_rates(long double& rate, const std::vector<long double>& row, const Jum
   for (std::size_t a = 0; a < x.size(); ++a) rate += row[a] * x[a];
 }
 
-// The expansion after a compression: the impulses e N_c are given, so each contact is its normal part, and its friction is
-// one that this impulse presses as well.
+// The equations of the expansion after a compression. The impulses e N_c are given, so each contact is split: its
+// normal part, and its friction, which the given impulse presses as well.
 ContactProblem expansion(const ContactDynamics& dynamics, ContactProblem p, const ContactSolution& compression) {
   const std::size_t count = p.contacts.size();
   std::vector<ContactRows> friction;
@@ -44,7 +44,7 @@ ContactProblem expansion(const ContactDynamics& dynamics, ContactProblem p, cons
   return p;
 }
 
-// Contacts beyond those of `sum` are the friction of the contacts that they are under.
+// Adds impulses. Contacts beyond those of `sum` are the friction of the contacts that they are under.
 void add_impulses(const ContactProblem& p, const ContactSolution& of, Impulses& sum) {
   for (std::size_t k = 0; k < p.contacts.size(); ++k) {
     const ContactRows& rows = p.contacts[k];
@@ -101,7 +101,7 @@ Outcome rank_lost(const Contact& contact, const std::string& when) {
           contact.span};
 }
 
-// What to do where the gap of a contact has no derivatives.
+// The hint for a contact whose gap has no derivatives.
 static std::string beside_or_round(const Contact& contact) {
   if (contact.shape == "disc" || contact.shape == "torus")
     return "end the motion before, or start a little beside: a " + contact.shape +

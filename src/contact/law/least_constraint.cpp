@@ -17,7 +17,7 @@ struct Component {
   std::size_t contact = 0, component = 0;
 };
 
-// What friction does, in units of a force of the problem: the slip accelerations W T + w, and the loads.
+// The effects of friction, in units of a force of the problem: the slip accelerations W T + w, and the loads.
 class Responses {
  public:
   Responses(const ContactProblem& p, const std::vector<bool>& touches) : p_(p) {
@@ -59,7 +59,7 @@ class Responses {
     for (std::size_t j = 0; j < T.size(); ++j) a += of(k, j) * T[j];
     return a;
   }
-  // W: of component k by a unit of component j.
+  // W: the slip acceleration of component k by a unit of component j.
   Real of(std::size_t k, std::size_t j) const { return dot(row(k), x_[j]); }
 
  private:
@@ -74,8 +74,8 @@ class Responses {
   std::vector<Numbers> x_, N_;  // by a unit of each component
 };
 
-// The least of 1/2 T^T W T + w^T T over all friction within the bounds of the loads, which is the problem above in terms of
-// forces; by Newton's method with a barrier, and the loads of the last forces.
+// Finds the least of 1/2 T^T W T + w^T T over all friction within the bounds of the loads, which is the problem in
+// least_constraint.h in terms of forces: by Newton's method with a barrier, with the loads of the last forces.
 class LeastConstraint {
  public:
   LeastConstraint(const ContactProblem& p, const std::vector<bool>& touches)
@@ -84,7 +84,7 @@ class LeastConstraint {
 
   std::optional<ContactModes> find() {
     if (!by_.exist()) return std::nullopt;
-    // A contact that slips has the coefficient of slip, by which others may slip as well.
+    // A contact that slips has the coefficient of slip, and then others may slip as well.
     for (std::size_t k = 0; k <= touches_.size(); ++k) {
       if (!solve()) return std::nullopt;
       if (!slip_where_not_held()) return modes();
@@ -99,8 +99,8 @@ class LeastConstraint {
     return at_rest(c) && bound_[c] > 0;
   }
 
-  // Puts in the loads of the present forces, and scales those that are at rest into their bounds. Returns the largest change of
-  // a bound, as a part of them all.
+  // Inserts the loads of the present forces, and scales the friction of contacts at rest into the bounds. Returns the
+  // largest change of a bound, relative to the largest bound.
   Real put_loads() {
     Real change = 0, most = std::numeric_limits<Real>::min();
     Numbers next = bound_;
@@ -131,7 +131,7 @@ class LeastConstraint {
     return (bound_[c] - size) * (bound_[c] + size);
   }
 
-  // The slip accelerations with what the barrier adds, which vanish where it is least.
+  // The slip accelerations plus the slope of the barrier; they vanish where the barrier function is least.
   Numbers slope(const Numbers& T) const {
     Numbers g(T.size(), 0);
     for (std::size_t k = 0; k < T.size(); ++k)
@@ -145,8 +145,8 @@ class LeastConstraint {
     return true;
   }
 
-  // One step of Newton's method, shortened until the slope along it has not passed zero by much; returns false if it has come
-  // to its end.
+  // Makes one step of Newton's method, shortened until the slope along it has not passed zero by much. Returns false at
+  // the end of the iteration.
   bool step() {
     constexpr Real kEnough = 1e-13L;
     constexpr int kHalves = 60;
@@ -212,7 +212,8 @@ class LeastConstraint {
     return v;
   }
 
-  // Whether a contact slips: its force is at the bound by a smaller part than its slip acceleration is zero.
+  // True if a contact slips: the relative distance of its force from the bound is smaller than its relative slip
+  // acceleration.
   bool slips(std::size_t c) const {
     constexpr Real kZero = 1e-10L;
     Real size = kZero * without_;
@@ -222,7 +223,7 @@ class LeastConstraint {
     return room(c, T_) / (bound_[c] * bound_[c]) < std::hypot(rate(c)[0], rate(c)[1]) / size;
   }
 
-  // Notes what slips with another coefficient than it was held by; returns whether there is any.
+  // Notes the contacts that slip, and have another coefficient of slip than of sticking; returns true if there is any.
   bool slip_where_not_held() {
     bool any = false;
     for (std::size_t c = 0; c < touches_.size(); ++c) {
@@ -251,7 +252,7 @@ class LeastConstraint {
   const std::vector<bool>& touches_;
   Responses by_;
   Numbers T_;
-  std::vector<bool> slips_;  // with another coefficient than that by which they are held
+  std::vector<bool> slips_;  // contacts that slip with another coefficient than that by which they are held
   Numbers bound_;
   Real steep_ = 0;
   Real without_ = 0;  // the largest slip acceleration without friction

@@ -37,7 +37,7 @@ namespace {
 using Real = long double;
 using Numbers = ContactNumbers;
 
-// The linear equations of given modes. Unknowns: x, lambda, the loads and the friction that hold.
+// The linear equations of given modes. Unknowns: x, lambda, the holding loads and the holding friction.
 class ModeEquations {
  public:
   ModeEquations(const ContactProblem& p, const ContactModes& modes)
@@ -80,7 +80,7 @@ class ModeEquations {
   }
 
  private:
-  // Of the load k that holds a gap, in that of a contact, or of the one that presses a resistance.
+  // The part of the holding load k in the load of a contact, or in the load that presses a resistance.
   Real load(std::size_t c, std::size_t k) const {
     const std::size_t of = p_.contacts[c].under.value_or(c);
     const ForceShare& share = modes_[of].load;
@@ -88,7 +88,7 @@ class ModeEquations {
     if (share.shared) return k < share.of.size() ? share.of[k] : 0;
     return gaps_[k] == of ? 1 : 0;
   }
-  // Of the force k that holds, in component a of the friction of a contact.
+  // The part of the holding force k in component a of the friction of a contact.
   Real part(std::size_t c, std::size_t a, std::size_t k) const {
     const ForceShare& share = modes_[c].shares[a];
     if (share.shared) return k < share.of.size() ? share.of[k] : 0;
@@ -110,7 +110,7 @@ class ModeEquations {
     const ContactRows& rows = p_.contacts[c];
     PivotedEquations& m = m_;
     for (std::size_t i = 0; i < p_.b.size(); ++i) {
-      Real along = rows.under ? 0 : -rows.normal[i];  // what a unit of the load exerts, with its friction
+      Real along = rows.under ? 0 : -rows.normal[i];  // the effect of a unit of the load, with its friction
       for (std::size_t a = 0; a < rows.tangential.size(); ++a) {
         const Real t = rows.tangential[a][i];
         if (modes_[c].touch == Touch::sticks) {

@@ -1,4 +1,3 @@
-// Square linear equations in long double.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -8,8 +7,8 @@
 
 namespace anholon {
 
-// Square linear equations, solved by Gauss with complete pivoting, rows scaled to 1 and columns to about 1, as friction
-// may be large.
+// Square linear equations, solved by Gaussian elimination with complete pivoting. Rows are scaled to 1 and columns to
+// about 1, because friction may be large.
 class PivotedEquations {
  public:
   explicit PivotedEquations(std::size_t n) : n_(n), m_(n * n, 0), right_(n, 0) {}
@@ -17,7 +16,7 @@ class PivotedEquations {
   long double* operator[](std::size_t row) { return m_.data() + row * n_; }
   ContactNumbers& right() { return right_; }
 
-  // nullopt if the matrix is singular. The equations are lost.
+  // Returns nullopt if the matrix is singular. The equations are overwritten.
   std::optional<ContactNumbers> solve() {
     std::vector<int> scales(n_, 0);
     if (!scale(scales)) return std::nullopt;

@@ -1,10 +1,10 @@
-// Linear equations with a matrix that is symmetric and positive, but for directions in which it is zero.
+// Linear equations with a positive semidefinite symmetric matrix.
 #pragma once
 #include "contact/law/rows.h"
 
 namespace anholon {
 
-// The solution of H x = g whose components are zero where H, but for round-off, is.
+// Returns the solution of H x = g whose components are zero in the directions in which H is zero up to round-off.
 ContactNumbers solve_positive(std::vector<ContactNumbers> H, ContactNumbers g);
 
 }  // namespace anholon

@@ -16,7 +16,7 @@ void RoundOff::segment_has_ended(long double length) {
 
 bool RoundOff::closed(std::size_t c) const { return reached_[c] || dynamics_.place(c).gap <= uncertainty(c); }
 
-// An event is located to this part of a unit, or of the size of the model.
+// The error with which an event is located, relative to a unit or to the size of the model.
 static constexpr long double kMissed = 1e-8L;
 
 bool RoundOff::negligible(std::size_t c) const { return dynamics_.place(c).gap > 0 || missed(c); }
@@ -88,7 +88,7 @@ long double RoundOff::pressed(std::size_t c) const {
   return std::max(-a, 0.0L);
 }
 
-// Whether a velocity ends against the deceleration a within round-off of the place.
+// True if the deceleration a ends a velocity within the round-off of the place.
 bool RoundOff::hardly_moves(std::size_t c, long double v, long double a) const {
   return a > 0 && v * v <= 2 * a * kPlace * place_size(c);
 }
@@ -97,8 +97,8 @@ bool RoundOff::hardly_rises(std::size_t c) const {
   return hardly_moves(c, gap_rate(c), pressed(c)) || hardly_moves(c, gap_rate(c), pressed_by_others(c));
 }
 
-// The acceleration with which a gap would close while the others touch that rest, or hardly rise: a disc that spins on a
-// floor is driven against a wall by friction alone.
+// The acceleration with which a gap would close while other contacts touch that are at rest or hardly rise: a disc that
+// spins on a floor is driven against a wall by friction alone.
 long double RoundOff::pressed_by_others(std::size_t c) const {
   ContactProblem p = dynamics_.accelerations();
   const ContactRows own = p.contacts[c];

@@ -1,4 +1,4 @@
-// Rows of numbers, and what counts as zero among them.
+// Rows of numbers, and the limit below which they count as zero.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@ namespace anholon {
 
 using ContactNumbers = std::vector<long double>;
 
-// Solutions that differ by less, in relation to their size, are the same; a pivot below it is zero.
+// Solutions with a smaller difference, relative to their size, are the same; a smaller pivot is zero.
 inline constexpr long double kSame = 1e-10L;
 
 inline long double dot(const ContactNumbers& a, const ContactNumbers& b) {

@@ -11,18 +11,19 @@ namespace {
 using Real = long double;
 using Numbers = ContactNumbers;
 
-// A component that depends on others: t = sum of_held t_k + sum of_gaps n_c + what the constraints hold.
+// A component that depends on others: t = sum of_held t_k + sum of_gaps n_c + combinations of the constraints.
 struct Dependent {
   HeldComponent place;
-  Numbers of_held, of_gaps;  // by the order of the components that are held; by contact
+  Numbers of_held, of_gaps;  // in the order of the held components; by contact
 };
 
-// Rows one after the other, by the method of Gram and Schmidt, with the sum of rows that each direction is.
+// Orthogonalizes rows one after the other by the method of Gram and Schmidt, and keeps for each direction the sum of
+// rows that it is.
 class GramSchmidt {
  public:
   explicit GramSchmidt(std::size_t most) : most_(most) {}
 
-  // What of a row no earlier one holds.
+  // The part of a row that is orthogonal to the earlier rows.
   Numbers rest_of(const Numbers& row) const {
     Numbers v = row;
     for (const Numbers& direction : directions_) {
@@ -31,13 +32,13 @@ class GramSchmidt {
     }
     return v;
   }
-  // The same as a part of it.
+  // The length of this part, relative to the row.
   long double left_of(const Numbers& row) const {
     const Numbers v = rest_of(row);
     return std::sqrt(dot(v, v) / dot(row, row));
   }
 
-  // Adds a row, or returns the coefficients of the rows before it, of which it is the sum.
+  // Adds a row. If it depends on the earlier rows, returns its coefficients in them instead.
   std::optional<Numbers> add(const Numbers& row) {
     Numbers v = row, sum(most_, 0);
     sum[count_++] = 1;
@@ -65,14 +66,14 @@ class GramSchmidt {
   std::vector<Numbers> directions_, sums_;
 };
 
-// What the friction of a contact may be at most, but for a common factor.
+// The bound of the friction of a contact, up to a common factor.
 Real bound(const ContactProblem& p, const ContactSolution& f, std::size_t c) {
   return std::max(0.0L, p.contacts[c].static_friction * f.normal[c]);
 }
 
 class Sharing {
  public:
-  // `order`: in which contacts are asked to hold.
+  // `order`: the order in which contacts become holding ones.
   Sharing(const ContactProblem& p, ContactModes& modes, const std::vector<std::size_t>& order) : modes_(modes) {
     std::size_t most = p.beta.size();
     for (const ContactRows& rows : p.contacts) most += 1 + rows.tangential.size();
@@ -88,7 +89,7 @@ class Sharing {
         held_gaps.push_back(c);
         continue;
       }
-      // The least loads of all that exert the same.
+      // This contact has the least loads of all that have the same effect.
       modes[c].load.shared = true;
       for (const std::size_t g : held_gaps) modes[c].load.of.push_back((*sum)[gaps[g]]);
     }
@@ -102,7 +103,7 @@ class Sharing {
       if (modes[c].touch != Touch::sticks) continue;
       modes[c].shares = {};
       const std::vector<Numbers>& t = p.contacts[c].tangential;
-      // Of two components the one that depends less on others holds first: as bodies turn, it may be either.
+      // Of two components, the one that depends less on others holds first; as bodies turn, it may be either.
       constexpr Real kMuchLess = 0.5L;
       const bool second_first = t.size() == 2 && rows.left_of(t[0]) < kMuchLess * rows.left_of(t[1]);
       for (std::size_t k = 0; k < t.size(); ++k) {
@@ -125,7 +126,7 @@ class Sharing {
     }
   }
 
-  // The parts of equal creep, weighted by the bounds of the contacts.
+  // Sets the shares of equal creep, weighted by the bounds of the contacts.
   void weigh(const Numbers& bounds) {
     for (const Dependent& d : dependent_) {
       Numbers of = d.of_held;
@@ -150,7 +151,7 @@ std::vector<std::size_t> in_order(std::size_t count) {
   return order;
 }
 
-// The least part of its bound that a contact at rest is spared; contacts without a bound do not count.
+// The least spare part of a bound among contacts at rest; contacts without a bound and without friction do not count.
 Real spare_of(const ContactProblem& p, const ContactSolution& f, Real force) {
   Real spare = 1;
   for (std::size_t c = 0; c < f.modes.size(); ++c) {
@@ -164,8 +165,8 @@ Real spare_of(const ContactProblem& p, const ContactSolution& f, Real force) {
   return spare;
 }
 
-// The distribution that spares most: of all y and s with |T(y)| <= mu N(y) - s u for each contact, where u is its bound
-// before, that with the largest s; by Newton's method with a barrier that becomes steeper.
+// The distribution with the largest spare part: of all y and s with |T(y)| <= mu N(y) - s u for each contact, where u
+// is its earlier bound, the one with the largest s; by Newton's method with a barrier that becomes steeper.
 class MostSpared {
  public:
   MostSpared(const ContactProblem& p, const ContactSolution& f, const Sharing& sharing, Real force)
@@ -191,7 +192,7 @@ class MostSpared {
     z_[size_ - 1] = s - 0.5L;
   }
 
-  // Changes of the dependent components, in units of `force`, and at the end s.
+  // Returns the changes of the dependent components, in units of `force`, followed by s.
   const Numbers& solve() {
     constexpr Real kFirst = 1, kLast = 1e13L, kSteeper = 10;
     constexpr int kMost = 30;
@@ -201,7 +202,7 @@ class MostSpared {
   }
 
  private:
-  // |q + q_z z| <= p + p_z z.
+  // The cone |q + q_z z| <= p + p_z z.
   struct Cone {
     Real p;
     Numbers p_z;
@@ -209,7 +210,7 @@ class MostSpared {
     std::array<Numbers, 2> q_z;
   };
 
-  // -log of the product of all p^2 - |q|^2, with `steep` times -s; infinite outside of a cone.
+  // -log of the product of all p^2 - |q|^2, plus -s times `steep`; infinite outside of a cone.
   Real barrier(const Numbers& z, Real steep) const {
     Real sum = -steep * z[size_ - 1];
     for (const Cone& c : cones_) {
@@ -221,7 +222,7 @@ class MostSpared {
     return sum;
   }
 
-  // One step of Newton's method with halving; returns false if it has come to its end.
+  // Makes one step of Newton's method with halving; returns false at the end of the iteration.
   bool step(Real steep) {
     constexpr Real kEnough = 1e-10L;
     std::vector<Numbers> H(size_, Numbers(size_, 0));
@@ -261,7 +262,7 @@ class MostSpared {
   Numbers z_;
 };
 
-// Leaves what the contacts exert as given, and the shares for what changes after this moment.
+// Makes the present forces of the contacts given ones, and leaves the shares for later changes.
 void give(const ContactSolution& f, const Sharing& sharing, const Numbers& y, Real force, ContactModes& modes) {
   for (std::size_t c = 0; c < modes.size(); ++c)
     for (std::size_t a = 0; a < 2; ++a) modes[c].shares[a].given = f.friction[c][a];
@@ -285,7 +286,7 @@ void share_forces(const ContactProblem& p, ContactModes& modes) {
 
 long double load_without_effect(const ContactProblem& p, const std::vector<std::size_t>& contacts,
                                 const ContactSolution& f) {
-  // Of the rows, as columns with one number of each contact, what the constraints leave.
+  // The part of the rows that is orthogonal to the constraints, as columns with one number for each contact.
   GramSchmidt constraints(p.beta.size() + contacts.size());
   for (const Numbers& r : p.Phi) constraints.add(r);
   std::vector<Numbers> rows;

@@ -21,8 +21,8 @@ bool has_direction_to_find(const ContactRows& rows, const ContactMode& mode) {
   return mode.touch == Touch::slips && !rows.moves && rows.tangential.size() == 2 && rows.rough;
 }
 
-// The loads and the slip rates of contacts whose slips begin, for any directions of them: both are linear in their friction, which
-// the loads determine.
+// The loads and the slip rates of contacts whose slips begin, for any directions of these slips. Both are linear in the
+// friction of these contacts, which the loads determine.
 class BeginningSlips {
  public:
   BeginningSlips(const ContactProblem& p, const ContactModes& modes) : p_(p) {
@@ -54,11 +54,11 @@ class BeginningSlips {
 
   const std::vector<std::size_t>& list() const { return list_; }
 
-  // Puts in the directions of modes; returns false if the loads are not determined.
+  // Inserts the directions of modes; returns false if the loads are not determined.
   bool with(const ContactModes& modes) {
     if (!exist_) return false;
     const std::size_t n = list_.size();
-    // What a unit of each load exerts by its friction.
+    // The effect of a unit of each load through its friction.
     std::vector<Numbers> rubs(n);
     for (std::size_t k = 0; k < n; ++k) {
       const Real mu = p_.contacts[list_[k]].friction;
@@ -78,7 +78,7 @@ class BeginningSlips {
       for (std::size_t i = 0; i < now_.size(); ++i) now_[i] += (*loads)[k] * rubs[k][i];
     return true;
   }
-  // Of contact k of the list.
+  // The load and the slip rate of contact k of the list.
   Real load(std::size_t k) const { return now_[3 * k]; }
   std::array<Real, 2> rate(std::size_t k) const { return {now_[3 * k + 1], now_[3 * k + 2]}; }
 
@@ -87,19 +87,20 @@ class BeginningSlips {
   std::vector<std::size_t> list_;
   bool exist_ = false;
   Numbers without_, now_;    // load and two rates of each contact, without their friction and with it
-  std::vector<Numbers> by_;  // by a unit of each component of friction
+  std::vector<Numbers> by_;  // changes by a unit of each component of friction
 };
 
-// The direction of one slip that begins with two components, with those of the others as they are: the angle at which its
-// rate has no part across. Where the slip hardly accelerates, the rate turns much faster than the direction, and the fixed
-// point repels; the secant method finds it, or else bisection between angles all around.
+// Searches the direction of one slip that begins with two components, with the other directions fixed: the angle at
+// which the slip rate has no part across the direction. If the slip hardly accelerates, the rate turns much faster than
+// the direction, and the fixed point is repelling; the secant method finds it, or else bisection between angles all
+// around.
 class DirectionSearch {
  public:
-  // `place`: of the contact in the list of those that begin to slip.
+  // `place`: the index of the contact in the list of those that begin to slip.
   DirectionSearch(BeginningSlips& slips, ContactModes& modes, std::size_t place)
       : slips_(slips), modes_(modes), place_(place), contact_(slips.list()[place]), first_(modes[contact_].direction) {}
 
-  // Leaves the direction in the modes; returns false, and leaves the first one, if no angle is found.
+  // Writes the direction into the modes; if no angle is found, returns false and restores the first direction.
   bool find() {
     if (secant() || around()) return true;
     modes_[contact_].direction = first_;
@@ -119,7 +120,7 @@ class DirectionSearch {
     return v_[1] * d[0] - v_[0] * d[1];
   }
 
-  // Whether the contact is pressed and slips along its direction, at the angle that was tried last.
+  // True if, at the angle tried last, the contact is pressed and slips along its direction.
   bool slips() const {
     const auto& d = modes_[contact_].direction;
     return determined_ && slips_.load(place_) >= 0 && v_[0] * d[0] + v_[1] * d[1] > 0;
@@ -137,7 +138,7 @@ class DirectionSearch {
     return false;
   }
 
-  // A slip that hardly begins does so at angles very near to one of them only.
+  // The slip rate of a slip that hardly begins is along the direction only at angles very near to one of these.
   bool around() {
     constexpr int kParts = 48;
     const Real part = 2 * std::acos(-1.0L) / kParts;
@@ -167,8 +168,8 @@ class DirectionSearch {
   std::array<Real, 2> v_{};
 };
 
-// The directions of slips that begin together, near a first guess: the angles at which no slip rate has a part across, by
-// Newton's method with differences.
+// Searches the directions of slips that begin together, near a first guess: the angles at which no slip rate has a part
+// across its direction, by Newton's method with differences.
 class DirectionsTogether {
  public:
   DirectionsTogether(BeginningSlips& slips, const ContactModes& modes)
@@ -229,7 +230,7 @@ class DirectionsTogether {
     return m.solve();
   }
 
-  // Takes as much of a change as makes F smaller.
+  // Applies as large a part of a change as makes F smaller.
   bool improve(Numbers& angles, Numbers& F, const Numbers& change) {
     constexpr int kHalves = 12;
     constexpr Real kTurn = 0.5L;
@@ -254,7 +255,8 @@ class DirectionsTogether {
   Numbers along_;  // the parts of the slip rates along the directions
 };
 
-// The modes with the directions of slips that begin, by the two ways above: each with the others as they are until none turns.
+// Returns the modes with the directions of slips that begin, by the two searches above: one direction after the other
+// until none turns.
 std::optional<ContactModes> with_searched_directions(BeginningSlips& slips, ContactModes modes) {
   constexpr int kMost = 60;
   constexpr Real kSettled = 1e-12L;
@@ -274,10 +276,10 @@ std::optional<ContactModes> with_searched_directions(BeginningSlips& slips, Cont
   return std::nullopt;
 }
 
-// Leaves the fixed point of the directions in the modes. Returns whether it is one of forces that push: beside it there may be
-// one of forces that pull.
+// Writes the fixed point of the directions into the modes. Returns true if its forces push; there may be another fixed
+// point with forces that pull.
 bool find_fixed_point(const ContactProblem& p, BeginningSlips& slips, ContactModes& modes, Real free) {
-  // From kPlain on the steps are damped, as they may go to and fro about the fixed point.
+  // From kPlain on the steps are damped, because they may oscillate about the fixed point.
   constexpr int kMost = 400, kPlain = 30, kSlow = 100;
   constexpr Real kFound = 1e-17L, kNear = 1e-9L;
   Real change = 0;

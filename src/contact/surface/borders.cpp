@@ -10,13 +10,13 @@ namespace {
 
 bool is(const Node& n, Function f) { return n.kind == Kind::function && static_cast<Function>(n.index) == f; }
 
-// Whether it is a table that jumps at its knots, of which each is a border.
+// True for a table that jumps at its knots, each of which is a border.
 bool jumps(const StepFunction& f) {
   constexpr std::size_t kMost = 64;
   return f.smooth < 0 && f.power == 0 && f.knots.size() <= kMost;
 }
 
-// The values of a table as the first one and the steps at the knots below the argument.
+// The values of a table, as the first one plus the steps at the knots below the argument.
 Expr sum_of_steps(Graph& g, const StepFunction& f, Expr argument, const std::function<Expr(Expr)>& side) {
   Expr value = g.number(f.values[0]);
   for (std::size_t k = 0; k < f.knots.size(); ++k)
@@ -38,7 +38,7 @@ const Column& borders_of(const std::vector<Contact>& contacts) {
   return contacts.empty() || !contacts[0].borders ? none : *contacts[0].borders;
 }
 
-// In the order in which SurfaceBorders::places reads them.
+// Returns the formulas in the order in which SurfaceBorders::places reads them.
 Column formulas(Workspace& s, const std::vector<Contact>& contacts) {
   Column es, by = {s.graph().time()};
   const std::vector<Coordinate>& q = s.model->coordinates;
@@ -50,7 +50,7 @@ Column formulas(Workspace& s, const std::vector<Contact>& contacts) {
     const Column d = gradient(border, by);
     es.insert(es.end(), d.begin(), d.end());
   }
-  if (es.empty()) es.push_back(s.graph().zero());  // no tape is empty
+  if (es.empty()) es.push_back(s.graph().zero());  // a tape must not be empty
   return es;
 }
 
@@ -133,7 +133,7 @@ std::vector<SurfaceBorders::Place> SurfaceBorders::places(const ContactState& at
 
 void SurfaceBorders::begin(ContactState& at) {
   at.borders.assign(2 * count_, 1);
-  // A border may be the kink of another one.
+  // A border may depend on the side of another one.
   for (std::size_t k = 0; k < count_; ++k) {
     const Place p = places(at)[k];
     if (std::abs(p.value) > p.near)

@@ -14,7 +14,7 @@ static Column radicands(Workspace& s, const std::vector<Contact>& contacts, std:
       for (const Term& t : g.terms(id))
         if (g.rational(t.weight).has_even_denominator()) list.push_back({&g, t.node}), of.push_back(c);
     }
-  if (list.empty()) list.push_back(g.zero());  // no tape is empty
+  if (list.empty()) list.push_back(g.zero());  // a tape must not be empty
   return list;
 }
 

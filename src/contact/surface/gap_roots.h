@@ -1,5 +1,5 @@
-// Square roots in the gaps of contacts that fall towards zero, where a gap loses its derivatives: the height of the rim of
-// a disc below its centre does where the disc comes to lie flat.
+// Watches square roots in the gaps of contacts that fall towards zero, where a gap loses its derivatives: such a root
+// is the height of the rim of a disc below its centre when the disc comes to lie flat.
 #pragma once
 #include "contact/law/contact_dynamics.h"
 
@@ -7,11 +7,11 @@ namespace anholon {
 
 class GapRoots {
  public:
-  // contacts: their expressions belong to the graph of `s`.
+  // `contacts`: their expressions belong to the graph of `s`.
   GapRoots(Workspace& s, const std::vector<Contact>& contacts);
 
   void see(const ContactState& at);
-  // The least root in the gap of a contact at the last state that has been seen, as a part of the largest value of this root.
+  // The least root in the gap of a contact at the state seen last, relative to the largest value of this root.
   long double least_part(std::size_t contact) const;
 
  private:

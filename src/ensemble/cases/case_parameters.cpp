@@ -31,7 +31,7 @@ bool of_parameters(Expr e) {
   return true;
 }
 
-// Whether a derivative beyond those that are solved for stands in an equation, so that it may occur for some parameters.
+// True if an equation contains a derivative beyond those that are solved for, so that it may occur for some parameters.
 bool may_go_beyond(const System& system, const Structure& t) {
   for (std::size_t i = 0; i < system.equations.size(); ++i)
     for (const NodeId id : symbols({&system.equations[i], 1})) {
@@ -41,8 +41,8 @@ bool may_go_beyond(const System& system, const Structure& t) {
   return false;
 }
 
-// Whether the equations can be assigned to the unknowns whose leading derivatives they hold: sum sigma of an assignment is
-// sum d - sum c then, and less for any other (Pryce 2001). REQUIRES: sigma_ij <= d_j - c_i.
+// True if the equations can be assigned to the unknowns whose leading derivatives they contain: then sum sigma of an
+// assignment is sum d - sum c, and it is less for any other assignment (Pryce 2001). REQUIRES: sigma_ij <= d_j - c_i.
 bool each_is_determined(const std::vector<std::vector<int>>& sigma, const Structure& t) {
   const std::vector<int> unknown_of = highest_transversal(sigma);
   if (unknown_of.empty()) return false;

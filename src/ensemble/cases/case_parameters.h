@@ -1,4 +1,5 @@
-// The parameters of the cases of an ensemble, and whether bodies and equations of the model are possible with them.
+// The parameters of the cases of an ensemble, and checks whether bodies and equations of the model are possible with
+// them.
 #pragma once
 #include "ensemble/case.h"
 
@@ -9,29 +10,29 @@ class CaseParameters {
  public:
   CaseParameters(Workspace& scenario, const std::vector<Varied>& varied);
 
-  // Whether a parameter is varied; else all cases have the same values.
+  // True if a parameter is varied; otherwise all cases have the same values.
   bool varies() const { return any_; }
-  // The values of all parameters, those that follow from others included, for these values of the varied numbers.
+  // The values of all parameters, those included that follow from others, for these values of the varied numbers.
   template <Number N>
   std::vector<N> values(const std::vector<Rational>& varied) const;
-  // Returns an outcome that is not ok if no body has such a mass or inertia: a negative mass, a principal moment of
-  // inertia greater than the sum of the two others. (The reader refuses such numbers in a file.)
+  // Fails if a body cannot have such a mass or inertia: a negative mass, or a principal moment of inertia greater than
+  // the sum of the two others. (The reader refuses such numbers in a file.)
   Outcome possible(const std::vector<double>& parameters) const;
-  // Whether the equations hold no derivative beyond those that are solved for (sigma_ij <= d_j - c_i). They may hold
-  // one if a mass or a coefficient is zero in the file and not in the case. If a parameter vanishes, whether they still
-  // determine each unknown. No exponent that varies is a whole number, which is put in.
+  // True if the equations contain no derivative beyond those that are solved for (sigma_ij <= d_j - c_i), which they
+  // may if a mass or a coefficient is zero in the file and not in the case; if, when a parameter vanishes, they still
+  // determine each unknown; and if no exponent that varies is a whole number, which would become a constant.
   bool same_structure(const std::vector<double>& parameters) const;
 
  private:
   const Scenario& s_;
   const std::vector<Varied>& varied_;
-  bool any_ = false;  // whether a parameter is varied
+  bool any_ = false;  // true if a parameter is varied
   Tape tape_;
   std::optional<Tape> bodies_;
-  std::optional<Tape> exponents_;    // that vary
-  std::optional<Tape> equations_;    // of whose structure the parameters decide
-  std::vector<double> of_scenario_;  // parameters
-  bool goes_beyond_ = false;         // whether some parameters may give them derivatives beyond
+  std::optional<Tape> exponents_;    // the exponents that vary
+  std::optional<Tape> equations_;    // the equations whose structure depends on the parameters
+  std::vector<double> of_scenario_;  // the parameters of the scenario
+  bool goes_beyond_ = false;         // some parameters may give the equations derivatives beyond
   struct Check {                     // one condition on the roots of `bodies_`
     std::string what;
     std::size_t root = 0;

@@ -63,7 +63,7 @@ CaseWay CaseWalk::begin(const EnsemblePlan& plan, CaseResult& r, const std::shar
   return CaseWay::plain;
 }
 
-// What computes, with these parameters.
+// Gives these parameters to the objects that compute the case.
 void CaseWalk::equip(const std::vector<W>& parameters, const std::vector<double>& narrow) {
   if (lane_.kernel) lane_.kernel->set_parameters(lane_.number, parameters);
   if (stepper_) {
@@ -117,13 +117,13 @@ CaseWay CaseWalk::step() {
   return after_step();
 }
 
-// Takes the rows that lie in the last step, and the end if it does.
+// Takes the rows within the last step, and the end if the step reaches it.
 CaseWay CaseWalk::after_step() {
   for (std::size_t i = 0; i < plan_->reduced.first; ++i)
     if (!plan_->scenario.model->masses[i].weight &&
         (first_negative(*stepper_, i) || stepper_->quadrature(i, stepper_->time() - stepper_->before()) < W(0)))
       return stop(CaseWay::simulation);
-  // `simulate` names an event whose formula has no value.
+  // A formula of an event without a value is left to `simulate`, which names the event.
   for (const WatchedSeries& w : plan_->watched)
     if (!stepper_->one_sided() && !is_finite(stepper_->quadrature_coefficient(w.quadrature, 0)))
       return stop(CaseWay::simulation);
@@ -134,7 +134,7 @@ CaseWay CaseWalk::after_step() {
   return another_method_pays() ? stop(CaseWay::simulation) : CaseWay::plain;
 }
 
-// False if the polynomials of a formula are not good, which `simulate` looks at more closely.
+// Returns false if the polynomials of a formula are not good; then `simulate` computes the case and uses values.
 bool CaseWalk::reduce() {
   if (stepper_->one_sided() && !plan_->options.reductions.formulas.empty()) return false;
   const auto coefficient = [&](std::size_t i, int k) {
@@ -164,7 +164,7 @@ bool CaseWalk::reduce() {
   return good;
 }
 
-// `simulate`, which then makes the case, comes to the same conclusion.
+// If another method pays, `simulate` computes the case and comes to the same conclusion.
 bool CaseWalk::another_method_pays() {
   if (!watch_ || (stepper_->kinks() == 0 && watch_->steps_to_look(stepper_->steps() - 1) > 1)) return false;
   if (!plan_->rates->plan()) return false;
@@ -180,7 +180,7 @@ CaseWay CaseWalk::arrive() {
   return stop(kept ? CaseWay::plain : CaseWay::simulation);
 }
 
-// The last values of formulas, at the point that was kept.
+// Takes the last values of formulas, at the point that was kept.
 void CaseWalk::tell_ends() {
   std::vector<double> values;
   const std::size_t monitors = plan_->scenario.model->monitors.size();
@@ -190,7 +190,7 @@ void CaseWalk::tell_ends() {
   reducer_->values(result_->reduced);
 }
 
-// Takes what fired in the last step. Where something is set at the very end of a motion, `simulate` decides.
+// Takes the events of the last step. If one sets something at the very end of a motion, `simulate` computes the case.
 CaseWay CaseWalk::take_events() {
   const std::vector<Event>& events = plan_->scenario.model->events;
   const std::vector<Fired<double>> fired = stepper_->fired();
@@ -219,7 +219,7 @@ CaseWay CaseWalk::take_events() {
     for (std::size_t i = 0; i < narrow.size(); ++i)
       if (plan_->scenario.model->parameters[i].mode) narrow[i] = to_double(parameters[i]);
     equip(parameters, narrow);
-    ready_ = false;  // for the next case
+    ready_ = false;  // so the next case has to set its parameters
   }
   if (plan_->nearest) {
     std::vector<W> leading;
@@ -230,7 +230,7 @@ CaseWay CaseWalk::take_events() {
   return stepper_->restart(state, false).ok() ? CaseWay::plain : stop(CaseWay::simulation);
 }
 
-// Keeps the rows that lie in the last step.
+// Keeps the rows within the last step.
 bool CaseWalk::rows() {
   const bool forward = !(end_ < stepper_->before());
   const W until = told_until(*plan_->scenario.model, *stepper_);
@@ -244,13 +244,13 @@ bool CaseWalk::rows() {
   return true;
 }
 
-// Keeps the results at t, which lies in the last step.
+// Keeps the results at t, a time of the last step.
 bool CaseWalk::keep(const W& t, std::vector<double>& values) {
   const System& system = plan_->scenario.system;
-  // As every reader of a motion does (motion.cpp), unless no step follows.
+  // Every reader of a motion takes it out of the kernel (motion.cpp), unless no step follows.
   if (!stepper_->arrived()) stepper_->leave_kernel();
   if (!stepper_->at(t, *point_, plan_->leading).ok() || (plan_->stages > 0 && !point_->extend().ok())) return false;
-  // As `simulate`, which has no column of velocities if no coordinate is solved for by more than its value.
+  // Like in `simulate`, there is no column of velocities if no coordinate is solved for by more than its value.
   for (const int k : {0, 1})
     for (std::size_t a = 0; a < system.coordinates; ++a)
       values.push_back(k <= plan_->highest ? to_double(point_->derivative(a, k)) : kNoValue);

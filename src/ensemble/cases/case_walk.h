@@ -1,7 +1,7 @@
 // A plain case of an ensemble, step by step in a lane of a kernel.
 //
-// It is computed by the tapes of the plan: parameters, consistent positions and velocities, the stepping program, events,
-// outputs. It builds no expressions, so all threads share one graph.
+// The case is computed by the tapes of the plan: parameters, consistent positions and velocities, the stepping program,
+// events, outputs. No expressions are built, so all threads share one graph.
 #pragma once
 #include "ensemble/cases/ensemble_plan.h"
 #include "integrate/lanes/ordinary_steps.h"
@@ -11,32 +11,32 @@
 
 namespace anholon {
 
-// How a case is computed: plainly, by the tapes of the plan; or in a workspace of its own, by `simulate` with the
-// program of the scenario, or with one that is derived anew.
+// The way to compute a case: plainly, by the tapes of the plan; or in a workspace of its own, by `simulate`, with the
+// program of the scenario or with one that is derived anew.
 enum class CaseWay : std::uint8_t { plain, simulation, derivation };
 
-// Computes one plain case after the other, in one lane of a kernel.
+// Computes plain cases one after the other, in one lane of a kernel.
 class CaseWalk {
  public:
   using W = Wider<double>;
 
-  // Begins the next case with its numbers and its consistent start. Returns the way in which it has to be computed;
-  // `walking` tells whether it is plain and has steps to make.
+  // Begins the next case with its numbers and its consistent start. Returns the way in which the case has to be
+  // computed; afterwards `walking` is true if it is plain and has steps to make.
   CaseWay begin(const EnsemblePlan& plan, CaseResult& result, const std::shared_ptr<Kernel>& kernel, int lane);
   bool walking() const { return result_ != nullptr; }
   void abandon() { result_ = nullptr, ready_ = false, stepper_.reset(); }
   CaseResult& result() const { return *result_; }
   const EnsembleCase& numbers() const { return numbers_; }
-  // One step, in the parts of Stepper::step; the kernel works between them. A case that is not walking after one of the
-  // parts is done, or has to be computed in the way that the part returns.
+  // The parts of one step, as in Stepper::step; the kernel works between them. A case that is not walking after one of
+  // the parts is done, or has to be computed in the way that the part returns.
   CaseWay begin_step();
   CaseWay aim();
   CaseWay look_at_end();
   bool looks_elsewhere() const { return looks_elsewhere_; }
   CaseWay finish_step();
-  // The whole step, alone in its kernel.
+  // Makes a whole step, alone in its kernel.
   CaseWay step();
-  // As long as its steps are ordinary, the motion needs none of these parts.
+  // The motion for OrdinarySteps; while its steps are ordinary, none of these parts is called.
   OrdinarySteps::Motion motion() const;
 
  private:
@@ -58,7 +58,7 @@ class CaseWalk {
   std::vector<W> parameters_;
   std::vector<double> narrow_parameters_;
   bool ready_ = false, same_structure_ = true;  // for these parameters
-  bool looks_elsewhere_ = false;                // whether the step has to end at another time
+  bool looks_elsewhere_ = false;                // the step has to end at another time
   W end_{0};
   std::vector<W> times_;                  // of rows
   std::optional<StartMemory<W>> starts_;  // for these parameters

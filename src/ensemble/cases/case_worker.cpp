@@ -8,7 +8,7 @@
 
 namespace anholon {
 
-// A case never stops the others.
+// Contains failures, so that a case never stops the others.
 template <class Work>
 static bool contained(CaseResult& r, const Work& work) {
   try {
@@ -41,7 +41,7 @@ CaseWorker::Together& CaseWorker::together(int lanes) {
   return t;
 }
 
-// A lane takes the next case when it has done one. Its bits do not depend on the other lanes.
+// A lane takes the next case when it has finished one. The bits of a case do not depend on the other lanes.
 void CaseWorker::integrate(Together& together, std::span<CaseResult> results) {
   auto& [kernel, ordinary, walks] = together;
   std::vector<OrdinarySteps::Motion> motions;
@@ -111,7 +111,7 @@ void CaseWorker::end(CaseWay way, const EnsembleCase& numbers, CaseResult& r) {
 
 namespace {
 
-// Keeps of the rows of `simulate` the columns of an ensemble.
+// Keeps the columns of an ensemble from the rows of `simulate`.
 class EnsembleRowFilter final : public RowSink {
  public:
   EnsembleRowFilter(const Model& model, const std::vector<Rational>& times, CaseResult& result)
@@ -134,7 +134,7 @@ class EnsembleRowFilter final : public RowSink {
   const Model& model_;
   std::vector<double> times_;
   CaseResult& result_;
-  std::vector<std::optional<std::size_t>> kept_;  // columns
+  std::vector<std::optional<std::size_t>> kept_;  // the places of the columns
 };
 
 }  // namespace
@@ -179,7 +179,7 @@ void CaseWorker::simulate_case(Workspace& own, const EnsembleCase& numbers, Case
     if (e.stop) r.event = e.name;
     reducer.event(e.name, e.t.value);
   }
-  // Other methods, which motions with contacts take where slips are slow, have no polynomials.
+  // Other methods, which motions with contacts use for slow slips, have no polynomials.
   if (!report.method.turns.empty()) reducer.lose_formulas();
   const bool moved = report.outcome.ok() || report.steps > 0 || !report.events.empty();
   if (moved && !o.reductions.list.empty()) reducer.values(r.reduced);

@@ -1,8 +1,8 @@
-// The computation of the cases of an ensemble by one of many threads.
+// Computes cases of an ensemble in one of many threads.
 //
-// Plain cases walk side by side in the lanes of a kernel (case_walk.h). A case that stops other than by an event, or needs
-// completed states, redundant constraints or another elimination, is computed by `simulate` in a workspace of its own, so
-// its outcome is that of `simulate`. A case in which the equations have another structure is derived anew.
+// Plain cases walk side by side in the lanes of a kernel (case_walk.h). A case that stops other than by an event, or
+// needs completed states, redundant constraints or another elimination, is computed by `simulate` in a workspace of its
+// own, so its outcome is that of `simulate`. A case whose equations have another structure is derived anew.
 #pragma once
 #include <deque>
 #include <map>
@@ -16,7 +16,7 @@ class CaseWorker {
  public:
   explicit CaseWorker(const EnsemblePlan& plan) : plan_(plan) {}
 
-  // Computes the cases with the numbers that the results hold.
+  // Computes the cases whose numbers are in the results.
   void integrate(std::span<CaseResult> results);
   std::size_t in_workspaces() const { return in_workspaces_; }
 
@@ -37,7 +37,7 @@ class CaseWorker {
   void simulate_case(Workspace& own, const EnsembleCase& numbers, CaseResult& result);
 
   const EnsemblePlan& plan_;
-  std::map<int, Together> together_;  // number of lanes -> the kernel with so many
+  std::map<int, Together> together_;  // by the number of lanes
   std::size_t in_workspaces_ = 0;
 };
 

@@ -11,22 +11,22 @@ namespace anholon {
 
 namespace {
 
-// Whether a kernel makes the motions of a model, so that one with other roundings tells of their errors.
+// True if a kernel computes the motions of a model, so that a run with other roundings shows their errors.
 bool made_by_kernel(const Scenario& s) {
   const Program p = program(s.system, s.structure);
   return s.model->bounds.empty() && no_plan(p).empty();
 }
 
-// Makes further runs of cases, one after the other. All that have the equations of the first one share its workspace, and
-// what its run leaves.
+// Makes further runs of cases, one after the other. All cases that have the equations of the first one share its
+// workspace, and the plans that its run leaves.
 class FurtherRuns {
  public:
   FurtherRuns(const Scenario& of_all, const EnsembleOptions& o)
       : of_all_(of_all), o_(o), exponents_vary_(!exponents_of(*clone(*of_all.model), varied_parameters(o)).empty()) {}
 
-  // The sharper run of a case, compared with its result.
+  // Makes the sharper run of a case and compares it with the result of the case.
   SimulationReport compare(const CaseResult& r);
-  // A run as the case's, with its residuals.
+  // Makes a run like the case's, with its residuals.
   SimulationReport look_at(const CaseResult& r);
 
  private:
@@ -34,14 +34,15 @@ class FurtherRuns {
 
   const Scenario& of_all_;
   const EnsembleOptions& o_;
-  bool exponents_vary_;  // the workspace of one case may have its exponents put in
+  bool exponents_vary_;  // the exponents of one case may be constants of the workspace
   std::unique_ptr<Workspace> own_;
   std::optional<CaseParameters> parameters_;  // of the workspace
   RunToJudge<long double>::Plans compared_;
   SimulationPlans looked_at_;
 };
 
-// Makes the workspace that of a case: the one at hand with other numbers if its equations are those of the case, too.
+// Makes the workspace that of a case. The present workspace gets other numbers if its equations are those of the case,
+// too.
 Outcome FurtherRuns::begin(const EnsembleCase& numbers) {
   StateChoice state = o_.state;
   state.overrides = overrides_of(o_, &numbers);
@@ -87,7 +88,7 @@ SimulationReport FurtherRuns::compare(const CaseResult& r) {
     run.rows.add(t, row, 0);
   };
   for (const std::vector<double>& row : r.rows) add(row[0], row.begin() + 1, row.end());
-  // The results hold the double next to the time that was asked for.
+  // The results contain the double nearest to the requested time.
   add(static_cast<double>(end) == r.t ? end : r.t, r.last.begin(), r.last.end());
   estimate_error<double>(s, options, run, report);
   return report;
@@ -97,7 +98,7 @@ SimulationReport FurtherRuns::compare(const CaseResult& r) {
 
 namespace {
 
-// The results that are judged.
+// The results that can be judged.
 std::vector<const CaseResult*> fit_for_judgement(const EnsembleOptions& o, std::span<const CaseResult> results) {
   std::vector<const CaseResult*> fit;
   for (const CaseResult& r : results)
@@ -138,8 +139,8 @@ struct Judged {
   SimulationReport compared, looked_at;
 };
 
-// How many cases follow one another with the same equations: those of short runs, for which to derive the equations would
-// take longer than the runs. Others are made side by side.
+// The number of cases that follow one another with the same equations: all cases of short runs, for which deriving the
+// equations would take longer than the runs. Other cases are judged side by side.
 std::size_t cases_in_turn(const EnsembleOptions& o, std::size_t cases) {
   return o.estimate == ErrorEstimate::always ? 1 : std::max<std::size_t>(cases, 1);
 }

@@ -20,18 +20,19 @@ namespace anholon {
 
 namespace {
 
-// Cases that are integrated together, in the lanes of one kernel; as many for any number of threads.
+// The number of cases that are integrated together, in the lanes of one kernel; it does not depend on the number of
+// threads.
 std::size_t together(std::size_t cases) {
   constexpr std::size_t kMost = 32, kFew = 8;
   return std::clamp<std::size_t>(cases / kFew, 1, kMost);
 }
 
-// The most cases under way per thread, in groups of any size: the others go on beside one that takes long.
+// The most cases in work per thread, in groups of any size: the others go on beside a case that takes long.
 constexpr std::size_t kWindow = 256;
 
-// Debian's libtbb is not compiled for ThreadSanitizer, which so sees neither that what a thread is given was ready
-// before, nor that one stage ends before the next begins. `joined`, `ready` and the lock of the two stages in order say
-// it once more; so all other races are found.
+// Debian's libtbb is not compiled for ThreadSanitizer, which therefore does not know that a thread's data were ready,
+// nor that one stage ends before the next begins. `joined`, `ready` and the lock of the two ordered stages tell it, so
+// that it finds all other races.
 void joined() {
   static std::mutex all;
   const std::lock_guard lock(all);
@@ -48,7 +49,7 @@ struct Group {
   }
 };
 
-// Calls f(i) for all i < count, on so many threads.
+// Calls f(i) for all i < count, on `threads` threads.
 void for_each_number(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& f) {
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
@@ -102,8 +103,8 @@ EnsembleReport ensemble(const Scenario& s, const EnsembleOptions& o, CaseSink& s
     const std::unique_ptr<Group> owned(g);
     const std::lock_guard lock(in_order);
     for (const CaseResult& r : g->take()) {
-      // Neither a case that Ctrl-C has cut short nor one after it is a result: the results are the first cases, without
-      // a gap.
+      // A case that Ctrl-C has cut short is no result, and neither are later cases: the results are the first cases,
+      // without a gap.
       cut = cut || (r.outcome.kind == OutcomeKind::interrupted && cancelled());
       if (cut) continue;
       sink.result(r);

@@ -12,7 +12,7 @@ SweepLanes::SweepLanes(std::size_t cases, std::size_t threads, int narrow, int w
   phase_ = widths_[0].lanes == widths_[1].lanes ? Phase::decided : Phase::narrow;
 }
 
-// One group is short and its cases may be unlike those of the others.
+// Several groups are needed, because one group is short and its cases may differ from those of others.
 bool SweepLanes::Width::measured() const {
   constexpr std::size_t kGroups = 8;
   constexpr double kSeconds = 0.01;
@@ -62,8 +62,8 @@ void SweepLanes::step(Width& width, const std::shared_ptr<const KernelPlan>& pla
   width.code.step(plan, static_cast<double>(next), static_cast<double>(cases_), width.lanes);
 }
 
-// The gain is about a tenth of the time that the cases left take. The compiler takes its time from the cases if no core
-// is idle.
+// True if the gain, about a tenth of the time of the remaining cases, exceeds the time of the compiler, which the
+// compiler takes from the cases if no core is idle.
 bool SweepLanes::wide_may_pay(const KernelPlan& plan, std::size_t next) const {
   const double times = compiles_beside_ ? 2 : 10;
   const auto& [narrow, wide] = widths_;

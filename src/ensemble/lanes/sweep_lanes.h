@@ -1,7 +1,7 @@
-// The number of lanes in which a sweep computes its cases, and the machine code for so many lanes.
+// Chooses the number of lanes in which a sweep computes its cases, and makes the machine code for these lanes.
 //
-// A sweep begins with the number of lanes whose machine code is there at once (translated_at_first). A long sweep also
-// tries the greatest number of lanes that this machine has, whose code takes longer to make, and goes on with the number
+// A sweep begins with the number of lanes whose machine code is ready at once (translated_at_first). A long sweep also
+// tries the greatest number of lanes of this machine, whose code takes longer to make, and continues with the number
 // that takes less time for a case. The bits of a case do not depend on the number of lanes.
 #pragma once
 #include <array>
@@ -15,26 +15,26 @@ namespace anholon {
 
 class SweepLanes {
  public:
-  // The lanes of one group of cases, and whether their code was there when the group began.
+  // The number of lanes of one group of cases, and whether their code was ready when the group began.
   struct Turn {
     int lanes = 1;
     bool compiled = false;
   };
 
   // `cases`: of the sweep; few cases are computed in one lane. `threads`: of the sweep; 0: as many as the machine has.
-  // `narrow`: the number of lanes to begin with; `wide`: the greatest one of a tier of this machine.
+  // `narrow`: the first number of lanes; `wide`: the greatest one of a tier of this machine.
   SweepLanes(std::size_t cases, std::size_t threads)
       : SweepLanes(cases, threads, lanes_at_first(), tiers().back().lanes) {}
   SweepLanes(std::size_t cases, std::size_t threads, int narrow, int wide);
 
-  // Tells in how many lanes the group of cases that begins with this one is computed, and begins compilations that pay.
+  // Returns the number of lanes for the group of cases that begins with case `next`, and begins compilations that pay.
   // Any thread may call it.
   Turn begin(const std::shared_ptr<const KernelPlan>& plan, std::size_t next);
-  // Tells how many seconds of its thread a group of this turn took.
+  // Notes how many seconds of its thread a group of this turn took.
   void end(const Turn& turn, std::size_t cases, double seconds);
 
  private:
-  // A number of lanes, and what cases took in it.
+  // A number of lanes, and the time of the cases in it.
   struct Width {
     int lanes = 1;
     CodeForLongRuns code{};
@@ -54,7 +54,7 @@ class SweepLanes {
   std::mutex lock_;
   std::array<Width, 2> widths_;  // narrow, wide
   Phase phase_;
-  std::atomic<std::size_t> now_{0};  // of the widths
+  std::atomic<std::size_t> now_{0};  // the index of the present width
 };
 
 }  // namespace anholon

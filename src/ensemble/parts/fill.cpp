@@ -23,7 +23,7 @@ bool is_there(const SweepStore& store, std::size_t part) {
   return std::filesystem::exists(store.path_of(part), none);
 }
 
-// Writes parts in a thread of its own: one is written, the next one may wait.
+// Writes parts in a thread of its own: while one is written, the next one may wait.
 class Committer {
  public:
   explicit Committer(const SweepStore& store) : store_(store), thread_([this] { work(); }) {}
@@ -79,18 +79,18 @@ class Committer {
   std::atomic<bool> failed_{false};
   std::size_t written_ = 0;
   std::string error_;
-  std::thread thread_;  // the last member: it uses the others
+  std::thread thread_;  // the last member, because it uses the others
 };
 
-// Consecutive cases of a piece among those that an ensemble is asked for one after the other.
+// Consecutive cases of a piece among the cases that an ensemble has to compute.
 struct Segment {
-  std::size_t place = 0;  // of its first case among those asked for
+  std::size_t place = 0;  // the place of its first case among these cases
   std::size_t first = 0;  // the number of that case in the piece
   std::size_t cases = 0;
   std::size_t part = 0;
 };
 
-// Grows while threads read.
+// A list of segments that grows while threads read it.
 class Segments {
  public:
   void add(std::size_t first, std::size_t cases, std::size_t part) {
@@ -109,13 +109,13 @@ class Segments {
   std::vector<Segment> list_;
 };
 
-// The cases from `first` to the one before `last` belong to a piece.
+// The cases of a piece are those from `first` to the one before `last`.
 struct Place {
   const SweepPiece* piece = nullptr;
   std::size_t first = 0, last = 0;
 };
 
-// Collects the rows of a part and hands it over when its last case has come.
+// Collects the rows of a part and passes it on when its last case has come.
 class PartSink final : public CaseSink {
  public:
   PartSink(const SweepStore& store, const std::vector<SweepColumn>& columns, Committer& to)
@@ -133,7 +133,7 @@ class PartSink final : public CaseSink {
     stopped_.clear();
     to_.commit(segment_.part, std::move(rows));
   }
-  // Forgets the rows of an unfinished part.
+  // Drops the rows of an unfinished part.
   void clear() { rows_.take(), stopped_.clear(); }
 
  private:
@@ -166,7 +166,7 @@ class Filling {
   }
 
   Filled operator()() {
-    std::deque<std::size_t> across;  // parts that hold cases of several pieces
+    std::deque<std::size_t> across;  // parts with cases of several pieces
     for (const std::size_t part : options_.parts)
       if (std::none_of(places_.begin(), places_.end(), [&](const Place& p) { return has(p, part); }))
         across.push_back(part);
@@ -192,7 +192,7 @@ class Filling {
     return true;
   }
 
-  // One ensemble for all parts that lie in the piece.
+  // Computes all parts within one piece as one ensemble.
   void whole_parts(const Place& place) {
     std::deque<std::size_t> left;
     std::size_t cases = 0;
@@ -252,7 +252,7 @@ class Filling {
   Filled filled_;
 };
 
-// Takes the results of a trial.
+// Ignores the results of a trial.
 class NoCases final : public CaseSink {
  public:
   void result(const CaseResult&) override {}
@@ -277,12 +277,12 @@ static std::optional<double> trial(const SweepPiece& piece, std::size_t cases) {
 
 std::size_t cases_in_part(std::span<const SweepPiece> pieces) {
   constexpr double kTrial = 0.2, kPart = 8;  // seconds
-  constexpr double kNumbers = 2e6;           // of a part: 16 MB
+  constexpr double kNumbers = 2e6;           // numbers in a part: 16 MB
   const SweepPiece& piece = pieces.front();
   const std::size_t all = piece.options->cases;
   std::size_t before = 1;
   std::optional<double> last = trial(piece, before);
-  double each = 0;  // seconds of a case
+  double each = 0;  // the seconds of a case
   for (std::size_t count = 16; last && before < all; count *= 4) {
     count = std::min(count, all);
     const std::optional<double> seconds = trial(piece, count);

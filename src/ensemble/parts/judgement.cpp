@@ -22,7 +22,7 @@ void write_cases(JsonWriter& j, const char* key, const std::vector<std::size_t>&
   j.close();
 }
 
-// An object that stands in another one.
+// Indents an object for its place in another one.
 std::string within(std::string text) {
   for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 3) text.insert(at + 1, "  ");
   return text;
@@ -34,7 +34,7 @@ std::string list_of(const std::vector<std::size_t>& cases) {
   return list;
 }
 
-// "9.1e-16 (case 3)"; the case is not named if there is only one.
+// Returns "9.1e-16 (case 3)"; the case is not named if there is only one.
 std::string worst_text(const CasesResiduals& r, const CasesResiduals::Worst& worst) {
   return number_text(worst.residual, 2) +
          (r.cases.size() > 1 ? " (case " + std::to_string(worst.number) + ")" : std::string());

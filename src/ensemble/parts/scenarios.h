@@ -1,4 +1,5 @@
-// The scenarios of a model file, [case.NAME], that a sweep runs through: a piece of the sweep for each, one after the other.
+// The scenarios of a model file, [case.NAME], that a sweep runs through: each is a piece of the sweep, one after the
+// other.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,13 +8,14 @@
 
 namespace anholon {
 
-// Throws Failure without a place if the list of scenarios is empty or names one of them twice. `called` is the name of
-// the option in messages.
+// Throws Failure without a place if the list of scenarios is empty or contains a name twice. `called`: the name of the
+// option in messages.
 void must_name_each_once(const std::vector<std::string>& scenarios, const std::string& called);
 
-// Throws Failure without a place: a scenario has other columns than the first one. `hint` says how columns are chosen.
+// Throws Failure without a place, which says that a scenario has other columns than the first one. `hint`: how columns
+// are chosen.
 [[noreturn]] void has_other_columns(const std::string& scenario, const std::string& first, const std::string& hint);
-// Throws it if the tables of two scenarios have other columns.
+// Throws that Failure if the tables of two scenarios have other columns.
 void must_have_columns_of(const SweepTable& first, const std::string& first_scenario, const SweepTable& table,
                           const std::string& scenario, const std::string& hint);
 

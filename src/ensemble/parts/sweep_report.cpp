@@ -8,7 +8,7 @@ namespace anholon {
 
 namespace {
 
-// A key with the counts; nothing if no event ended a motion.
+// Returns a key with the counts; an empty string if no event ended a motion.
 std::string events_json(const std::map<std::string, std::size_t>& events) {
   std::string list;
   for (const auto& [event, cases] : events)
@@ -25,7 +25,7 @@ std::string report_of(const StoppedByKind& stopped, const std::string& error, co
          name(outcome) + "\"\n}";
 }
 
-// The text from one key of a judgement to the next one, as judgement_json wrote it.
+// Returns the text from one key of a judgement to the next one, as judgement_json wrote it.
 std::string between(const std::string& judgement, const std::string& key, const std::string& next) {
   const std::string begin = "\"" + key + "\": ", end = ",\n  \"" + next + "\": ";
   const std::size_t from = judgement.find(begin), to = judgement.find(end);

@@ -1,4 +1,4 @@
-// The report that a file of a sweep holds beside the cases.
+// The report of a sweep that a file contains beside the cases.
 #pragma once
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace anholon {
 
-// The report of cases that are collected from a folder, whose judgement is a text.
+// The report of cases from a folder, whose judgement is a text.
 struct CollectedReport {
   StoppedByKind stopped;
   std::string judgement;  // empty if there is none
@@ -16,7 +16,7 @@ struct CollectedReport {
 };
 std::string sweep_report_json(const CollectedReport& report);
 
-// A JSON object: stopped, error_estimate, residuals, cases, finished, events, outcome. (doc/json.md)
+// Returns a JSON object: stopped, error_estimate, residuals, cases, finished, events, outcome (doc/json.md).
 std::string sweep_report_json(const StoppedByKind& stopped, const EnsembleReport& report);
 
 }  // namespace anholon

@@ -11,7 +11,7 @@ namespace anholon {
 
 namespace {
 
-// A polynomial on [0, 1], whose pieces are in Bernstein form.
+// Finds the greatest value of a polynomial on [0, 1], whose pieces are in Bernstein form.
 class Highest {
  public:
   Highest(const std::vector<double>& c, double known) : c_(c), best_(known) {}
@@ -19,7 +19,7 @@ class Highest {
   double find() {
     see(c_[0]);
     see(value_at(c_.data(), degree(), 1.0));
-    // The sum of what each term adds at most.
+    // The bound is the sum of what each term adds at most.
     double bound = c_[0];
     for (std::size_t k = 1; k < c_.size(); ++k) bound += std::max(c_[k], 0.0);
     if (!(bound > best_) || monotonic()) return best_;
@@ -37,7 +37,7 @@ class Highest {
     for (int k = degree(); k >= 1; --k) s = s * x + k * c_[static_cast<std::size_t>(k)];
     return s;
   }
-  // Whether the first term of the derivative outweighs the others.
+  // True if the first term of the derivative is larger than the sum of the others.
   bool monotonic() const {
     double others = 0;
     for (std::size_t k = 2; k < c_.size(); ++k) others += static_cast<double>(k) * std::abs(c_[k]);
@@ -71,7 +71,7 @@ class Highest {
     search(std::move(b), middle, to, depth - 1);
   }
 
-  // The piece rises from its beginning up to there.
+  // Returns where the polynomial, which rises at the beginning of the piece, stops rising.
   double end_of_rise(double from, double to) const {
     for (int k = 0; k < kBisections; ++k) {
       const double middle = (from + to) / 2;

@@ -1,4 +1,4 @@
-// A formula on a piece of a motion as a polynomial: its extremes, and a polynomial through values.
+// A formula on a piece of a motion as a polynomial: its extremes, and interpolation of its values.
 #pragma once
 #include <array>
 #include <functional>
@@ -7,28 +7,28 @@
 
 namespace anholon {
 
-// The greatest value of sum c_k x^k, k <= degree, for x from 0 to h, h of either sign; `known` if no value is greater. A
-// value is found wherever the derivative changes its sign.
+// Returns the greatest value of sum c_k x^k, k <= degree, for x from 0 to h, h of either sign; `known` if no value is
+// greater. All points where the derivative changes its sign are considered.
 double greatest_on(const double* c, int degree, double h, double known);
 
-// A formula at a moment: NaN where it has no value; the magnitude of all that the value is made of.
+// The value of a formula at a moment, NaN if it has none; and the magnitude of everything that the value is made of.
 struct FormulaValue {
   double value = std::numeric_limits<double>::quiet_NaN(), made_of = 0;
 };
 
-// Chebyshev's interpolation of a formula on [from, to], at points within.
+// Chebyshev's interpolation of a formula on [from, to], at points inside.
 class Interpolation {
  public:
   static constexpr int kPoints = 13;
 
   Interpolation(const std::function<FormulaValue(double)>& f, double from, double to);
   const std::array<double, kPoints>& values() const { return values_; }
-  int without_value() const { return without_value_; }  // points
+  int without_value() const { return without_value_; }  // the number of points
   double size() const { return size_; }                 // the greatest magnitude of a value
   double mean() const { return terms_[0]; }
-  // Whether the last terms are below the allowed error and the round-off of the values.
+  // True if the last terms are below the allowed error, or below the round-off of the values.
   bool good(double allowed) const;
-  // The coefficients of u^k for u from 0 to 1.
+  // Computes the coefficients of u^k for u from 0 to 1.
   void polynomial(std::vector<double>& c) const;
 
  private:

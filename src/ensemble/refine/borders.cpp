@@ -60,7 +60,7 @@ void Borders::see(const std::vector<Sight>& sights) {
   pending_.clear();
 }
 
-// The order of the points stays: places are doubled.
+// The order of the points does not change: all places are doubled.
 void Borders::refine_units() {
   const std::vector<Key> before = stride_;
   for (const std::size_t axis : wide_) size_[axis] = 2 * size_[axis] - 1;
@@ -111,7 +111,7 @@ void Borders::halve(const std::int64_t* cell, std::vector<std::int64_t>& cells, 
   for (std::size_t k = 0; k < d; ++k) lattice *= 3;
   for (std::size_t n = 0; n < lattice; ++n) {
     Key key = 0;
-    bool least = true;  // whether a half begins here
+    bool least = true;  // a half begins here
     for (std::size_t k = 0, rest = n; k < d; ++k, rest /= 3) {
       key += static_cast<Key>(cell[k] + half * static_cast<std::int64_t>(rest % 3)) * stride_[wide_[k]];
       least = least && rest % 3 < 2;

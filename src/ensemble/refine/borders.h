@@ -1,8 +1,9 @@
-// Where the values of a sweep change, on a grid that is halved at these places only.
+// Finds where the values of a sweep change, on a grid that is halved at these places only.
 //
-// The points of the axes bound cells. A cell lies at a border if two neighbours on one of its edges differ: two corners,
-// or a corner and a point that the halving of another cell has put on the edge. Such a cell is halved along each axis.
-// The places of points are whole numbers, in units of a grid that is 2^g times as fine as the first one in generation g.
+// The points of the axes bound cells. A cell lies at a border if two neighbours on one of its edges differ: two
+// corners, or a corner and a point that the halving of another cell has put on the edge. Such a cell is halved along
+// each axis. The places of points are whole numbers, in units of a grid that is 2^g times as fine as the first one in
+// generation g.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,19 +12,19 @@
 
 namespace anholon {
 
-// What is known of a point.
+// The observed data of a point.
 struct Sight {
-  std::uint32_t kind = 0;  // of the end of its motion
-  double value = 0;        // of a column
+  std::uint32_t kind = 0;  // the kind of the end of its motion
+  double value = 0;        // the value of a column
 };
 
 class Borders {
  public:
   using Differ = std::function<bool(const Sight&, const Sight&)>;
 
-  // The numbers of points of the axes of the first generation. An axis of one point bounds no cell.
+  // `axes`: the numbers of points of the axes of the first generation. An axis of one point bounds no cell.
   explicit Borders(const std::vector<std::size_t>& axes);
-  // Takes what is known of the points of the newest generation, in their order; at first those of the whole grid, the
+  // Takes the data of the points of the newest generation, in their order; at first those of the whole grid, the
   // last axis fastest.
   void see(const std::vector<Sight>& sights);
   // Begins the next generation: halves the cells at borders. Returns the places of the points that it adds, one point
@@ -45,7 +46,7 @@ class Borders {
   std::vector<std::int64_t> places(Key key) const;
 
   std::vector<std::size_t> wide_;    // axes with more than one point
-  std::vector<std::uint64_t> size_;  // points of each axis at the units of this generation
+  std::vector<std::uint64_t> size_;  // points of each axis in the units of this generation
   std::vector<Key> stride_;
   std::vector<Known> known_;         // by ascending keys
   std::vector<Key> pending_;         // the points of the newest generation

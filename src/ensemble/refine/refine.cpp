@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kHint = "--refine-by theta:0.1: neighbours whose theta differs by more than 0.1 are a border";
 constexpr std::size_t kMostAxes = 6;  // 3^6 points around a cell
 
-// The ways in which motions ended, numbered in the order in which they come.
+// The kinds of ends of motions, numbered in the order in which they come.
 class Kinds {
  public:
   std::uint32_t of(const std::string& words) {
@@ -39,7 +39,7 @@ double number_at(const ParquetColumn& c, std::size_t row) {
   return std::get<Words>(c.values).rows[row];
 }
 
-// Appends what the rows of a part tell of its cases; a case with several rows is told by its last one.
+// Appends what the rows of a part tell about its cases; the last row of a case counts.
 void look_at(const ParquetTable& table, const std::string& path, const std::string& column, Kinds& kinds,
              std::vector<Sight>& sights) {
   const ParquetColumn* number = column_of(table, "case");

@@ -33,7 +33,7 @@ std::string host() {
   return out;
 }
 
-// .tmp-HOST-PROCESS-NUMBER
+// Returns .tmp-HOST-PROCESS-NUMBER.
 std::string temporary_name() {
   static std::atomic<unsigned> count{0};
   return std::string(kTemporary) + host() + "-" + std::to_string(::getpid()) + "-" + std::to_string(count++) +
@@ -77,7 +77,7 @@ Committed commit_file(const std::string& folder, const std::string& name, std::s
   if (::close(fd) != 0) return failed();
   const bool linked = ::link(own.c_str(), final.c_str()) == 0;
   const int why = errno;
-  // A file system over a network may report a failure of a link that it made (open(2) on NFS).
+  // A network file system may report the failure of a link that it made (open(2) on NFS).
   struct stat info{};
   const bool mine = linked || (::stat(own.c_str(), &info) == 0 && info.st_nlink == 2);
   errno = why;

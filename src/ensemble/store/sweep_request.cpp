@@ -14,7 +14,7 @@ namespace {
 constexpr int kVersion = 1;
 constexpr const char *kBase = "base file ", *kTable = "data file ";
 
-// A text as JSON gives it back: bytes that are not UTF-8 are lost.
+// Returns a text as JSON gives it back: bytes that are not UTF-8 are lost.
 std::string as_kept(const std::string& text) {
   return nlohmann::json::parse(JsonWriter().string(text).text()).get<std::string>();
 }

@@ -1,4 +1,5 @@
-// The request of a sweep in a folder, its file _sweep.json, and other texts in JSON that the folder keeps. (doc/sweeps.md)
+// The request of a sweep in a folder, its file _sweep.json, and other texts in JSON that the folder keeps
+// (doc/sweeps.md).
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -18,29 +19,30 @@ struct SweepRequest {
   std::vector<std::string> columns;
   std::size_t cases = 0;
   std::size_t chunk = 0;  // cases of a part
-  // How a program makes the request again, in words of its own; it does not distinguish sweeps.
+  // The data with which a program makes the request again, in the program's own format; they do not distinguish sweeps.
   std::string recipe = {};
   // The name by which a command found the model; it does not distinguish sweeps either.
   std::string model_name = {};
-  // The version of the program that made the folder, where the request is read from one.
+  // The version of the program that made the folder, if the request comes from one.
   std::string program = {};
 };
 
-// The version of the program is told and does not distinguish sweeps.
+// Returns the text of the file. The version of the program is in it, but does not distinguish sweeps.
 std::string request_json(const SweepRequest& request, const std::string& program);
 // Throws Failure without a place; `path` names the file in messages.
 SweepRequest request_of(const std::string& json, const std::string& path);
 
 // Adds the files to which the text of a model refers, by name: its base files in their order, and the data files of its
-// tables that are not there yet.
+// tables that are not in `asked` yet.
 void add_files(std::vector<std::pair<std::string, std::string>>& asked, const SourceText& model);
-// The text of the model that was asked for, with these files. A model without a name is called "model", as no base file is.
+// The text of the requested model, with these files. A model without a name is called "model", which is the name of no
+// base file.
 SourceText model_asked(const SweepRequest& request);
 
-// The sentences of a judgement, which is kept as JSON; nullopt if the text is none.
+// The sentences of a judgement, which is kept as JSON; nullopt if the text is not a judgement.
 std::optional<std::vector<std::string>> judgement_text(const std::string& json);
 
-// Adds the cases of a list that stopped_json wrote. Throws Failure without a place if the text is none.
+// Adds the cases of a list that stopped_json wrote. Throws Failure without a place if the text is no such list.
 void add_stopped(StoppedByKind& all, const std::string& json);
 
 }  // namespace anholon

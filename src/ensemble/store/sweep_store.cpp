@@ -25,23 +25,23 @@ namespace fs = std::filesystem;
 constexpr std::string_view kPart = "part-", kEnding = ".parquet";
 constexpr const char *kSweepNote = "anholon.sweep", *kFirstNote = "anholon.first", *kOutcomesNote = "anholon.outcomes",
                      *kEventsNote = "anholon.events", *kRuleNote = "anholon.rule";
-// Between the words of a note and their counts. The name of an event may hold a comma.
+// The characters between the words of a note and the next ones. The name of an event may contain a comma.
 constexpr char kOutcomeEnds = ',', kEventEnds = '\n';
-// Readers of a folder as one table leave out names that begin so. A folder may have the request under the second name,
-// which pandas takes for a part.
+// Programs that read a folder as one table ignore names that begin with '_'. A folder may have the request under the
+// second name, which pandas takes for a part.
 constexpr const char *kRequest = "_sweep.json", *kOtherRequest = "sweep.json";
 constexpr const char* kPlan = "_generation-";
 constexpr const char* kJudgement = "_judgement.json";
 constexpr const char* kRemove = "remove it; the same command of the sweep computes it again";
 
-// Differences in a long text are not printed.
+// Returns a text for a message; long texts are not printed.
 std::string shown(const std::string& text) {
   constexpr std::size_t kMost = 60;
   if (text.empty()) return "not given";
   return text.size() > kMost || text.find('\n') != std::string::npos ? "another text" : "'" + text + "'";
 }
 
-// Throws Failure that names the first thing in which two requests differ.
+// Throws Failure that names the first difference of two requests.
 void must_agree(const std::string& folder, const SweepRequest& there, const SweepRequest& here) {
   const auto refuse = [&](const std::string& what, const std::string& old, const std::string& now) {
     throw Failure({},
@@ -49,7 +49,7 @@ void must_agree(const std::string& folder, const SweepRequest& there, const Swee
                       (old == now ? " differs" : " is " + old + " there and " + now + " here"),
                   "give another folder; a sweep goes on by the same command");
   };
-  // In the order of the request that asks for more: it names what the other one lacks in its place.
+  // The order is that of the request with more texts, so that its message names what the other one lacks.
   const bool more_there = there.asked.size() > here.asked.size();
   std::set<std::string> names;
   for (const SweepRequest* r : {more_there ? &there : &here, more_there ? &here : &there})
@@ -104,7 +104,7 @@ std::string name_of(std::size_t part) {
   return std::string(kPart) + number + std::string(kEnding);
 }
 
-// The number of a part by the name of its file; nullopt of any other file, such as a copy part-2.parquet.
+// The number of a part by the name of its file; nullopt for any other file, such as a copy part-2.parquet.
 std::optional<std::size_t> part_of(std::string_view name) {
   if (!name.starts_with(kPart) || !name.ends_with(kEnding)) return std::nullopt;
   const std::string_view digits = name.substr(kPart.size(), name.size() - kPart.size() - kEnding.size());
@@ -114,8 +114,8 @@ std::optional<std::size_t> part_of(std::string_view name) {
   return number;
 }
 
-// The words of a column with the number of cases that have each. Of each case once: it has a row at each of the times that
-// are asked for.
+// The words of a column with the number of cases that have each. A case is counted once, although it has a row at each
+// of the requested times.
 std::string words_of_cases(const ParquetTable& rows, std::string_view column, char ends) {
   std::map<std::string, std::size_t> count;
   const std::vector<std::int64_t>* numbers = nullptr;
@@ -142,13 +142,13 @@ void add_words(std::string_view text, char ends, std::map<std::string, std::size
   }
 }
 
-// The end of a file, with the metadata of a Parquet file, and when it was written.
+// The end of a file, with the metadata of a Parquet file, and when the file was written.
 struct FileEnd {
-  std::string bytes;  // empty if the file is not whole
+  std::string bytes;  // empty if the file is incomplete
   double written = 0;
 };
 
-// Most ends are read at once: a folder may hold many parts.
+// Most ends are read by one call, because a folder may contain many parts.
 FileEnd end_of(const std::string& path) {
   FileEnd end;
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -203,7 +203,7 @@ SweepStore SweepStore::open(const std::string& named, const SweepRequest& wanted
   const std::string folder = without_slash(named);
   bool made = false;
   if (!is_there(folder)) {
-    // More files of one folder are listed in minutes, and their numbers fill the memory.
+    // A folder with more files takes minutes to list, and their numbers fill the memory.
     constexpr std::size_t kMostParts = 10'000'000;
     if (wanted.cases / wanted.chunk > kMostParts)
       throw Failure({},
@@ -413,7 +413,7 @@ SweepStore::Progress SweepStore::progress() const {
     if (const std::string_view stopped = notes.note(kStoppedNote); !stopped.empty()) p.stopped.emplace_back(stopped);
     written.emplace_back(read.written, to - from);
   }
-  // Rows of a table may be several for a case, so cases are counted by ranges.
+  // A case may have several rows in a table, so cases are counted by ranges.
   std::sort(written.begin(), written.end());
   constexpr std::size_t kLast = 64;
   if (written.size() > 1) {

@@ -1,8 +1,8 @@
-// A sweep in a folder: _sweep.json says what was asked, and each part file holds a range of the cases.
+// A sweep in a folder: _sweep.json contains the request, and each part file a range of the cases.
 //
-// A part is written once and never changed, so a range may be computed twice and counts once: two processes that compute
+// A part is written once and never changed, so a range that is computed twice counts once: two processes that compute
 // the same cases write the same bytes. The same request opens the folder again and computes what is missing; another
-// request is refused. Any number of processes may work on one folder. (doc/sweeps.md)
+// request is refused. Any number of processes may work on one folder (doc/sweeps.md).
 #pragma once
 #include <cstddef>
 #include <map>
@@ -16,33 +16,32 @@
 
 namespace anholon {
 
-// Cases that were planned together: the first generation is what was asked for, each further one lies at borders between
-// the cases before it. Its cases and parts are numbered after those of the generations before.
+// Cases that were planned together: the first generation is the request itself, and each further one lies at borders
+// between earlier cases. Its cases and parts are numbered after those of the earlier generations.
 struct Generation {
   std::size_t first_case = 0, cases = 0, first_part = 0, parts = 0;
-  std::string rule;  // what a border is
+  std::string rule;  // the definition of a border
 };
 std::size_t generation_of(const std::vector<Generation>& generations, std::size_t number_of_case);
 
 class SweepStore {
  public:
-  // Opens the folder, or creates it; `wanted.chunk` holds for a new folder only. Throws Failure without a place: another
-  // sweep is in the folder (the message names the first difference), the folder holds other files, or it cannot be
-  // written.
+  // Opens the folder, or creates it; `wanted.chunk` holds for a new folder only. Throws Failure without a place if the
+  // folder contains another sweep (the message names the first difference) or other files, or if it cannot be written.
   static SweepStore open(const std::string& folder, const SweepRequest& wanted, const std::string& program);
-  // Opens a folder that holds a sweep. Throws Failure without a place.
+  // Opens a folder that contains a sweep. Throws Failure without a place.
   static SweepStore open(const std::string& folder);
-  // Whether a folder holds a sweep.
+  // True if a folder contains a sweep.
   static bool is_there(const std::string& folder);
 
-  // Whether this process made the folder.
+  // True if this process made the folder.
   bool made_here() const { return made_here_; }
   const std::string& folder() const { return folder_; }
   const SweepRequest& request() const { return request_; }
-  // The text of something that was asked; empty if it was not.
+  // The text of this name in the request; empty if there is none.
   const std::string& asked(const std::string& name) const;
 
-  // In their order; the first one is always there.
+  // The generations in their order; the first one always exists.
   const std::vector<Generation>& generations() const { return generations_; }
   // Takes up the generations that other processes have added. Throws Failure as `read` does.
   void look_for_generations();
@@ -52,17 +51,18 @@ class SweepStore {
   // The places of the points of a generation after the first. Throws Failure as `read` does.
   std::vector<std::int64_t> points_of(std::size_t generation) const;
 
-  // Of all generations.
+  // The numbers of cases and parts of all generations.
   std::size_t cases() const;
   std::size_t parts() const;
   // The cases of a part: from the first to the one before the second.
   std::pair<std::size_t, std::size_t> range(std::size_t part) const;
-  // The numbers of the parts that are there, or not there, in ascending order; the folder is read at each call.
+  // The numbers of the parts that are there, or missing, in ascending order; the folder is read at each call.
   std::vector<std::size_t> present() const;
   std::vector<std::size_t> missing() const;
 
-  // Adds a part: rows of the columns, by case, with a note of that name if some of its cases stopped. Returns an empty string, or the reason why it is not in the folder: a full
-  // disk, or a part of that number whose numbers are others.
+  // Adds a part: rows of the columns, by case, with a note of that name if some of its cases stopped. Returns an empty
+  // string, or the reason why the part is not in the folder: a full disk, or a part of that number with other numbers
+  // in it.
   static constexpr const char* kStoppedNote = "anholon.stopped";
   std::string commit(std::size_t part, ParquetTable rows) const;
   // Reads a part. Throws Failure without a place if it is damaged, was changed, or belongs to another sweep.
@@ -72,19 +72,19 @@ class SweepStore {
     std::size_t parts = 0, all_parts = 0, cases = 0, all_cases = 0;
     std::map<std::string, std::size_t> outcomes;  // cases by the name of their outcome
     std::map<std::string, std::size_t> events;    // cases by the event that ended them
-    double cases_per_second = 0;                  // by the times at which the last parts were written; 0: unknown
-    std::size_t unfinished = 0;                   // files of parts under way, or of processes that were killed
+    double cases_per_second = 0;                  // from the times at which the last parts were written; 0: unknown
+    std::size_t unfinished = 0;                   // files of parts in work, or of processes that were killed
     std::vector<std::size_t> parts_there;         // of each generation
-    std::vector<std::string> stopped;             // the notes of parts whose cases stopped
+    std::vector<std::string> stopped;             // the notes of parts with stopped cases
   };
   // Reads the ends of all parts. Throws Failure as `read` does.
   Progress progress() const;
 
   std::string path_of(std::size_t part) const;
 
-  // How far the cases can be trusted, a JSON object; empty if the folder does not say so. Throws Failure without a place if
-  // the text is damaged. The first text that is added stays; adding returns an empty string, or the reason why it could
-  // not be written.
+  // judgement(): how far the cases can be trusted, a JSON object; empty if the folder has none; throws Failure without
+  // a place if the text is damaged. add_judgement(): adds it; the first text that is added stays; returns an empty
+  // string, or the reason why it could not be written.
   std::string judgement() const;
   std::string add_judgement(const std::string& json) const;
 

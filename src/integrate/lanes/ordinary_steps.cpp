@@ -7,17 +7,17 @@ namespace anholon {
 
 namespace {
 
-// Bounds are compared with this much to spare, which is more than the round-off in them.
+// Bounds are compared with this margin, which exceeds their round-off.
 constexpr double kSurely = 1 - 1e-9;
 
-// a + b is `sum` plus the result, exactly.
+// Returns the error of `sum` = fl(a + b): a + b is exactly `sum` plus the result.
 double error_of_sum(double a, double b, double sum) {
   const double of_b = sum - a;
   return (a - (sum - of_b)) + (b - of_b);
 }
 
-// Whether a sum in long double, rounded to double, is `sum` as well: not surely where it lies nearly between two
-// doubles.
+// True if the sum in long double, rounded to double, is surely `sum` as well. It may not be if the sum lies nearly
+// midway between two doubles.
 bool is_same_sum(double sum, double error) { return sum + error * (1 + 0x1p-9) == sum; }
 
 }  // namespace
@@ -55,7 +55,7 @@ bool OrdinarySteps::take(std::span<const Motion> motions) {
     if (!course) return false;
     lane.course = *course;
     lane.sign = m.end > m.stepper->time() ? 1 : -1;
-    // The double nearest to the end, and one before it.
+    // The double before the one nearest to `until`.
     lane.until = std::nextafter(to_double(m.until), -lane.sign * std::numeric_limits<double>::infinity());
     lane.left = std::abs(to_double(m.end) - course->last.to) * (1 + 0x1p-50);
     most_ = std::min({most_, course->most, m.most - 1});
@@ -90,7 +90,7 @@ bool OrdinarySteps::aim(Lane& lane, int at) const {
          error_of_sum(lane.to, -t, lane.length) == 0;
 }
 
-// All steps are aimed: the kernel goes there.
+// All steps are aimed: the kernel goes to their ends.
 void OrdinarySteps::go() {
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
     if (lanes_[i].sign == 0) continue;

@@ -1,6 +1,6 @@
-// Ordinary steps (stepper_aim.cpp) of the motions in all lanes of a kernel together. The steppers of the motions are
-// left out as long as nothing asks for a closer look in any lane, and are then told which steps were made. Each step is
-// bit by bit the one that the stepper would have made; where this is not sure, the stepper makes it.
+// Makes ordinary steps (stepper_aim.cpp) of the motions in all lanes of a kernel together. The steppers of the motions
+// take no part as long as no lane needs a closer look, and are then told which steps were made. Each step has the bits
+// of the step that the stepper would have made; if that is not sure, the stepper makes it.
 #pragma once
 #include <limits>
 #include <span>
@@ -16,16 +16,16 @@ class OrdinarySteps {
   using W = Wider<double>;
   explicit OrdinarySteps(std::shared_ptr<Kernel> kernel, const StepSettings& settings);
 
-  // `stepper`: null if the lane is free. `end`: where the motion ends. The caller has to look at a step that comes to
-  // the time `until`, at most the end, and at the last one of `most` steps.
+  // `stepper`: nullptr if the lane is free. `end`: where the motion ends. The caller has to look at a step that comes
+  // to the time `until`, which is not beyond the end, and at the last one of `most` steps.
   struct Motion {
     Stepper<double>* stepper = nullptr;
     W end{0}, until{0};
     std::size_t most = std::numeric_limits<std::size_t>::max();
   };
-  // Call this after begin_step() of all steppers and Kernel::begin(), with a motion for each lane. Returns true if all
-  // steppers are aimed, and the kernel is at the end of their steps, where they have to look; false if they have to be
-  // aimed.
+  // Makes ordinary steps. Call it after begin_step() of all steppers and Kernel::begin(), with a motion for each lane.
+  // Returns true if all steppers are aimed and the kernel is at the end of their steps, so that the steppers have to
+  // look; false if the steppers have to be aimed.
   bool run(std::span<const Motion> motions);
 
  private:

@@ -8,15 +8,15 @@ namespace anholon {
 
 namespace {
 
-// Values below so many round-offs of what they are made of are zero; events nearer than so many round-offs are at one
-// moment.
+// Values below kNoise round-offs of the terms that they are made of are zero; events nearer than kOneMoment round-offs
+// are at one moment.
 constexpr int kNoise = 64, kOneMoment = 64;
-// A value that a restart leaves at zero was not much farther from it before.
+// A value that a restart leaves at zero was not much farther from zero before.
 constexpr int kMargin = 16;
-// More changes of sign than this in one step are not told apart.
+// If a series changes its sign more often than this in one step, further changes are not found.
 constexpr int kMostCrossings = 1000;
 
-// The sign that a series takes right after 0, in the direction of h.
+// Returns the sign that a series takes right after 0, in the direction of h.
 template <Number N>
 int side_after(const N* c, int degree, const N& h, const N& floor) {
   if (abs(c[0]) > floor) return c[0] > N(0) ? 1 : -1;
@@ -29,7 +29,7 @@ int side_after(const N* c, int degree, const N& h, const N& floor) {
   return 0;
 }
 
-// p(x + shift), by Horner's scheme.
+// Returns the coefficients of p(x + shift), by Horner's scheme.
 template <Number N>
 std::vector<N> shifted(const N* c, int degree, const N& shift) {
   std::vector<N> a(c, c + degree + 1);
@@ -40,12 +40,12 @@ std::vector<N> shifted(const N* c, int degree, const N& shift) {
 
 }  // namespace
 
-// x nearer to the zero of the formula, as long as its values fall and are above `floor`.
+// Moves x nearer to the zero of the formula, as long as the formula's values fall and are above `floor`.
 template <Number N>
 static N improved(const N* c, int degree, N x, const N& h, const N& floor,
                   const std::function<std::optional<N>(const N&)>& value) {
   constexpr int kSteps = 4;
-  // A series this far from its formula is no series of it.
+  // A series this far from its formula does not represent it.
   const N range = h * N(1e-2);
   std::optional<N> v = value(x);
   for (int k = 0; k < kSteps && v && (*v > floor || *v < -floor); ++k) {
@@ -68,7 +68,7 @@ void EventWatch<N>::restart() {
     sides_[i] = i < at_zero_.size() && at_zero_[i] ? (sides_[i] > 0 ? 2 : sides_[i] < 0 ? -2 : 0) : 0;
 }
 
-// All within (0, h], up to the first that ends the step.
+// Returns all crossings within (0, h], up to the first one that ends the step.
 template <Number N>
 std::vector<typename EventWatch<N>::Crossing>
 EventWatch<N>::crossings(const N* c, int degree, const N& h, const N& floor, const WatchedSeries& s, int side) {
@@ -88,7 +88,7 @@ EventWatch<N>::crossings(const N* c, int degree, const N& h, const N& floor, con
     if (*x == N(0) && k > 0) break;
     from = list.back().where;
     p = shifted(c, degree, from);
-    // Far from the expansion the terms are larger that cancel at a crossing.
+    // Far from the expansion, the terms that cancel at a crossing are larger.
     N terms(0), power(1);
     for (int j = 0; j <= degree; ++j, power *= from) terms += abs(c[j] * power);
     const N there = unit_roundoff<N>() * N(kNoise) * terms;
@@ -138,7 +138,7 @@ bool EventWatch<N>::without_series() const {
 template <Number N>
 bool EventWatch<N>::as_foretold(const N& where, double log_tolerance, const ValueThere& value,
                                 const MadeOf& made_of) const {
-  // Measured as the steps of the motion are (end_check.cpp); where there is no value, the motion is what ends.
+  // The measure is that of the steps of the motion (end_check.cpp). If the formula has no value, the motion ends.
   constexpr double kTolerances = 100, kRoundoffs = 4096;
   for (std::size_t i = 0; i < series_.size(); ++i) {
     const WatchedSeries& s = series_[i];
@@ -158,7 +158,7 @@ bool EventWatch<N>::as_foretold(const N& where, double log_tolerance, const Valu
   return true;
 }
 
-// What a value is made of, and the rounding of the time at which it is taken.
+// The round-off of a value from its terms, and from the rounding of the time at which it is taken.
 template <Number N>
 N EventWatch<N>::noise(std::size_t i, const N& t) const {
   return unit_roundoff<N>() * N(kNoise) * (known_[i].terms + abs(known_[i].c[1]) * abs(t));
@@ -177,7 +177,7 @@ bool EventWatch<N>::may_pass_near(const N& t, const N& where, const N& within) c
   return false;
 }
 
-// All that values at the ends of parts of (0, h] show, up to the first that ends the step.
+// Returns all crossings that values at the ends of parts of (0, h] show, up to the first one that ends the step.
 template <Number N>
 std::vector<typename EventWatch<N>::Crossing> EventWatch<N>::crossings_of_values(const WatchedSeries& s, int& side,
                                                                                  const N& h, const Values& values) {
@@ -240,7 +240,7 @@ std::vector<Fired<N>> EventWatch<N>::look(const N& t, N& h, const std::optional<
     else if (abs(sides_[i]) > 1)
       sides_[i] = abs(c[0]) > floor ? (c[0] > N(0) ? 1 : -1) : sides_[i] / 2;
     each.push_back(crossings(c, degree_, h, floor, s, sides_[i]));
-    // What the series do beyond a kink is not what the formula does: it may touch zero there, and turn.
+    // Beyond a kink the series do not follow the formula, which may touch zero there and turn.
     if (s.of_state && kink && !each[i].empty() && !(abs(each[i].back().where) < abs(*kink))) {
       const std::optional<N> there = values(s.quadrature, h);
       if (there && !(each[i].back().towards > 0 ? *there > N(0) : *there < N(0))) each[i].pop_back();
@@ -254,7 +254,7 @@ std::vector<Fired<N>> EventWatch<N>::look(const N& t, N& h, const std::optional<
     if (each[i].empty() || !s.ends_step || !s.fires(each[i].back().towards * forward)) continue;
     if (!ended || abs(each[i].back().where) < abs(end)) end = each[i].back().where, ended = true;
   }
-  // What lies a few round-offs behind the end belongs to it.
+  // An event a few round-offs behind the end belongs to the step.
   const N slack = ended ? N(eps * N(kOneMoment) * (abs(t) > abs(end) ? N(abs(t)) : N(abs(end)))) : N(0);
   std::vector<Fired<N>> fired;
   for (std::size_t i = 0; i < each.size(); ++i)

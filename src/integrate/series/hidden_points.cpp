@@ -10,13 +10,13 @@ namespace anholon {
 
 namespace {
 
-// A step is looked at in so many parts; extrema and zeros are found by so many halvings.
+// A step is divided into kParts parts; extrema and zeros are found by kHalvings halvings.
 constexpr int kParts = 8, kHalvings = 40;
-// In relation to the greatest of the function and 1: what a function is that ramps lies there. The equations decide,
-// not this.
+// Relative to the greater of the function's value and 1: a function that differs from its series by more may hide a
+// ramp. The equations decide about the step.
 constexpr double kDiffers = 1e-3;
-// Values below so many round-offs of what they are made of are zero; the stretch where they are is looked at in so many
-// points.
+// Values below kNoise round-offs of the terms they are made of are zero; the stretch where they are is sampled at
+// kAcross points.
 constexpr int kNoise = 64, kAcross = 16;
 
 template <Number N>
@@ -28,7 +28,7 @@ N value_of(const Hiding& f, const N& u) {
 
 }  // namespace
 
-// The bound on the change is a sum of absolute terms; four partial sums do not wait for one another.
+// Bounds the change by a sum of absolute terms, as four partial sums that do not depend on each other.
 template <Number N>
 bool hides_nothing(const Hiding& function, const N* argument, std::size_t stride, int degree, const N& h) {
   const N length = abs(h), square = length * length, fourth = square * square;
@@ -66,8 +66,7 @@ void add_hidden_points(const Hiding& function, const N* argument, const N* value
     const N size = abs(is) > N(1) ? abs(is) : N(1);
     if (!(abs(N(is - foretold)) <= size * N(kDiffers))) points.push_back(x);
   };
-  // A point, and those on both sides where the argument is by 1 another one: at its centre a pulse of both signs is
-  // zero.
+  // Asks at a point, and on both sides where the argument differs by 1: a pulse of both signs is zero at its centre.
   const auto ask_around = [&](const N& x, const N& from, const N& to) {
     ask(x);
     if (!function.function) return;
@@ -94,7 +93,7 @@ void add_hidden_points(const Hiding& function, const N* argument, const N* value
       }
       ask_around(high, end_of(i - 1), end_of(i));
       if (quotient) {
-        // A high power is round-off far around its zero: somewhere there the divisor vanishes.
+        // A high power is round-off in a wide range around its zero, and the divisor vanishes somewhere in that range.
         const N noise = unit_roundoff<N>() * N(kNoise) * (moves + abs(argument[0]));
         N from = high, to = high;
         for (int k = 1; k <= kAcross && abs(u(from)) <= noise; ++k) from = high - h * N(k) / N(2 * kAcross);
@@ -105,7 +104,7 @@ void add_hidden_points(const Hiding& function, const N* argument, const N* value
       }
     }
     if (const bool up = rise > N(0); (now > N(0)) != up) {
-      // It turns within this part or the one before.
+      // The argument turns within this part or the one before.
       N low = end_of(std::max(0, i - 2)), high = end_of(i);
       for (int k = 0; k < kHalvings; ++k) {
         const N a = low + (high - low) / N(3), b = high - (high - low) / N(3);

@@ -1,7 +1,7 @@
-// Where on the way of a step a function may do what its Taylor series know nothing of: a pulse, a ramp, a wall that
-// lies wholly within the step. Its argument tells, whose series are good: the function is asked at the extrema and
-// zeros of its argument and at the ends of parts of the step. Where it differs from its own series, the equations are
-// to be looked at.
+// Finds the points within a step where a function may do something that its Taylor series do not show: a pulse, a ramp,
+// a wall that lies wholly within the step. The series of its argument are good. The function is evaluated at the
+// extrema and zeros of its argument and at the ends of parts of the step; where it differs from its own series, the
+// equations are to be looked at.
 #pragma once
 #include "kernel/plan/plan.h"
 #include "numeric/number.h"
@@ -14,14 +14,14 @@ struct HidingArgument {
   double value;
 };
 
-// For a quotient, a power of -1, these are points where the divisor is nearly zero. `argument` and `value`: the Taylor
-// coefficients of orders 0..degree of the argument and of the function. Adds the points, in (0, h).
+// Adds the points, in (0, h). `argument` and `value`: the Taylor coefficients of orders 0..degree of the argument and
+// of the function. For a quotient, a power of -1, the points are where the divisor is nearly zero.
 template <Number N>
 void add_hidden_points(const Hiding& function, const N* argument, const N* value, int degree, const N& h,
                        std::vector<N>& points);
 
-// Whether the argument changes by too little over the step for any such point. Element k of the series is at offset
-// k * stride.
+// True if the argument changes by too little over the step for any such point. Element k of the series is at offset k *
+// stride.
 template <Number N>
 bool hides_nothing(const Hiding& function, const N* argument, std::size_t stride, int degree, const N& h);
 

@@ -7,7 +7,7 @@
 
 namespace anholon {
 
-static constexpr double kTouches = 1e-8;  // a step may end anywhere: at a narrow miss, too
+static constexpr double kTouches = 1e-8;  // a step may end anywhere, so a narrow miss counts as touching
 
 template <Number N>
 static bool surely_less(const N* c, int degree, const N& h, const N& than) {
@@ -29,13 +29,13 @@ bool keeps_sign(const N* c, int degree, const N& h) {
 
 namespace {
 
-constexpr int kNoise = 64;  // values below so many round-offs of what they are made of are zero
+constexpr int kNoise = 64;  // values below this many round-offs of the terms that they are made of are zero
 
 bool may_turn(const Instruction& in) {
   return !in.constant && (in.op == Op::select || in.op == Op::lookup || in.op == Op::arctan2 || turns_at_zero(in));
 }
 
-// A root touches zero.
+// True for a root, whose argument may touch zero.
 bool may_touch(const Tape& tape, const Instruction& in) {
   return !in.constant && in.op == Op::power && tape.rationals[in.index].has_even_denominator();
 }
@@ -102,20 +102,21 @@ class Search {
     }
   }
 
-  // The angle of (x, y) jumps where y passes zero beside a negative x. Where x may become negative within the step, y is
+  // The angle of (x, y) jumps where y passes zero while x is negative. If x may become negative within the step, y is
   // not followed beyond its first zero.
   void passes_cut(const N* y, const N* x, std::uint32_t slot) {
     if (!(x[0] > N(0) && keeps_sign(x, degree_, h_))) leaves(y, !(y[0] < N(0)), {slot, N(0), y[0] < N(0)});
   }
 
-  // Whether the value is the one from the knot on: the wider numbers of the state may lie on the other side of it.
+  // True if the value is the one from the knot on; the wider numbers of the state may lie on the other side of the
+  // knot.
   static bool holds(const StepFunction& table, const N& knot, const N& value) {
     std::size_t k = 0;
     while (k < table.knots.size() && !(knot < from_rational<N>(table.knots[k]))) ++k;
     return value == from_rational<N>(table.values[k]);
   }
 
-  // Where the polynomial leaves the side it is on: p >= 0, or p < 0.
+  // Finds where the polynomial leaves its side: p >= 0, or p < 0.
   void leaves(const N* c, bool not_negative, const Decides& by) {
     turned_.resize(static_cast<std::size_t>(degree_) + 1);
     for (int k = 0; k <= degree_; ++k) turned_[static_cast<std::size_t>(k)] = not_negative ? c[k] : N(-c[k]);
@@ -132,9 +133,9 @@ class Search {
     kink_.slots_at_start.push_back(slot);
   }
 
-  // A root goes on as another one where its argument, falling, turns at zero.
+  // The series of a root ends to hold where its argument falls and turns at zero.
   void touches_zero(const N* c) {
-    if ((c[1] > N(0)) == (h_ > N(0)) || stays_positive(c, degree_, h_)) return;  // it grows, or is far away
+    if ((c[1] > N(0)) == (h_ > N(0)) || stays_positive(c, degree_, h_)) return;  // it grows, or stays away from zero
     std::vector<N> slope;
     for (int k = 1; k <= degree_; ++k) slope.push_back(c[1] > N(0) ? N(c[k] * N(k)) : N(-(c[k] * N(k))));
     const auto x = first_below<N>(slope.data(), degree_ - 1, h_, N(0));
@@ -157,7 +158,7 @@ class Search {
   N h_;
   bool expanded_;
   const std::vector<bool>& passed_over_;
-  std::uint32_t argument_ = 0;  // of the slot that is looked at
+  std::uint32_t argument_ = 0;  // of the slot under inspection
   std::vector<N> c_, turned_;
   Kink<N> kink_;
 };
@@ -199,7 +200,7 @@ bool is_round_off(std::uint32_t slot, const Machine<N>& machine, const Machine<N
   const N length = abs(h);
   N most(0);
   for (int k = degree; k >= 0; --k) most = most * length + abs(c[k]);
-  // The terms at the point may be smaller than those before, which have left their round-off.
+  // The terms at this point may be smaller than earlier ones, whose round-off the slot still has.
   constexpr int kOfTermsBefore = 16;
   return most <= unit_roundoff<N>() * N(kNoise * kOfTermsBefore) * values.magnitude(slot);
 }

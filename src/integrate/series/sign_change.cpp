@@ -8,10 +8,11 @@ namespace anholon {
 
 namespace {
 
-// Halves of [0, h] beyond this depth are narrower than a round-off of h in double.
+// At this depth, parts of [0, h] are narrower than a round-off of h in double.
 constexpr int kDeepest = 56, kBisections = 200, kPolish = 4;
 
-// Where in [from, to] of [0, 1] the polynomial with Bernstein coefficients b there is first below -floor.
+// Returns where in [from, to], a part of [0, 1], the polynomial with the Bernstein coefficients b on this part is first
+// below -floor.
 template <Number N>
 std::optional<N> search(std::vector<N> b, const N& from, const N& to, const N& floor, int depth) {
   if (b.front() < -floor) return from;
@@ -22,7 +23,7 @@ std::optional<N> search(std::vector<N> b, const N& from, const N& to, const N& f
     for (std::size_t j = 0; j + k < b.size(); ++j) b[j] = (b[j] + b[j + 1]) / N(2);
     left[k] = b[0];
   }
-  // What is left in b is the right half.
+  // Now b holds the right half.
   const N middle = (from + to) / N(2);
   if (auto x = search(std::move(left), from, middle, floor, depth - 1)) return x;
   return search(std::move(b), middle, to, floor, depth - 1);
@@ -45,7 +46,7 @@ std::optional<N> first_below(const N* c, int degree, const N& h, const N& floor)
   const auto found = search(bernstein(std::move(a)), N(0), N(1), floor, kDeepest);
   if (!found) return std::nullopt;
   if (c[0] < -floor) return N(0);
-  // To where it passes -floor, and from there back to zero, which is near.
+  // Bisection finds where the polynomial passes -floor; Newton's steps go back from there to zero, which is near.
   N low(0), high = *found * h;
   for (int k = 0; k < kBisections; ++k) {
     const N middle = (low + high) / N(2);
@@ -66,7 +67,7 @@ std::optional<N> first_below(const N* c, int degree, const N& h, const N& floor)
   return x;
 }
 
-// log|c_k| + k L <= log_tolerance + log|c_j| + j L for one j: the bound of L grows with the best j.
+// The condition is log|c_k| + k L <= log_tolerance + log|c_j| + j L for one j; the bound of L grows with the best j.
 template <Number N>
 double log_reach(const N* c, int degree, const N& floor, double log_tolerance) {
   constexpr double kFar = 300;

@@ -1,7 +1,7 @@
-// The first time at which a polynomial passes from one sign to the other, none stepped over.
+// Finds the first point at which a polynomial passes from one sign to the other, without missing one.
 //
-// In Bernstein form on [0, h] a polynomial lies within the hull of its coefficients. Stretches on which the hull stays
-// on one side are passed over whole; others are halved, the earlier half first (de Casteljau).
+// In Bernstein form on [0, h] a polynomial lies within the hull of its coefficients. Intervals on which the hull stays
+// on one side need no search; others are halved, the earlier half first (de Casteljau).
 #pragma once
 #include <optional>
 #include <vector>
@@ -33,13 +33,14 @@ std::vector<N> bernstein(std::vector<N> a) {
   return a;
 }
 
-// The first x in (0, h], h of either sign, from where on p = sum c_k x^k is below -floor, taken back to where p left
-// the side p >= 0 (where it does not hold at 0: 0). A dip that stays above -floor is none: p only touches zero there.
+// Returns the first x in (0, h], h of either sign, from which on p = sum c_k x^k is below -floor, moved back to where p
+// left the side p >= 0; 0 if p is below -floor at 0. A p that stays above -floor only touches zero.
 template <Number N>
 std::optional<N> first_below(const N* c, int degree, const N& h, const N& floor);
 
-// The logarithm of how far the sum of c_k x^k is known by its first terms: the last two stay below the tolerance times
-// the greatest of those before them, or of `floor`, which is round-off. 300, as for a step, where nothing bounds it.
+// The logarithm of the distance over which the sum of c_k x^k is known by its first terms: the last two terms stay
+// below the tolerance times the greatest of the terms before them and of `floor`, the round-off. It is 300, as for a
+// step, if nothing bounds the distance.
 template <Number N>
 double log_reach(const N* c, int degree, const N& floor, double log_tolerance);
 

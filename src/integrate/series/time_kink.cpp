@@ -6,7 +6,7 @@ namespace {
 
 constexpr int kDeepestLine = 32;  // conditions on the time are short
 
-// a + b t
+// The line a + b t.
 template <Number N>
 struct Line {
   N a{0}, b{0};

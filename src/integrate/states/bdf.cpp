@@ -6,8 +6,8 @@
 
 namespace anholon {
 
-// Errors of steps of low order add up over the many steps that BDF takes: each may make but this part of the tolerance,
-// for a motion that is as close as by the other methods.
+// Errors of low-order steps add up over the many steps that BDF takes. Each step may make this part of the tolerance,
+// so that the motion is as accurate as by the other methods.
 constexpr double kOfTolerance = 0.01;
 
 Bdf::Bdf(StateRate rate, const StepSettings& settings) : rate_(std::move(rate)), settings_(settings) {}

@@ -1,4 +1,4 @@
-// The motion by BDF, for stiff motions: CVODE's (sundials.h), with steps that end on all hidden constraints (theory:
+// Integrates stiff motions by BDF: by CVODE (sundials.h), with steps that end on all hidden constraints (theory:
 // methods).
 #pragma once
 #include <optional>
@@ -13,7 +13,7 @@ class Bdf final : public StateStepper {
   Bdf(StateRate rate, const StepSettings& settings);
 
   const char* title() const override { return "BDF"; }
-  // Once.
+  // REQUIRES: it has not been called before.
   Outcome start(const MotionPoint& from, long double end) override;
   Outcome step(long double end) override;
   Outcome at(long double t, MotionPoint& point) override;

@@ -5,7 +5,7 @@
 //   k_i = f(t + c_i h, x + h sum_j a_ij k_j),  x(t + h) = x + h sum_i b_i k_i
 //   e5 = h sum_i e5_i k_i,  e3 = h sum_i (b_i - b3_i) k_i,  error = |e5|^2 / sqrt(|e5|^2 + |e3|^2/100), of order 8 as a whole
 //
-// That it is of order 8, and the others of orders 5 and 3, the test proves on all rooted trees.
+// A test proves on all rooted trees that the method is of order 8, and the others are of orders 5 and 3.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -15,17 +15,17 @@ namespace method = dormand_prince;
 // Steps smaller than this many round-offs of the time are a collapse.
 constexpr int kCollapsedRoundoffs = 16;
 constexpr double kBlowUp = 1e100;
-// Each makes a step five times shorter where f has no value.
+// After a refusal a step without a value of f is five times shorter; a step may be refused so often.
 constexpr int kMostRefusals = 40;
-// Kinks met so soon after another one are other kinks, until they are too many.
+// After so many steps in a row that a kink cut at their start, the motion stays at the kink.
 constexpr int kMostShortKinks = 20;
-// Taylor's steps miss by about this part of the tolerance; it is to mean the same here.
+// Taylor's steps have errors of about this part of the tolerance, so the tolerance means the same here.
 constexpr double kOfTolerance = 0.1;
 // PI controller (Hairer & Wanner, IV.2): exponents for an estimate of order 8, and the bounds of one change.
 constexpr double kProportional = 0.7 / method::kOrder, kIntegral = 0.4 / method::kOrder, kSafety = 0.9, kLeast = 0.2,
                  kMost = 5;
 
-// The coefficients in double, those that vanish left out.
+// A coefficient that is not zero, in double.
 struct Term {
   std::size_t stage;
   double factor;
@@ -72,7 +72,7 @@ void narrow(const std::vector<long double>& from, std::vector<double>& to) {
   for (std::size_t i = 0; i < from.size(); ++i) to[i] = static_cast<double>(from[i]);
 }
 
-// s + x with the round-off kept in `carry`.
+// Adds x to s and keeps the round-off in `carry`.
 void add(long double& s, long double& carry, double x) {
   const long double y = x + carry, sum = s + y;
   carry = std::abs(s) >= std::abs(y) ? (s - sum) + y : (y - sum) + s;
@@ -100,7 +100,7 @@ Outcome RungeKutta::start(const MotionPoint& from, long double end) {
   return {};
 }
 
-// At now(), which it puts on the constraints.
+// Evaluates f at now(), which is moved onto the constraints.
 Outcome RungeKutta::first_rate() {
   narrow(now_.state, y_);
   if (Outcome o = rate_.evaluate(static_cast<double>(now_.t), y_, true); !o.ok()) return o;
@@ -116,7 +116,7 @@ Outcome RungeKutta::first_rate() {
   return {};
 }
 
-// From the sizes of x' and x'' (Hairer, Nørsett & Wanner 1993, II.4).
+// Estimates the first step from the sizes of x' and x'' (Hairer, Nørsett & Wanner 1993, II.4).
 double RungeKutta::first_step(double direction) {
   narrow(now_.state, start_);
   scale_sizes(rate_, start_, sizes_);
@@ -133,7 +133,7 @@ double RungeKutta::first_step(double direction) {
   return std::min(100 * h0, largest > 0 ? std::pow(0.01 / largest, 1.0 / method::kOrder) : 1.0);
 }
 
-// k_[1], … for a step of h; k_[0] is there.
+// Computes k_[1], … for a step of h. REQUIRES: k_[0] is known.
 Outcome RungeKutta::stages(const MotionPoint& from, double h) {
   const std::size_t n = rate_.size();
   narrow(from.state, start_);
@@ -147,7 +147,7 @@ Outcome RungeKutta::stages(const MotionPoint& from, double h) {
   return {};
 }
 
-// The stages of a step from now(), and f at its end.
+// Computes the stages of a step from now(), and f at its end.
 Outcome RungeKutta::whole(double h) {
   if (Outcome o = stages(now_, h); !o.ok()) return o;
   weigh(table().b, k_, rate_.size(), y_);
@@ -155,11 +155,11 @@ Outcome RungeKutta::whole(double h) {
   return rate_.evaluate(static_cast<double>(now_.t) + h, y_, true);
 }
 
-// Whether f was evaluated beyond a kink.
+// True if f was evaluated beyond a kink.
 bool RungeKutta::turned() const { return rate_.sides().size() == kinks_.sides.size() && rate_.sides() != kinks_.sides; }
 
-// After a whole step of h that has gone beyond a kink: the step to just beyond the first one, with its stages. By
-// secants (Illinois) through whole steps that end on both sides of it.
+// After a whole step of h that has gone beyond a kink, makes the step to just beyond the first one, with its stages. It
+// is found by secants (Illinois) through whole steps that end on both sides of it.
 Outcome RungeKutta::cut_at_kink(double& h) {
   constexpr int kPastKink = 32, kMostTries = 60;
   struct End {
@@ -174,7 +174,7 @@ Outcome RungeKutta::cut_at_kink(double& h) {
   std::vector<int> ends = rate_.sides();
   bool at_high = true;
   for (int tries = 0; tries < kMostTries && high.h - low.h > past; ++tries) {
-    // Of those that have turned, the one that did so first, as far as straight lines tell.
+    // The first of the arguments that have turned, by linear interpolation.
     double root = high.h;
     for (std::size_t i = 0; i < ends.size(); ++i) {
       if (ends[i] == kinks_.sides[i]) continue;
@@ -187,7 +187,7 @@ Outcome RungeKutta::cut_at_kink(double& h) {
     const double there = std::clamp(root + past / 2, low.h + past / 4, high.h - past / 4);
     if (Outcome o = whole(direction * there); !o.ok()) return o;
     const bool beyond = turned();
-    // Too long even without the kink: it is refused as any other.
+    // The step is too long even without the kink, and is refused like any other.
     if (!beyond && error(direction * there) > 1) {
       h = direction * there;
       return {};
@@ -204,12 +204,12 @@ Outcome RungeKutta::cut_at_kink(double& h) {
   return at_high ? Outcome{} : whole(h);
 }
 
-// In units of the tolerance: the largest of any level.
+// Returns the largest error of all levels and integrals, in units of the tolerance.
 double RungeKutta::error(double h) {
   const std::size_t n = rate_.size(), all = k_[0].size();
   weigh(table().e5, k_, all, e5_);
   weigh(table().e3, k_, all, e3_);
-  // Of each level, and of each integral.
+  // The largest estimates of each level, and of each integral.
   most_.assign(sizes_.size() + all - n, {0.0, 0.0});
   for (std::size_t i = 0; i < all; ++i) {
     auto& [five, three] = most_[i < n ? rate_.scale()[i] : sizes_.size() + i - n];
@@ -222,7 +222,7 @@ double RungeKutta::error(double h) {
     const auto [e5, e3] = most_[k];
     const double five = e5 * e5, three = e3 * e3;
     if (!(five > 0)) continue;
-    // Integrals carry no error on: the tolerance itself is enough for them.
+    // An error of an integral does not affect later steps, so the tolerance itself is enough for integrals.
     const double allowed = k < sizes_.size()
                                ? tolerance_ * sizes_[k]
                                : tolerance_ / kOfTolerance *
@@ -255,7 +255,7 @@ Outcome RungeKutta::step(long double end) {
   for (int again = 0;; ++again) {
     if (again > 0) ++refused_;
     const bool last = !(h_ < std::abs(left));
-    // The step that t can show exactly.
+    // The time at the end of the step is a double.
     long double reached = last ? end : static_cast<long double>(static_cast<double>(now_.t + (left > 0 ? h_ : -h_)));
     double h = static_cast<double>(reached - now_.t);
     if ((!(std::abs(h) > floor) && !last) || again > kMostRefusals) {
@@ -275,7 +275,7 @@ Outcome RungeKutta::step(long double end) {
       kinks_.short_steps = 0;
     }
     if (!trouble.ok()) {
-      if (rate_.guarded()) return trouble;  // shorter steps would come so close that nobody could tell the sides apart
+      if (rate_.guarded()) return trouble;  // shorter steps would end where round-off hides the side of the guard
       h_ = kLeast * std::abs(h);
       continue;
     }
@@ -298,7 +298,7 @@ Outcome RungeKutta::step(long double end) {
     std::swap(now_, next);
     std::swap(carry_, carry);
     trouble = first_rate();
-    if (!trouble.ok()) {  // the step was too bold
+    if (!trouble.ok()) {  // the step was too long
       std::swap(now_, before_);
       std::swap(before_, next);
       std::swap(carry_, carry);
@@ -310,7 +310,7 @@ Outcome RungeKutta::step(long double end) {
     }
     ++steps_;
     const double grown = e > 0 ? kSafety * std::pow(e, -kProportional) * std::pow(error_before_, kIntegral) : kMost;
-    // What the end or a kink cut short says nothing of the steps beyond; after a refusal a step does not grow.
+    // A step that the end or a kink has cut short does not limit the next step. After a refusal a step does not grow.
     const double next_h = std::abs(h) * std::clamp(grown, kLeast, again > 0 ? 1.0 : kMost);
     h_ = last || cut ? std::max(h_, next_h) : next_h;
     error_before_ = std::max(e, 1e-4);

@@ -1,8 +1,8 @@
-// The motion by Dormand and Prince's explicit Runge-Kutta method of order 8 (dormand_prince.h): for tolerances so
-// loose, or forces so little smooth, that Taylor's polynomials do not pay.
+// Integrates motions by Dormand and Prince's explicit Runge-Kutta method of order 8 (dormand_prince.h), for tolerances
+// so loose, or forces so little smooth, that Taylor's polynomials do not pay.
 //
-// The state is kept wider than its rates and summed up with its round-off carried along; every step ends on all hidden
-// constraints, by the first evaluation of the next one. Step sizes follow the error estimate by a PI controller
+// The state is kept in wider numbers than its rates and summed with its round-off carried along; every step ends on all
+// hidden constraints, by the first evaluation of the next step. Step sizes follow the error estimate by a PI controller
 // (theory: methods).
 #pragma once
 #include "integrate/states/dormand_prince.h"
@@ -18,7 +18,7 @@ class RungeKutta final : public StateStepper {
   const char* title() const override { return "Runge-Kutta 8"; }
   Outcome start(const MotionPoint& from, long double end) override;
   Outcome step(long double end) override;
-  // By a step of its own.
+  // The point is computed by a step of its own.
   Outcome at(long double t, MotionPoint& point) override;
   std::size_t refused() const override { return refused_; }
   StateRate& rate() override { return rate_; }
@@ -44,17 +44,17 @@ class RungeKutta final : public StateStepper {
   StepSettings settings_;
   double tolerance_;
   Stages k_;                  // rates of the state, then the quadratures
-  std::vector<double> here_;  // the first of them at now()
+  std::vector<double> here_;  // the first stage at now()
   std::vector<double> start_, y_, change_, sizes_, e5_, e3_;
   std::vector<std::pair<double, double>> most_;
   RoundOffs carry_;
   StepPaces paces_;
   double h_ = 0, error_before_ = 1;
   std::size_t refused_ = 0;
-  struct Kinks {  // at now()
+  struct Kinks {  // the sides at now()
     std::vector<int> sides;
     std::vector<double> arguments;
-    int short_steps = 0;  // in a row that were cut at their very start
+    int short_steps = 0;  // steps in a row that a kink cut at their very start
   };
   Kinks kinks_;
 };

@@ -16,7 +16,7 @@ StateRate::StateRate(const Program& program, const std::vector<double>& paramete
     find_kinks();
   }
   const auto levels = static_cast<std::size_t>(std::max(1, *std::max_element(program.d.begin(), program.d.end())));
-  std::vector<std::size_t> first(program.unknowns(), 0);  // of the scales of each unknown
+  std::vector<std::size_t> first(program.unknowns(), 0);  // the first scale of each unknown
   for (std::size_t s = 0; s < program.scales.size(); ++s)
     for (const std::uint32_t j : program.scales[s]) first[j] = s * levels;
   for (std::size_t j = 0; j < program.unknowns(); ++j)

@@ -1,10 +1,10 @@
-// The motion as an ordinary differential equation x' = f(t, x) of its state, for methods that ask for no more than f.
+// The motion as an ordinary differential equation x' = f(t, x) of its state, for methods that need f alone.
 //
 //   x = (x_j^(k), k < d_j);  f solves the equations for the leading derivatives and shifts: x_j^(k)' = x_j^(k+1)  (theory: methods)
 //
-// On the hidden constraints f is the motion's own field, around them a smooth one; a state is taken back to them where
-// that is asked for. Evaluated by a kernel without stages beyond the leading derivatives; by the reference where there
-// is none or its pivots have become small.
+// On the hidden constraints f is the motion's own field, near them a smooth extension of it; a state is projected on
+// them on request. A kernel evaluates f without stages beyond the leading derivatives; the reference evaluates it if
+// there is no kernel or the kernel's pivots have become small.
 #pragma once
 #include <memory>
 #include <optional>
@@ -15,7 +15,8 @@
 
 namespace anholon {
 
-// A quadrature of the program that is not to become negative: a mass, how far the argument of a table is inside of it.
+// A quadrature of the program that must not become negative: a mass, or the distance by which the argument of a table
+// is inside of it.
 struct Guard {
   std::size_t quadrature = 0;
   Outcome fault;
@@ -23,30 +24,33 @@ struct Guard {
 
 class StateRate {
  public:
-  // `plan`: of a program for the same unknowns and quadratures, or null.
+  // `plan`: the plan of a program for the same unknowns and quadratures, or nullptr.
   StateRate(const Program& program, const std::vector<double>& parameters,
             const std::vector<long double>& wide_parameters, std::shared_ptr<const KernelPlan> plan,
             std::vector<Guard> guards = {});
 
-  // At the state, or at the nearest one on the hidden constraints.
+  // Evaluates f at the state, or, with `projected`, at the nearest state on the hidden constraints.
   Outcome evaluate(double t, const std::vector<double>& state, bool projected = false);
-  // At that point: the state, f, the leading derivatives, the quadratures.
+  // The results at that point: the state, f, the leading derivatives, the quadratures.
   const std::vector<double>& state() const { return state_; }
   const std::vector<double>& rate() const { return rate_; }
   const std::vector<double>& leading() const { return leading_; }
   const std::vector<double>& integrands() const { return integrands_; }
-  // Where it was projected: how far it was from the constraints, in relation to its size; whether it was moved.
+  // After a projection: the distance of the state from the constraints, relative to the size of the state; whether the
+  // state was moved.
   double drift() const { return drift_; }
   bool moved() const { return moved_; }
-  // Of the kernel, also where they were so small that the reference was asked; none without a kernel.
+  // The pivots of the kernel, also if they were so small that the reference made the evaluation; nullopt without a
+  // kernel.
   const std::optional<Pivots>& pivots() const { return pivots_; }
-  // Where f may have a kink: on which side each abs, sign, piecewise or table was, the number of a piece or of an
-  // interval between knots. By a kernel alone.
+  // The side of each possible kink of f (abs, sign, piecewise, table): the number of a piece, or of an interval between
+  // knots. Empty if the reference made the evaluation.
   const std::vector<int>& sides() const { return sides_; }
-  // Their arguments there; how far one is beyond the end of a side, in the direction of another one.
+  // The arguments that decide about the kinks; and how far an argument is beyond the end of its side, in the direction
+  // of another side.
   const std::vector<double>& arguments() const { return arguments_; }
   double beyond(std::size_t kink, double argument, int side, int other) const;
-  // Whether the last evaluation failed at a guard.
+  // True if the last evaluation failed at a guard.
   bool guarded() const { return guarded_; }
   // The first guess of the leading derivatives of the next evaluation.
   void set_leading(const std::vector<double>& leading) { leading_ = leading; }
@@ -54,7 +58,7 @@ class StateRate {
   const Program& program() const { return *program_; }
   const std::vector<double>& parameters() const { return point_.parameters(); }
   std::size_t size() const { return scale_.size(); }
-  // Of each entry x_j^(k) of the state the scale on which it is measured: entries of one k and one scale of the program.
+  // The scale of each entry x_j^(k) of the state: entries with the same k and the same scale of the program share one.
   const std::vector<std::size_t>& scale() const { return scale_; }
   std::size_t scales() const { return scales_; }
   bool constrained() const { return constrained_; }
@@ -65,7 +69,7 @@ class StateRate {
  private:
   struct Kink {
     Place argument;
-    const std::vector<double>* knots = nullptr;  // of a table; otherwise zero is the end of either side
+    const std::vector<double>* knots = nullptr;  // of a table; for other kinks zero separates the sides
   };
   void find_kinks();
   bool by_kernel(double t, const std::vector<double>& state, bool projected);
@@ -86,7 +90,7 @@ class StateRate {
   std::size_t evaluations_ = 0, by_reference_ = 0;
 };
 
-// A consistent state on a motion, what follows from it, and the integrals up to there.
+// A consistent state on a motion, its leading derivatives, and the integrals up to there.
 struct MotionPoint {
   long double t = 0;
   std::vector<long double> state;
@@ -94,17 +98,17 @@ struct MotionPoint {
   std::vector<long double> integrals;
 };
 
-// Steps of a motion in doubles by a method other than Taylor's. Each ends on all hidden constraints.
+// Steps of a motion in doubles by a method other than Taylor's. Each step ends on all hidden constraints.
 class StateStepper {
  public:
   virtual ~StateStepper() = default;
   virtual const char* title() const = 0;
-  // Goes on from there; the state is on the constraints but for round-off.
+  // Starts at a state that satisfies the constraints to round-off.
   virtual Outcome start(const MotionPoint& from, long double end) = 0;
   virtual Outcome step(long double end) = 0;
-  // Anywhere in the last step, to the accuracy of the steps; close to the constraints.
+  // Computes a point anywhere in the last step, to the accuracy of the steps; its state is close to the constraints.
   virtual Outcome at(long double t, MotionPoint& point) = 0;
-  virtual std::size_t refused() const = 0;  // steps
+  virtual std::size_t refused() const = 0;  // refused steps
   virtual StateRate& rate() = 0;
   virtual double more_work() const { return 0; }  // operations beside the evaluations of f
 
@@ -119,7 +123,7 @@ class StateStepper {
   double worst_constraint_ = 0;
 };
 
-// The size of the entries of each scale, at least 1: that which a tolerance is relative to.
+// Computes the size of the entries of each scale, at least 1; tolerances are relative to these sizes.
 void scale_sizes(const StateRate& rate, const std::vector<double>& state, std::vector<double>& sizes);
 
 }  // namespace anholon

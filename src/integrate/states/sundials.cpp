@@ -18,7 +18,7 @@ namespace anholon {
 
 namespace {
 
-// What SUNDIALS makes and frees by functions of its own.
+// Frees the objects that SUNDIALS makes by its own functions.
 struct Free {
   void operator()(N_Vector v) const { N_VDestroy(v); }
   void operator()(SUNMatrix m) const { SUNMatDestroy(m); }
@@ -28,7 +28,7 @@ struct Free {
 template <class Handle>
 using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Free>;
 
-// Nothing but a lack of memory makes these fail.
+// Making these objects fails only if memory is lacking.
 template <class Handle>
 Owned<Handle> owned(Handle made) {
   if (!made) throw std::bad_alloc();
@@ -67,7 +67,8 @@ struct Sundials::Work {
   std::size_t first_integral() const { return states() + algebraic.size(); }
   std::size_t size() const { return first_integral() + program.quadratures; }
 
-  // The rate of each state, the last of a chain being the leading derivative; z' is not known, and not needed.
+  // Writes the rate of each state; the last of a chain is the leading derivative. The rate z' is not known, and not
+  // needed.
   void put_rates(const double* from, const std::vector<double>& leading_now, double* out) const {
     for (std::size_t j = 0; j < program.unknowns(); ++j)
       for (std::size_t k = 0, d = static_cast<std::size_t>(program.d[j]), at = point.offset(j); k < d; ++k)
@@ -87,8 +88,8 @@ struct Sundials::Work {
             "the motion leaves the region where the model is defined: stop it before, or change the formula"};
   }
 
-  // y' = f(t, y). Newton's method starts from the leading derivatives of the last accepted step, not from those of a
-  // trial that may have been refused: so the motion keeps to its branch.
+  // Computes y' = f(t, y). Newton's method starts from the leading derivatives of the last accepted step, not from
+  // those of a trial that may have been refused, so the motion keeps to its branch.
   int rates(double t, const double* from, double* out) {
     ++evaluations;
     now.assign(from, from + states());
@@ -109,7 +110,7 @@ struct Sundials::Work {
     return all_finite(out, size()) ? 0 : refuse(no_value());
   }
 
-  // To the nearest state on the hidden constraints.
+  // Projects to the nearest state on the hidden constraints.
   int project(double t, const double* from, double* correction) {
     now.assign(from, from + states());
     if (Outcome o = field->evaluate(t, now, true); !o.ok()) return refuse(std::move(o), field->guarded());
@@ -119,7 +120,7 @@ struct Sundials::Work {
     return 0;
   }
 
-  // Reciprocals of the errors allowed.
+  // Writes the reciprocals of the errors allowed.
   int weights(const double* from, double* out) {
     now.assign(from, from + states());
     scale_sizes(*field, now, sizes);
@@ -129,7 +130,7 @@ struct Sundials::Work {
     return 0;
   }
 
-  // F(t, y, z, y', z')
+  // Computes F(t, y, z, y', z').
   int residual(double t, const double* from, const double* from_rate, double* out) {
     ++evaluations;
     if (!all_finite(from, size()) || !all_finite(from_rate, size())) return refuse(no_value());
@@ -175,8 +176,8 @@ struct Sundials::Work {
   Owned<SUNLinearSolver> linear;
   Owned<SUNNonlinearSolver> fixed_point;
   bool forward = true;
-  double end = 0, reached = 0, shown = 0;  // of the motion, of its last step, of the last advance
-  Outcome trouble;                         // the last one inside f or F
+  double end = 0, reached = 0, shown = 0;  // the end of the motion; times of the last step and advance
+  Outcome trouble;                         // the last failure inside f or F
   std::string last_error;                  // in the words of SUNDIALS
   std::size_t steps = 0, evaluations = 0;
   double drift = 0;
@@ -185,7 +186,7 @@ struct Sundials::Work {
 };
 
 void Sundials::Work::start(double t, const std::vector<double>& leading_guess) {
-  // F asks for rates that fit the state; f needs a branch.
+  // F needs rates that fit the state; f needs a branch.
   point.load(t, state, leading_guess);
   if (Outcome o = point.prepare(); !o.ok())
     trouble = std::move(o);
@@ -227,8 +228,8 @@ void Sundials::Work::start(double t, const std::vector<double>& leading_guess) {
     set(IDASStolerances(memory, tolerance, tolerance));
     set(IDASetLinearSolver(memory, linear.get(), matrix.get()));
     set(IDASetStopTime(memory, end));
-    // z carries no error on, but with y' at its side it shows the noise of y / h: in the error test it would keep the
-    // order down and cost a hundred times the steps.
+    // An error of z does not affect later steps, but z depends on y', which has the noise of y / h. In the error test,
+    // z would keep the order down and cost a hundred times as many steps.
     id = vector();
     N_VConst(1, id.get());
     for (std::size_t k = 0; k < algebraic.size(); ++k) N_VGetArrayPointer(id.get())[states() + k] = 0;
@@ -265,7 +266,7 @@ bool Sundials::Work::start_stiff() {
   linear = owned(SUNLinSol_Dense(y.get(), matrix.get(), context));
   bool good = CVodeWFtolerances(memory, weigh) == 0 && CVodeSetLinearSolver(memory, linear.get(), matrix.get()) == 0;
   if (field->constrained()) good = good && CVodeSetProjFn(memory, onto) == 0 && CVodeSetProjErrEst(memory, 0) == 0;
-  // The limit is ours, on all steps.
+  // The limit on steps is checked here, for all steps together.
   return good && CVodeSetMaxNumSteps(memory, -1) == 0;
 }
 
@@ -281,7 +282,7 @@ Outcome Sundials::Work::step() {
   if (flag < 0) return failed(flag);
   ++steps;
   trouble = {};
-  if (!ida) branch = found;  // of the last evaluation, which belongs to this step
+  if (!ida) branch = found;  // `found` is of the last evaluation, which belongs to this step
   return {};
 }
 
@@ -292,7 +293,7 @@ Outcome Sundials::Work::failed(int flag) const {
   const std::string who = title(), when = " at t = " + number_text(reached, 12);
   const std::string remedy =
       "loosen the tolerance, end the motion before, or leave the motion to Taylor's series: --integrator taylor";
-  // What the equations themselves had to say.
+  // The failure of the equations themselves comes first.
   if (!trouble.ok()) return {trouble.kind, trouble.message + ", says " + who + when, trouble.hint};
   switch (flag) {
   case CV_TOO_MUCH_ACC:
@@ -306,7 +307,7 @@ Outcome Sundials::Work::failed(int flag) const {
   }
 }
 
-// The last step's own polynomial.
+// Evaluates the polynomial of the last step.
 Outcome Sundials::Work::interpolate(double t) {
   const int flag = ida ? IDAGetDky(memory, t, 0, y.get()) : CVodeGetDky(memory, t, 0, y.get());
   if (flag != 0)
@@ -386,7 +387,7 @@ std::size_t Sundials::steps() const { return work_->steps; }
 std::size_t Sundials::evaluations() const { return work_->evaluations; }
 double Sundials::drift() const { return work_->drift; }
 
-// Each makes the LU of a dense matrix.
+// The number of set-ups, each of which makes the LU of a dense matrix.
 std::size_t Sundials::setups() const {
   long count = 0;
   if (work_->memory && work_->field) CVodeGetNumLinSolvSetups(work_->memory, &count);

@@ -1,5 +1,5 @@
-// The motion by SUNDIALS, as a second opinion on Taylor's: CVODE integrates the state's ordinary differential
-// equations, IDA the implicit equations themselves.
+// Integrates motions by SUNDIALS, as a second opinion on Taylor's method: CVODE integrates the state's ordinary
+// differential equations, IDA the implicit equations themselves.
 //
 //   CVODE  y' = f(t, y),           y = (x_j^(k), k < d_j): x_j^(k)' = x_j^(k+1), and at the end of each chain the leading
 //                                  derivative, which the equations determine; Adams' methods, fixed-point iteration
@@ -24,17 +24,17 @@
 namespace anholon {
 
 struct SundialsSettings {
-  Method integrator = Method::cvode;  // or ida
+  Method integrator = Method::cvode;  // or Method::ida
   double tolerance = 1e-12;           // relative and absolute, of each step
   std::size_t most_steps = 50'000'000;
-  std::function<bool()> cancelled;    // asked between steps
-  double integral_tolerance = 1e-12;  // of BDF: integrals carry no error on
+  std::function<bool()> cancelled;    // called between steps
+  double integral_tolerance = 1e-12;  // of BDF; errors of integrals do not affect later steps
 };
 
-// Not copied, and used by one thread at a time; several may be used at once.
+// An object is not copied, and is used by one thread at a time; several objects may be used at once.
 class Sundials {
  public:
-  // Starts at t towards `end`, beyond which the equations are not evaluated. `leading` names the branch.
+  // Starts at t; the equations are not evaluated beyond `end`. `leading` selects the branch.
   Sundials(const Program& program, const std::vector<double>& parameters, const SundialsSettings& settings, double t,
            double end, const std::vector<double>& state, const std::vector<double>& leading,
            const std::vector<double>& integrals);
@@ -42,28 +42,28 @@ class Sundials {
   Sundials(const Sundials&) = delete;
   Sundials& operator=(const Sundials&) = delete;
 
-  // BDF with `rate`, of the same program.
+  // Starts BDF with `rate`, which belongs to the same program.
   Sundials(StateRate rate, const SundialsSettings& settings, double t, double end, const std::vector<double>& state,
            const std::vector<double>& leading, const std::vector<double>& integrals);
 
-  // Goes on until the step in which t lies, and interpolates there; t never goes back by more than a step.
+  // Makes steps until one contains t, and interpolates there. REQUIRES: t goes back by at most a step.
   Outcome advance(double t);
-  // One step of its own choice; state() and the others are then at its end.
+  // Makes one step of a length that the method chooses; state() and the others are then at its end.
   Outcome step();
 
-  // At the time of the last advance, or at the start: the state as integrated, the leading derivatives roughly.
+  // At the time of the last advance, or at the start: the state as integrated, and approximate leading derivatives.
   double time() const;
   const std::vector<double>& state() const;
   const std::vector<double>& leading() const;
   const std::vector<double>& integrals() const;
 
   std::size_t steps() const;
-  std::size_t evaluations() const;  // of f or F
-  std::size_t refused() const;      // steps of BDF: by the error test, or where Newton's method failed
-  std::size_t setups() const;       // of Newton's method, each of which solves for size^3 numbers
+  std::size_t evaluations() const;  // evaluations of f or F
+  std::size_t refused() const;      // refused steps of BDF: by the error test, or because Newton's method failed
+  std::size_t setups() const;       // set-ups of Newton's method, each of which costs size^3 operations
   StateRate& rate();                // of BDF
 
-  double drift() const;  // from the hidden constraints, of its steps
+  double drift() const;  // the largest distance of the steps from the hidden constraints
 
  private:
   void begin(double t, double end, const std::vector<double>& state, const std::vector<double>& leading,

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array<General, 5> kTemporaries{rax, r8, r9, r10, r11};
 
-// x of 0 - x, else null.
+// Returns x if the value is 0 - x, otherwise nullptr.
 const llvm::Value* negated(const llvm::Value* v) {
   const auto* of = llvm::dyn_cast<llvm::BinaryOperator>(v);
   if (!of || of->getOpcode() != llvm::Instruction::Sub) return nullptr;
@@ -52,7 +52,7 @@ General Addresses::from_pool() {
   return reg;
 }
 
-// Calls change the registers of arguments.
+// Arguments are moved to other registers if the function calls, because calls change the registers of arguments.
 void Addresses::begin_function() {
   for (unsigned k = 0; k < function_.arg_size(); ++k) {
     const General reg = calls_ ? from_pool() : kArguments[k];
@@ -63,7 +63,7 @@ void Addresses::begin_function() {
   for (std::size_t k = kArguments.size(); k-- > function_.arg_size();) pool_.push_back(kArguments[k]);
 }
 
-// The last position at which something is computed from a value.
+// Returns the last position at which something is computed from a value.
 int Addresses::last_use(const llvm::Value* v) const {
   int last = 0;
   for (const llvm::User* user : v->users()) {
@@ -104,7 +104,7 @@ General Addresses::fixed(const llvm::Value* v) const {
   return found != fixed_.end() ? found->second : nowhere;
 }
 
-// A register that holds nothing, or what was not asked for longest.
+// Returns a free register, or the one whose content was not used for the longest time.
 General Addresses::take() {
   for (const General reg : kTemporaries)
     if (std::none_of(temporaries_.begin(), temporaries_.end(), [&](const Temporary& t) { return t.reg == reg; }))
@@ -164,7 +164,7 @@ General Addresses::compute(General to, const llvm::Value* v) {
   throw Unknown("a count is neither a sum nor the negative of another one");
 }
 
-// A count, or its negative, times 2^shift.
+// Returns a register with a count, or its negative, times 2^shift.
 General Addresses::scaled(const llvm::Value* count, int shift, bool negative) {
   const Content content{negative ? Content::negative : Content::count, count, shift};
   if (const General reg = known(content); reg != nowhere) return reg;
@@ -175,7 +175,7 @@ General Addresses::scaled(const llvm::Value* count, int shift, bool negative) {
   return remember(content, to);
 }
 
-// The same memory without an index. Several pointers have the same base and index.
+// Returns the same memory without an index. Several pointers share a base and an index.
 Memory Addresses::with_one_base(const Memory& m, const llvm::Value* pointer) {
   const auto is_fixed = [&](General reg) {
     return std::any_of(fixed_.begin(), fixed_.end(), [&](const auto& of) { return of.second == reg; });

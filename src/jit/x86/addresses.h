@@ -1,5 +1,5 @@
-// Pointers and counts: general registers. Arguments and phi nodes have registers of their own; everything else is
-// computed from them where it is needed, and remembered as long as its register is.
+// Pointers and counts in general registers. Arguments and phi nodes have registers of their own; everything else is
+// computed from them where it is needed, and kept as long as its register is not needed otherwise.
 #pragma once
 #include <array>
 #include <vector>
@@ -22,7 +22,7 @@ class Addresses {
 
   // Moves the arguments to their registers.
   void begin_function();
-  // Forgets what was computed: other code may come before what follows.
+  // Forgets computed values, because other code may run before the code that follows.
   void forget() { temporaries_.clear(); }
   // The memory that a pointer points to.
   Memory memory(const llvm::Value* pointer);
@@ -36,8 +36,8 @@ class Addresses {
   static const std::array<General, 4> kArguments;
 
  private:
-  // What a temporary register holds: a value; a count, or its negative, times 2^shift; or a base and an index, whose
-  // registers are fixed, together.
+  // The content of a temporary register: a value; a count, or its negative, times 2^shift; or a base plus an index,
+  // whose registers are fixed.
   struct Content {
     enum Kind : std::uint8_t { value, count, negative, sum } kind;
     const llvm::Value* of = nullptr;
@@ -55,7 +55,7 @@ class Addresses {
   General fixed(const llvm::Value* v) const;
   General from_pool();
   int last_use(const llvm::Value* v) const;
-  // Into a register, or a temporary one if it is nowhere.
+  // Computes into a register, or into a temporary one if `to` is nowhere.
   General compute(General to, const llvm::Value* v);
   Memory indexed(const llvm::GetElementPtrInst& gep);
   Memory with_one_base(const Memory& m, const llvm::Value* pointer);
@@ -70,7 +70,7 @@ class Addresses {
   const llvm::DenseMap<const llvm::Value*, std::int64_t>& tables_;
   const bool calls_;
   llvm::DenseMap<const llvm::Value*, General> fixed_;
-  llvm::DenseMap<const llvm::Value*, std::int64_t> local_;  // memory of the function
+  llvm::DenseMap<const llvm::Value*, std::int64_t> local_;  // in the memory of the function
   std::vector<General> pool_, saved_;
   std::vector<Temporary> temporaries_;  // the latest last
 };

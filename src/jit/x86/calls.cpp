@@ -1,4 +1,4 @@
-// Functions: those of the processor, those of the program, and the end of a function.
+// Emits calls of instructions of the processor and of functions of the program, and the end of a function.
 #include "jit/x86/translator.h"
 
 namespace anholon::jit::x86 {
@@ -42,7 +42,7 @@ void Translator::masked_load(const llvm::IntrinsicInst& i) {
   code_.vector(encodings::masked_load, true, registers_.define(numbers_.number(&i, 0)), lanes, Operand::of(at));
 }
 
-// Numbers go in xmm0 and xmm1.
+// Moves the numbers of a call to xmm0 and xmm1.
 void Translator::numbers_of_call(const llvm::CallInst& i) {
   std::vector<Operand> from;
   for (const llvm::Value* v : i.args())

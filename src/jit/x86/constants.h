@@ -1,4 +1,4 @@
-// The constants of the code of a module: numbers beside it.
+// The constants of the code of a module: numbers stored beside it.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -9,7 +9,7 @@
 
 namespace anholon::jit::x86 {
 
-// The bits of a constant number; 0 for one that may be anything. Throws Unknown for what is no number.
+// Returns the bits of a constant number; 0 for an undefined one. Throws Unknown if the constant is no number.
 std::uint64_t bits_of(const llvm::Constant* number);
 
 // An element of a constant vector, or a constant that is no vector.
@@ -17,7 +17,7 @@ const llvm::Constant* element_of(const llvm::Constant& c, unsigned i);
 
 class Constants {
  public:
-  // The place, in bytes, of these numbers; equal ones have one place. Four numbers are aligned for a vector.
+  // Returns the place, in bytes, of these numbers; equal lists have one place. Four numbers are aligned for a vector.
   std::int64_t place(const std::vector<std::uint64_t>& bits);
   // The place of a table.
   std::int64_t table(const llvm::GlobalVariable& of);

@@ -1,4 +1,5 @@
-// Instructions of x86-64 with AVX2 and FMA as bytes (Intel's manual, volume 2): what straight-line code of doubles needs.
+// Encodes instructions of x86-64 with AVX2 and FMA as bytes (Intel's manual, volume 2), as far as straight-line code of
+// doubles needs them.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -7,7 +8,7 @@
 
 namespace anholon::jit::x86 {
 
-// Thrown for code that this compiler does not know; the caller takes another one.
+// Thrown for code that this compiler does not know; then the caller uses another compiler.
 struct Unknown : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -33,7 +34,7 @@ enum General : std::int8_t {
   nowhere = -1
 };
 
-// An operand in memory: base + (index << shift) + at. Without a base it is in the constants of the code.
+// An operand in memory: base + (index << shift) + at. Without a base it is among the constants of the code.
 struct Memory {
   General base = nowhere, index = nowhere;
   int shift = 0;
@@ -50,7 +51,7 @@ struct Operand {
   bool in_memory() const { return reg < 0; }
 };
 
-// How an instruction is encoded with the VEX prefix. `scalar`: the prefix of the form for one double, if it has one.
+// The encoding of an instruction with the VEX prefix. `scalar`: the prefix of the form for one double, if there is one.
 struct Encoding {
   std::uint8_t opcode, map, prefix, scalar;
   bool w = false;
@@ -80,11 +81,11 @@ struct Distance {
 
 class Encoder {
  public:
-  // `wide`: four lanes, else one double (or 128 bits, for instructions without a scalar form). `second` is the register
-  // of the first source; instructions with one source have none.
+  // `wide`: four lanes, otherwise one double (or 128 bits, for instructions without a scalar form). `second`: the
+  // register of the first source; instructions with one source have none.
   void vector(const Encoding& e, bool wide, int to, int second, const Operand& last);
   void vector(const Encoding& e, bool wide, int to, int second, const Operand& last, std::uint8_t immediate);
-  // order: 132, 213 or 231, as in the names of the instructions; the product, the addend, or both are negated.
+  // order: 132, 213 or 231, as in the names of the instructions; the product, the addend, or both may be negated.
   void fused(int order, bool negated_product, bool negated_addend, bool wide, int to, int second, const Operand& last);
   void load(bool wide, int to, const Memory& from);
   void store(bool wide, int from, const Memory& to);

@@ -1,4 +1,4 @@
-// Arithmetic, and what moves numbers.
+// Emits arithmetic, and instructions that move numbers.
 #include <algorithm>
 #include <array>
 
@@ -97,7 +97,7 @@ void Translator::binary(const llvm::Instruction& i, const Encoding& e, bool comm
     if (commutes && from_memory(a, part) && !from_memory(b, part)) std::swap(a, b);
     const int n = numbers_.number(&i, part);
     const bool wide = numbers_.wide(n);
-    // Bits have no form for one double; the constants of such instructions are 16 bytes long.
+    // Operations on bits have no form for one double, so their constants would have to be 16 bytes long.
     const bool short_constants = !wide && e.scalar == encodings::kNone;
     const int x = in_register(a, part, wide);
     const Operand y = short_constants ? Operand::of(in_register(b, part, wide)) : anywhere(b, part, wide);
@@ -107,8 +107,8 @@ void Translator::binary(const llvm::Instruction& i, const Encoding& e, bool comm
   }
 }
 
-// By a constant. There is no arithmetic shift of 64 bits: 12 bits that are left of a number get their sign by
-// (x ^ s) - s with s = 2^11.
+// Shifts by a constant. There is no arithmetic shift of 64 bits: the 12 remaining bits of a number get their sign by (x
+// ^ s) - s with s = 2^11.
 void Translator::shift(const llvm::Instruction& i) {
   constexpr std::uint64_t kRoom = 64;
   const auto* by = llvm::dyn_cast<llvm::Constant>(i.getOperand(1));
@@ -147,7 +147,7 @@ void Translator::fma(const llvm::Instruction& i) {
   }
 }
 
-// a b + c: the result takes the register of an operand that is not used again; else that of a copy of c.
+// Emits a b + c: the result takes the register of an operand that is not used again, otherwise that of a copy of c.
 void Translator::fma_part(const llvm::Instruction& i, unsigned part) {
   auto [a, a_negated] = sign_apart(numbers_, i.getOperand(0));
   auto [b, b_negated] = sign_apart(numbers_, i.getOperand(1));
@@ -162,7 +162,7 @@ void Translator::fma_part(const llvm::Instruction& i, unsigned part) {
   const bool same_factors = a == b;
   if (!ends(c) && !from_memory(c, part) && !same_factors && (ends(a) || ends(b)) && c != a && c != b) {
     if (!ends(a)) std::swap(a, b);
-    // The register of a: with b or c in memory.
+    // The result takes the register of a, with b or c in memory.
     const int to = in_register(a, part, wide), z = in_register(c, part, wide);
     const Operand y = anywhere(b, part, wide);
     const int from = numbers_.number(a, part);

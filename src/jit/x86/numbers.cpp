@@ -74,7 +74,7 @@ void Numbers::order(llvm::Function& f) {
   }
 }
 
-// Integers that are the bits of doubles are in vector registers, those that count are not.
+// Integers that are the bits of doubles are in vector registers; counts are not.
 void Numbers::find_bits() {
   for (const Block& b : blocks_)
     for (const llvm::Instruction& i : *b.block) {
@@ -113,7 +113,7 @@ bool Numbers::folds(const llvm::Instruction& i) const {
   return i.use_empty() && !i.isTerminator() && !changes_memory(i);
 }
 
-// `stores`: how many instructions before each one in its block change the memory.
+// `stores`: the number of instructions before each one in its block that change the memory.
 bool Numbers::load_folds(const llvm::LoadInst& load,
                          const llvm::DenseMap<const llvm::Instruction*, int>& stores) const {
   const llvm::Instruction* user = &load;
@@ -153,7 +153,7 @@ void Numbers::number_all() {
   uses_.resize(wide_.size());
 }
 
-// `made`: the numbers that the block makes before; without them the number lives before the block.
+// `made`: the numbers that the block makes earlier; a number that is not among them lives before the block.
 void Numbers::use(const llvm::Value* v, int position, llvm::BitVector* before, const llvm::BitVector* made) {
   v = behind_casts(v);
   if (const auto found = first_.find(v); found != first_.end()) {
@@ -191,8 +191,8 @@ void Numbers::find_uses() {
   }
 }
 
-// Numbers that live at the end of a block: those that live at the begin of one that follows. A block passes on what it
-// does not make.
+// Finds the numbers that live at the end of a block: those that live at the begin of a following block. Numbers that a
+// block does not make live at its begin, too.
 void Numbers::find_life() {
   std::vector<llvm::BitVector> made(blocks_.size(), llvm::BitVector(static_cast<unsigned>(count())));
   for (std::size_t k = 0; k < blocks_.size(); ++k)

@@ -1,5 +1,5 @@
-// What a function of straight-line code computes in vector registers: its numbers, where they are used, which of its
-// instructions are parts of others.
+// The numbers that a function of straight-line code computes in vector registers, their uses, and the instructions that
+// are parts of others.
 #pragma once
 #include <vector>
 
@@ -20,13 +20,13 @@ inline constexpr unsigned kWidth = 4;  // lanes of a register
 unsigned lanes_of(const llvm::Type* type);
 inline unsigned parts_of(const llvm::Type* type) { return (lanes_of(type) + kWidth - 1) / kWidth; }
 
-// Whether a value is a shuffle that repeats the element 0 of an insertion into a vector without other elements.
+// True if a value is a shuffle that repeats the element 0 of an insertion into a vector without other elements.
 bool is_splat(const llvm::Value* v);
-// Whether a value is a fused product and sum.
+// True if a value is a fused product and sum.
 bool is_fma(const llvm::Value* v);
 
 // A number is a part of a value: a double, or up to four of them side by side. Positions count the instructions in the
-// order in which code is made of them.
+// order in which they are translated.
 class Numbers {
  public:
   explicit Numbers(llvm::Function& f);
@@ -48,9 +48,9 @@ class Numbers {
   // Positions in ascending order.
   const std::vector<int>& uses(int number) const { return uses_[static_cast<std::size_t>(number)]; }
 
-  // Whether no code is made at the place of an instruction, because those that use it do its work or nobody uses it.
+  // True if no code is made at the place of an instruction, because its users do its work or it has no users.
   bool folded(const llvm::Value* v) const { return folded_.count(v) != 0; }
-  // A load that is the operand of the one instruction that uses it.
+  // True for a load that is an operand of its only user.
   bool is_operand(const llvm::Value* v) const { return llvm::isa<llvm::LoadInst>(v) && folded(v); }
   int position(const llvm::Instruction* i) const { return position_.lookup(i); }
 

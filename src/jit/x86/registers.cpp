@@ -24,7 +24,7 @@ void Registers::begin(const Numbers::Block& block, int position) {
   position_ = position;
 }
 
-// The first use at a position or behind it; kLater if only later blocks use the number.
+// Returns the first use at a position or after it; kLater if only later blocks use the number.
 int Registers::next_use(int number, int from) const {
   const std::vector<int>& uses = numbers_.uses(number);
   const auto next = std::lower_bound(uses.begin(), uses.end(), from);
@@ -100,7 +100,7 @@ Memory Registers::slot(int number) {
   return {rsp, nowhere, 0, s.slot};
 }
 
-// Another number may have the memory after this instruction.
+// Frees the memory of a number after this instruction.
 void Registers::give_slot_back(int number) {
   State& s = state(number);
   if (s.slot < 0 || s.fixed) return;
@@ -166,7 +166,7 @@ void Registers::end() {
     free_slots_[k].insert(free_slots_[k].end(), freed_[k].begin(), freed_[k].end());
     freed_[k].clear();
   }
-  // A number that nobody uses leaves its register.
+  // A number without later uses leaves its register.
   for (int& n : holder_)
     if (n != kNobody && dies(n)) {
       give_slot_back(n);

@@ -1,5 +1,5 @@
-// Which numbers are in which vector registers. What has to leave is what is used last (Belady's rule, which is optimal
-// for straight-line code if all numbers cost the same).
+// Keeps numbers in vector registers. If a register is needed, the number with the latest next use leaves (Belady's
+// rule, which is optimal for straight-line code if all numbers cost the same).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -27,11 +27,11 @@ class Registers {
 
   Registers(const Numbers& numbers, Encoder& code, Frame& frame);
 
-  // One instruction after the other: what it uses stays where it is until `end`.
+  // Begins an instruction; the numbers that it uses stay where they are until `end`.
   void begin(const Numbers::Block& block, int position);
   // The register of a number, which is loaded if it is not in one.
   int in_register(int number);
-  // Where a number is, without being loaded if this is its last use.
+  // Returns the place of a number, without loading it if this is its last use.
   Operand anywhere(int number);
   // A register for the present instruction.
   int take();
@@ -39,21 +39,22 @@ class Registers {
   void release();
   // The register of a new number.
   int define(int number);
-  // Makes a new number of one that is not used any more; returns false if it is used, or not in a register.
+  // Turns a number that is not used again into a new number; returns false if it is used again, or is not in a
+  // register.
   bool rename(int from, int to);
   bool dies(int number) const;
   bool held(int number) const { return state(number).reg >= 0; }
   int reg(int number) const { return state(number).reg; }
-  // The next part of the present instruction.
+  // Begins the next part of the present instruction.
   void next_part();
   void end();
 
-  // Stores what lives and is not in memory yet.
+  // Stores the living numbers that are not in memory yet.
   void store(const llvm::BitVector& living);
   void store_all_that_live();
   // Forgets all registers.
   void clear();
-  // Places at the begin of a block: a register, or else memory.
+  // Sets the place of a number at the begin of a block: a register, or memory.
   void bind(int number, int reg);
   void bind_to_memory(int number, std::int64_t place);
   Memory slot(int number);

@@ -14,7 +14,7 @@ namespace anholon::jit::x86 {
 
 namespace {
 
-// Memory that is written first and executed then.
+// Memory that is first written and then executed.
 class Executable {
  public:
   explicit Executable(const std::vector<std::uint8_t>& bytes) : size_(bytes.size()) {
@@ -52,7 +52,7 @@ struct Placed {
   std::map<std::string, std::size_t, std::less<>> places;
 };
 
-// The Emitter asks for some numbers twice.
+// Removes repeated computations, because the Emitter requests some numbers twice.
 void compute_once(llvm::Module& module) {
   llvm::legacy::FunctionPassManager passes(&module);
   passes.add(llvm::createEarlyCSEPass());

@@ -102,7 +102,7 @@ std::vector<Translator::Move> Translator::moves_to(const llvm::BasicBlock* next,
   return moves;
 }
 
-// The first time that a block is entered: phi nodes take the registers of their values if they can.
+// When a block is entered for the first time, its phi nodes take the registers of their values if they can.
 void Translator::choose_places(const std::vector<Move>& moves) {
   constexpr std::size_t kForTheBody = 3;
   std::uint32_t taken = 0;
@@ -141,7 +141,7 @@ Operand Translator::source(const Move& move) {
   return registers_.held(n) ? Operand::of(registers_.reg(n)) : Operand::of(registers_.slot(n));
 }
 
-// All moves take their sources as they are before the first of them.
+// Makes all moves with the sources as they are before the first of them.
 void Translator::move_at_once(const std::vector<Move>& moves) {
   struct Pending {
     Operand to, from;
@@ -169,7 +169,7 @@ void Translator::move_at_once(const std::vector<Move>& moves) {
       pending.erase(ready);
       continue;
     }
-    // A cycle: the content of one place waits in memory.
+    // The moves form a cycle, so the content of one place waits in memory.
     Pending& first = pending.front();
     const Operand aside = Operand::of(Memory{rsp, nowhere, 0, frame_.take(32, 32)});
     move(aside, first.to, true);
@@ -184,13 +184,13 @@ bool Translator::has_moves(const llvm::BasicBlock* next, const Numbers::Block& b
   return false;
 }
 
-// Counts of a block that is entered, after its numbers.
+// Enters a block: moves its numbers, then its counts.
 void Translator::enter(const llvm::BasicBlock* next, const Numbers::Block& b) {
   move_at_once(moves_to(next, b));
   for (const llvm::PHINode& phi : next->phis())
     if (!phi.getType()->getScalarType()->isDoubleTy()) {
       const llvm::Value* from = phi.getIncomingValueForBlock(b.block);
-      // What comes of the node itself is computed before the node changes.
+      // A value that depends on the node itself is computed before the node changes.
       const bool number = llvm::isa<llvm::ConstantInt>(from);
       const General of = number ? nowhere : addresses_.value(from), to = addresses_.phi(&phi);
       number ? addresses_.put(to, from) : code_.move(to, of);
@@ -217,7 +217,7 @@ Condition Translator::condition(const llvm::ICmpInst& of) {
   }
 }
 
-// One of the blocks after a condition follows in the code.
+// Emits a branch; one of the blocks after a condition follows directly in the code.
 void Translator::branch(const llvm::BranchInst& i, const Numbers::Block& b) {
   std::vector<const llvm::BasicBlock*> next;
   for (unsigned k = 0; k < i.getNumSuccessors(); ++k) next.push_back(i.getSuccessor(k));
@@ -236,7 +236,8 @@ void Translator::branch(const llvm::BranchInst& i, const Numbers::Block& b) {
   }
   const auto* compared = llvm::dyn_cast<llvm::ICmpInst>(i.getCondition());
   if (!compared) throw Unknown("a branch that does not compare counts");
-  // The other one is entered first, as its moves change what follows takes over.
+  // The block that does not follow is entered first, because its moves change the state that the following block starts
+  // from.
   const bool first_follows = next[0] == following_;
   const llvm::BasicBlock *stays = first_follows ? next[0] : next[1], *leaves = first_follows ? next[1] : next[0];
   if (!moves_to(stays, b).empty() || (stays->phis().begin() != stays->phis().end()))
@@ -298,7 +299,7 @@ Operand Translator::anywhere(const llvm::Value* v, unsigned part, bool wide) {
   return Operand::of(addresses_.memory(llvm::cast<llvm::LoadInst>(v)->getPointerOperand()));
 }
 
-// A new number with the value of another one.
+// Makes a new number with the value of another one.
 void Translator::copy(const llvm::Value* from, unsigned part, int to) {
   from = Numbers::behind_casts(from);
   const bool wide = numbers_.wide(to);

@@ -1,4 +1,4 @@
-// Machine code of one function, instruction by instruction.
+// Translates one function into machine code, instruction by instruction.
 #pragma once
 #include <string>
 
@@ -9,7 +9,7 @@ namespace anholon::jit::x86 {
 
 inline bool is_poison(const llvm::Value* v) { return llvm::isa<llvm::UndefValue>(v); }
 
-// What a function refers to outside of itself.
+// The objects outside of a function to which it refers.
 struct Surroundings {
   Constants constants;
   llvm::DenseMap<const llvm::Value*, std::int64_t> tables;
@@ -20,7 +20,7 @@ struct Surroundings {
 class Translator {
  public:
   Translator(llvm::Function& f, Surroundings& around);
-  // Throws Unknown for what it does not know.
+  // Throws Unknown for code that it does not know.
   Encoder run();
 
  private:
@@ -47,7 +47,7 @@ class Translator {
   void copy(const llvm::Value* from, unsigned part, int to);
 
   bool inherits(const llvm::BasicBlock* next) const;
-  // Stores what the next block finds in memory.
+  // Stores the numbers that the next block expects in memory.
   void prepare(const llvm::BasicBlock* next);
   struct Move {
     int number;  // of the phi node
@@ -79,7 +79,7 @@ class Translator {
   const bool calls_;
   Addresses addresses_;
   Registers registers_;
-  llvm::DenseMap<int, int> phi_register_;         // of a number; without one it is in memory
+  llvm::DenseMap<int, int> phi_register_;         // of a number; a number without one is in memory
   llvm::DenseMap<int, std::int64_t> phi_memory_;  // place on the stack
   llvm::DenseMap<const llvm::BasicBlock*, bool> places_chosen_;
   const llvm::BasicBlock *previous_ = nullptr, *following_ = nullptr;

@@ -33,7 +33,7 @@ PlanLayout::PlanLayout(const Program& p, const Slots& slots, int stages, Plan& p
     if (slots_.varies(s) && !slots_.series[s]) place_[s] = take_number();
 }
 
-// Coefficients come first in the arena: all of them are made before the first series is placed.
+// Coefficients come first in the arena, because all of them are made before the first series is placed.
 void PlanLayout::make_coefficients() {
   coefficient({Rational(1), {}});
   coefficient({Rational(-1), {}});

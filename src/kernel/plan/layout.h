@@ -19,9 +19,9 @@ class PlanLayout {
   }
   Place take_number() { return {take(1), false}; }
   Place take_series() { return {take(plan_.stride), true}; }
-  // The place of a constant, which is made if it is new. REQUIRES: one that the tape contains.
+  // The place of a constant, which is made if it is new. REQUIRES: the tape contains the constant.
   std::uint32_t coefficient(const Coefficient& c);
-  // The place of a slot; if it repeats another one, of that.
+  // The place of a slot, or of the slot that it repeats.
   Place place(std::uint32_t slot) const { return place_[slots_.same_as(slot)]; }
   // The slot of a coordinate by its place.
   const std::map<std::uint32_t, std::uint32_t>& coordinates() const { return coordinate_at_; }

@@ -39,7 +39,7 @@ void LinearizedTape::enter(std::uint32_t s, std::uint32_t operand, std::uint32_t
   plan_.entries.push_back({column_[s], column(operand), from, sign});
 }
 
-// The slot itself, less its partial derivatives times the slots that it depends on.
+// Adds a row: the slot itself, minus its partial derivatives times the slots on which it depends.
 void LinearizedTape::add_row(std::uint32_t s) {
   plan_.entries.push_back({column_[s], column_[s], layout_.coefficient({Rational(1), {}}), 1});
   const Instruction& in = slots_.code[s];
@@ -106,7 +106,7 @@ void LinearizedTape::add_two_operands(std::uint32_t s) {
   }
 }
 
-// The rows of the equations: root = right side.
+// Adds the rows of the equations: root = right side.
 void LinearizedTape::add_equations() {
   const std::uint32_t unit = layout_.coefficient({Rational(1), {}});
   std::vector<int> depth;

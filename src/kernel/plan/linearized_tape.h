@@ -1,4 +1,4 @@
-// The linearized tape of a plan: rows and columns for the unknowns, and one of each for every slot that depends on them.
+// The linearized tape of a plan: one row and one column for each unknown, and for each slot that depends on unknowns.
 #pragma once
 #include "kernel/plan/steps.h"
 

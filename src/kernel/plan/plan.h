@@ -29,10 +29,9 @@ struct Place {
 enum class Act : std::uint8_t {
   input,   // x^(k): a = series of x, index = k
   linear,  // sum of coefficient * value
-  // the part of a linear sum beyond its double; the terms from `index` on: coefficients and the parts of the values
-  // beyond their doubles
+  // the part of a linear sum beyond its double; `index`: the first of the terms with the parts of the values beyond
+  // their doubles
   beyond,
-  // are beyond their doubles
   multiply,     // a * b
   square,       // a^2
   divide,       // a / b; c: 1 / b_0
@@ -79,8 +78,8 @@ struct Partial {
   std::uint32_t out, a, b;  // twice a; 1/(2a); a b; a >= 0; a < 0
 };
 
-// The linearized tape: `row` of it has `sign` * arena[`from`] in `column`. Unknowns come first, then the slots that
-// depend on them.
+// An entry of the linearized tape: `sign` * arena[`from`] in `row` and `column`. Unknowns come first, then the slots
+// that depend on them.
 struct Entry {
   std::uint32_t row, column, from;
   double sign;
@@ -91,29 +90,29 @@ struct Completion {
   Place out;
   std::uint8_t lead;
   std::uint32_t column;
-  bool fresh;  // out is zero before (beyond stage 0)
+  bool fresh;  // out is zero before the stage (beyond stage 0)
 };
 
-// The state is stored with more digits than a double has. The sine of an angle of many turns needs them: `at` gets the
+// The state is stored with more digits than a double has, which the sine of an angle of many turns needs: `at` gets the
 // part of entry `index` of the state (x_j^(k), k < d_j, one after the other) beyond its double.
 struct Beyond {
   std::uint32_t at, index;
 };
 
-// A function of one argument that may be almost constant far from its variation. (A sine is not one: its series show
+// A function of one argument that may be nearly constant far from its variation. (A sine is not one: its series show
 // its variation.)
 struct Hiding {
   std::optional<Function> function;  // nullopt: a power
   double exponent = 0;
 
   bool quotient() const { return !function && exponent == -1; }
-  // A function whose argument changes by less than this hides nothing; for powers in relation to the argument.
+  // A function hides nothing if its argument changes by less than this; for powers, relative to the argument.
   double hides_beyond() const { return quotient() ? 1 - kNearZero : 0.5; }
-  // A divisor this small, in relation to what it is at the start, makes a wall or a pole.
+  // A divisor this small, relative to its value at the start, makes a wall or a pole.
   static constexpr double kNearZero = 1e-3;
 };
-// The function or power that an instruction computes if it may hide its variation, and its argument; for a quotient, a
-// power of -1 of the divisor.
+// Returns the function or power that an instruction computes if it may hide its variation; hidden_argument() returns
+// its argument. A quotient is a power of -1 of the divisor.
 std::optional<Hiding> may_hide(const Tape& tape, const Instruction& in);
 inline std::uint32_t hidden_argument(const Instruction& in) { return in.op == Op::divide ? in.b : in.a; }
 
@@ -131,14 +130,14 @@ struct Plan {
   std::vector<Completion> completions;
   std::vector<std::uint32_t> x;      // series of every unknown
   std::uint32_t time = 0;            // series of t
-  std::vector<Place> roots;          // of the equations; the right side of row i is that of root i
+  std::vector<Place> roots;          // of the equations; the right side of row i belongs to root i
   std::vector<char> root_is_zero;    // beyond stage 0, before the unknowns of the stage are known
   std::vector<std::uint32_t> sides;  // roots in the order in which a stage computes them
   std::vector<Place> quadratures;
   std::vector<Beyond> beyond_double;  // of the angles of sines
-  // Slots of the tape whose value decides which function holds, beyond them another one: the radicand of a root of even
-  // power and the argument of abs or sign, which may pass zero, the condition of a choice, the argument of a step
-  // function `index`, which may pass a knot, the arguments of an angle atan2.
+  // Slots of the tape whose value decides which function holds: the radicand of a root of even power and the argument
+  // of abs or sign, which may pass zero; the condition of a choice; the argument of a step function `index`, which may
+  // pass a knot; the arguments of an angle atan2.
   struct Deciding {
     enum class Kind : std::uint8_t { radicand, sign, knots } kind;
     std::uint32_t slot, index;
@@ -161,8 +160,8 @@ struct Plan {
   double work() const;
 };
 
-// How numbers that no double holds are rounded: to the nearest double, or to the other one of the two doubles between
-// which they lie. What two motions with different roundings have in common does not come from them.
+// The rounding of numbers that no double represents: to the nearest double, or to the other one of the two doubles
+// between which they lie. A property that motions with both roundings share does not come from rounding.
 enum class Rounding : std::uint8_t { nearest, other };
 // The values of the coefficients of a plan, for one set of parameters after the other.
 class CoefficientValues {
@@ -170,13 +169,13 @@ class CoefficientValues {
   // REQUIRES: the plan and the program outlive the values.
   CoefficientValues(const Plan& plan, const Program& program, const std::vector<long double>& parameters);
   void set_parameters(const std::vector<long double>& parameters) { slots_.set_parameters(parameters); }
-  // Each is computed in long double and rounded once.
+  // Each value is computed in long double and rounded once.
   std::vector<double> rounded(Rounding rounding = Rounding::nearest) const;
 
  private:
   const Plan* plan_;
   std::vector<long double> rationals_;  // of each coefficient
-  Machine<long double> slots_;          // those that are constant in time
+  Machine<long double> slots_;          // slots that are constant in time
 };
 
 }  // namespace anholon

@@ -7,7 +7,7 @@
 
 namespace anholon {
 
-// The reason why a program has no plan; else an empty string.
+// Returns the reason why a program has no plan; otherwise an empty string.
 std::string no_plan(const Program& program);
 // REQUIRES: no_plan(program).empty()
 // `judged`: the last quadrature is the plan's `determinant`, known at the point of expansion only.

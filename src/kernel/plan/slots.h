@@ -19,11 +19,11 @@ class Slots {
 
   const Tape& tape;
   const std::vector<Instruction>& code;
-  std::vector<const ProgramInput*> inputs;  // null for other slots
-  // for a sine, a cosine of the same argument; and the reverse
+  std::vector<const ProgramInput*> inputs;  // nullptr for other slots
+  // cosine_of: for a sine, a cosine of the same argument; sine_of: the reverse
   std::map<std::uint32_t, std::uint32_t> cosine_of, sine_of;
   std::vector<bool> live, series;
-  // the newest coefficient depends on the unknowns of the stage; it is zero without them
+  // tainted: the newest coefficient depends on the unknowns of the stage; pure: it is zero without them
   std::vector<bool> tainted, pure;
   std::vector<std::vector<Summand>> sums;
 
@@ -34,7 +34,7 @@ class Slots {
   bool varies(std::uint32_t s) const { return live[s] && !code[s].constant; }
   bool in_main(std::uint32_t s) const { return s < tape.main_end; }
   bool unknown(std::uint32_t s, std::uint8_t lead) const { return tainted[s] && code[s].lead == lead; }
-  // The slot with the same value, if this one repeats it.
+  // The first slot with the same value; the slot itself if it repeats none.
   std::uint32_t same_as(std::uint32_t s) const;
   // The operands of a slot, with repeats replaced.
   std::vector<std::uint32_t> operands(std::uint32_t s) const;

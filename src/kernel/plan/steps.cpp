@@ -100,7 +100,7 @@ void PlanSteps::emit(std::uint32_t s) {
   plan_.stage.push_back(*step);
 }
 
-// Without its operands; nullopt if no step computes the slot.
+// Returns the step without its operands; nullopt if no step computes the slot.
 std::optional<Step> PlanSteps::step_of(std::uint32_t s) {
   const Instruction& in = code_[s];
   Step step;
@@ -148,7 +148,7 @@ std::optional<Step> PlanSteps::step_of(std::uint32_t s) {
   return std::nullopt;
 }
 
-// Derivatives of unknowns; their series themselves are there.
+// Returns the step of a derivative of an unknown; the series of the unknowns need no step.
 std::optional<Step> PlanSteps::input(std::uint32_t s, Step step) const {
   const ProgramInput& in = *slots_.inputs[s];
   if (in.kind != ProgramInput::Kind::variable || in.order == 0) return std::nullopt;
@@ -215,7 +215,7 @@ void PlanSteps::add_operands(Step& step, std::uint32_t s) const {
   step.b_later = arrival(b, in.lead) > arrival(a, in.lead);
 }
 
-// Whether the newest coefficient is an unknown of the stage, or a multiple of one.
+// True if the newest coefficient is an unknown of the stage, or a multiple of one.
 bool PlanSteps::solved_for(std::uint32_t s) const {
   return (code_[s].op == Op::input && slots_.inputs[s]->leading) || (code_[s].op == Op::rate && slots_.pure[s]);
 }
@@ -248,7 +248,8 @@ Place PlanSteps::weighted(std::uint32_t a, bool after) {
 
 // ---- parts beyond a double ------------------------------------------------------------------------------------------
 
-// The part of a slot's value beyond its double, for a coordinate or a sum with coordinates; at 0 if it is not known.
+// The part of a slot's value beyond its double, for a coordinate or a sum with coordinates; a place at 0 if it is not
+// known.
 Place PlanSteps::beyond_double(std::uint32_t s) {
   if (const auto it = beyond_.find(s); it != beyond_.end()) return it->second;
   beyond_[s] = {};

@@ -1,10 +1,10 @@
-// The steps of a plan: what computes a coefficient of each slot of the tape, at the point and at the stages beyond.
+// The steps of a plan: they compute a coefficient of each slot of the tape, at the point and at the stages beyond.
 #pragma once
 #include "kernel/plan/layout.h"
 
 namespace anholon {
 
-// Whether an operation has a second operand `b` that is no derivative.
+// True if an operation has a second operand `b` that is not a derivative.
 inline bool takes_two(Op op) { return op == Op::multiply || op == Op::divide || op == Op::arctan2 || op == Op::select; }
 
 class PlanSteps {
@@ -12,9 +12,9 @@ class PlanSteps {
   // Adds all steps to the plan.
   PlanSteps(const Program& program, const Slots& slots, PlanLayout& layout, Plan& plan, bool judged);
 
-  // How many operations come before a slot at least.
+  // The length of the longest chain of operations before a slot.
   int depth(std::uint32_t s) const { return depth_[s]; }
-  // Where 1 / b_0 of a quotient and the derivative of a power are.
+  // The places of 1 / b_0 of a quotient and of the derivative of a power.
   std::uint32_t reciprocal(std::uint32_t s) const { return reciprocal_.at(s); }
   std::uint32_t derivative(std::uint32_t s) const { return derivative_.at(s); }
 

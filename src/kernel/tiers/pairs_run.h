@@ -2,9 +2,9 @@
 //
 // With a + b = s + e exactly (Knuth), a b = p + e exactly (by a fused product): pairs as in T. J. Dekker (1971).
 //
-// Sine and cosine: with n the nearest integer to 2x/pi, the rest r = x - n pi/2 is a pair, pi/2 being three doubles; the
-// Taylor polynomials of r have their first terms in pairs and those that are small enough in doubles. Angles from 2^27
-// on are left to long double.
+// Sine and cosine: with n the nearest integer to 2x/pi, the rest r = x - n pi/2 is a pair, pi/2 being three doubles;
+// the Taylor polynomials of r have their first terms in pairs and those that are small enough in doubles. Angles from
+// 2^27 on are left to long double.
 #pragma once
 #include <cmath>
 
@@ -61,7 +61,7 @@ class PairRun {
     V high, low;
   };
 
-  // Fused on every machine: without an instruction the C library does it.
+  // The product is fused on every machine: without an instruction the C library computes it.
   static V fused(V a, V b, V c) {
     if constexpr (L == 1)
       return __builtin_fma(a, b, c);

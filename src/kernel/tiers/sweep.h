@@ -172,7 +172,7 @@ class Sweep final : public SweepSteps<L> {
     return s + t;
   }
 
-  // As above for j = first..last; first is 0 or 1, last p or p - 1.
+  // Like history(), for j = first..last; first is 0 or 1, last p or p - 1.
   V convolution(const V* a, const V* b, std::int64_t p, bool first, bool last, bool b_later = false) const {
     V s = history(a, b, p);
     if (first && !b_later) s = T::fma(a[0], b[p], s);
@@ -280,7 +280,7 @@ class Sweep final : public SweepSteps<L> {
     return r;
   }
 
-  // The rounding errors of each product and each addition.
+  // Sums the rounding errors of each product and each addition.
   V beyond_of_sum(const Step& s) {
     const PlanTerm *term = &p_.terms[s.first], *low = &p_.terms[s.index];
     V r = T::broadcast(0), beyond = r;

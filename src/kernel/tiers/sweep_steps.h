@@ -18,8 +18,8 @@ class SweepSteps : public Arithmetic {
   SweepSteps(const KernelTables& tables, double* arena)
       : k_(tables), p_(*tables.plan), w_(reinterpret_cast<V*>(arena)) {}
 
-  // Sums every fourth term, from the highest on, so that no term waits for a power, and four orders can be one vector
-  // in other code.
+  // Sums every fourth term, from the highest on, so that no term waits for a power, and other code can compute four
+  // orders as one vector.
   void advance() override {
     weigh();
     V* out = w_ + k_.increments;
@@ -129,7 +129,7 @@ class SweepSteps : public Arithmetic {
       const V* x = w_ + p_.x[j];
       const int d = p_.d[j];
       for (int k = 0; k < d; ++k, ++to) {
-        // The change of the state by projection, which the series do not contain.
+        // This sum contains the change of the state by projection, which the series do not contain.
         V s = low[k] + *change++, power = step;
         for (int i = k + 1; i < d; ++i) {
           s = T::fma(high[i] - x[i] * T::broadcast(k_.factorial[static_cast<std::size_t>(i)]) + low[i], power, s);

@@ -1,4 +1,4 @@
-// What is watched of the floors along a run: constraints that begin to pull, and rolling that needs much friction.
+// Watches the floors along a run: constraints that begin to pull, and rolling that needs much friction.
 #pragma once
 #include <algorithm>
 
@@ -8,11 +8,11 @@
 namespace anholon {
 
 struct FloorWatch {
-  // `carriers`: also supports of one body alone (supports.h).
+  // `carriers`: supports of one body alone are watched, too (supports.h).
   FloorWatch(const Scenario& s, bool carriers)
       : FloorWatch(s, is_held(*s.model) ? translations(s) : std::nullopt, carriers) {}
 
-  // At a row. multiplier(r): of constraint r; numbers: of the row after t.
+  // Looks at a row. multiplier(r): the multiplier of constraint r; `numbers`: the columns of the row after t.
   template <class N, class Multiplier>
   void see(double t, const Multiplier& multiplier, const std::vector<N>& numbers) {
     supports.see(t, multiplier, numbers);

@@ -6,14 +6,14 @@ namespace anholon {
 
 namespace {
 
-// Whether a force depends on parameters alone.
+// True if a force depends on parameters alone.
 bool constant(const Model& m, const Vector& v) {
   const Tape tape = compile(put_masses(m, Column{v.x, v.y, v.z}));
   return std::all_of(tape.inputs.begin(), tape.inputs.end(),
                      [&](const Input& in) { return m.graph->node(in.symbol).kind == Kind::parameter; });
 }
 
-// The direction of the weight of a body: that of gravity, or without a field that of the constant forces.
+// The direction of the weight of a body: that of gravity, or, without gravity, that of the constant forces.
 Vector weight_of(const Model& m, std::size_t body) {
   const Body& b = m.bodies[body];
   if (!is_zero(b.gravity)) return b.gravity;

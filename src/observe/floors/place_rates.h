@@ -1,5 +1,5 @@
-// How the places of all bodies, constraints and weights change with one coordinate, by Taylor arithmetic: no expression is
-// made.
+// Computes by Taylor arithmetic how the places of all bodies, constraints and weights change with one coordinate; no
+// expression is made.
 #pragma once
 #include <vector>
 
@@ -10,23 +10,24 @@ namespace anholon {
 
 class PlaceRates {
  public:
-  // `constraints`: those whose residuals are looked at, of order 0 or 1.
+  // `constraints`: those whose residuals are needed, of order 0 or 1.
   PlaceRates(Workspace& s, const std::vector<std::size_t>& constraints);
-  // Whether the places and residuals depend on t, parameters, coordinates and velocities alone.
+  // True if the places and residuals depend on t, parameters, coordinates and velocities alone.
   bool known() const { return known_; }
 
-  // Goes to the start, moved by this along every coordinate, or to where the coordinates have these numbers.
+  // Goes to the start, moved by `away` along every coordinate; or to the place with these coordinates.
   void go(double away);
   void go(double t, const std::vector<double>& q);
-  // Looks at the rates with a coordinate, or with its velocity (order 1).
+  // Computes the rates with a coordinate (order 0), or with its velocity (order 1).
   void look(std::size_t coordinate, unsigned order = 0);
 
   Triple center(std::size_t body) const { return direction(3 * body); }
-  // Of the axes of a body, nine numbers: none for a particle.
+  // The rates of the axes of a body: nine numbers, none for a particle.
   std::vector<double> axes(std::size_t body) const;
   bool turns(std::size_t body) const;
   double residual(std::size_t k) const { return rate(first_residual_ + k); }
-  // The force of gravity per mass at a body, the value; without a field of gravity, that of the constant forces on it.
+  // The force of gravity per mass at a body (the value, not a rate); without gravity, the sum of the constant forces on
+  // it.
   Triple weight(std::size_t body) const;
 
  private:
@@ -35,7 +36,7 @@ class PlaceRates {
   Triple direction(std::size_t root) const { return {rate(root), rate(root + 1), rate(root + 2)}; }
 
   const Scenario& s_;
-  std::vector<std::size_t> axes_;  // where those of each body begin, and where the last ones end
+  std::vector<std::size_t> axes_;  // the begin of the axes of each body, and the end of the last ones
   std::size_t first_residual_ = 0, first_weight_ = 0;
   Tape tape_;
   Machine<double> machine_;

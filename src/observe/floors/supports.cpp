@@ -9,17 +9,17 @@ namespace anholon {
 
 namespace {
 
-// Whether a constraint has one equation, determines its own multiplier, and is kept by a force.
+// True if a constraint has one equation, determines its own multiplier, and is kept by a force.
 bool stands_alone(const Scenario& s, std::size_t r) {
   const Constraint& c = s.model->constraints[r];
   return c.name.find('.') == std::string::npos && !c.by &&
          std::find(s.redundant.begin(), s.redundant.end(), r) == s.redundant.end();
 }
 
-// A normal that is flatter than this carries too little of the weight to speak of.
+// The least rise of a normal that carries enough of the weight.
 constexpr double kLeastRise = 0.05;
 
-// The gradient of a residual by the place of the body or system that the directions move.
+// The gradient of a residual with respect to the place of the body or system that the directions move.
 std::optional<Triple> gradient(PlaceRates& rates, const std::vector<std::size_t>& coordinates, std::size_t body,
                                std::size_t residual) {
   std::vector<Triple> directions;
@@ -78,8 +78,8 @@ namespace {
 struct Rates {
   std::vector<Triple> weights;                         // of the bodies
   std::vector<std::vector<Triple>> centers;            // of each body by each coordinate
-  std::vector<std::vector<std::vector<double>>> axes;  // the same
-  std::vector<std::vector<double>> slopes;  // of each constraint, by coordinates or velocities as its order is
+  std::vector<std::vector<std::vector<double>>> axes;  // the same for axes
+  std::vector<std::vector<double>> slopes;  // of each constraint, by coordinates or velocities according to its order
 };
 
 Rates all_rates(const Scenario& s, PlaceRates& rates, double away) {
@@ -102,7 +102,7 @@ Rates all_rates(const Scenario& s, PlaceRates& rates, double away) {
   return all;
 }
 
-// Looks for the body that a constraint carries, and for what else holds it.
+// Finds the body that a constraint carries, and the other constraints that hold it.
 class Carried {
  public:
   Carried(const Scenario& s, PlaceRates& rates) : s_(s) {
@@ -132,15 +132,15 @@ class Carried {
     const std::vector<double>& axes = at.axes[body][a];
     return norm(at.centers[body][a]) > 0 || std::any_of(axes.begin(), axes.end(), [](double x) { return x != 0; });
   }
-  // Whether the coordinates of a body move no other one.
+  // True if the coordinates of a body move no other body.
   static bool moves_alone(const Rates& at, std::size_t body) {
     for (std::size_t a = 0; a < at.centers[body].size(); ++a)
       for (std::size_t b = 0; moves(at, body, a) && b < at.centers.size(); ++b)
         if (b != body && moves(at, b, a)) return false;
     return true;
   }
-  // Whether another constraint leaves it to this one to carry the weight: it does not hold the centre of the body, or holds it across the
-  // plane of normal and weight, or, one of velocities, along the surface.
+  // True if another constraint leaves the weight to this one: it does not hold the centre of the body; it holds the
+  // centre across the plane of normal and weight; or it is one of velocities that holds the centre along the surface.
   bool leaves(const Rates& at, std::size_t c, const Triple& n, Support& found) const {
     const Constraint& other = s_.model->constraints[c];
     const std::vector<double>& slopes = at.slopes[c];
@@ -160,11 +160,11 @@ class Carried {
     if (found.rolls.empty() || found.rolls.back() != name) found.rolls.push_back(name);
     return works_nothing(slopes, centers, axes, n);
   }
-  // Whether a constraint of velocities has no part in the force along n: the coordinates move the body along n, without turning
-  // it, in a way that it does not feel.
+  // True if a constraint of velocities has no part in the force along n: some motion of the coordinates moves the body
+  // along n without turning it, and does not change the constraint.
   static bool works_nothing(const std::vector<double>& slopes, const std::vector<Triple>& centers,
                             const std::vector<std::vector<double>>& axes, const Triple& n) {
-    // Such a motion exists if it lies in the span of the columns, which are made orthogonal.
+    // Such a motion exists if it lies in the span of the columns, which are orthogonalized.
     std::vector<std::vector<double>> columns;
     for (std::size_t a = 0; a < slopes.size(); ++a) {
       std::vector<double> column = axes[a];
@@ -253,7 +253,7 @@ SupportWatch::SupportWatch(const Scenario& s, std::vector<Support> supports) : s
 bool SupportWatch::Load::see(double t, double force) {
   if (!std::exchange(any, true)) carries = force > 0;
   largest = std::max(largest, std::abs(force));
-  // Round-off of a support that bears nothing is no pull.
+  // The round-off of a support that bears nothing is no pull.
   constexpr double kNothing = 1e-9;
   const bool pulling = force < 0 && -force > kNothing * largest;
   if (pulling && !pulls) pulls = t;

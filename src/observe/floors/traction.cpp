@@ -16,7 +16,7 @@ bool held_by_motion(const Translations& t, std::size_t coordinate) {
   return std::any_of(t.all.begin(), t.all.end(), [&](const Translation& x) { return x.coordinate == coordinate; });
 }
 
-// Whether an expression changes with a translation, in positions (order 0) or velocities (order 1).
+// True if an expression changes with a translation, in positions (order 0) or velocities (order 1).
 bool feels(const Scenario& s, const Translations& t, Expr e, std::uint32_t order) {
   Column jets;
   for (std::uint32_t a = 0; a < s.model->coordinates.size(); ++a)
@@ -26,7 +26,7 @@ bool feels(const Scenario& s, const Translations& t, Expr e, std::uint32_t order
   return false;
 }
 
-// Whether the only forces from outside, besides the floor's, are gravity and those with a vector.
+// True if all outside forces, besides the floor's, are gravity or given by a vector.
 bool outside_is_known(const Workspace& s, const Translations& t) {
   const Model& m = *s.model;
   for (const Force& f : m.forces) {
@@ -43,8 +43,8 @@ bool outside_is_known(const Workspace& s, const Translations& t) {
   return m.observer.inertial && m.masses.empty();
 }
 
-// The names of the constraints of velocities that hold the system sideways. Returns nullopt if the floor is not a plane,
-// or a constraint is of another kind, as one of the speed is.
+// The names of the constraints of velocities that hold the system sideways. Returns nullopt if the floor is not a
+// plane, or a constraint is of another kind, such as one of the speed.
 std::optional<std::vector<std::string>> rolling_constraints(const Workspace& s, const Translations& t) {
   std::vector<std::string> names;
   for (std::size_t r = 0; r < s.model->constraints.size(); ++r) {
@@ -87,7 +87,7 @@ TractionWatch::TractionWatch(const Scenario& s, const std::optional<Translations
   level_ = found->level();
   if (std::all_of(found->all.begin(), found->all.end(),
                   [&](const Translation& t) { return norm(cross(t.along, normal_)) <= kSameRate * norm(t.along); }))
-    return;  // it is not free sideways
+    return;  // the floor is not free sideways
   Workspace own(s);
   const auto names = rolling_constraints(own, *found);
   if (!names || names->empty() || !outside_is_known(own, *found)) return;
@@ -112,7 +112,7 @@ void TractionWatch::look(double t) {
   const Triple force{machine_->value(0), machine_->value(1), machine_->value(2)};
   const double load = dot(force, normal_), sideways = std::sqrt(std::max(dot(force, force) - load * load, 0.0));
   largest_ = std::max(largest_, std::abs(load));
-  // Round-off of a load that vanishes is neither.
+  // The round-off of a load that vanishes is neither pull nor load.
   constexpr double kNothing = 1e-9;
   if (load < -kNothing * largest_) {
     if (!pulls_) pulls_ = t;

@@ -1,13 +1,14 @@
-// The friction that wheels without slip need, in relation to the load: what rolling constraints take for granted.
+// The friction, relative to the load, that wheels without slip need. Rolling constraints assume that it is there.
 //
 //   F = sum m (a - g) - F_ext,   mu >= |F sideways| / F upwards
 //
-// F is the whole force of the floor by Newton's law, upwards means along the normal of the floor, a plane. Contacts with the friction mu transmit at most mu times the sum of
-// their loads, so the quotient is a lower bound of the friction that the worst of them needs.
+// F is the whole force of the floor by Newton's law, and upwards means along the normal of the floor, a plane. Contacts
+// with the friction mu transmit at most mu times the sum of their loads, so the quotient is a lower bound of the
+// friction that the contact with the greatest need needs.
 //
-// Hypotheses, without which there is no watch: a weight, coordinates that move all bodies as one sideways, no geometric
-// constraint that holds the system sideways, constraints of velocities that do, forces that are torques, act between
-// bodies or have a vector, an observer that is inertial, masses that do not vary.
+// Hypotheses, without which nothing is watched: a weight, coordinates that move all bodies as one sideways, no
+// geometric constraint that holds the system sideways, constraints of velocities that do, forces that are torques, act
+// between bodies or have a vector, an inertial observer, masses that do not vary.
 #pragma once
 #include <functional>
 #include <optional>
@@ -20,25 +21,26 @@
 
 namespace anholon {
 
-// Formulas of a model that has a watch: the load of the floor with this normal, and |F sideways|^2 - load^2.
+// Formulas of a model that is watched: the load of the floor with this normal, and |F sideways|^2 - load^2.
 Expr load_of_floor(const Model& model, const Triple& normal);
 Expr friction_above_load(const Model& model, const Triple& normal);
 
 class TractionWatch {
  public:
-  // `found`: translations(s). `has_floor`: a geometric constraint is a support, whose pull its own watch tells.
+  // `found`: translations(s). `has_floor`: a geometric constraint is a support, and SupportWatch reports its pull.
   TractionWatch(const Scenario& s, const std::optional<Translations>& found, bool has_floor);
   bool any() const { return machine_.has_value(); }
-  // numbers: of a row after t, which begin with the derivatives of the coordinates of order 0, 1 and 2. Of a long run,
-  // one of kOneOf rows is looked at after the first kAllRows.
+  // `numbers`: the columns of a row after t, which begin with the derivatives of the coordinates of order 0, 1 and 2.
+  // After the first kAllRows rows of a long run, one of kOneOf rows is used.
   template <class N>
   void see(double t, const std::vector<N>& numbers) {
     if (!any() || (++rows_ > kAllRows && rows_ % kOneOf != 0)) return;
     for (std::size_t i = 0; i < numbers_.size(); ++i) numbers_[i] = to_double(numbers[i]);
     look(t);
   }
-  // Locates between two rows when the floor first pulls, and when the friction needed first passes 1. first(formula, direction, t): when
-  // the formula of a model first passes zero in this direction, before the row at t; the start if it has passed zero there.
+  // Locates between two rows when the floor first pulls, and when the friction needed first passes 1. first(formula,
+  // direction, t) returns when the formula of a model first passes zero in this direction, before the row at t; the
+  // start if it has passed zero there.
   template <class F>
   void locate(F first) {
     if (pulls_ && *pulls_ != start_)
@@ -49,7 +51,7 @@ class TractionWatch {
               first([&](const Model& m) { return friction_above_load(m, normal_); }, 1, *above_))
         above_ = t;
   }
-  // A sentence if the friction needed passes 1, or if the floor would have to pull.
+  // Returns a sentence if the friction needed passes 1, and one if the floor would have to pull.
   std::vector<std::string> notes() const;
 
  private:
@@ -66,9 +68,9 @@ class TractionWatch {
   std::vector<double> numbers_;
   double start_;
   std::size_t rows_ = 0;
-  double largest_ = 0;  // load
+  double largest_ = 0;  // the largest load
   double need_ = 0, need_t_ = 0, least_ = 0, least_t_ = 0;
-  std::optional<double> above_, pulls_;  // since when
+  std::optional<double> above_, pulls_;  // the times of the first rows beyond
 };
 
 }  // namespace anholon

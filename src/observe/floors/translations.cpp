@@ -7,7 +7,7 @@ namespace anholon {
 
 namespace {
 
-// A normal that is closer than this to the horizontal carries no weight.
+// A normal whose rise is smaller carries no weight.
 constexpr double kCarries = 1e-9;
 
 std::optional<Translation> translation(PlaceRates& rates, const Scenario& s, std::size_t coordinate,
@@ -28,7 +28,7 @@ std::optional<Translation> translation(PlaceRates& rates, const Scenario& s, std
       continue;
     }
     if (!same(along, found->along)) return std::nullopt;
-    // A rate that is not the same everywhere is marked as none of interest.
+    // A rate that is not the same everywhere becomes NaN.
     for (std::size_t k = 0; k < constraints; ++k)
       if (!(std::abs(residuals[k] - found->residuals[k]) <= kSameRate * std::abs(residuals[k])))
         found->residuals[k] = std::nan("");
@@ -44,7 +44,7 @@ std::vector<Triple> directions(const Translations& t) {
 
 bool parallel(const Triple& a, const Triple& b) { return norm(cross(a, b)) <= kSameRate * norm(a) * norm(b); }
 
-// What the geometric constraints are together. Returns false if they are no floors.
+// Finds the common normal of the geometric constraints. Returns false if they are not floors.
 bool find_floors(Translations& all) {
   bool ground = false;
   std::optional<Triple> plane;
@@ -57,7 +57,7 @@ bool find_floors(Translations& all) {
     all.gradients.emplace_back(same ? gradient_in_space(directions(all), rates) : std::nullopt);
     if (!held) continue;
     if (!same) {
-      // A height above a ground varies with one coordinate at a constant rate; the length of a rod with none.
+      // The height above a ground varies with one coordinate at a constant rate; the length of a rod does not.
       if (std::none_of(rates.begin(), rates.end(), is([](double x) { return std::isfinite(x) && x != 0; })))
         return false;
       ground = true;
@@ -70,13 +70,14 @@ bool find_floors(Translations& all) {
   if (plane) {
     const double rise = dot(*plane, all.up) / norm(*plane);
     if (!(std::abs(rise) > kCarries)) return false;
-    // The same up to round-off means the same.
+    // A normal that is vertical up to round-off is made exactly vertical.
     all.normal = 1 - std::abs(rise) <= kSameRate ? all.up : ((rise > 0 ? 1 : -1) / norm(*plane)) * *plane;
   }
   return !(ground && plane && !all.level());
 }
 
-// The normal of a plane that no geometric constraint tells of: the translations lie in it, or one of them leads upwards.
+// The normal of a plane that is in no geometric constraint: the translations lie in the plane, except one that may lead
+// upwards.
 std::optional<Triple> normal_left(const Translations& all) {
   std::vector<Triple> sideways;
   bool upwards = false;

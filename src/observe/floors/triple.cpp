@@ -6,10 +6,11 @@ namespace anholon {
 
 namespace {
 
-// What is less than this of a direction is round-off of those before it.
+// A remainder of a direction smaller than this part is round-off.
 constexpr double kDependent = 1e-9;
 
-// The directions made orthogonal in the order of their lengths. pivots: which of them the vectors of the basis come from.
+// Orthogonalizes the directions in the order of their lengths. `pivots`: the directions from which the vectors of the
+// basis come.
 std::vector<Triple> orthonormal(const std::vector<Triple>& directions, std::vector<std::size_t>& pivots) {
   std::vector<Triple> es, left = directions;
   const auto longer = [](const Triple& a, const Triple& b) { return norm(a) < norm(b); };

@@ -1,4 +1,4 @@
-// A vector of space as numbers, and the force that given rates of a function tell.
+// A vector of space as numbers, and the gradient of a function with given rates.
 #pragma once
 #include <cmath>
 #include <optional>
@@ -17,14 +17,14 @@ inline Triple cross(const Triple& a, const Triple& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// Numbers that are the same by their meaning come out of Taylor arithmetic exactly, or within a few roundings.
+// Equal numbers come out of Taylor arithmetic exactly, or equal up to a few roundings.
 inline constexpr double kSameRate = 1e-12;
 
-// An orthonormal basis of directions that may depend on each other.
+// An orthonormal basis of directions that may be linearly dependent.
 std::vector<Triple> basis(const std::vector<Triple>& directions);
-// The gradient of a function of a place that moves along `directions[a]` with coordinate a, where the function has the rate
-// `rates[a]`: the vector in the span of the directions whose product with each of them is its rate. Returns nullopt if there
-// is none, as the function depends on other things than the place.
+// The gradient of a function of a place. The place moves along `directions[a]` with coordinate a, and the function has
+// the rate `rates[a]`; the gradient is the vector in the span of the directions whose product with each of them is its
+// rate. Returns nullopt if there is none, because the function depends on other things than the place.
 std::optional<Triple> gradient_in_space(const std::vector<Triple>& directions, const std::vector<double>& rates);
 
 }  // namespace anholon

@@ -10,9 +10,9 @@ namespace anholon {
 QuadRow::QuadRow(Workspace& s, int highest, int stages)
     : s_(s), highest_(highest), stages_(stages), parameters_(parameter_values<Quad>(*s.model)) {}
 
-// By the factors of J at the point: its steps shrink all the same, each by the digits of long double.
+// Solves with the factors of J in long double: each iteration gains the digits of long double.
 bool QuadRow::solve(const Expansion<long double>& point) {
-  // What an event has set is known in long double alone.
+  // The values that an event has set are known in long double only.
   for (std::size_t i = 0; i < parameters_.size(); ++i)
     if (s_.model->parameters[i].mode) parameters_[i] = convert<Quad>(point.parameters()[i]);
   std::vector<long double> narrow, narrow_y;

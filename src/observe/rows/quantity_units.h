@@ -1,4 +1,4 @@
-// The units of all quantities of a model that have a name: columns of rows, columns of contacts, parameters.
+// The units of all named quantities of a model: columns of rows, columns of contacts, parameters.
 #pragma once
 #include <map>
 
@@ -7,7 +7,7 @@
 
 namespace anholon {
 
-// By name: {"x'": "m/s", "floor.normal": "N", "k": "N/m"}, as far as the model tells them.
+// Returns the units by name: {"x'": "m/s", "floor.normal": "N", "k": "N/m"}, as far as the model has them.
 std::map<std::string, std::string> quantity_units(const Model& model, const std::vector<Contact>& contacts);
 
 // Adds the units of integrals of the motion, each under "conserved " and its name, to units by name.

@@ -5,12 +5,13 @@
 
 namespace anholon {
 
-// Half of the digits of a double: elimination in doubles may lose some, a kernel whose pivots are large not as many.
+// Half of the digits of a double: elimination in doubles may lose some digits, but with the large pivots of a trusted
+// kernel not as many.
 static constexpr double kNotRoundoff = 0x1p-26;
 // Differences up to this many round-offs of 1, or of a number, are noise.
 static constexpr double kNoiseOfDoubles = 64 * 0x1p-53;
 
-// Differences up to this many times what one round-off of the state makes are those of a state in doubles.
+// Differences up to this many times the effect of one round-off of the state come from a state in doubles.
 static constexpr double kRoundoffsOfState = 64;
 
 static ColumnKind group(ColumnKind kind) {
@@ -33,7 +34,7 @@ static ColumnKind group(ColumnKind kind) {
   return kind;
 }
 
-// Of the measure of the column; 0 if it is noise of doubles.
+// The difference relative to the measure of the column; 0 if it is noise of doubles.
 double RowCheck::difference(const RowTwice& row, std::size_t column) const {
   const double written = row.written[column];
   const long double solved = row.solved[column];
@@ -55,7 +56,7 @@ bool RowCheck::doubts(const RowTwice& row) {
     greatest = std::max(greatest, std::abs(static_cast<double>(row.solved[j])));
   }
   for (std::size_t j = 0; j < columns_.size(); ++j)
-    // So that a NaN is a difference, too.
+    // The condition is also true for NaN.
     if (!(difference(row, j) <= kNotRoundoff)) return true;
   return false;
 }

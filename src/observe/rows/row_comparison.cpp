@@ -8,19 +8,19 @@ namespace anholon {
 
 namespace {
 
-// A column of which less than this is known may be zero but for round-off.
+// A column whose relative difference is at least this may be zero up to round-off.
 constexpr double kHardlyKnown = 0.1;
-// So many round-offs, and so many times the error that others have, are no more than noise.
+// Differences up to kNoise round-offs, and up to kLikeOthers times the error of other columns, are noise.
 constexpr double kNoise = 64, kLikeOthers = 10;
 
 double number(double x) { return std::isnan(x) ? std::numeric_limits<double>::infinity() : x; }
 
-// Of numbers beyond the range of double, too.
+// The number of digits; it is also right for an error that is zero.
 int digits_of(double error) {
   return error < 1 ? static_cast<int>(std::floor(-std::log10(std::max(error, std::numeric_limits<double>::min())))) : 0;
 }
 
-// Of these all are zero in a motion that has no constraints.
+// These columns are all zero in a motion without constraints.
 bool of_constraints(ColumnKind kind) {
   return kind == ColumnKind::multiplier || kind == ColumnKind::multiplier_rate || kind == ColumnKind::input ||
          kind == ColumnKind::reaction;
@@ -67,7 +67,7 @@ void RowComparison::lose(double t) {
   rows_.push_back({t, std::vector<double>(columns_.size(), kAll), {}, {}});
 }
 
-// By what the differences of each column are measured.
+// The measures of the columns' differences.
 std::vector<double> RowComparison::scales() const {
   const std::size_t n = columns_.size();
   std::vector<double> difference(n, 0.0), scales = most_;

@@ -40,7 +40,7 @@ void RowKernel::place(std::size_t lane, const RowPlace& place) {
   kernel_.set_time(static_cast<int>(lane), t);
 }
 
-// To read the clock takes longer than a short row, so one computation stands for several.
+// Reading the clock takes longer than a short row, so one computation is timed for several.
 void RowKernel::compute() {
   constexpr std::size_t kSometimes = 16;
   const bool timed = computed_++ % kSometimes == kSometimes / 2;

@@ -4,7 +4,7 @@
 
 namespace anholon {
 
-// The unit of the derivative of that order.
+// Returns the unit of the derivative of this order.
 static std::string rate(const std::string& unit, unsigned order) {
   if (order == 0) return unit;
   const std::string over = order == 1 ? "s" : "s^" + std::to_string(order);

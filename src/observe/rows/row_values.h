@@ -1,4 +1,4 @@
-// What a row holds: its columns by name and kind, and their values at a point of a motion.
+// The contents of a row: its columns by name and kind, and their values at a point of a motion.
 #pragma once
 #include <map>
 
@@ -7,16 +7,17 @@
 
 namespace anholon {
 
-// Units of columns by name, where the model names them.
+// The units of columns by name, as far as the model has them.
 std::map<std::string, std::string> column_units(const Model& model);
 
-// The columns of a row after t: derivatives of the coordinates up to order `highest`, multipliers with their derivatives,
-// inputs, states, reactions, monitors. `highest` is the highest derivative that is solved for of any coordinate.
+// The columns of a row after t: derivatives of the coordinates up to order `highest`, multipliers with their
+// derivatives, inputs, states, reactions, monitors. `highest`: the highest derivative of any coordinate that is solved
+// for.
 std::vector<RunColumn> columns_after_time(const Scenario& scenario, int highest);
-// The same after t.
+// The columns of a row with t.
 std::vector<RunColumn> run_columns(const Scenario& scenario, int highest);
 
-// The numbers of the columns after t at a point. `outputs` knows multipliers, reactions and monitors there.
+// Computes the numbers of the columns after t at a point. `outputs` has the multipliers, reactions and monitors there.
 template <Number W, class Point, class Outputs>
 void row_values(const Scenario& s, int highest, const Point& here, const Outputs& outputs, std::vector<W>& values) {
   const std::size_t n = s.system.coordinates;
@@ -39,18 +40,19 @@ std::vector<W> row_values(const Scenario& s, int highest, const Expansion<W>& he
   return values;
 }
 
-// What of a row is no derivative of an unknown, as a list of expressions: the reactions N, the monitors, and further
-// numbers that are watched. Monitors and further numbers are each followed by their terms, if they are sums.
+// The columns of a row that are not derivatives of unknowns, as a list of expressions: the reactions N, the monitors,
+// and further numbers that are watched. Monitors and further numbers are each followed by their terms, if they are
+// sums.
 struct RowExpressions {
   RowExpressions(const Scenario& scenario, const Column& further);
   struct Sum {
-    std::size_t at;               // its place in `all`; its terms follow
-    std::vector<double> weights;  // the magnitudes of the coefficients of the terms; empty if it is no sum
+    std::size_t at;               // the place of the number in `all`; its terms follow
+    std::vector<double> weights;  // the magnitudes of the coefficients of the terms; empty if the number is no sum
   };
   Column all;
   std::vector<Sum> monitors, further;
 
-  // The sum of the magnitudes of the terms; value(k): of expression k.
+  // The sum of the magnitudes of the terms; value(k): the value of expression k.
   template <Number N, class F>
   static N terms(const Sum& s, F value) {
     if (s.weights.empty()) return abs(N(value(s.at)));
@@ -60,7 +62,7 @@ struct RowExpressions {
   }
 };
 
-// Their values at a point, without the residuals that a Watch computes beside them.
+// The values of these expressions at a point, without the residuals that a Watch computes.
 template <Number W>
 class RowOutputs {
  public:
@@ -74,8 +76,7 @@ class RowOutputs {
   const W& multiplier(std::size_t constraint) const { return multipliers_[constraint]; }
   const W& reaction(std::size_t coordinate) const { return outputs_[coordinate]; }
   const W& monitor(std::size_t i) const { return outputs_[expressions_.monitors[i].at]; }
-  // The sum of the magnitudes of what a monitor is the sum of: a difference of large terms is known no better than they
-  // are.
+  // The sum of the magnitudes of a monitor's terms: a difference of large terms has no smaller error than they have.
   W monitor_terms(std::size_t i) const;
 
  private:

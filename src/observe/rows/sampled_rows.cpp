@@ -16,7 +16,7 @@ void SampledRows<W>::add(const W& t, const std::vector<W>& values, std::size_t r
     kept_.back() = {*last_, pace};
   in_group_ = (in_group_ + 1) % stride_;
   if (kept_.size() < kMost || in_group_ != 0) return;
-  // Of each two neighbours the faster one; the first row has no pace.
+  // The faster one of each two neighbours is kept, and the first row, which has no pace.
   std::vector<Candidate> fewer = {std::move(kept_[0])};
   for (std::size_t i = 1; i < kept_.size(); i += 2) {
     const std::size_t j = i + 1 < kept_.size() && kept_[i + 1].pace > kept_[i].pace ? i + 1 : i;
@@ -26,7 +26,7 @@ void SampledRows<W>::add(const W& t, const std::vector<W>& values, std::size_t r
   stride_ *= 2;
 }
 
-// How fast the numbers change from the last row to this one, each in relation to the largest that it has been.
+// The rate at which the numbers change from the last row to this one, each relative to its largest magnitude so far.
 template <Number W>
 double SampledRows<W>::pace_to(const W& t, const std::vector<W>& values) {
   magnitudes_.resize(values.size(), 0);

@@ -1,4 +1,4 @@
-// The rows of a run that a second run is compared with.
+// The rows of a run with which a second run is compared.
 #pragma once
 #include <optional>
 #include <string>
@@ -14,19 +14,19 @@ struct SampledRow {
   W t{0};
   std::vector<W> values;
   std::size_t resets = 0;
-  std::string label;  // the time as it was asked for, where that says more
+  std::string label;  // the time as the user wrote it, if that is more exact
 };
 
-// Rows to be compared: all, or where there are many those between which the numbers change fastest, so that no short
+// The rows to be compared: all; or, if there are many, those between which the numbers change fastest, so that no short
 // phase is left out.
 template <Number W>
 class SampledRows {
  public:
-  // In the order of time; others are left out.
+  // Adds a row. Rows that are not in the order of time are left out.
   void add(const W& t, const std::vector<W>& values, std::size_t resets, const std::string& label = {});
   void clear() { *this = {}; }
   bool empty() const { return !last_; }
-  // The first, the last and those between.
+  // Returns the first row, the last row and the kept rows between.
   std::vector<SampledRow<W>> take();
 
  private:
@@ -40,7 +40,7 @@ class SampledRows {
   std::vector<Candidate> kept_;
   std::optional<SampledRow<W>> last_;
   std::vector<double> magnitudes_;
-  std::size_t stride_ = 1, in_group_ = 0;  // rows of which one is kept
+  std::size_t stride_ = 1, in_group_ = 0;  // the number of rows of which one is kept
 };
 
 extern template class SampledRows<long double>;

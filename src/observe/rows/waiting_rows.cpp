@@ -27,8 +27,7 @@ std::unique_ptr<WaitingRows> WaitingRows::make(Workspace& s, const std::vector<C
   return std::unique_ptr<WaitingRows>(new WaitingRows(s, std::move(expressions), std::move(kernel), parameters));
 }
 
-// Finds the sources of the numbers by asking row_values() for them at a point that answers with the number of the
-// question.
+// Finds the sources of the numbers: row_values() is called with a point that returns the number of each request.
 WaitingRows::WaitingRows(const Scenario& s, RowExpressions expressions, std::unique_ptr<RowKernel> kernel,
                          const std::vector<long double>& parameters)
     : expressions_(std::move(expressions)), kernel_(std::move(kernel)), parameters_(parameters),
@@ -63,8 +62,8 @@ void WaitingRows::set_parameters(const std::vector<long double>& parameters) {
   mapped_.reset();
 }
 
-// States in unknowns of the motion's kernel are converted first. Rows of another plan, which a motion that writes its
-// equations anew leaves behind, are converted by themselves.
+// States in unknowns of the motion's kernel are converted first. Rows of another plan, which a motion leaves behind
+// when it rewrites its equations, are converted separately.
 void WaitingRows::compute(WaitingBlock& block, std::size_t first, std::size_t count) {
   for (std::size_t from = 0; from < count;) {
     WaitingBlock::Waiting& row = block[first + from];

@@ -14,21 +14,21 @@ namespace anholon {
 // One case of the model with its motion.
 struct PageCase {
   std::string name;                    // of the scenario; empty without one
-  Workspace* scenario = nullptr;       // of all expressions of the case
+  Workspace* scenario = nullptr;       // the workspace of all expressions of the case
   std::vector<ConstraintFacts> facts;  // of the model's constraints; empty if the page has no section on the system
   std::vector<Conserved> conserved;
   RunFile run;
-  std::shared_ptr<const PlotData> plots = nullptr;  // of the run; null: made where they are written
+  std::shared_ptr<const PlotData> plots = nullptr;  // of the run; nullptr: made when they are written
 };
 
 struct Page {
   std::vector<PageCase> cases;  // at least one; the equations are those of the first case
   std::vector<Derivation> equations;
-  std::vector<std::string> eliminations;  // of each derivation, in words; empty if nothing is eliminated
+  std::vector<std::string> eliminations;  // of each derivation, in words; empty without an elimination
   const Proof* proof = nullptr;
   std::string no_proof;                   // the reason if there is none
   std::vector<std::string> hypotheses;    // of the proof's certificate
-  std::string meaning;                    // the statement proved
+  std::string meaning;                    // the statement that is proved
   std::string certificate;                // JSON
   std::size_t claims = 0, confirmed = 0;  // claims of the certificate, and those that the checker confirmed
   std::string command;                    // command that makes this page again

@@ -16,13 +16,13 @@ namespace {
 
 void numbers(JsonWriter& j, const char* key, const std::vector<double>& list) { j.key(key).string(packed(list)); }
 
-// How much of a motion a page holds.
+// The part of a motion that a page contains.
 struct Extent {
-  std::string (*pack)(const std::vector<double>&) = packed;  // values, not times
-  std::vector<std::string> groups = {};                      // that are plotted; empty: all
+  std::string (*pack)(const std::vector<double>&) = packed;  // for values, not for times
+  std::vector<std::string> groups = {};                      // the groups that are plotted; empty: all
 };
 
-// Takes away what is neither plotted nor in the picture; the other columns keep their places.
+// Removes what is neither plotted nor in the picture; the other columns keep their places.
 void reduce(PlotData& d, const std::vector<std::string>& groups, const std::vector<int>& in_picture) {
   const auto plotted = [&](const std::string& group) {
     return std::any_of(groups.begin(), groups.end(),
@@ -33,7 +33,7 @@ void reduce(PlotData& d, const std::vector<std::string>& groups, const std::vect
     if (plotted(c.group)) continue;
     c.group.clear(), c.math.clear();
     if (std::find(in_picture.begin(), in_picture.end(), static_cast<int>(k)) != in_picture.end()) continue;
-    // A column without rows has times of its own, which are none.
+    // The column has no rows, so its own list of times is empty.
     c = {c.name, "", "", "", {}, {}};
   }
   std::erase_if(d.groups, [&](const PlotGroup& g) { return !plotted(g.id); });
@@ -123,7 +123,7 @@ void one_case(JsonWriter& j, const PageCase& c, const Extent& extent) {
   const Model& model = *c.scenario->model;
   const Scene picture = scene(*c.scenario->mechanics, has_contacts(c.run.table));
   const ColumnOf in_table = column_of(model, c.run.table);
-  // In the page the time is not a column.
+  // The time is not a column of the page.
   const ColumnOf column = [&](const Node& n) -> std::optional<int> {
     const auto k = in_table(n);
     return k && *k >= 0 ? std::optional<int>(*k - 1) : k;

@@ -4,14 +4,14 @@
 
 namespace anholon {
 
-// What a page plots of the motion of a case; chosen: columns of its run (plot_data).
+// Returns what a page plots of the motion of a case; `chosen`: columns of its run (plot_data).
 PlotData plots_of(const PageCase& of, const std::vector<std::string>& chosen);
 
-// JSON that is safe within a <script>.
+// Returns JSON that is safe within a <script>.
 std::string page_data(const Page& page);
 
-// The same for a page that holds many motions: in single precision but for the times, with the columns that the picture
-// needs, and plots of what a motion is, without accelerations, forces and residuals.
+// Like page_data(), for a page that contains many motions: in single precision except for the times, with the columns
+// that the picture needs, and plots of the motion itself, without accelerations, forces and residuals.
 std::string brief_page_data(const Page& page);
 
 }  // namespace anholon

@@ -37,7 +37,7 @@ class EquationsSection {
   }
 
  private:
-  // One equation: it wraps, is read out as text, and is copied as LaTeX.
+  // Writes one equation: it wraps, is read out as text, and is copied as LaTeX.
   static std::string equation(const std::string& label, const std::string& left, const std::string& right,
                               const std::string& latex, const std::string& text) {
     std::string out = "<div class=\"equation\"" + attribute("data-latex", latex) + ">";

@@ -10,7 +10,7 @@ namespace anholon {
 
 namespace {
 
-// The animation and the plots of each case, or its rows where there is no viewer.
+// The animation and the plots of each case, or its rows if there is no viewer.
 class MotionSection {
  public:
   MotionSection(const Page& page, const CaseReports& reports) : p_(page), reports_(reports) {}
@@ -60,7 +60,8 @@ class MotionSection {
     return out + "</tbody></table></div>\n";
   }
 
-  // A number that the start has made of a zero, such as 5e-57 in a column of numbers of size 1, is shown as zero.
+  // A number that the start has computed in place of a zero, such as 5e-57 in a column of numbers of size 1, is shown
+  // as zero.
   static std::string text(const RunTable& t, std::size_t row, std::size_t column) {
     constexpr double kNothing = 1e-30;  // far below the round-off of doubles
     const std::span<const double> all = t.values[column];
@@ -69,7 +70,7 @@ class MotionSection {
     return std::abs(all[row]) < kNothing * most ? "0" : markup_escape(t.text(row, column));
   }
 
-  // A file of rows alone does not know how the motion ended.
+  // A file with rows alone does not contain the outcome of the motion.
   static std::string outcome(const std::optional<SimulationReport>& r, const RunFile& run) {
     if (!r && run.model.empty() && run.created_by.empty()) return "";
     if (!r) return warning_box({"The run was not finished; the rows up to here are shown.", ""});

@@ -83,7 +83,7 @@ class PageWriter {
   }
 
  private:
-  // Cites what the page is based on.
+  // Cites the sources of the page.
   void sources() {
     if (!model_.source.empty()) literature_.source(model_.source);
     for (const Derivation& d : p_.equations) literature_.source(d.form->source);

@@ -18,7 +18,7 @@ namespace {
 // Limits: a proof of all forms takes long, and equations of more coordinates are too long to read.
 constexpr std::size_t kMostProved = 12, kMostNodesProved = 600, kMostRead = 24;
 
-// Those asked for, or Routh's equations, those of the motion, and Maggi's if there are constraints to eliminate.
+// Returns the requested forms, or Routh's, that of the motion, and Maggi's if there are constraints to eliminate.
 std::vector<const Formulation*> shown_forms(const PageRequest& request, const Workspace& scenario) {
   const Mechanics& m = *scenario.mechanics;
   std::vector<const Formulation*> list;
@@ -87,15 +87,15 @@ std::size_t add_equations(Page& page, const PageRequest& request, const Workspac
     if (page.equations.empty())
       first_size = size;
     else if (size > kMostArranged && request.forms.empty())
-      continue;  // it was not asked for, and is too long to read
+      continue;  // the form was not requested, and its equations are too long to read
     page.equations.push_back(derived(m, *f, e, arranger));
     page.eliminations.push_back(f->eliminates() ? eliminated(e, *scenario.model) : "");
   }
   return first_size;
 }
 
-// Proves all forms, and checks the certificate like a recipient: from its text. On a graph of its own: that of the
-// motion and the printed equations has grown.
+// Proves all forms, and checks the certificate as a recipient would: from its text. A fresh graph is used, because the
+// graph of the motion and of the printed equations has grown.
 Proof add_proof(Page& page, const PageRequest& request, const Model& fresh) {
   const Mechanics own = mechanics(fresh);
   std::vector<const Formulation*> forms;

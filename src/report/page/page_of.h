@@ -1,4 +1,5 @@
-// The page of a motion, or of several of one model, from the motion alone: which equations are shown, and their proof.
+// Makes the page of a motion, or of several motions of one model, from the motion alone: it chooses the equations and
+// proves them.
 #pragma once
 #include <functional>
 
@@ -15,31 +16,31 @@ struct PagedRun {
 };
 
 struct PageRequest {
-  std::vector<const Formulation*> forms;  // whose equations are shown; empty: chosen
+  std::vector<const Formulation*> forms;  // the forms whose equations are shown; empty: chosen
   StateChoice choice;                     // of the motion: its eliminations are those of the equations
-  std::string no_proof;          // why there is to be no proof; empty: proves all forms, if they are not too long
+  std::string no_proof;  // the reason for leaving out the proof; empty: proves all forms, if they are not too long
   std::string version, command;  // of the program, and the command that makes this page again
   SourceText source;
-  std::vector<std::string> columns = {};  // of the run that are plotted; empty: as many as there is room for
-  // Told before each proof.
+  std::vector<std::string> columns = {};  // the plotted columns of the run; empty: as many as there is room for
+  // Called before each proof.
   std::function<void(std::size_t number, std::size_t of, const std::string& form)> progress;
-  // Told what is not drawn right.
+  // Called with notes on what is not drawn right.
   std::function<void(const std::string&)> note = {};
 };
 
-// The content of a page whose parts are added as they are asked for: an editor shows the motion first.
+// The content of a page whose parts are added on request, because an editor shows the motion first.
 class PageInParts {
  public:
-  // The motions without plots, equations and proof. REQUIRES: a run at least.
+  // Starts with the motions, without plots, equations and proof. REQUIRES: at least one run.
   PageInParts(std::vector<PagedRun> runs, std::shared_ptr<const Model> model, PageRequest request);
   PageInParts(const PageInParts&) = delete;
   PageInParts& operator=(const PageInParts&) = delete;
   const Page& page() const { return page_; }
-  // What is plotted, and what is not drawn right.
+  // Adds the plots, and the notes on what is not drawn right.
   void add_plots();
-  // Throws Failure if the eliminations that were asked for are impossible.
+  // Throws Failure if the requested eliminations are impossible.
   void add_equations();
-  // The proof, or the reason why there is none. REQUIRES: add_equations() was called.
+  // Adds the proof, or the reason why there is none. REQUIRES: add_equations() was called.
   void add_proof();
 
  private:
@@ -48,10 +49,11 @@ class PageInParts {
   Page page_;
   std::shared_ptr<const Model> fresh_;  // the graph of the proof's expressions
   std::optional<Proof> proof_;
-  std::size_t size_ = 0;  // of the first equations
+  std::size_t size_ = 0;  // the number of nodes of the first equations
 };
 
-// The text of the page. REQUIRES: a run at least. Throws Failure if the eliminations that were asked for are impossible.
+// Returns the text of the page. REQUIRES: at least one run. Throws Failure if the requested eliminations are
+// impossible.
 std::string page_of(std::vector<PagedRun> runs, const std::shared_ptr<const Model>& model, const PageRequest& request);
 
 }  // namespace anholon

@@ -6,7 +6,7 @@ namespace anholon {
 
 namespace {
 
-// Every form against every other.
+// Returns a table of every form against every other.
 std::string matrix(const Proof& proof) {
   std::string out = "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"Proof matrix\"><table "
                     "class=\"matrix\"><caption>Proof matrix</caption><thead><tr><td></td><td></td>";

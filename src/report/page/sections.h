@@ -9,7 +9,7 @@
 
 namespace anholon {
 
-// The reports of the cases, in turn; nullopt for an unfinished run.
+// The reports of the cases, in their order; nullopt for an unfinished run.
 using CaseReports = std::vector<std::optional<SimulationReport>>;
 
 std::string motion_section(const Page& page, const CaseReports& reports);
@@ -17,12 +17,12 @@ std::string system_section(const Page& page);
 std::string equations_section(const Page& page);
 std::string structure_section(const Page& page);
 std::string proof_section(const Page& page);
-// How far the motion can be trusted.
+// Tells how far the motion can be trusted.
 std::string trust_section(const Page& page, const CaseReports& reports);
-// How the page is made again: command, version, model files.
+// Tells how the page is made again: command, version, model files.
 std::string again_section(const Page& page);
 
-// A warning in a box of its own.
+// Returns a warning in a box.
 std::string warning_box(const Warning& warning);
 // The text with a capital and a full stop.
 std::string sentence(std::string text);

@@ -13,7 +13,7 @@ constexpr const char* kNotKnown = "–";
 
 std::string residual(double x, int digits = 3) { return std::isnan(x) ? kNotKnown : number_text(x, digits); }
 
-// "coordinates 13, velocities 12, by a second run …"
+// Returns "coordinates 13, velocities 12, by a second run …".
 std::string digits(const SimulationReport& r) {
   if (!r.error) return r.no_error.empty() ? "not estimated" : r.no_error;
   std::string list;

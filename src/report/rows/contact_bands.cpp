@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMostSpans = 2000;
 
-// The name of the contact whose mode the column holds.
+// Returns the name of the contact whose mode is in the column.
 std::optional<std::string> contact_of(const RunTable& table, const std::string& column) {
   const std::string ending = ".mode";
   if (column.size() <= ending.size() || !column.ends_with(ending)) return std::nullopt;
@@ -21,7 +21,8 @@ std::optional<std::string> contact_of(const RunTable& table, const std::string& 
   return name;
 }
 
-// The mode that begins with an event of a contact; nullopt for an impact, after which the next row tells.
+// Returns the mode that begins with an event of a contact; nullopt for an impact, after which the next row shows the
+// mode.
 std::optional<int> mode_after(const std::string& event) {
   if (event == ".leaves") return 0;
   if (event == ".slips") return 1;

@@ -19,12 +19,12 @@ struct ContactBand {
   std::vector<ContactSpan> spans;
 };
 
-// Whether the run is one with contacts.
+// True if the run has contacts.
 bool has_contacts(const RunTable& table);
 
-// One band for each contact, by its columns NAME.mode, .gap, .normal and .friction; a mode that changes between two rows
-// does so at the events of the contact. A contact whose mode changes more often
-// than a page can show has no band.
+// Returns one band for each contact, by its columns NAME.mode, .gap, .normal and .friction; a mode that changes between
+// two rows does so at the events of the contact. A contact whose mode changes more often than a page can show has no
+// band.
 std::vector<ContactBand> contact_bands(const RunTable& table, const std::vector<EventReport>& events);
 
 }  // namespace anholon

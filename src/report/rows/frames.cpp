@@ -11,11 +11,11 @@ namespace anholon {
 
 namespace {
 
-// Below this part of its range a column counts as at rest. Round-off is a part of its own magnitude and of the greatest
-// one of all columns, beside which it moves.
+// A column that changes by less than the part kRest of its range is at rest. Round-off is the part kOwnRoundOff of the
+// column's own magnitude, and the part kRoundOff of the greatest magnitude of all columns.
 constexpr double kRest = 1e-3, kOwnRoundOff = 1e-14, kRoundOff = 1e-15;
 
-// The degree of continuity of the interpolation: derivatives that are there and finite at both ends.
+// The degree of continuity of the interpolation: the number of derivatives that exist and are finite at both ends.
 int derivatives(const MovingColumn& c, std::size_t i, std::size_t j) {
   const auto there = [&](std::span<const double> d) {
     return !d.empty() && std::isfinite(d[i]) && std::isfinite(d[j]);
@@ -23,7 +23,7 @@ int derivatives(const MovingColumn& c, std::size_t i, std::size_t j) {
   return !there(c.first) ? 0 : there(c.second) ? 2 : 1;
 }
 
-// What of a column is no motion: a change in which it counts as at rest, and round-off.
+// The changes of a column that are no motion: those at which it is at rest, and round-off.
 struct Negligible {
   double change = 0, round_off = 0;
 };
@@ -55,7 +55,8 @@ class Chooser {
   Chooser(std::span<const double> t, const std::vector<MovingColumn>& columns)
       : t_(t), columns_(columns), negligible_(negligible(columns)) {}
 
-  // The rows by which the others come out within `tolerance` of what columns change; stops at more than `most`.
+  // Returns the rows from which the others follow within `tolerance` of the columns' changes; stops at more than
+  // `most`.
   std::vector<std::size_t> choose(double tolerance, std::size_t most) const {
     constexpr std::size_t kFurthest = 32;
     std::vector<std::size_t> rows = {0};
@@ -122,9 +123,10 @@ std::size_t doubtful_intervals(std::span<const double> t, const std::vector<Movi
     for (std::size_t k = 1; k + 1 < t.size(); ++k) {
       const double a = t[k] - t[k - 1], b = t[k + 1] - t[k], wide = std::max(a, b);
       const int known = derivatives(c, k - 1, k + 1);
-      // Straight lines between positions are all that a run without velocities offers.
+      // A run without velocities offers only straight lines between positions.
       if (!(std::min(a, b) > wide / kMostUneven) || known == 0) continue;
-      // The error at row k is a multiple of (a b)^(known + 1), that in the middle of an interval of (wide/2)^(2 known + 2).
+      // The error at row k is a multiple of (a b)^(known + 1), the error in the middle of an interval one of
+      // (wide/2)^(2 known + 2).
       const double there = std::abs(between_rows(c, t, k - 1, k, k + 1) - c.value[k]);
       const double here = there * std::pow(wide * wide / (4 * a * b), known + 1);
       const double moves = std::max(change(c.value, k - 1, k + 1), nothing[n].change);

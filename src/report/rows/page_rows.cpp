@@ -15,10 +15,10 @@ namespace {
 
 constexpr unsigned kMostDerivatives = 5;
 
-// The columns that hold a coordinate and its derivatives, as far as there are any.
+// The columns of a coordinate and of its derivatives, as far as there are any.
 using Derivatives = std::array<std::optional<std::size_t>, kMostDerivatives>;
 
-// Puts rows with the sides of jumps between those of a run.
+// Inserts rows with the sides of jumps between those of a run.
 class SidesOfJumps {
  public:
   SidesOfJumps(const Model& model, const RunTable& table, const std::vector<EventReport>& events)
@@ -51,7 +51,7 @@ class SidesOfJumps {
   double time(std::size_t row) const { return from_.values[0][row]; }
   void write() { to_.add_row({values_}); }
 
-  // The sides of the jumps from row i on, before the next row.
+  // Inserts the sides of the jumps from row i on, before the next row.
   void between(std::size_t i) {
     const bool has_its_side = i == 0 || time(i - 1) == time(i) || time(i + 1) == time(i);
     const auto passed = [&](const EventReport* e) {
@@ -74,7 +74,7 @@ class SidesOfJumps {
     write();
   }
 
-  // Row i, continued to a time by its derivatives.
+  // Returns row i, continued to a time by its derivatives.
   std::vector<double> continued(std::size_t i, double t) const {
     std::vector<double> row;
     for (std::size_t k = 0; k < from_.columns.size(); ++k) row.push_back(from_.values[k][i]);
@@ -108,7 +108,7 @@ class SidesOfJumps {
     }
   }
 
-  // The other side of a row, of which positions alone are known.
+  // Returns the other side of a row, of which only the positions are known.
   std::vector<double> unknown(const std::vector<double>& side) const {
     std::vector<double> row(side.size(), std::numeric_limits<double>::quiet_NaN());
     row[0] = side[0];
@@ -118,10 +118,10 @@ class SidesOfJumps {
   }
 
   const RunTable& from_;
-  std::vector<Derivatives> of_;  // of each coordinate
+  std::vector<Derivatives> of_;  // for each coordinate
   std::vector<const EventReport*> events_;
   std::size_t next_ = 0;
-  std::vector<double> values_;  // of a row
+  std::vector<double> values_;  // of one row
   RunTable to_;
 };
 

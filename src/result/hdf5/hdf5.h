@@ -13,7 +13,7 @@
 
 namespace anholon {
 
-// Whether this build can read and write HDF5, and the message if it cannot.
+// True if this build can read and write HDF5; otherwise kNoHdf5 is the message.
 bool has_hdf5();
 extern const char* const kNoHdf5;
 
@@ -21,7 +21,7 @@ extern const char* const kNoHdf5;
 struct RowBlock {
   std::size_t columns = 0;
   std::vector<double> numbers;  // row after row
-  // by column: one per row, empty if the number's own text suffices
+  // by column: one text per row, empty if the number's own text suffices
   std::map<std::size_t, std::vector<std::string>> texts;
   std::vector<double> steps;
   std::optional<std::string> report;

@@ -1,5 +1,5 @@
-// The library HDF5, which is loaded when a file of it is first read or written: with all that it needs in turn it takes
-// longer to load than most commands take. Included only if HDF5 is available.
+// The library HDF5, which is loaded when a file of it is first read or written, because loading it with its own
+// libraries takes longer than most commands do. Included only if HDF5 is available.
 #pragma once
 #include <string>
 
@@ -7,7 +7,7 @@
 
 namespace anholon::hdf5 {
 
-// Every function that is used, by its own name; the types that are variables of the library.
+// All functions that are used, by their own names, and the types that are variables of the library.
 struct Library {
 #define FUNCTION(name) decltype(&::name) name = nullptr;
 #include "result/hdf5/hdf5_functions.def"
@@ -15,7 +15,7 @@ struct Library {
   hid_t c_string = 0, native_double = 0, native_int = 0, native_uint32 = 0;
   hid_t little_endian_double = 0, little_endian_int = 0, little_endian_uint = 0;
   hid_t link_creation = 0, dataset_creation = 0;
-  // Ways to open a file; the macros of HDF5 call functions.
+  // The ways to open a file; the macros of HDF5 would call functions.
   static constexpr unsigned kRead = 0, kChange = 1, kReplace = 2;
 };
 

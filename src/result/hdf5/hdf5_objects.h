@@ -43,8 +43,8 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-// Call it before any other function of HDF5; `done` does so: errors are for `cause`, not for the terminal. Throws Trouble
-// if the library cannot be loaded.
+// Switches off HDF5's own messages, because `cause` reports errors. Call it before any other function of HDF5; `done`
+// does so. Throws Trouble if the library cannot be loaded.
 void quietly();
 
 // Calls f, which may throw Trouble. Returns the reason why f failed, or why an object could not be closed (its last
@@ -59,7 +59,7 @@ std::string done(F f) {
 Handle text_type();
 Handle space_of(std::size_t n);  // of one dimension
 Handle open_dataset(hid_t file, const std::string& name);
-// Extendible in all directions, in chunks.
+// Makes a data set that is extendible in all directions, in chunks.
 Handle new_extendible(hid_t file, const char* name, hid_t type, std::vector<hsize_t> size,
                       const std::vector<hsize_t>& chunk);
 void put_texts(hid_t file, const std::string& name, const std::vector<std::string>& texts);

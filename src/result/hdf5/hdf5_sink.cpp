@@ -11,7 +11,7 @@
 
 namespace anholon {
 
-// Rows are written to the copy when there are so many bytes of them, so that the disk works while the motion goes on.
+// Rows are written to the copy when there are this many bytes, so that the disk works while the motion goes on.
 static constexpr std::size_t kAhead = 4u << 20;
 // The limit of stored steps of a run; later steps are not written.
 static constexpr std::size_t kMostSteps = 5'000'000;
@@ -130,7 +130,7 @@ bool Hdf5Sink::copy_last(const std::string& to, std::size_t room) {
   return true;
 }
 
-// Adds the rows that wait to the copy of the last complete file.
+// Adds the waiting rows to the copy of the last complete file.
 bool Hdf5Sink::extend() {
   // New chunks of every data set, the directory of chunks, and the texts.
   constexpr std::size_t kMargin = 1u << 20;

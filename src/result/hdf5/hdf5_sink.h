@@ -1,7 +1,8 @@
 // Writes rows to an HDF5 file that can be read at any moment, also after the program was killed.
 //
 // A complete file is never changed. A checkpoint copies the last complete file, extends the copy and renames it;
-// between checkpoints rows wait in memory, or in the copy, which many rows extend ahead of the checkpoint. The first checkpoint is before the first row, the last in `close`.
+// between checkpoints rows wait in memory, or in the copy, which is extended before the checkpoint if there are many
+// rows. The first checkpoint is before the first row, the last in `close`.
 //
 // Checkpoints cost a copy of the file: a checkpoint waits 20 times as long as the last one took, and at least two
 // seconds; or until the rows in memory are 32 MB, and a quarter of the data written, so that all copies together stay
@@ -60,7 +61,7 @@ class Hdf5Sink final : public RunWriter {
   std::vector<std::string> names_before_;
   struct {
     bool begun = false;               // the copy is made
-    std::size_t rows = 0, bytes = 0;  // by which it is longer
+    std::size_t rows = 0, bytes = 0;  // the rows and bytes that were added to it
   } ahead_;
   std::size_t written_ = 0, steps_ = 0, size_ = 0;
   int last_ = -1;  // the last complete file, even if its name was removed

@@ -6,7 +6,7 @@
 
 namespace anholon::parquet {
 
-// Numbers are stored as the memory of this machine holds them.
+// Numbers are stored as they are in the memory of this machine.
 static_assert(std::endian::native == std::endian::little);
 
 inline constexpr char kMagic[] = "PAR1";
@@ -23,7 +23,7 @@ enum PhysicalType : std::int32_t {
   bytes_type = 6,
   fixed_bytes = 7
 };
-// What values of these types mean; of pairs the first one.
+// The meanings of values of these types; for pairs, the first number.
 enum Meaning : std::int32_t {
   kDecimal = 5,
   kDate = 6,
@@ -36,9 +36,9 @@ enum Encoding : std::int32_t { plain = 0, rle = 3, rle_dictionary = 8 };
 enum PageType : std::int32_t { data_page = 0, dictionary_page = 2, data_page_2 = 3 };
 inline constexpr std::int32_t kRequired = 0, kUtf8 = 0, kUncompressed = 0, kVersion = 1;
 
-// Rows of a page: its size has to fit into 32 bits.
+// The rows of a page, whose size has to fit into 32 bits.
 inline constexpr std::size_t kPageRows = std::size_t{1} << 20;
-// Rows of a row group, which a reader takes as one piece.
+// The rows of a row group, which a reader takes as one piece.
 inline constexpr std::size_t kGroupRows = kPageRows;
 
 }  // namespace anholon::parquet

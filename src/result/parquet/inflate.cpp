@@ -22,7 +22,7 @@ std::string by_zstandard(std::string_view page, std::size_t size) {
   const auto decompress = reinterpret_cast<Decompress>(library.find("ZSTD_decompress"));
   if (!decompress) refuse("the Parquet file is compressed by Zstandard, and " + library.trouble());
   std::string bytes(size, '\0');
-  // An error is a number beyond all sizes.
+  // An error is a number above all sizes.
   if (decompress(bytes.data(), size, page.data(), page.size()) != size)
     throw Failure({}, "a page of the Parquet file is damaged", "the file as it was written");
   return bytes;
@@ -67,7 +67,7 @@ bool read_snappy(std::string_view block, std::size_t size, std::string& bytes) {
     else
       back = number((tag & 3) == 2 ? 2 : 4);
     if (!good || back == 0 || back > bytes.size() || length > size - bytes.size()) return false;
-    // What is copied may hold bytes of the copy.
+    // The copied bytes may include bytes of the copy.
     for (std::size_t k = 0; k < length; ++k) bytes.push_back(bytes[bytes.size() - back]);
   }
   return good && bytes.size() == size;

@@ -60,7 +60,7 @@ std::uint64_t packed(std::string_view bytes, unsigned bits, std::size_t k) {
   return value;
 }
 
-// Digits with a point before the last `scale` of them.
+// Returns digits with a point before the last `scale` of them.
 std::string decimal(bool negative, Wide digits, std::int64_t scale) {
   std::string text;
   for (; digits != 0; digits /= 10) text += static_cast<char>('0' + static_cast<int>(digits % 10));
@@ -83,7 +83,7 @@ std::string whole(std::uint64_t value, const ColumnKind& kind) {
   return std::to_string(number);
 }
 
-// A decimal, whose bytes begin with the highest one.
+// Reads a decimal, whose highest byte comes first.
 std::string wide(std::string_view bytes, const ColumnKind& kind) {
   const bool negative = !bytes.empty() && (bytes[0] & 0x80) != 0;
   Wide value = negative ? ~Wide{0} : Wide{0};
@@ -133,7 +133,7 @@ std::vector<std::string> plain_values(std::string_view bytes, const ColumnKind& 
   return values;
 }
 
-// The first bytes of all values, then their second ones, and so on.
+// Reads values whose first bytes come first, then their second bytes, and so on.
 std::vector<std::string> split_values(std::string_view bytes, const ColumnKind& kind, std::size_t count) {
   const std::size_t width = width_of(kind);
   if (kind.type == bytes_type || kind.type == truth || bytes.size() / width < count) damaged_page();
@@ -146,7 +146,7 @@ std::vector<std::string> split_values(std::string_view bytes, const ColumnKind& 
   return values;
 }
 
-// Blocks of differences to the number before, less the least difference of the block (DELTA_BINARY_PACKED).
+// Reads blocks of differences from the number before, minus the least difference of the block (DELTA_BINARY_PACKED).
 std::vector<std::uint64_t> numbers_by_differences(Bytes& from, std::size_t count) {
   const std::uint64_t block = from.varint(), parts = from.varint(), total = from.varint();
   if (total != count || block == 0 || parts == 0 || block % parts != 0 || block / parts % 8 != 0 || block > kPageRows)
@@ -176,7 +176,7 @@ std::vector<std::string> values_by_differences(std::string_view bytes, const Col
   return values;
 }
 
-// The lengths of all words, then the words.
+// Reads the lengths of all words, then the words.
 std::vector<std::string> words_by_lengths(std::string_view bytes, const ColumnKind& kind, std::size_t count) {
   if (kind.type != bytes_type) damaged_page();
   Bytes from(bytes);
@@ -211,7 +211,7 @@ std::vector<std::uint32_t> run_lengths(std::string_view bytes, unsigned bits, st
     const std::size_t left = count - numbers.size();
     if (head >> 1 == 0) damaged_page();
     if (head & 1) {
-      // The last groups may be cut off.
+      // The last groups may be truncated.
       const std::size_t take = std::min<std::uint64_t>(left, (head >> 1) > left ? left : (head >> 1) * 8);
       const std::size_t size =
           std::min<std::uint64_t>((head >> 1) > left ? left * bits : (head >> 1) * bits, from.rest().size());

@@ -62,7 +62,7 @@ std::string dictionary(const Words& words) {
   return out;
 }
 
-// Indices of words as runs: the bits of an index, then for each run its doubled length and the index.
+// Writes indices of words as runs: the bits of an index, then for each run its doubled length and the index.
 std::string runs(const Words& words, std::size_t from, std::size_t to) {
   const std::size_t most = std::max<std::size_t>(words.different.size(), 2) - 1;
   const int bits = std::bit_width(most), index_bytes = (bits + 7) / 8;

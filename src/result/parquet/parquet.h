@@ -29,7 +29,7 @@ struct ParquetColumn {
 
 struct ParquetTable {
   std::vector<ParquetColumn> columns;  // of the same length
-  // Texts by name that belong to the file. "anholon.data" is added: the SHA-256 of all that stands before the metadata.
+  // Texts by name that belong to the file. "anholon.data" is added: the SHA-256 of everything before the metadata.
   std::vector<std::pair<std::string, std::string>> notes;
   std::size_t rows() const { return columns.empty() ? 0 : columns[0].rows(); }
   // The text of a note; empty if there is none.
@@ -43,14 +43,14 @@ std::string parquet_bytes(const ParquetTable& table);
 // changed.
 ParquetTable read_parquet(std::string_view bytes);
 
-// The number of rows and the notes, which the end of a file holds.
+// The number of rows and the notes, which are in the end of a file.
 struct ParquetSummary {
   std::size_t rows = 0;
   std::vector<std::pair<std::string, std::string>> notes;
 };
-// The size of the end of a file, by its last eight bytes; 0 if they are not those of a whole file.
+// The size of the end of a file, by the file's last eight bytes; 0 if the file is incomplete.
 std::size_t parquet_end(std::string_view last);
-// Reads it. Throws Failure as above.
+// Reads the end of a file. Throws Failure as read_parquet() does.
 ParquetSummary parquet_summary(std::string_view end);
 
 }  // namespace anholon

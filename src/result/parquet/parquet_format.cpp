@@ -16,7 +16,7 @@ std::string write_table(const std::string& path, const ParquetTable& table) {
   return write_whole(path, parquet_bytes(table));
 }
 
-// Numbers whose digits hold more than a double are words.
+// Makes words of numbers whose digits contain more than a double.
 ParquetTable table_of(const RunFile& run) {
   ParquetTable out;
   const RunTable& t = run.table;
@@ -66,7 +66,7 @@ class ParquetRunWriter final : public RunWriter {
   std::string close(const std::string& report) override {
     if (!error_.empty()) return error_;
     run_.report = report;
-    claim_.reset();  // the function that writes takes its own
+    claim_.reset();  // because the function that writes takes a claim itself
     return error_ = write_table(path_, table_of(run_));
   }
 

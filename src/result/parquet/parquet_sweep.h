@@ -1,4 +1,4 @@
-// The cases of a sweep as a table of Parquet. (doc/sweeps.md)
+// The cases of a sweep as a table of Parquet (doc/sweeps.md).
 #pragma once
 #include "result/parquet/parquet.h"
 #include "result/writer.h"
@@ -10,7 +10,7 @@ class SweepRows {
  public:
   explicit SweepRows(const std::vector<SweepColumn>& columns);
   void row(std::span<const SweepCell> cells);
-  // The rows so far; no rows are left.
+  // Returns the rows so far, and empties the table.
   ParquetTable take();
 
  private:
@@ -20,7 +20,7 @@ class SweepRows {
 // The columns of a table that SweepRows made.
 std::vector<SweepColumn> columns_of(const ParquetTable& table);
 
-// Writes the rows of a table that SweepRows made, one by one. Throws Failure without a place if the columns are others.
+// Writes the rows of a table that SweepRows made, one by one. Throws Failure without a place if the columns differ.
 void give_rows(const ParquetTable& table, const std::vector<SweepColumn>& columns, SweepWriter& to);
 
 }  // namespace anholon

@@ -42,11 +42,11 @@ struct StoredTable {
   std::vector<std::vector<StoredChunk>> groups;
 };
 
-// The logical type of a column, as far as it tells more than the older `converted` one.
+// Reads the logical type of a column, as far as it tells more than the older `converted` type.
 void read_meaning(Reader& r, ColumnKind& kind) {
   fields(r, [&](Reader::Field meaning) {
     if (meaning.type != Type::structure) return false;
-    // Times in nanoseconds have this type alone.
+    // Times in nanoseconds have a logical type only.
     if (meaning.number == kLogicalTime && kind.converted < 0) kind.converted = kTimeOfDay;
     if (meaning.number == kLogicalTimestamp && kind.converted < 0) kind.converted = kTimestamp;
     if (meaning.number != kLogicalInteger) return false;
@@ -144,7 +144,7 @@ StoredTable stored_table(std::string_view bytes) {
   return table;
 }
 
-// What a column holds that is neither a number nor a word; empty if it holds these.
+// Names the content of a column that is neither numbers nor words; empty if it is one of these.
 std::string strange(const TextColumn& c) {
   if (c.children > 0 || c.repetition > 1) return "lists or structures";
   switch (c.kind.converted) {
@@ -285,7 +285,7 @@ std::string table_text_of_parquet(std::string_view bytes) {
                       "a number in each cell");
   }
   text += '\n';
-  const bool lonely = columns.size() == 1;  // an absent value must not make an empty line, which is no line of a table
+  const bool lonely = columns.size() == 1;  // an absent value must not make an empty line, which is not a row
   for (std::size_t row = 0; row < static_cast<std::size_t>(table.rows) && !columns.empty(); ++row)
     for (std::size_t c = 0; c < columns.size(); ++c)
       text += (lonely && columns[c][row].empty() ? "\"\"" : csv_cell(columns[c][row])) +

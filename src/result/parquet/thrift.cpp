@@ -136,7 +136,7 @@ Reader::List Reader::list() {
   const std::uint8_t b = byte();
   List out{static_cast<Type>(b & 0x0f), static_cast<std::size_t>(b >> 4)};
   if (out.size == 15) out.size = varint();
-  if (out.size > text_.size() - at_) good_ = false;  // an element takes a byte at least
+  if (out.size > text_.size() - at_) good_ = false;  // an element takes at least one byte
   return good_ ? out : List{};
 }
 
@@ -174,7 +174,7 @@ void Reader::skip(Type type, int depth) {
     return;
   }
   case Type::map:
-    good_ = false;  // the metadata of Parquet has none
+    good_ = false;  // the metadata of Parquet contains no maps
     return;
   case Type::structure:
     open();

@@ -31,12 +31,12 @@ class Writer {
   Writer& i32(int field, std::int64_t value) { return integer(field, Type::i32, value); }
   Writer& i64(int field, std::int64_t value) { return integer(field, Type::i64, value); }
   Writer& binary(int field, std::string_view value);
-  // A list of structures or numbers follows, element by element.
+  // Begins a list of structures or numbers, whose elements follow one by one.
   Writer& list(int field, Type elements, std::size_t size);
   // Elements of a list.
   Writer& element(std::int64_t value);
   Writer& element(std::string_view value);
-  // A field that is a structure, or an element that is one, up to `close`.
+  // Begins a field or an element that is a structure, which ends at `close`.
   Writer& open(int field);
   Writer& open_element();
   Writer& close();
@@ -50,7 +50,7 @@ class Writer {
   int last_ = 0;       // number of the last field
 };
 
-// Reads values one after the other. What is damaged makes `good` false, and all that is read then is 0.
+// Reads values one after the other. A damaged value makes `good` false, and everything read after it is 0.
 class Reader {
  public:
   explicit Reader(std::string_view text) : text_(text) {}
@@ -72,7 +72,7 @@ class Reader {
     std::size_t size = 0;
   };
   List list();
-  // Passes over a value of this type.
+  // Skips a value of this type.
   void skip(Type type, int depth = 0);
 
  private:
@@ -85,7 +85,7 @@ class Reader {
   int last_ = 0;
 };
 
-// Calls f(field) for each field of a structure; f returns false for a field that is passed over.
+// Calls f(field) for each field of a structure; f returns false for a field that is skipped.
 template <class F>
 void fields(Reader& r, const F& f) {
   r.open();
@@ -93,7 +93,7 @@ void fields(Reader& r, const F& f) {
     if (!f(field)) r.skip(field.type);
 }
 
-// Calls f(k) for each element of a list, of which f reads all.
+// Calls f(k) for each element of a list; f has to read the element.
 template <class F>
 void elements(Reader& r, const F& f) {
   const Reader::List list = r.list();
