@@ -6,6 +6,9 @@
 
 #include <benchmark/benchmark.h>
 
+#include "integrate/step_control.h"
+#include "integrate/stretch.h"
+#include "kernel/kernel.h"
 #include "simulation/simulate.h"
 #include "support/models.h"
 
@@ -69,6 +72,15 @@ void count(benchmark::State& state, double error, std::size_t steps) {
   state.counters["steps"] = static_cast<double>(steps);
 }
 
+// The kernel of these equations with machine code, or nullptr if they have none.
+std::shared_ptr<const KernelPlan> kernel(const Task& t, const Start<long double>& start, double tolerance) {
+  auto plan = KernelPlan::make(std::make_shared<const Program>(*t.stepping), taylor_order(std::log(tolerance)) - 1,
+                               parameter_values<long double>(*t.scenario.model), static_cast<double>(start.t),
+                               {start.state.begin(), start.state.end()}, Company::alone);
+  if (plan) plan->compile({});
+  return plan;
+}
+
 void by_taylor(benchmark::State& state, const std::string& model, double tolerance) {
   const Task& t = task(model);
   Start<long double> start;
@@ -76,10 +88,13 @@ void by_taylor(benchmark::State& state, const std::string& model, double toleran
   const std::vector<double> parameters = parameter_values<double>(*t.scenario.model);
   const std::vector<long double> wide = parameter_values<long double>(*t.scenario.model);
   const long double end = from_rational<long double>(t.end);
+  const auto plan = kernel(t, start, tolerance);
   for (auto _ : state) {
     Stepper<double> taylor(*t.stepping, parameters, wide, {std::log(tolerance), 0, 50'000'000, {}});
+    if (plan) taylor.accelerate(plan);
     Outcome o = taylor.start(start.t, start.state, start.leading);
-    while (o.ok() && taylor.time() != end) o = taylor.step(end);
+    for (Stretch<long double> stretch{64}; o.ok() && taylor.time() != end; stretch.restart())
+      o = taylor.steps(end, stretch);
     Expansion<long double> point(*t.stepping, wide, 1);
     if (o.ok()) o = taylor.at(end, point);
     if (!o.ok()) return state.SkipWithError(o.message.c_str());

@@ -10,6 +10,7 @@
 #include "modelfile/check/coefficients.h"
 #include "modelfile/check/dimensions.h"
 #include "modelfile/check/doubled_gravity.h"
+#include "modelfile/check/states_in_contacts.h"
 #include "modelfile/check/values.h"
 #include "modelfile/contacts.h"
 #include "modelfile/implied_units.h"
@@ -113,6 +114,7 @@ class Reader {  // its references are used only while it runs
     check_names_of_contacts(contacts_, model_, diagnostics_);
     note_contacts();
     contacts_.insert(contacts_.end(), switched.begin(), switched.end());
+    settle_states_in_contacts(model_, contacts_, diagnostics_);
     settle_contact_forces(scope_, model_, contacts_, diagnostics_);
     scope_.contact_forces.close();
     if (const Item* n = table(root, "notation")) {

@@ -22,6 +22,7 @@ Column formulas(Workspace& s, const std::vector<Contact>& contacts) {
   const Mechanics& m = *s.mechanics;
   Column es;
   const auto add_row = [&](const Column& row) { es.insert(es.end(), row.begin(), row.end()); };
+  const auto rate = [&](Expr e, unsigned order) { return put_state_rates(*s.model, total_derivative(e, order), 1); };
   const Column left = newton_left_side(m), given = forces(m);
   for (std::size_t i = 0; i < left.size(); ++i) {
     const Expr e = put_masses(*s.model, left[i] - given[i]);
@@ -32,18 +33,18 @@ Column formulas(Workspace& s, const std::vector<Contact>& contacts) {
     const int order = m.order[r];
     const Expr phi = put_masses(*s.model, m.phi[r]);
     add_row(gradient(phi, order == 0 ? m.q : m.qd));
-    es.push_back(total_derivative(phi, static_cast<unsigned>(2 - order)));
-    es.push_back(total_derivative(phi, static_cast<unsigned>(1 - order)));
+    es.push_back(rate(phi, static_cast<unsigned>(2 - order)));
+    es.push_back(rate(phi, static_cast<unsigned>(1 - order)));
   }
   for (const Contact& c : contacts) {
     es.push_back(c.gap);
-    es.push_back(total_derivative(c.gap));
+    es.push_back(rate(c.gap, 1));
     add_row(gradient(c.gap, m.q));
-    es.push_back(total_derivative(c.gap, 2));
+    es.push_back(rate(c.gap, 2));
     for (const Expr v : c.slip) {
       es.push_back(v);
       add_row(gradient(v, m.qd));
-      es.push_back(total_derivative(v));
+      es.push_back(rate(v, 1));
     }
     es.insert(es.end(), {c.friction, c.static_friction, c.restitution});
   }

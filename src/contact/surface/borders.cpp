@@ -46,7 +46,7 @@ Column formulas(Workspace& s, const std::vector<Contact>& contacts) {
     for (std::uint32_t a = 0; a < q.size(); ++a) by.push_back(s.graph().jet(a, order));
   for (const Expr border : borders_of(contacts)) {
     es.push_back(border);
-    es.push_back(total_derivative(border));
+    es.push_back(put_state_rates(*s.model, total_derivative(border), 1));
     const Column d = gradient(border, by);
     es.insert(es.end(), d.begin(), d.end());
   }
