@@ -48,12 +48,14 @@ orientation = "rotz(0.3*t)"
 
 - Only `name` and `center` must be there. Without inertia and orientation a body is a point.
 - An inertia needs an orientation. `inertia` wins over `shape`. A matrix holds J_xz = −∫ x z dm; one that no body can have is an error.
-- A body with an `orientation` is a frame wherever one is wanted: `wheel*rotx(0.2)`. It is not a point: write `wheel.center`. `wheel.x` is an axis, `wheel(a, b, c)` is a `wheel.x` + b `wheel.y` + c `wheel.z`.
+- A body with an `orientation` is a frame wherever one is wanted: `wheel*rotx(0.2)`. It is not a point: write `wheel.center`. `wheel.x` is an axis,
+  `wheel(a, b, c)` is a `wheel.x` + b `wheel.y` + c `wheel.z`.
 - The centre and the orientation are formulas of coordinates and t, not of velocities, nor of inputs.
-- A mass that varies pushes by the matter that leaves or joins: `expelled_velocity` says how. Without it that matter has the
-  velocity of the body's point, and there is no push.
-- So the turning of the matter inside the body is left out, and with it jet damping: matter that flows to the nozzle takes more angular momentum along than at its place. It is a torque
-  `"(m'*l^2 - J')*theta'*ez"` of a `[[force]]`, where l is the distance from the mass centre to the nozzle: [a recipe](recipes/models.md#jet-damping-of-a-rocket).
+- If a mass varies, the matter that leaves or joins exerts a force, which follows from `expelled_velocity`. Without this key the matter has the
+  velocity of the body's point, and there is no force.
+- The motion of the matter inside the body is left out, and with it jet damping: matter that flows to the nozzle carries away more angular momentum
+  than it had at its place in the body. To include jet damping, write a `[[force]]` with the torque `"(m'*l^2 - J')*theta'*ez"`, where l is the
+  distance from the mass centre to the nozzle: [a recipe](recipes/models.md#jet-damping-of-a-rocket).
 
 ```toml
 [[body]]
@@ -67,8 +69,8 @@ orientation = "rotz(theta)"
 error: no body has this inertia: 'spinning' violates the triangle inequality
 ```
 
-`quat(a, b, c, d)` is a rotation only where the sum of squares is 1. Where it is not so anyway, and the file has no such
-constraint, `norm.a` is added, and `check` says so. Where `a` is not given the start is looked for near `a = 1`.
+`quat(a, b, c, d)` is a rotation only if the sum of squares is 1. If this does not hold identically, and the file has no such constraint, the program
+adds the constraint `norm.a`, and `check` says so. If no initial value of `a` is given, the start is looked for near `a = 1`.
 
 ```toml
 coordinates = ["a", "b", "c", "d"]
@@ -155,7 +157,8 @@ generalized = {theta = "-theta'"}
 ```
 
 - A force without `from` acts from outside; `check` lists these.
-- A force works through the velocity of the material point: at a place that moves over the body, the velocity of the body there counts.
+- The power of a force is that on the material point: if the place of the force moves over the body, the velocity of the body at this place counts,
+  not that of the place.
 - Forces may depend on anything but `lambda.NAME` and `reaction(B)`, and definitions that hold them.
 )md",
        {"torque", "torques", "damper", "motor", "tension", "cable", "thrust", "actuator"}},
@@ -243,21 +246,22 @@ when = "theta - 1"
 set = {caught = 1}
 ```
 
-- Its order is that of the highest derivative on which it truly depends. Its reaction is λ ∂φ/∂q⁽ᵐ⁾ with φ = left − right: λ > 0 pushes towards a
-  growing left side. `check` states the hypothesis, ideal reactions.
+- The order m of a constraint is that of the highest derivative on which it truly depends. Its reaction is λ ∂φ/∂q⁽ᵐ⁾ with φ = left − right: λ > 0
+  pushes towards a growing left side. `check` states the hypothesis that reactions are ideal.
 - A vector equation gives `name.x`, `name.y`, `name.z` along ex, ey, ez. With `along = "B"` the components are those along the axes
   of the frame or body B; with `along = ["v1", "v2"]` those along these vectors, `name.1`, `name.2`. Components that vanish identically are dropped with a
   note. `0` is also the zero vector.
 - With `one_sided = true` the left side may become larger than the right one: the constraint opens where its force would pull, and closes again
   without rebound. It is a [contact](#contact) without friction, with its events and columns (`NAME.leaves`, `NAME.normal`), and
   `lambda.NAME` is its force, as that of a contact.
-- With `active` the constraint holds while the formula, of [modes](#mode) and parameters, is positive: events that set the modes switch it. Where it
-  sets in, positions must satisfy it, and the velocities jump by the least change in the mass norm, which takes energy and gives none unless the constraint
-  moves. In such a model an event that sets nothing but modes, to the numbers that they are, does not happen: the formula of a constraint that holds is round-off and passes zero again and again. Rows have `NAME.active` and `lambda.NAME`, which is 0 while it does not hold; such
-  a force stands in monitors, outputs and the `when` of events. Constraints of positions and velocities have it, without `by` and
-  `one_sided`, and not beside contacts. [A recipe](contact.md#a-string-that-catches).
-- With `by` no ideal reaction acts: the input, which has no formula (`u = {}`), becomes the unknown instead of λ. An input keeps one
-  equation only. Forms that eliminate do not apply.
+- With `active` the constraint holds while this formula of [modes](#mode) and parameters is positive; events that set the modes switch it. When the
+  constraint begins to hold, positions must satisfy it, and the velocities jump by the least change in the mass norm, which takes away energy and adds
+  none unless the constraint moves. In such a model an event does not happen if it sets only modes and all of them have the new values already: while
+  a constraint holds, its formula is zero up to round-off and changes sign again and again. Rows have `NAME.active` and `lambda.NAME`, which is 0
+  while the constraint does not hold; monitors, outputs and the `when` of events may contain this force. `active` is possible for constraints of
+  positions and velocities without `by` and `one_sided`, in models without contacts. [A recipe](contact.md#a-string-that-catches).
+- With `by` no ideal reaction acts: the input, which has no formula (`u = {}`), becomes the unknown instead of λ. An input enforces one equation only.
+  Forms that eliminate multipliers do not apply.
 - An input with a formula may occur in a constraint: its formula is put in.
 - An equation that always holds, or never, is an error; one that follows from others is found when the motion starts.
 
@@ -294,7 +298,7 @@ one_sided = true
 forward = "x'*cos(theta) + y'*sin(theta)"
 ```
 
-- Quasi-velocities for the forms that want them. They are completed by velocities of coordinates.
+- These are the quasi-velocities of the forms that use them. If there are too few, velocities of coordinates are added.
 )md"},
       {"observer",
        Form::keys,
@@ -320,12 +324,13 @@ origin_position_inertial = ["sin(t)", "0", "0"]
 observer.origin_velocity = "0.3*ex"
 ```
 
-- Without the section the observer is inertial. One of `spin` and `rotation`, one of the four for the origin, functions of t only,
-  also by inputs and states: no formula behind them holds a coordinate.
-- Inertial forces hold two derivatives of a position of the origin and of `rotation`, and one of its velocity and of `spin`. Where one of lower order jumps they would hold
-  pulses, so it is an error: a table there needs `fit = "monotone"` for two derivatives, and modes stand in `origin_acceleration` alone.
+- Without this section the observer is inertial. Give at most one of `spin` and `rotation`, and at most one of the four keys of the origin. They are
+  functions of t, inputs and states, whose formulas contain no coordinates either.
+- Inertial forces contain two derivatives of the position of the origin and of `rotation`, and one derivative of its velocity and of `spin`. A jump of
+  a lower derivative would make an impulse, so it is an error: a table of which two derivatives are needed must have `fit = "monotone"`, and modes may
+  stand only in `origin_acceleration`.
 - A derivative of a vector, `v'`, is relative to the observer: component by component.
-- Inertial components need a rotation: with a `spin` about one axis that can be integrated it is found, else give `rotation`.
+- Inertial components need a rotation: the program finds it if `spin` is about one axis and can be integrated; otherwise give `rotation`.
 - `vel(P, inertial)` needs the velocity of the origin, which `origin_acceleration` does not tell.
 
 ```toml

@@ -27,10 +27,10 @@ constraint = [{name = "edge", equation = "y'*cos(theta) = x'*sin(theta)"}]
 
 - Only `coordinates` and one body or particle must be there. Sections and names may come in any order: a name is looked up
   when it is needed, and a definition that needs itself is an error that prints the path.
-- TOML wants keys of the top of the file before the first `[section]`. `body = [{…}]` above it means the same as `[[body]]`,
-  `frame.B = "…"` the same as `B = "…"` under `[frame]`. A key with other characters than `A-Z a-z 0-9 _ -` stands in quotes:
-  `"x'" = 1`, `"P[0]" = "0"`.
-- A section stands once, and a list is written in one of both ways; that is TOML's rule:
+- TOML requires that keys of the top of the file stand before the first `[section]`. There, `body = [{…}]` means the same as `[[body]]`, and
+  `frame.B = "…"` the same as `B = "…"` under `[frame]`. A key with other characters than `A-Z a-z 0-9 _ -` stands in quotes: `"x'" = 1`,
+  `"P[0]" = "0"`.
+- By TOML's rules, each section occurs once, and a list is written either as `body = [{…}]` or as `[[body]]`, not in both ways:
 
 ```toml
 coordinates = ["x"]
@@ -52,9 +52,9 @@ coordinate = ["x"]
 error: unknown key 'coordinate' in the model file; did you mean 'coordinates'?
 ```
 
-`base` starts from another file, whose place is relative to this one, or from a shipped model by its name. Tables are put together key by key, elements of lists by
-their `name`; those without a counterpart are added at the end; every other value (a list of names or numbers, too) is replaced.
-Nothing can be taken away. A base may have a base; `--case` may name the cases of all of them.
+`base` names a file from which this file starts, by a path relative to this file, or a shipped model by its name. Tables of both files are merged key
+by key. Elements of lists are merged by their `name`; elements without a counterpart are added at the end. Every other value (also a list of names or
+numbers) is replaced. Nothing of the base can be removed. A base may have a base; `--case` may name the cases of all these files.
 
 ```toml heavy.toml
 base = "model.toml"
@@ -95,10 +95,10 @@ conditions = ["s[i]' = 0"]         # one equation for each value of i
   constraints, forces, events and tables, and entries of `coordinates`.
 - With several letters a list gives the values in the order of the letters, the last one fastest. Its length must fit. In `[point]` a list of
   three formulas is a vector; a list of such lists gives members.
-- A member written out (`"Q[0]"`) wins over the family, wherever it stands.
-- Of forces without `name`, `on` decides whether they are a family; several may act on one body.
+- A member written out (`"Q[0]"`) takes the place of the member of the family, wherever it stands.
+- A force without `name` is a family if its `on` is one; several may act on one body.
 - `--set n=64` reads the file with another integer, `--set "mb[2]=5"` another parameter of one member. A range cannot be set.
-- The letters are names of their own and cannot be declared otherwise. `sum` and `prod` bind theirs.
+- The letters of `[index]` cannot be names of anything else. `sum` and `prod` give their letter its values themselves.
 - A member that does not exist is an error with the range that does:
 
 ```toml
@@ -125,11 +125,11 @@ on = "plate"
 vector = "ex"
 ```
 
-- A case changes its own file in the way in which a file changes its base, but it changes only names that are there: a slip in
-  `parameters`, `define`, `point`, … is an error. New elements of lists stand in a list, as above.
-- `--case a --case b` applies both, one after the other; the later wins. `--set` comes last. Without `--case` none applies, but names in them
-  are not looked up.
-- An element of a family goes by the name in the file (`"trailer[i]"`); one member alone is written out in a new element.
+- A case changes its own file as a file changes its base, but it changes only names that exist: a misspelt name in `parameters`, `define`, `point`, …
+  is an error. New elements of lists stand in a list, as above.
+- `--case a --case b` applies both cases, one after the other; where both change a value, that of the later case holds. `--set` comes last. Without
+  `--case` no case applies, and names in cases are not looked up.
+- A case names a family as the file does (`"trailer[i]"`); to change one member alone, write it out in a new element.
 )md",
        {"scenario", "scenarios"}},
   };

@@ -60,7 +60,9 @@ when = "t - 2"
 set = {stage = "stage + 1"}
 ```
 
-- A number that only events change. An event that sets it to the number that it is happens like any other, and is counted and reported (`stage 1 -> 1`), except [beside `active`](#constraint). `--set stage=2` is for parameters, not for modes: a case changes where a mode starts.
+- A mode is a number that only events change. An event that sets a mode to the number that it has already happens like any other, and is counted and
+  reported (`stage 1 -> 1`), except in models with [`active`](#constraint). `--set` changes parameters and not modes; to start in another mode, write
+  a case.
 )md"},
       {"contact",
        Form::elements,
@@ -88,7 +90,7 @@ set = {stage = "stage + 1"}
          "a length: the same about the normal, of a ball, a disc, a torus or a point of a `body`"},
         {"restitution", number, "the coefficient of impacts, 0 to 1; 0 without it"},
         {"impact", choice, "the law of impacts with that coefficient; `newton` without it", {"newton", "poisson"}}},
-       R"md(A contact pushes and does not pull. A ball is thrown, bounces, slips on the floor and rolls:
+       R"md(A contact pushes and does not pull. In this example a ball is thrown, bounces, slips on the floor and rolls:
 
 ```toml thrown.toml
 coordinates = ["x", "z", "phi"]
@@ -126,7 +128,7 @@ impact = "poisson"
 y = 1
 ```
 
-A shape other than that of the body, a wall, and the inside of a ball:
+This example has a shape other than that of the body, a wall, and the inside of a ball:
 
 ```toml
 [[contact]]
@@ -152,40 +154,57 @@ contact = [{body = "top", drilling_resistance = 0.02}]
 initial = {z = 1, "phi'" = 9}
 ```
 
-- **Shapes.** With `body` the gap and the slip velocity follow from the shape of the body and the plane. A disc is turned about its axis z and touches with
-  its rim, a torus with its tube; the rim of a ring and the ends of a cylinder are discs, and those of a rod points. A box touches with its corners, whose contacts are called `NAME1`, `NAME2`, …; in a plane motion these are four. `at` without `shape` is a point of the body, a position in the
-  observer's axes as of a `[point]`: `at = "s.center + s(0.3, 0, -0.1)"` is fixed in the body s, and `[0.3, 0, -0.1]` in space. (In `force.on.at` an array is along the axes of the body.)
-- **What is touched.** A contact has one body. The plane has no border, and the corners of a box are points: edges and faces of two boxes do not touch each other. Of two bodies one is
-  a point or a ball and the other a ball B, `on = "ball(R)"` with `through = "B.center"`, whose turning is not part of the slip velocity; others have `gap` and `slip` as formulas.
+- **Shapes.** With `body` the gap and the slip velocity follow from the shape of the body and the plane. A disc has its axis along z and touches with
+  its rim, a torus with its tube. The rim of a ring and the ends of a cylinder count as discs, the ends of a rod as points. A box touches with its
+  corners, whose contacts are called `NAME1`, `NAME2`, …; in a plane motion there are four. `at` without `shape` is a point of the body, given by its
+  position in the observer's axes as in `[point]`: `at = "s.center + s(0.3, 0, -0.1)"` is fixed in the body s, and `[0.3, 0, -0.1]` is fixed in space.
+  (In `force.on.at` an array is along the axes of the body.)
+- **What is touched.** A contact with the key `body` has one body, which touches a plane or a ball. The plane has no border, and the corners of a box
+  are points: edges and faces of two boxes do not touch each other. For a contact of two bodies, one must be a point or a ball and the other a ball B,
+  `on = "ball(R)"` with `through = "B.center"`; the turning of B is not part of the slip velocity. For other pairs write `gap` and `slip` as formulas.
 - The normal of a plane does not turn; `through` may move. On a ball the directions of slip are those across `ey`.
-- **Formulas.** The gap is a length, and a slip velocity a velocity: friction is that of the force along the gap, so that `gap = "5*z"` has a fifth of it. A gap may be an angle, too, as that of a door and its stop: the
-  force along it is a moment then, and in a file with units a coefficient has the unit of the gap by that of the slip velocity and of time; gaps and slip velocities with other units, such as `R^2 - norm2(P)`, are
-  errors there. A slip velocity is linear in the velocities and tangential: where the normal is known, as that of a plane by the velocity of a point with `along`, a direction with a part along it is refused.
-- A gap passes zero where a body would pass the surface: `z^2`, `abs(z)` and `norm(P)`, which only touch zero, are refused. Where max, min, abs, sign, piecewise or a table of steps (`fit = "hold"`) change a gap or a slip
-  velocity, its kink or jump is an event of the contact, which strikes there, leaves, or slips. A surface that jumps into a body, and an edge in which a body comes to rest, end the motion with an outcome.
+- **Formulas.** The gap should be a length, and the slip velocity a velocity, because friction is μ times the force along the gap: with `gap = "5*z"`
+  this force is a fifth of the normal force. A gap may also be an angle, like that of a door and its stop: the force along it is a moment then, and in
+  a file with units a coefficient has the unit of the gap divided by those of the slip velocity and of time. Gaps and slip velocities with other
+  units, such as `R^2 - norm2(P)`, are errors in a file with units. A slip velocity must be linear in the velocities and tangential: if the normal is
+  known, as for a plane and the velocity of a point with `along`, a direction with a part along the normal is refused.
+- A gap must change its sign where a body would pass the surface: `z^2`, `abs(z)` and `norm(P)`, which only touch zero, are refused. If max, min, abs,
+  sign, piecewise or a table of steps (`fit = "hold"`) occur in a gap or a slip velocity, each kink or jump is an event of the contact, at which the
+  body strikes, leaves, or slips. If a surface jumps into a body, or a body comes to rest in an edge, the motion ends with an outcome.
 - **Laws of force.** A contact is open, sticks or slips. The normal force N acts along the gradient of the gap, friction against the slip velocity:
   μN while it slips, at most the static coefficient times N while it sticks. Without `slip` there is no friction.
-- Contacts of one body whose gaps or slip velocities depend on each other share their forces, each friction by its load: [two feet](contact.md#two-feet-on-a-floor).
-  The body slips when no distribution holds it any more.
-- **Resistance.** `rolling_resistance` δ and `drilling_resistance` hold moments against the angular velocity of the body: δN against its part along the surface while the body
-  rolls, at most δN while it does not; the same about the normal. They need a `body` with an orientation. Columns are `NAME.rolling.mode` (0 open, 1 rolls, 2 rests),
-  `NAME.rolling.moment`, `NAME.drilling.mode`, `NAME.drilling.moment`; events are `NAME.rolling.starts`, `NAME.rolling.stops`, `NAME.rolling.reverses`, and the same of `NAME.drilling`.
-- **Events and columns.** Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. A gap that is 0 at the start and shrinks is an impact, `NAME.hits`, at the start. At `NAME.reverses` a slip
-  velocity passes zero, or jumps over it, and the contact slips on. `NAME.slips` ends a time of sticking, and `NAME.sticks` one of slipping. A contact that slips or sticks from the start on, or from an impact on, has no event of it: its column `mode` tells which of them it does. A closed contact
-  that the impact of another one opens leaves there (`NAME.leaves`); one that strikes itself and opens has `NAME.hits` alone. Events
-  of contacts at one instant are listed by cause: impacts, other changes of mode, `NAME.rests`. Rows have the columns `NAME.mode` (0 open, 1 slips, 2 sticks), `NAME.gap`, `NAME.normal` and `NAME.friction`.
-- **Forces in formulas.** In monitors, outputs, rates of states, events and the definitions they use, `lambda.NAME` is N, 0 while the contact is open, and `lambda.NAME.t1`, `lambda.NAME.t2` are the components
-  of friction along those of the slip velocity, as forces on what slips; `lambda.NAME.rolling.t1` and so on are the moments of resistance. `reaction(B)` holds the forces of contacts. A force that jumps over
-  the zero of an event at a change of mode does not make it happen. The rate of a `[state]` is linear in the forces: with
-  their power as the rate the state is [their work](contact.md#the-work-of-contacts).
-- **Coefficients** are numbers or formulas of parameters, and constant during a motion: a floor with [parts](contact.md#a-floor-that-is-smooth-and-rough) has a contact for each. They are not negative, a restitution is at most 1, and `static_friction` is at least `friction`. Where the file has units, friction and restitution are numbers, and resistances lengths.
-- **Laws of impact.** Impacts follow Newton's law in Moreau's form: the velocity of the gap is reversed and multiplied by the restitution e. With `impact = "poisson"` they follow
-  Poisson's law: the impulse that stops the gap is followed by e times this impulse. Both agree without friction; with friction Newton's law may raise the energy, which ends the
-  motion. All contacts of a model have one law. Impacts at one instant are solved together; where bodies in a row strike one after the other, [small gaps](contact.md#balls-in-a-row-impacts-at-one-instant) part them. A series of impacts that get sooner and sooner ends with `NAME.rests`, at the limit of the times.
-  That limit is found for the impacts of one contact. A box that bounces from corner to corner may instead take many impacts and stop with the outcome that a gap is negative.
-- **Limits.** There are at most eight contacts; those that touch at one time are few, as all their modes are tried. Soft contacts may be as many as you like: a `[[force]]` each,
-  with `vector = "-k*min(P.z, 0)*ez"`. Motions, reports and sweeps know contacts, in the libraries, too; derivations, proofs and linear models are those of
-  one mode, `--mode NAME=sticks`. They do not go with events that set values, nor with servo constraints. [Recipes](contact.md).
+- Contacts of one body whose gaps or slip velocities depend on each other share their forces; friction is shared in proportion to the loads:
+  [two feet](contact.md#two-feet-on-a-floor). The body slips when no distribution of the forces can hold it.
+- **Resistance.** `rolling_resistance` δ gives a moment against the part of the angular velocity along the surface: δN while the body rolls, at most
+  δN while it does not. `drilling_resistance` gives the same about the normal. They need a `body` with an orientation. Columns are `NAME.rolling.mode`
+  (0 open, 1 rolls, 2 rests), `NAME.rolling.moment`, `NAME.drilling.mode`, `NAME.drilling.moment`; events are `NAME.rolling.starts`,
+  `NAME.rolling.stops`, `NAME.rolling.reverses`, and the same of `NAME.drilling`.
+- **Events and columns.** Changes of mode (`NAME.hits`, `NAME.leaves`, `NAME.slips`, `NAME.sticks`) are events located to round-off. A gap that is 0
+  at the start and shrinks is an impact, `NAME.hits`, at the start. At `NAME.reverses` a slip velocity passes zero, or jumps over it, and the contact
+  slips on. `NAME.slips` ends a time of sticking, and `NAME.sticks` a time of slipping. If a contact slips or sticks from the start on, or from an
+  impact on, there is no such event; the column `mode` tells which it does. If the impact of another contact opens a closed contact, this one has the
+  event `NAME.leaves`; a contact that strikes and opens at once has only `NAME.hits`. Events of contacts at one instant are listed in the order of
+  their causes: impacts, other changes of mode, `NAME.rests`. Rows have the columns `NAME.mode` (0 open, 1 slips, 2 sticks), `NAME.gap`, `NAME.normal`
+  and `NAME.friction`.
+- **Forces in formulas.** In monitors, outputs, rates of states, events and the definitions they use, `lambda.NAME` is N, 0 while the contact is open,
+  and `lambda.NAME.t1`, `lambda.NAME.t2` are the components of friction along those of the slip velocity, as forces on what slips;
+  `lambda.NAME.rolling.t1` and so on are the moments of resistance. `reaction(B)` holds the forces of contacts. An event does not happen if its
+  formula changes sign only because a force jumps at a change of mode. The rate of a `[state]` must be linear in the forces of contacts: with their
+  power as the rate, the state is [their work](contact.md#the-work-of-contacts).
+- **Coefficients** are numbers or formulas of parameters, and constant during a motion: a floor with
+  [parts](contact.md#a-floor-that-is-smooth-and-rough) has a contact for each. They are not negative, a restitution is at most 1, and
+  `static_friction` is at least `friction`. Where the file has units, friction and restitution are numbers, and resistances lengths.
+- **Laws of impact.** Impacts follow Newton's law in Moreau's form: the velocity of the gap is reversed and multiplied by the restitution e. With
+  `impact = "poisson"` they follow Poisson's law: the impulse that stops the gap is followed by e times this impulse. The laws agree without friction;
+  with friction Newton's law may raise the energy, which ends the motion. All contacts of a model have one law. Impacts at one instant are solved
+  together; if bodies in a row should strike one after the other, put [small gaps](contact.md#balls-in-a-row-impacts-at-one-instant) between them. A
+  series of impacts of one contact that come sooner and sooner ends with `NAME.rests`, at the limit of their times. If impacts of several contacts
+  come sooner and sooner, as of a box that bounces from corner to corner, this limit is not found: there may be many impacts, and the motion may stop
+  with the outcome that a gap is negative.
+- **Limits.** A model has at most eight contacts, and only few of them should touch at one time, as the program tries all their modes. The number of
+  soft contacts is not limited: write each as a `[[force]]` with `vector = "-k*min(P.z, 0)*ez"`. Motions, reports and sweeps treat contacts, also in
+  the libraries; derivations, proofs and linear models are those of one mode, `--mode NAME=sticks`. A model with contacts must not have events that
+  set values, nor servo constraints. [Recipes](contact.md).
 
 ```toml
 [[contact]]
@@ -235,17 +254,19 @@ when = "t - 5"
 stop = true
 ```
 
-- An event happens where the formula strictly changes its sign. It does not happen at the start, nor right after an event where its formula
-  is zero: the side on which the motion goes on counts. A formula that touches zero without changing sign does not fire.
-- The formula has a value all along the motion. A motion at whose start it has none ends there, with an outcome that names the event: write `x - 0.51` for
-  `sqrt(x - 0.5) - 0.1`. So does one along which it loses its value, or grows without bound, as `tan(x)` and `1/x` do.
+- An event happens where its formula strictly changes its sign. If the formula is zero at the start, or right after an event, the event does not
+  happen there; the sign that the formula takes next counts. A formula that touches zero without changing sign makes no event.
+- The formula must have a value all along the motion. If it has none at the start, the motion ends there, with an outcome that names the event: write
+  `x - 0.51` for `sqrt(x - 0.5) - 0.1`. The motion also ends where the formula loses its value, or grows without bound, as `tan(x)` and `1/x` do.
 - Its time is located on the Taylor polynomial to round-off, whatever the tolerance. Events may hold `lambda.NAME`, `reaction(B)` and accelerations, also through `[define]`.
-- Several at one moment are taken in the order of the file. All formulas of one `set` use the values before this event; a later
-  event at the same moment sees what the earlier ones have set.
-- Then positions, where they were set, are made consistent with the constraints of position, and velocities with all constraints, by the least change in the mass norm; the change is reported.
+- Several events at one moment happen in the order of the file. All formulas of one `set` use the values before this event; a later event at the same
+  moment uses the values that the earlier ones have set.
+- Then the state is made consistent by the least change in the mass norm: positions, if an event set them, with the constraints of position, and
+  velocities with all constraints. The change is reported.
 - A row at the time of an event shows the motion before it.
 - A jump of a mass gives no impulse: velocities stay. `expelled_velocity` counts between events only.
-- What constraints determine cannot be set. An event whose sets bring its formula to zero again and again ends the motion with an outcome.
+- An event cannot set a quantity that constraints determine. If the values that an event sets bring its formula to zero again and again, the motion
+  ends with an outcome.
 
 ```toml
 [[event]]
@@ -272,13 +293,15 @@ equation = "theta'' = 0"
 by = "w"
 ```
 
-- A control. Motions use its formula; `linearize` gives the derivatives by it. Where a potential, a dissipation, a mass or a constraint holds an input
-  whose formula holds coordinates or velocities (a mass: any input), the formula is put in: B and D do not hold that part, which a note says.
-- Where an input stands in a position or orientation its formula may hold t and states only. Its rates act there, too; `linearize` notes that B and D do not hold them.
-- Programs (`derive --format c` or `python`) take inputs as an argument, and their formulas where it is not given. An input that holds accelerations or
-  stands in a constraint of which derivatives are needed remains a formula there, and so does one whose formula is put in. An input that is given acts in forces,
-  rates of states, outputs, events and other inputs alike.
-- Inputs may use each other, not themselves. `{}` needs a constraint that is kept by it.
+- An input is a control. A motion uses its formula; `linearize` gives the derivatives by the input (the matrices B and D). If a potential, a
+  dissipation, a mass or a constraint contains an input whose formula contains coordinates or velocities (a mass: any input), the formula is put in
+  there. B and D then lack this part, and a note says so.
+- If a position or an orientation contains an input, the formula of the input may contain only t and states. The rates of the input act in the motion,
+  too; a note of `linearize` says that B and D do not contain them.
+- Exported programs (`derive --format c` or `python`) take inputs as an argument, and use the formulas if it is not given. An input remains a formula
+  in them if it contains accelerations, if it occurs in a constraint of which derivatives are needed, or if its formula is put in. An input that is
+  given acts everywhere: in forces, rates of states, outputs, events and other inputs.
+- The formula of an input may contain other inputs, but not itself. An input `{}` needs a constraint that it enforces (`by`).
 )md",
        {"control", "controls", "controller"}},
       {"output",
@@ -341,16 +364,17 @@ lambdadot = {snap = 0.1}
 initial = {qddot = {x = 0.2}, qdddot = {x = 0.05}}
 ```
 
-- Every coordinate and its derivatives may be a key: `theta`, `"theta'"`, `"D(theta, 3)"`. What is not given follows from the constraints, and what they leave free
-  is as near to the guess, 0 without one, as the mass norm allows; what no constraint contains keeps its guess. All that is free changes by the least amount together, so a velocity that could be 0 need not be: a torus
-  wheel that leans and spins with `phi' = 8`, without a `psi'`, must move its centre, and the least motion that does so turns it with `psi' = -4`. Give all velocities of a
-  rolling body. `check` says of each value where it comes from.
-- A value is a number or a formula of parameters. Relations between unknowns stand under `conditions`, which may hold accelerations and
-  `lambda.NAME`: they are solved with the equations of motion (`"theta'' = 0"`: a steady motion). `--q` and `--qdot` give
-  numbers for positions and velocities; an acceleration has no such option, as it follows from the state, and a condition on it finds a state that has it.
-  A condition on velocities moves positions that are not given only where no velocities fit (`"c' = 0"`: the angle at which a caster does not turn).
-- Values that miss a constraint by no more than 1e-8 of its scale are taken as rounded, and corrected by the least change; by more
-  it is an error that names the clash.
+- Every coordinate and its derivatives may be a key: `theta`, `"theta'"`, `"D(theta, 3)"`. Values that are not given follow from the constraints. If
+  the constraints leave some of them free, the program takes those nearest to the guess (0 without one) in the mass norm; a value that no constraint
+  contains is its guess. All free values change together by the least amount, so a velocity that could be 0 need not be: a torus wheel that leans and
+  spins with `phi' = 8`, without a given `psi'`, must move its centre, and the least motion that does so turns it with `psi' = -4`. Give all
+  velocities of a rolling body. `check` says of each value where it comes from.
+- A value is a number or a formula of parameters. Relations between unknowns stand under `conditions`, which may hold accelerations and `lambda.NAME`:
+  they are solved with the equations of motion (`"theta'' = 0"`: a steady motion). `--q` and `--qdot` give numbers for positions and velocities; an
+  acceleration has no such option, as it follows from the state, and a condition on it finds a state that has it. A condition on velocities changes
+  positions that are not given only if no velocities satisfy it (`"c' = 0"`: the angle at which a caster does not turn).
+- If values miss a constraint by no more than 1e-8 of its scale, they count as rounded and are corrected by the least change; if they miss it by more,
+  an error names the clash.
 - A guess also names one of several solutions: the nearest is taken. `--q` and `--qdot` take the place of values and of conditions that clash with them.
 - Angles are in radians: `theta = 0.3`. In degrees they are written `theta = "45 deg"`; a note names an initial angle of 45 rad and others that look like degrees.
 - A vector condition is one for each component.
@@ -373,8 +397,10 @@ height = "P.y"
 reach  = "norm(P) - 2"
 ```
 
-- Numbers to watch along the motion: columns, with their range in the report: of the rows, of the ends of Taylor's steps (of more than a thousand steps ever fewer) and of both sides of events. Between these a monitor may go beyond it; rows at more times (`--every`) come nearer to its extremes, and in a sweep
-  `--reduce "max(NAME)"` finds them. May hold `lambda.NAME`, `reaction(B)` and derivatives of any order, also through `[define]`.
+- A monitor is a number to watch along the motion. It is a column of the rows, and the report has its range. The range covers the rows, the ends of
+  Taylor's steps (if there are more than a thousand steps, ever fewer of them) and both sides of events. Between these times a monitor may exceed the
+  range; rows at more times (`--every`) come nearer to its extremes, and in a sweep `--reduce "max(NAME)"` finds them. A monitor may contain
+  `lambda.NAME`, `reaction(B)` and derivatives of any order, also through `[define]`.
 )md"},
       {"simulate", Form::keys, any, keys_of_simulate(),
        R"md(```toml
@@ -423,11 +449,13 @@ mast   = {shape = "rod(2)", at = "P + ez", axes = "roty(pi/2)"}  # and this stan
 pull   = {vector = "vel(P)", at = "P"}
 ```
 
-- The picture of reports. Bodies with a `shape` are drawn as such; a body with constant moments of inertia and none as the homogeneous box that
-  has them, another as a point with its axes; points as dots; forces with a `tension` as lines.
-- Every other name is an element: `shape` (with `at` and `axes`; of a body it takes its own place), `line` (through a list of places), `trace` (the path of a
-  place), `vector` (with `at`); each may have a `color`. Without a trace particles and points leave one.
-- Nothing here has a part in the motion. `anholon report MODEL -o page.html` shows it.
+- This section describes the picture of report pages. Bodies with a `shape` are drawn as that shape. A body without a shape is drawn as the
+  homogeneous box that has its moments of inertia, if these are constant, and otherwise as a point with its axes. Points are drawn as dots, and forces
+  with a `tension` as lines.
+- Every name other than the keys above is an element of the picture: `shape` (with `at` and `axes`; if the name is that of a body, at the place of the
+  body), `line` (through a list of places), `trace` (the path of a place), `vector` (with `at`); each may have a `color`. If the section has no trace,
+  particles and points leave one.
+- This section does not change the motion. `anholon report MODEL -o page.html` shows the picture.
 
 ```toml
 view = {follow = "plat"}

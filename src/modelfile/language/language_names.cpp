@@ -24,7 +24,7 @@ c     = {value = 3, unit = "N*s/m", doc = "of the damper"}
 ```
 
 - A parameter is constant: what depends on t stands under `[functions]`, what depends on coordinates under `[define]`.
-- `--set l=0.8` gives another value, and what follows from `l` follows. Decimals are exact, `0.1` is 1/10.
+- `--set l=0.8` gives another value; parameters that depend on `l` change with it. Decimals are exact, `0.1` is 1/10.
 )md",
        {"parameter", "constants"}},
       {"functions",
@@ -58,8 +58,9 @@ nose  = ["x", "y + R", "0"]        # a vector, too
 turn  = "rotz(2*theta)"            # a rotation; with axes turn.x
 ```
 
-- A name for a formula of any type. Equations print the name where the formula occurs as a whole.
-- One that holds `lambda.NAME` or `reaction(B)` is for monitors, outputs, rates, conditions and events; forces and constraints refuse it.
+- A definition is a name for a formula of any type. Printed equations show the name where the formula occurs as a whole.
+- A definition that contains `lambda.NAME` or `reaction(B)` may be used in monitors, outputs, rates, conditions and events; forces and constraints
+  refuse it.
 )md",
        {"definition", "definitions"}},
       {"frame",
@@ -74,8 +75,9 @@ wheel = "lean*roty(x/R)"
 tip   = "lean(0, R, 0)"            # 0 lean.x + R lean.y + 0 lean.z
 ```
 
-- A rotation from the observer's axes. `lean.x` is an axis, a vector.
-- Rotations are active and right-handed; products are read from left to right, each turn about the axes where they then are.
+- A frame is a rotation from the observer's axes. `lean.x` is an axis of the frame, a vector.
+- Rotations are active and right-handed; products are read from left to right, and each factor turns about the axes that the factors before it have
+  turned.
 )md"},
       {"point",
        Form::named,
@@ -118,11 +120,13 @@ force = [{on = "plate", vector = "-Cd(norm(vel(P)))*vel(P)"}]
 monitor = {l = "lift(1)"}
 ```
 
-- `fit = "linear"` and `outside = "hold"` unless said otherwise. The step is that of the knot below. Values are exact; those of a spline with many knots have 120 digits.
-- Knots are located and stepped to. `linear` may be differentiated once, `monotone` twice, `spline` three times, the last derivative
-  a step; `hold` not at all. A formula that needs more is an error.
-- The slope of `monotone` at a knot is the weighted harmonic mean of the slopes on both sides (Fritsch and Butland 1984), 0 where these differ in sign, and at the first and the
-  last knot the slope beside it. `pchip` of SciPy and MATLAB is the same but for the slopes at these two knots ([theory](theory/events.md#tables)).
+- The defaults are `fit = "linear"` and `outside = "hold"`. With `fit = "hold"` the value is that of the knot below. Values are exact; those of a
+  spline with many knots have 120 digits.
+- A step of the motion ends at each knot. `linear` may be differentiated once, `monotone` twice, `spline` three times, where the last derivative jumps
+  at the knots; `hold` not at all. A formula that needs more is an error.
+- The slope of `monotone` at a knot is the weighted harmonic mean of the slopes on both sides (Fritsch and Butland 1984), 0 where these differ in
+  sign, and at the first and the last knot the slope beside it. `pchip` of SciPy and MATLAB is the same but for the slopes at these two knots
+  ([theory](theory/events.md#tables)).
 - With `outside = "error"` the motion stops with an outcome where the argument leaves the knots, also at the start.
 - The numbers of a table have no units and fit any dimension. In a file with units the call says which are meant:
   `Cd(t/(1 ms))*(1 N)` for columns of milliseconds and newtons.

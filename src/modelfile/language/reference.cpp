@@ -39,7 +39,8 @@ complete and check keys by [anholon.schema.json](anholon.schema.json), named in 
 monitor = {height = "P.y"}
 ```
 
-A path beside the model or a URL; `anholon reference --schema > anholon.schema.json` writes the file. The program takes the line for a comment.
+The name is a path relative to the model file, or a URL. `anholon reference --schema > anholon.schema.json` writes the schema. For the program the
+line is a comment.
 
 ## Formulas
 
@@ -56,8 +57,7 @@ switch   = "piecewise(x > 1, 1, x > 0, x, 0)"
   formulas along ex, ey, ez. `0` is also the zero vector. A formula that is only a number needs no quotes.
 - `+ - * / ^`, in the order of mathematics: `-x^2` is −(x²), `2^3^2` is 2^(3^2), `a/b*c` is (a/b)·c. A product needs its `*`. `a*b` of two vectors is an
   error: write `dot` or `cross`.
-- `'` is the total derivative by time of anything: a coordinate, a definition, a function, a vector. Derivatives of numbers and vectors
-  go up to order 20.
+- `'` is the total derivative by time of a number or vector: of a coordinate, a definition or a function. Derivatives go up to order 20.
 - Numbers are exact: `0.1` is 1/10, `1e-3` is 1/1000. `1/2` is a formula: in quotes.
 - `x²`, `x³`, `·`, `×`, `−`, `≤`, `≥` are read. A Greek letter and its spelled name are one name: `θ` is `theta`, in keys, too (`"θ'" = 0.2`).
 - Names are letters, digits and `_`. A name before `(` is a function, elsewhere a value, so that a parameter may be called `D`. Values
@@ -77,11 +77,12 @@ monitor.a = "2x"
 error: an operator is missing before 'x'
 ```
 
-**Kinks.** `abs`, `sign`, `min`, `max`, `piecewise`, `choose` and tables switch where their conditions change sign along the motion, `atan2(y, x)` where y does beside a negative x. The switch is
-located and stepped to; at it the branch is the one that the motion enters. Where the argument of `sqrt`, `norm`, `unit` or of a
-power is zero, at the start (a ball with quadratic drag falls from rest) or on the way, the motion goes on one-sided as well. Where it is open how (dry friction
-that holds, a thrust along a velocity that is zero) it stops, and the outcome names the formula. What is recorded at exactly that moment is the value there:
-`sign` is 0, `unit` has none (`nan`); accelerations are those right after it.
+**Kinks.** `abs`, `sign`, `min`, `max`, `piecewise`, `choose` and tables switch to another function where their conditions change sign along the
+motion; `atan2(y, x)` switches where y changes sign at a negative x. The program locates the time of the switch and ends a step there; the next step
+uses the function that holds after the switch. The argument of `sqrt`, `norm`, `unit` or of a power may be zero at the start (a ball with quadratic
+drag falls from rest) or on the way; the motion then goes on with the values on the side that it enters. If this side is not determined (dry friction
+that holds, a thrust along a velocity that is zero), the motion stops, and the outcome names the formula. A row at exactly that moment holds the value
+there: `sign` is 0, and `unit` has no value (`nan`); accelerations are those right after it.
 
 **Powers.** `x^n` has a value at x = 0 and below only if `n` is known to be a whole number: a number of the formula, or a parameter such as `n = 3`, which is then put into the
 equations of a motion. A sweep over `n` derives each case with a whole exponent anew. For other exponents, and for those that depend on a mode, write `abs(x)^n*sign(x)` or
@@ -102,14 +103,15 @@ tilt   = "30 deg"
 push   = "2*(10 N + 3 kp)"
 ```
 
-- A number, a blank, a unit: converted to SI exactly. Factors stand without blanks between them, `kg*m^2`, with whole powers; `/`
-  divides by the next factor only: `m/s/s`, `J/kg/K`. `10 1/s` is `10 s^-1`.
-- Behind a number and a blank a unit is meant also where the file has that name: with a parameter `m`, `3 m` is a length and `3*m` three times
-  the parameter. A unit ends before a name that is none: `10 m/s*R` is a velocity times the parameter R; `(10 m/s)*m` keeps a parameter m apart.
+- A quantity is a number, a blank and a unit, and is converted to SI exactly. The factors of a unit stand without blanks between them, `kg*m^2`, with
+  whole powers; `/` divides by the next factor only: `m/s/s`, `J/kg/K`. `10 1/s` is `10 s^-1`.
+- After a number and a blank, a name is a unit even if the file defines the same name: with a parameter `m`, `3 m` is a length and `3*m` is three
+  times the parameter. A unit ends before a name that is not a unit: `10 m/s*R` is a velocity times the parameter R. Write `(10 m/s)*m` to multiply by
+  a parameter m.
 - `t` is a tonne only right after the number: `5 t`; elsewhere, as in `5 m/s*t`, it is the time.
-- A bare number fits any dimension, so that files without units are never asked. Where a file has units, all its formulas must fit together:
-  sums, both sides of equations, arguments of `sin`, and what forces and bodies are. There a bare number as a term of a sum, the 2 of `2 + r` with a
-  length r, is named by a warning and counts in SI units; `0` has any unit, and `1*2` says that 2 is meant in SI.
+- A bare number fits any dimension, so files without units need none. If a file has units, the dimensions of all its formulas must agree: in sums, on
+  both sides of equations, in arguments of `sin`, and in the keys of forces and bodies. In such a file a bare number as a term of a sum, like the 2 of
+  `2 + r` with a length r, counts in SI units, and a warning names it; `0` has any unit, and `1*2` says that 2 is meant in SI.
 - An angle is a pure number: `rad` is 1, `deg` is pi/180.
 - Prefixes `Y Z E P T G M k h da d c m u (or mu) n p f a z y` stand before units marked ⁺.
 
