@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <optional>
 #include <unordered_map>
 
 #include "base/assert.h"
@@ -109,7 +110,7 @@ class CompiledFormulas::Evaluator {
 
   struct Worker {
     std::unique_ptr<Kernel> kernel;
-    std::vector<std::vector<double>> parameters;  // of each lane, once they are set
+    std::vector<std::optional<std::vector<double>>> parameters;  // those of each lane; nullopt until they are set
   };
 
   // Computes as many points as the kernel has lanes, or fewer: further lanes then have the last point.
@@ -121,9 +122,9 @@ class CompiledFormulas::Evaluator {
     };
     for (std::size_t lane = 0; lane < worker.parameters.size(); ++lane) {
       const std::span<const double> p = point(lane).parameters;
-      std::vector<double>& set = worker.parameters[lane];
-      if (set.size() != p.size() || !std::equal(p.begin(), p.end(), set.begin())) {
-        set.assign(p.begin(), p.end());
+      std::optional<std::vector<double>>& set = worker.parameters[lane];
+      if (!set || !std::equal(p.begin(), p.end(), set->begin(), set->end())) {
+        set.emplace(p.begin(), p.end());
         kernel.set_coefficients(static_cast<int>(lane), {p.begin(), p.end()});
       }
     }
