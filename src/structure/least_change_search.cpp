@@ -77,6 +77,7 @@ class Iteration {
       settled_ = step_vanishes(last_step);
       if (settled_) break;
     }
+    if (nearest && settled_ && !solved()) polish();
     return true;
   }
 
@@ -265,6 +266,18 @@ class Iteration {
     if (!go(good) || !(good > 0)) return false;
     flow_part_ = good;
     return true;
+  }
+
+  // Removes the round-off of steps that are measured from the guess: it has the size of the guess, and the solution may be
+  // much smaller.
+  void polish() {
+    typename Stage<N>::Elimination& elimination = s_.elimination(free_);
+    if (elimination.rows.independent.empty() || !elimination.possible) return;
+    const std::vector<N> before = point();
+    const N missed = s_.worst();
+    least_step(elimination, false);
+    for (std::size_t j = 0; j < x_.size(); ++j) *x_[j] += step_[j];
+    if (!s_.evaluate(state_) || !(s_.worst() < missed)) go_to(before);
   }
 
   // Goes along the step as long as the residual decreases; `step_` is then the step made.

@@ -25,7 +25,7 @@ Column formulas(Workspace& s, const std::vector<Contact>& contacts) {
   const auto rate = [&](Expr e, unsigned order) { return put_state_rates(*s.model, total_derivative(e, order), 1); };
   const Column left = newton_left_side(m), given = forces(m);
   for (std::size_t i = 0; i < left.size(); ++i) {
-    const Expr e = put_masses(*s.model, left[i] - given[i]);
+    const Expr e = put_state_rates(*s.model, put_masses(*s.model, left[i] - given[i]), 1);
     add_row(gradient(e, m.qdd));
     es.push_back(e);
   }
