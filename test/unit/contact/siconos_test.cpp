@@ -1,5 +1,6 @@
-// Motions with contacts against published results of Siconos: rows of reference files of siconos-tutorials, examples/mechanics
-// (Apache-2.0). bench/peers/siconos.py names their commits. Each test has a mutant, another friction or restitution.
+// Motions with contacts, compared with published results of Siconos: rows of reference files of siconos-tutorials,
+// examples/mechanics (Apache-2.0). bench/peers/siconos.py names their commits. Each test has a mutant with another
+// friction or restitution.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ struct Value {
   double siconos, tolerance;
 };
 
-// The largest deviation, measured in the tolerances.
+// The largest deviation in units of the tolerances.
 double deviation(const test::Motion& m, const std::vector<Value>& values) {
   double most = 0;
   for (const Value& v : values) most = std::max(most, std::abs(m.last(v.column) - v.siconos) / v.tolerance);
@@ -92,8 +93,8 @@ th = "pi/3"
 )toml";
 }
 
-// RockingBlockED_Lsodar_LZBimpact.ref follows impacts of single corners in steps of 5e-5 of the impulse, by a law that is
-// Newton's for one contact without friction. The fourth impact is the first one of the right corner.
+// RockingBlockED_Lsodar_LZBimpact.ref integrates impacts of single corners in steps of 5e-5 of the impulse, by a law
+// that equals Newton's for one contact without friction. The fourth impact is the first one of the right corner.
 TEST(Siconos, RockingBlockAfterThreeAndFourImpacts) {
   const std::vector<Value> values = {{"y", 1.128191974939628e-01, 5e-5},
                                      {"th", -4.829609415211609e-01, 5e-5},
@@ -109,8 +110,8 @@ TEST(Siconos, RockingBlockAfterThreeAndFourImpacts) {
   EXPECT_NEAR(test::times(next, "right.hits")[0], 1.417522522998370, 5e-5);
 }
 
-// By ImpactingStick.ref the energy of this stick is 3.765951 at 1e-4 and 3.766658 at 0.1: Newton's law with friction raises it by
-// the friction whose slip turns. Such an impact ends the motion here.
+// In ImpactingStick.ref the energy of this stick is 3.765951 at 1e-4 and 3.766658 at 0.1: Newton's law raises it, by
+// friction whose slip reverses. Such an impact ends the motion here.
 TEST(Siconos, StickWhoseImpactRaisesTheEnergy) {
   const std::string stick = R"toml(coordinates = ["x", "y", "th"]
 gravity.field = "-10*ey"
