@@ -17,9 +17,9 @@ using State = std::vector<long double>;  // x, x', y, y'
 // A particle of mass 1 in the plane.
 struct Conservative {
   const char *name, *potential;
-  State (*start)(long double);  // of one of many motions, by a number from 0 to 1
+  State (*start)(long double);                         // of one of many motions, by a number from 0 to 1
   long double (*value)(long double x, long double y);  // of the potential
-  double bound;  // of the error of one step
+  double bound;                                        // of the error of one step
 };
 
 // Each kind of function whose coefficients are divided by their order: powers, sines, functions given by their
