@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 TABLE = "src/result/formats.cpp"
-# A mark of a format that another file needs, and why.
+# A mark of a format that another file needs, with the reason.
 ALLOWED = {
     ("src/cli/equations/derive.cpp", '".json"'),  # of files that hold equations
     ("src/api/motion.cpp", '#include "result/json_run.h"'),  # Run::json() promises JSON
@@ -23,7 +23,7 @@ ALLOWED = {
     ("src/ensemble/store/sweep_store.cpp", '".parquet"'),
     ("src/ensemble/parts/fill.cpp", '#include "result/parquet/parquet_sweep.h"'),
     ("src/cli/motions/sweep_folder.cpp", '#include "result/parquet/parquet_sweep.h"'),
-    # Tables of cases, which are no results, may be Parquet files of other programs.
+    # Tables of cases are no results and may be Parquet files of other programs.
     ("src/result/parquet/table_text.cpp", '#include "result/parquet/parquet.h"'),
 }
 

@@ -68,7 +68,7 @@ def main():
         frames = [pixels(out / "frames" / n) for n in names]
         assert all(s == (160, 90) for s, _ in frames)
         assert len({f for _, f in frames}) == 3, "pictures of different moments are the same"
-        # In a batch or alone, a moment looks the same.
+        # A moment looks the same in a batch and alone.
         assert frames[1][1] == light
 
         assert "outside the motion" in render("-o", "late.png", "--at", "3", code=2).stderr
