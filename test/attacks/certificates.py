@@ -2,11 +2,11 @@
 """Forged and flipped certificates: `anholon verify` confirms none that says something false.
 
     certificates.py --program PROGRAM [--count 1000]
-    certificates.py --self-test                         a verifier that believes everything is found out
+    certificates.py --self-test                         a verifier that confirms everything is noticed
 
-Certificates of `anholon prove` get other numbers, nodes, functions, claims, witnesses, or other bytes. Where all claims of one are confirmed
-nevertheless, they are computed here, in doubles with a bound of their error: a claim of zero must not be clearly different from zero at any of
-some random points, a claim of a difference must not be zero at its witness.
+Certificates of `anholon prove` get other numbers, nodes, functions, claims, witnesses, or other bytes. If all claims of a certificate are confirmed
+nevertheless, this test computes them in doubles with a bound of their error: a claim of zero must not differ clearly from zero at any of some
+random points, and a claim of a difference must not be zero at its witness.
 """
 
 import argparse

@@ -2,11 +2,11 @@
 """Signals at random moments, full disks, limits, missing folders, readers that leave, two processes on one file: what is written is whole, or not there.
 
     faults.py --program PROGRAM [--moments 60] [PART...]     parts: signals continue disk places pipes pairs cache
-    faults.py --self-test                                    a file that is cut is found
+    faults.py --self-test                                    a file that is cut is noticed
 
-After each fault a file under its name is the old one, or the whole new one; what is not finished is called NAME.part; nothing else lies beside it. Rows
-in NAME.part are the first ones of an undisturbed run, and after a signal that is caught (Ctrl-C, TERM, HUP) so are the rows under the name. The next
-run writes the file as if nothing had happened; a saved run goes on with the same bits. Nothing waits for ever, and every error has a word.
+After each fault a file under its name is the old one, or the whole new one. An unfinished file is called NAME.part; no other file lies beside it. Rows
+in NAME.part are the first ones of an undisturbed run, and so are the rows under the name after a caught signal (Ctrl-C, TERM, HUP). The next run
+writes the file as if nothing had happened; a saved run continues with the same bits. No process waits for ever, and every error has a message.
 """
 
 import argparse

@@ -2,11 +2,11 @@
 """Text that attacks, in every field of the language: no output takes it for anything but text.
 
     fields.py --program PROGRAM [--field NAME] [--long]
-    fields.py --self-test                         outputs that let it through are found
+    fields.py --self-test                         outputs with such text are noticed
 
-The fields are those of `anholon reference --schema`, which is made from the table of the language. Each gets, as its value and as a name where names are
-the author's, sequences of the terminal, ends of comments, strings, elements and formulas of each format that is written, marks of direction and
-line breaks. What is accepted goes through all commands; outputs are read by a parser of their format, or looked through for what must not be there.
+The fields are those of `anholon reference --schema`, which is made from the table of the language. Each gets, as its value and as a name if the
+author chooses the name, sequences of the terminal, ends of comments, strings, elements and formulas of each format that is written, marks of
+direction and line breaks. Accepted models go through all commands; outputs are read by a parser of their format, or searched for forbidden text.
 """
 
 import argparse

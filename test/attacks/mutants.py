@@ -2,14 +2,14 @@
 """Mutated models and command lines over all commands: none crashes, hangs, fills memory, reports a fault of its own or gives rows without numbers.
 
     mutants.py --program PROGRAM [--count 10000] [--first 0] [--jobs 2] [--keep FOLDER]
-    mutants.py --self-test                              each fault is found in a program that has it
+    mutants.py --self-test                              each fault is noticed in a program that has it
 
-Mutant number k is the same on every machine: a shipped model (or one of test/hostile) in which lines, words, numbers, signs or bytes were
-changed, exchanged, doubled or taken away, and a command line made in the same way. Each has 5 seconds of processor time (proofs more) and 1 GiB. It fails if
+Mutant number k is the same on every machine: a shipped model (or one of test/hostile) in which lines, words, numbers, signs or bytes are
+changed, exchanged, doubled or removed, and a command line made in the same way. Each has 5 seconds of processor time (proofs more) and 1 GiB. It fails if
 
     it ends by a signal, or with another exit status than 0, 1, 2
-    it ends with 0 and a row holds something that is no number
-    it ends with 1 or 2 and says nothing
+    it ends with 0 and a row holds a value that is no number
+    it ends with 1 or 2 and without a message
     it sends a control character to the terminal
 """
 

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""The digits to trust, against the digits that are true.
+"""The digits to trust, compared with the digits that are true.
 
 Each motion of MOTIONS, and each shipped model with one of its parameters changed, is computed once with 30 digits or more, then by several
-methods, tolerances and number types, at the same times; sweeps by the final states of the cases that they compare. The true error of each kind of columns is compared with what `simulate` claims: none may be above ten times the claim
+methods, tolerances and number types, at the same times; sweeps are judged by the final states of the cases that they compare. The true error of each kind of columns is compared with what `simulate` claims: none may be above ten times the claim
 without a warning in the report, and the median of true error over claim must lie between 0.1 and 1.
 
     run.py PROGRAM [--all] [--jobs N] [--only TEXT] [--verbose] [--self-test]
 
 Without --all (or ANHOLON_LONG=1) every eighth motion is taken. The scale of a column is the one that doc/results.md describes. The
-self-test makes every claim a hundred times smaller, and must find that out.
+self-test makes every claim a hundred times smaller, which must be noticed.
 """
 import argparse
 import concurrent.futures

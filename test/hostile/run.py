@@ -2,21 +2,20 @@
 """Hostile models: contradictory, degenerate, redundant, wrong, absurd. None may crash, hang or fill memory.
 
     run.py --program PROGRAM [--no-limits | --seconds S] [NAME...]
-    run.py --self-test                                   each fault is found in a program that has it
+    run.py --self-test                                   each fault is noticed in a program that has it
 
-Every model of this folder goes through `check`, `simulate`, `evaluate` and `derive`, those that are too large to be stored (made
-below) through the first two, each with limits of processor time and memory. The limit of time tells a hang from work: the
-slowest command takes 1.6 s, and no neighbour's load may fail the test; `--seconds 2` asks whether
-each command ends within two seconds on a quiet one. The first line of a model says what must come of it:
+Every model of this folder goes through `check`, `simulate`, `evaluate` and `derive`. Models that are too large to be stored (made
+below) go through the first two. Each command has limits of processor time and memory. The limit of time distinguishes a hang from
+work: the slowest command takes 1.6 s, and the load of other programs must not fail the test. With `--seconds 2` the test checks that
+each command ends within two seconds on a quiet machine. The first line of a model gives the expected result:
 
     # expects: ok
     # expects: error "these words"                     bad input: exit status 2, positioned in the file
     # expects: singular "the constraint 'c1'"          an outcome of that name: exit status 1
-    # expects: check ok; simulate blow_up/singular     where the commands differ; one of several
+    # expects: check ok; simulate blow_up/singular     if the commands differ; one of several
 
-`check` and `simulate` must end as it says, the others in any of these ways. Wherever a command ends with an error, the error
-names file, line and column (`# expects: file error …`: the file alone); wherever it ends with an outcome, the outcome has a
-name; what is asked for as JSON is JSON.
+`check` and `simulate` must end as expected, the others in any of these ways. An error names file, line and column
+(`# expects: file error …`: the file alone), an outcome has a name, and output requested as JSON is JSON.
 """
 
 import argparse

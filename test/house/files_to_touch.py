@@ -4,8 +4,8 @@ of each that is there.
 
 usage: files_to_touch.py [PROGRAM] [--root DIR] [--self-test]
 
-With a PROGRAM the option is also looked for where it has to appear although no file names it there: in the help of each
-command that computes a motion, in the schema of [simulate] and its effect, in the provenance of a result.
+With a PROGRAM the option must also appear in places in which no file names it: in the help of each command that computes a
+motion, in the schema of [simulate] and its effect, in the provenance of a result.
 Result formats have a test of their own, formats_by_table.py; forms have new_form_test.cpp.
 """
 

@@ -4,7 +4,7 @@
 usage: formats_by_table.py [--root DIR] [--self-test]
 
 The own files of NAME_format are src/result/NAME*. No other file of src/ may include their headers, use the row, or hold
-an ending of the format as a text: it would be one more place to change for another format.
+an ending of the format as a text, since each such place would have to change for another format.
 """
 
 import argparse

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Records the disc: one picture, three moments, a film where there is ffmpeg; the pictures are what was asked for and show a motion.
+"""Records the disc: one picture, three moments, a film if ffmpeg is installed; the pictures are those requested and show a motion.
 
 usage: render_disc.py PROGRAM
 
-Exit status 77 (skipped) where Chromium is missing or the program has no viewer.
+Exit status 77 (skipped) if Chromium is missing or the program has no viewer.
 """
 
 import os

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The studio and the page of a sweep: the motion of a case has the numbers of the printed command; what is wrong is told.
+"""The studio and the page of a sweep: the motion of a case has the numbers of the printed command; mistakes are reported.
 
 usage: sweeps.py --program PROGRAM | --self-test
 """

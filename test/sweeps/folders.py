@@ -2,9 +2,9 @@
 """Sweeps in folders: whatever happens to the processes, what is collected has the bytes of one quiet sweep.
 
     folders.py --program PROGRAM [--kills 40] [PART...]     parts: kill stop two shards disk model tables part judgement status plot watched refine page outside
-    folders.py --self-test                                  a part with other numbers is found
+    folders.py --self-test                                  a part with other numbers is noticed
 
-Kills come at random moments. Nothing is lost but parts under way, and nothing is left behind that a later process does not clear.
+Kills come at random moments. Only unfinished parts are lost, and a later process clears all files that are left.
 """
 
 import argparse

@@ -2,13 +2,13 @@
 """Sweeps in folders under engines of others, which fail: what is collected has the bytes of one quiet process.
 
     workers.py --program PROGRAM [--kills 40] [--rounds 40] [PART...]
-    workers.py --self-test                                  other bytes are found
+    workers.py --self-test                                  other bytes are noticed
 
-PART is one of workers refined stopped scheduler client_killed disk clients parallel slurm. The first two kill as many workers as --kills
-says; each other one is repeated --rounds times, with its failure at another random moment.
+PART is one of workers refined stopped scheduler client_killed disk clients parallel slurm. The first two kill --kills
+workers; each other part is repeated --rounds times, with its failure at another random moment.
 
-Workers are processes `dask worker`; parts that need Dask are left out where it is missing, and so are GNU parallel (xargs takes its
-place) and Slurm (only with ANHOLON_LONG, or if it is named).
+Workers are processes `dask worker`; parts that need Dask are left out if Dask is missing. xargs replaces a missing GNU parallel.
+Slurm runs only with ANHOLON_LONG, or if it is named.
 """
 
 import argparse
