@@ -116,7 +116,7 @@ endfunction()
 anholon_test_set(oracle      SHARDS 4 LABELS oracle long)
 anholon_test_set(laws        SHARDS 4 LABELS laws long)
 anholon_test_set(backends    SHARDS 2 LABELS backends long)
-target_sources(test_backends PRIVATE src/jit/packs.cpp src/jit/packed_memory.cpp)  # what of the module is not LLVM's
+target_sources(test_backends PRIVATE src/jit/packs.cpp src/jit/packed_memory.cpp)  # module parts without LLVM
 
 # The translator of machine code is linked here by itself, as it is part of a module and not of the program.
 if(TARGET anholon_jit)

@@ -41,7 +41,8 @@ Column derivative(Column c, int times) {
 // ---- identities of T and of places, in all jets
 // -----------------------------------------------------------------------------
 
-// d F^(k)/dq^(j) = C(k, j) (dF/dq)^(k-j) + C(k, j-1) (dF/dq')^(k-j+1)  (theory: derivatives); `other` replaces C(k, j-1).
+// d F^(k)/dq^(j) = C(k, j) (dF/dq)^(k-j) + C(k, j-1) (dF/dq')^(k-j+1)  (theory: derivatives);
+// `other` replaces C(k, j-1).
 Terms commutation(const System& s, Expr F, unsigned k, unsigned j, std::optional<Rational> other = {}) {
   const Rational first = binomial(k, static_cast<int>(j)),
                  second = other.value_or(binomial(k, static_cast<int>(j) - 1));
@@ -313,8 +314,8 @@ TEST_P(Reduced, RateOfTheSolvedConstraints) {
 
 INSTANTIATE_TEST_SUITE_P(Case, Reduced, testing::ValuesIn(cases(false)), case_name);
 
-// Appell's equations in the reduced energy of accelerations; as printed they have S~ itself for every m  [L 3.20,
-// 3.21].
+// Appell's equations in the reduced energy of accelerations; as printed they have S~ itself for every m
+// [L 3.20, 3.21].
 TEST_P(Reduced, EnergyOfAccelerations) {
   const Column E = lagrange_operator(s.m), contracted = e.contract(E);
   expect(s, e, {find_formulation("appell-reduced")->equations(s.m, e).left, -contracted}, "[L 3.21]");

@@ -1,7 +1,7 @@
 // The multiplier of a surface passes zero at the place where a carried body leaves it, in any coordinates.
 //
-// From the top of a sphere of radius R with the speed v, a particle leaves at cos(theta) = (2 + w)/3, w = v^2/(g R); a ball
-// that rolls, whose centre is R from that of the sphere, at cos(theta) = (10 + 7 w)/17.
+// From the top of a sphere of radius R with the speed v, a particle leaves at cos(theta) = (2 + w)/3, w = v^2/(g R); a
+// ball that rolls, whose centre is R from that of the sphere, at cos(theta) = (10 + 7 w)/17.
 #include <gtest/gtest.h>
 
 #include "simulation/first_pull.h"

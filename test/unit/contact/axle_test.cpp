@@ -1,4 +1,5 @@
-// An axle that comes down on one ball, then on the other: an impact on a contact that is closed, friction that both share.
+// An axle that comes down on one ball, then on the other: an impact on a contact that is closed, friction that both
+// share.
 #include <cmath>
 #include <map>
 

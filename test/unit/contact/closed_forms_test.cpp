@@ -290,8 +290,9 @@ initial = {z = 1, "x'" = "4/T"}
   EXPECT_NEAR(seconds.first, slow.first, 1e-13);
 }
 
-// A box that rocks from corner to corner without rebound (Housner 1963): at each impact the spin changes by the factor r = 1
-// - 3 b^2/(2 (a^2 + b^2)) with the half width b, and half a swing lasts twice the time in which the box falls back.
+// A box that rocks from corner to corner without rebound (Housner 1963): at each impact the spin changes by the factor
+// r = 1 - 3 b^2/(2 (a^2 + b^2)) with the half width b, and half a swing lasts twice the time in which the box falls
+// back.
 TEST(ClosedForms, RockingBoxComesToRest) {
   const std::string text = R"toml(coordinates = ["x", "z", "phi"]
 parameters = {m = 1, b = 0.2, a = 0.3, g = 9.81, J = "m*(a^2 + b^2)/3", w = 0.05}
@@ -322,7 +323,8 @@ phi = 0
     EXPECT_FALSE(rests.empty());
     return std::pair{hits, rests.empty() ? 0 : rests[0]};
   };
-  // About a corner phi'' = -3 g (b cos phi - a sin phi)/(4 (a^2 + b^2)), for the small angles of the last swings linear.
+  // About a corner phi'' = -3 g (b cos phi - a sin phi)/(4 (a^2 + b^2)), for the small angles of the last swings
+  // linear.
   const auto ratio = [](const std::vector<double>& hits) {
     const std::size_t n = hits.size() - 3;
     return (hits[n] - hits[n - 1]) / (hits[n - 1] - hits[n - 2]);
@@ -372,8 +374,8 @@ phi = )toml" +
          std::to_string(angle) + "\n\"phi'\" = " + std::to_string(spin) + "\n";
 }
 
-// The effective mass 1/m (1 + 3 c^2 - 3 mu s c) of the tip vanishes at the critical angle, which exists from mu = 4/3 on
-// (Génot and Brogliato 1999).
+// The effective mass 1/m (1 + 3 c^2 - 3 mu s c) of the tip vanishes at the critical angle, which exists from mu = 4/3
+// on (Génot and Brogliato 1999).
 TEST(ClosedForms, PainleveRodEndsByName) {
   const double mu = 1.4;
   const auto factor = [mu](double a) { return 1 + 3 * std::cos(a) * std::cos(a) - 3 * mu * std::sin(a) * std::cos(a); };

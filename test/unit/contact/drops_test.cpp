@@ -1,5 +1,5 @@
-// Random drops of boxes, balls and discs: the energy never grows, no gap is negative, and each motion ends by name. `./dev
-// long` (ANHOLON_LONG=1) computes 10^4 of them.
+// Random drops of boxes, balls and discs: the energy never grows, no gap is negative, and each motion ends by name.
+// `./dev long` (ANHOLON_LONG=1) computes 10^4 of them.
 #include <algorithm>
 #include <array>
 #include <charconv>

@@ -103,8 +103,8 @@ TEST(ImpactLaws, TheyAgreeWithoutFrictionAndInASteadySlip) {
     EXPECT_NEAR(newton.report.events[k].t.value, poisson.report.events[k].t.value, 1e-13);
 }
 
-// Over a grid of angles, slips and frictions: Newton's law raises the energy in some cases, which it refuses, and Poisson's
-// in none.
+// Over a grid of angles, slips and frictions: Newton's law raises the energy in some cases, which it refuses, and
+// Poisson's in none.
 TEST(ImpactLaws, PoissonNeverRaisesTheEnergy) {
   std::size_t newton_raises = 0, cases = 0;
   for (const double angle : {-1.3, -0.8, -0.3, 0.2, 0.6, 1.0, 1.4})

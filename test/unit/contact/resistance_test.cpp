@@ -255,8 +255,8 @@ drilling_resistance = 0.00744
   EXPECT_LT(m.report.power, 1e-10);
 }
 
-// The last stop of a ball with quaternion coordinates leaves a rate along the quaternion that is larger than those that turn
-// the ball: the jump that stops it removes this rate, too.
+// The last stop of a ball with quaternion coordinates leaves a rate along the quaternion that is larger than those that
+// turn the ball: the jump that stops it removes this rate, too.
 TEST(Resistance, BallEndsRollingAndDrillingTogether) {
   const auto m = contact_motion(R"toml(
 coordinates = ["x","y","z","a","b","c","d"]

@@ -140,8 +140,8 @@ TEST(Shapes, FlatDiscNamesItsContact) {
   EXPECT_NE(m.report.outcome.message.find("contact 'table'"), std::string::npos) << m.report.outcome.message;
 }
 
-// The disc sticks, and begins to slip against the friction that held it. The resistance to rolling turns this friction: a
-// direction found without the resistance leads to no consistent mode.
+// The disc sticks, and begins to slip against the friction that held it. The resistance to rolling turns this friction:
+// a direction found without the resistance leads to no consistent mode.
 TEST(Shapes, EulersDiscBeginsToSlipAgainstItsFriction) {
   const auto m = eulers_disc(R"toml(psi = 569.875976
 theta = 0.000106676556

@@ -121,8 +121,8 @@ TEST(SharedFriction, StoolIsTurned) {
   EXPECT_NEAR(m.last("a"), std::pow(3 - begin, 3) / 0.6, 1e-8);
 }
 
-// Pushed off its centre at the floor, with feet at (0.3, 0) and (-0.15, +-0.26), the stool stands until the limit load of the
-// three cones. The reference is the solution of that convex problem by another program (SLSQP of SciPy).
+// Pushed off its centre at the floor, with feet at (0.3, 0) and (-0.15, +-0.26), the stool stands until the limit load
+// of the three cones. The reference is the solution of that convex problem by another program (SLSQP of SciPy).
 TEST(SharedFriction, StoolPushedOffItsCentreSlipsAtItsLimitLoad) {
   std::string text = stool("on = {body = \"s\", at = [0, 0.15, -0.2]}, vector = \"t*ex\"");
   text.replace(text.find("sqrt(3)/2"), 9, "0.26/0.3");

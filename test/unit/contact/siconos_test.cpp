@@ -33,8 +33,9 @@ std::string changed(std::string text, const std::string& from, const std::string
 
 std::string woodpecker() { return test::file_text(test::source_dir() / "models/contacts/woodpecker.toml"); }
 
-// Woodpecker.ref has steps h = 2e-5 with the mean of the forces. Up to the first impact the error at time t is near h^2 t/12
-// times the third derivative: 1e-7 for the angle of the bird, whose third derivative is 5e4, and 5e-6 for its rate.
+// Woodpecker.ref has steps h = 2e-5 with the mean of the forces. Up to the first impact the error at time t is near h^2
+// t/12 times the third derivative: 1e-7 for the angle of the bird, whose third derivative is 5e4, and 5e-6 for its
+// rate.
 TEST(Siconos, WoodpeckerBeforeTheFirstImpact) {
   const std::vector<Value> values = {{"y", -4.407447581115698e-03, 4e-9},
                                      {"phiM", -0.1036, 1e-15},
@@ -47,8 +48,9 @@ TEST(Siconos, WoodpeckerBeforeTheFirstImpact) {
   EXPECT_GT(deviation(contact_motion(changed(begun, "mu = 0.3\n", "mu = 0.3001\n"), t, {}, {t}), values), 100);
 }
 
-// In Woodpecker.ref an impact is late by up to h, in which the sleeve with 25 rad/s turns on by 5e-4; so the sleeve stands with
-// its edges up to 1.5e-4 rad inside the pole, and the spring pushes more. There are five impacts before 0.122, ten before 0.29998.
+// In Woodpecker.ref an impact is late by up to h, in which the sleeve with 25 rad/s turns on by 5e-4; so the sleeve
+// stands with its edges up to 1.5e-4 rad inside the pole, and the spring pushes more. There are five impacts before
+// 0.122, ten before 0.29998.
 TEST(Siconos, WoodpeckerAfterImpacts) {
   const std::vector<Value> first = {{"y", -1.082597072663672e-02, 1e-4},
                                     {"phiS", -1.173944200965509e-01, 3e-3},

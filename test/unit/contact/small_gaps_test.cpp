@@ -20,8 +20,8 @@ contact = [{name = "slope", body = "P", normal = "sin(tilt)*ex + cos(tilt)*ez", 
 initial = {z = "h"}
 )toml";
 
-// Velocities of up to 80 m/s are rounded by 1e-14 at each of 100 impacts, which is 3e-15 s of fall, and the intervals after it
-// change by up to ten times as much.
+// Velocities of up to 80 m/s are rounded by 1e-14 at each of 100 impacts, which is 3e-15 s of fall, and the intervals
+// after it change by up to ten times as much.
 constexpr double kRounded = 3e-12;
 
 // The gap is h cos(tilt) at first, and the acceleration along the normal is -g cos(tilt), so the times are those on a

@@ -227,7 +227,8 @@ initial = {x = 1}
   EXPECT_TRUE(report.without_value.empty());
 }
 
-// x = cos t passes 0.3 three times, in steps at whose start the formula and its derivatives are 0 in double: exp(-49000).
+// x = cos t passes 0.3 three times, in steps at whose start the formula and its derivatives are 0 in double:
+// exp(-49000).
 TEST(Reduction, APulseWithinAStepIsSeen) {
   constexpr double kMean = 0.00176269447011, kSign = -0.0575222039231;  // mpmath
   Sweep run(kOscillator, {"max(exp(-100000*(x - 0.3)^2))", "mean(exp(-100000*(x - 0.3)^2))",

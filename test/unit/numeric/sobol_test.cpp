@@ -9,8 +9,8 @@
 namespace anholon::sobol_test {
 namespace {
 
-// The first points in natural order: v = 1/2, 1/4, 1/8 of van der Corput, v = 1/2, 3/4, 5/8 of x + 1, and 1/2, 3/4, 1/8 of
-// x^3 + x + 1.
+// The first points in natural order: v = 1/2, 1/4, 1/8 of van der Corput, v = 1/2, 3/4, 5/8 of x + 1, and 1/2, 3/4, 1/8
+// of x^3 + x + 1.
 TEST(Sobol, TheFirstPointsAreKnown) {
   const double second[] = {0, 0.5, 0.75, 0.25, 0.625, 0.125, 0.375, 0.875};
   const double fourth[] = {0, 0.5, 0.75, 0.25, 0.125, 0.625, 0.875, 0.375};

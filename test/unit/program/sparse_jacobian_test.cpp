@@ -49,8 +49,8 @@ TEST(SparseJacobian, OfAChainGrowsWithItsLinks) {
     entries.push_back(static_cast<double>(e.system_jacobian().sparse().entries()) / n);
     terms.push_back(static_cast<double>(e.system_jacobian().sparse().partials().size()) / n);
   }
-  // Sums of many links are trees of blocks: the number of entries of a link grows with their depth, the logarithm of the
-  // number of links.
+  // Sums of many links are trees of blocks: the number of entries of a link grows with their depth, the logarithm of
+  // the number of links.
   constexpr double kBlocks = 1.1;
   EXPECT_LE(terms[2], kBlocks * terms[0]) << terms[0] << ", " << terms[1] << ", " << terms[2];
   EXPECT_LE(entries[2] - entries[1], kBlocks * (entries[1] - entries[0]))
